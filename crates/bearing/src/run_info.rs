@@ -1,0 +1,88 @@
+//! `run.json`: provenance, sizes, cost and the energy ledger's verdict of one run.
+
+use serde::{Deserialize, Serialize};
+
+/// Contents of `run.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunInfo {
+    /// Version of the program.
+    pub version: String,
+    /// Commit it was built from, `unknown` outside a checkout.
+    pub commit: String,
+    /// Hash of the resolved scene (FNV-1a 64 of `scene.ron`), hexadecimal.
+    pub scene_hash: String,
+    /// Processor and operating system, in words.
+    pub machine: String,
+    /// Worker threads.
+    pub threads: usize,
+    /// How the run ended.
+    pub status: Status,
+    /// Why it ended before its time, when it did.
+    pub stop_reason: Option<String>,
+    /// Time step [s].
+    pub time_step_s: f64,
+    /// Critical time step [s].
+    pub critical_time_step_s: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps planned.
+    pub steps_planned: u64,
+    /// Sampling interval [s].
+    pub interval_s: f64,
+    /// Samples written.
+    pub samples: usize,
+    /// Mesh counts.
+    pub mesh: MeshInfo,
+    /// Wall-clock time of the time loop [s].
+    pub wall_s: f64,
+    /// Processor time of the whole run, all threads [s].
+    pub cpu_s: f64,
+    /// Wall-clock time from start to the first step (mesh, preload) [s].
+    pub setup_s: f64,
+    /// Energy verdict.
+    pub energy: EnergyInfo,
+    /// Vertical force that the rollers must carry: load plus the weight of adapter and outer ring [N].
+    pub expected_support_n: f64,
+    /// Warnings, in the order in which they arose.
+    pub warnings: Vec<String>,
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// Still going, or killed.
+    Running,
+    /// All steps taken.
+    Complete,
+    /// Interrupted by the user.
+    Interrupted,
+    /// Stopped by a guard: energy, NaN, lost contact.
+    Diverged,
+}
+
+/// Mesh counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeshInfo {
+    /// Nodes.
+    pub nodes: usize,
+    /// Quadrilaterals.
+    pub quads: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Facets on one roller.
+    pub roller_facets: usize,
+    /// Facets on the outer raceway, defect included.
+    pub outer_facets: usize,
+    /// Facets on the inner raceway.
+    pub inner_facets: usize,
+}
+
+/// Energy verdict.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EnergyInfo {
+    /// Largest |imbalance| divided by the peak strain energy [-].
+    pub max_relative_error: f64,
+    /// Peak strain energy [J].
+    pub peak_strain_j: f64,
+}

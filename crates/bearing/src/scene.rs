@@ -1,0 +1,339 @@
+//! The scene: the only input a user writes. Every number carries its unit in its field name.
+
+use serde::{Deserialize, Serialize};
+
+/// A complete scene. `()` in a file is the paper's bearing; every field has a default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Scene {
+    /// Short name, also that of the run directory.
+    pub name: String,
+    /// Rings and rolling elements.
+    pub bearing: BearingScene,
+    /// The rigid cage; `None` leaves the rollers unguided.
+    pub cage: Option<CageScene>,
+    /// The block that carries the load to the outer ring.
+    pub adapter: AdapterScene,
+    /// Rectangular spall on the outer raceway; `None` is a sound bearing.
+    pub defect: Option<DefectScene>,
+    /// Linear elastic material of every body.
+    pub material: MaterialScene,
+    /// Discretisation.
+    pub mesh: MeshScene,
+    /// Load, speed and gravity.
+    pub operation: OperationScene,
+    /// Contact method and laws.
+    pub contact: ContactScene,
+    /// Time integration.
+    pub solver: SolverScene,
+    /// What is recorded.
+    pub output: OutputScene,
+}
+
+/// Rings and rolling elements (paper, Table 1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BearingScene {
+    /// Diameter of the outer raceway [mm].
+    pub outer_race_diameter_mm: f64,
+    /// Radial thickness of the outer ring [mm].
+    pub outer_ring_thickness_mm: f64,
+    /// Diameter of the inner raceway [mm].
+    pub inner_race_diameter_mm: f64,
+    /// Radial thickness of the inner ring [mm].
+    pub inner_ring_thickness_mm: f64,
+    /// Number of rolling elements.
+    pub rollers: usize,
+    /// Diameter of a rolling element [mm].
+    pub roller_diameter_mm: f64,
+    /// Out-of-plane thickness of the plane-strain model [mm]; the paper does not state it.
+    pub thickness_mm: f64,
+    /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow counter-clockwise.
+    pub first_roller_deg: f64,
+}
+
+/// Rigid cage: a ring cut into as many pieces as there are pockets.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct CageScene {
+    /// Outer diameter [mm].
+    pub outer_diameter_mm: f64,
+    /// Radial thickness [mm].
+    pub thickness_mm: f64,
+    /// Gap between a centred roller and its pocket wall [µm].
+    pub pocket_clearance_um: f64,
+}
+
+/// Block with a concave seat on top of the outer ring.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AdapterScene {
+    /// Width [mm].
+    pub width_mm: f64,
+    /// Height above the crown of the seat [mm].
+    pub height_mm: f64,
+}
+
+/// Rectangular spall on the outer raceway.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DefectScene {
+    /// Circumferential length [mm], measured on the raceway.
+    pub length_mm: f64,
+    /// Depth [mm].
+    pub depth_mm: f64,
+    /// Angle of its centre [°]; 90 is the top, in the middle of the load zone.
+    pub angle_deg: f64,
+}
+
+/// Linear elastic, isotropic, plane strain.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MaterialScene {
+    /// Young's modulus [GPa].
+    pub youngs_modulus_gpa: f64,
+    /// Poisson's ratio [-].
+    pub poissons_ratio: f64,
+    /// Density [kg/m³].
+    pub density_kg_m3: f64,
+}
+
+/// Discretisation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct MeshScene {
+    /// Element edge [mm].
+    pub size_mm: f64,
+    /// Facets (= vertices) of a roller's boundary polygon.
+    pub roller_facets: usize,
+    /// Orientation of the 24 copies of the roller mesh.
+    pub roller_copies: RollerCopies,
+    /// Facets of the outer raceway; `None` takes the circumference divided by the size.
+    pub outer_facets: Option<usize>,
+    /// Facets of the inner raceway; `None` takes the circumference divided by the size.
+    pub inner_facets: Option<usize>,
+}
+
+/// How the mesh of one roller is copied around the pitch circle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RollerCopies {
+    /// Every copy keeps the same orientation in space.
+    Translated,
+    /// Every copy is turned with its position on the pitch circle.
+    Rotated,
+}
+
+/// Operating point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OperationScene {
+    /// Load on the top edge of the adapter, downwards [N].
+    pub load_n: f64,
+    /// Speed of the inner ring, clockwise [rpm].
+    pub speed_rpm: f64,
+    /// Gravity, downwards [m/s²].
+    pub gravity_m_s2: f64,
+}
+
+/// Contact method and laws.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ContactScene {
+    /// Where the penalty acts.
+    pub method: ContactMethod,
+    /// Integration points on a facet (`integrated` only).
+    pub points_per_facet: usize,
+    /// Penalty stiffness as a multiple of E / element size [-].
+    pub penalty_scale: f64,
+    /// Normal contact damping as a fraction of critical [-].
+    pub damping_ratio: f64,
+    /// Coulomb coefficient of rollers on raceways and cage [-].
+    pub friction: f64,
+    /// Coulomb coefficient of the adapter on the outer ring [-].
+    pub seat_friction: f64,
+}
+
+/// Where the contact penalty acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactMethod {
+    /// At the nodes of both surfaces against the facets of the other (two-pass node-to-segment).
+    Collocated,
+    /// Integrated over the facets of both surfaces.
+    Integrated,
+}
+
+/// Time integration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SolverScene {
+    /// Simulated time [ms].
+    pub duration_ms: f64,
+    /// Fraction of the critical time step that is used [-].
+    pub time_step_factor: f64,
+    /// Hourglass stiffness as a multiple of the exact bending stiffness of a square [-].
+    pub hourglass_scale: f64,
+    /// Mass-proportional damping [1/s]; 2·ζ·ω for a damping ratio ζ at ω.
+    pub mass_damping_per_s: f64,
+    /// What the mass damping is relative to.
+    pub damping_frame: DampingFrame,
+    /// How the run starts.
+    pub start: Start,
+}
+
+/// Velocity against which mass-proportional damping acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DampingFrame {
+    /// Relative to the rigid motion of each body: rolling is not braked.
+    RigidMotion,
+    /// Absolute velocity (what LS-DYNA's global damping does): brakes rolling.
+    Absolute,
+}
+
+/// How the run starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Start {
+    /// Static equilibrium under load, then the kinematic rolling velocities.
+    Preloaded,
+    /// Undeformed, kinematic velocities, the load applied at once.
+    Sudden,
+}
+
+/// What is recorded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct OutputScene {
+    /// Sampling interval [µs]; 10 µs is 100 kHz.
+    pub interval_us: f64,
+    /// Sensors on the outer surface of the outer ring; the first is the one that the report leads with.
+    pub sensors: Vec<SensorScene>,
+}
+
+/// One sensor: a node on the outer surface of the outer ring.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SensorScene {
+    /// Name in the trace, letters, digits and `_`.
+    pub name: String,
+    /// Angle [°], counter-clockwise from the x axis.
+    pub angle_deg: f64,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            name: "singh2014".into(),
+            bearing: BearingScene::default(),
+            cage: Some(CageScene::default()),
+            adapter: AdapterScene::default(),
+            defect: Some(DefectScene::default()),
+            material: MaterialScene::default(),
+            mesh: MeshScene::default(),
+            operation: OperationScene::default(),
+            contact: ContactScene::default(),
+            solver: SolverScene::default(),
+            output: OutputScene::default(),
+        }
+    }
+}
+
+impl Default for BearingScene {
+    fn default() -> Self {
+        Self {
+            outer_race_diameter_mm: 200.0,
+            outer_ring_thickness_mm: 10.0,
+            inner_race_diameter_mm: 163.96,
+            inner_ring_thickness_mm: 10.0,
+            rollers: 24,
+            roller_diameter_mm: 18.0,
+            thickness_mm: 20.0,
+            first_roller_deg: 94.0,
+        }
+    }
+}
+
+impl Default for CageScene {
+    fn default() -> Self {
+        Self { outer_diameter_mm: 196.0, thickness_mm: 4.0, pocket_clearance_um: 100.0 }
+    }
+}
+
+impl Default for AdapterScene {
+    fn default() -> Self {
+        Self { width_mm: 160.0, height_mm: 40.0 }
+    }
+}
+
+impl Default for DefectScene {
+    fn default() -> Self {
+        Self { length_mm: 10.0, depth_mm: 0.2, angle_deg: 90.0 }
+    }
+}
+
+impl Default for MaterialScene {
+    fn default() -> Self {
+        Self { youngs_modulus_gpa: 200.0, poissons_ratio: 0.3, density_kg_m3: 7850.0 }
+    }
+}
+
+impl Default for MeshScene {
+    fn default() -> Self {
+        Self {
+            size_mm: 0.5,
+            roller_facets: 112,
+            roller_copies: RollerCopies::Translated,
+            outer_facets: None,
+            inner_facets: None,
+        }
+    }
+}
+
+impl Default for OperationScene {
+    fn default() -> Self {
+        Self { load_n: 50_000.0, speed_rpm: 500.0, gravity_m_s2: 9.81 }
+    }
+}
+
+impl Default for ContactScene {
+    fn default() -> Self {
+        Self {
+            method: ContactMethod::Integrated,
+            points_per_facet: 4,
+            penalty_scale: 1.0,
+            damping_ratio: 0.1,
+            friction: 0.005,
+            seat_friction: 0.1,
+        }
+    }
+}
+
+impl Default for SolverScene {
+    fn default() -> Self {
+        Self {
+            duration_ms: 30.0,
+            time_step_factor: 0.95,
+            hourglass_scale: 1.0,
+            mass_damping_per_s: 150.0,
+            damping_frame: DampingFrame::RigidMotion,
+            start: Start::Preloaded,
+        }
+    }
+}
+
+impl Default for OutputScene {
+    fn default() -> Self {
+        let sensor = |name: &str, angle_deg| SensorScene { name: name.into(), angle_deg };
+        Self {
+            interval_us: 10.0,
+            sensors: vec![
+                sensor("side", 0.0),
+                sensor("shoulder", 22.0),
+                sensor("seat", 90.0),
+                sensor("bottom", 270.0),
+            ],
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Sampled channels on disk: `trace.npy` and `energy.npy`, NumPy structured arrays of little-endian f64.
+//!
+//! One record a sample, one named field a channel, so `numpy.load("trace.npy")["sensor.side.ay_m_s2"]` is a
+//! time history. Names end in their unit.
+
+/// Channels sampled at a fixed interval.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Trace {
+    /// Channel names, in file order; the first is `time_s`.
+    pub names: Vec<String>,
+    /// Values of each channel, all of one length.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Trace {
+    /// Values of the channel called `name`.
+    pub fn get(&self, name: &str) -> Option<&[f64]> {
+        let at = self.names.iter().position(|n| n == name)?;
+        Some(&self.columns[at])
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.columns.first().map_or(0, Vec::len)
+    }
+
+    /// True when nothing was sampled.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

@@ -1,0 +1,1 @@
+//! Stribeck solver.
