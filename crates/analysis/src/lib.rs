@@ -1,1 +1,50 @@
-//! Stribeck analysis.
+//! What a run shows: kinematics, events, loads, tones, levels, and the report made of them.
+//!
+//! [`report::write`] turns a run directory into `report.html`, `summary.json` and `figures/*.svg`. The steps on the way
+//! are public and take plain slices, so that a measured signal can go through them as well.
+//!
+//! # A measured gearbox
+//!
+//! A pinion with 37 teeth turns at 24.9 Hz, so its teeth mesh at 921.3 Hz. Is that line in an accelerometer's record, how
+//! strong is it, and is it told apart from the 50 Hz mains?
+//!
+//! ```
+//! use std::f64::consts::TAU;
+//! use stribeck_analysis::tones::{harmonics, measure};
+//! use stribeck_dsp::Welch;
+//!
+//! let sample_rate_hz = 10_000.0;
+//! let measured_g: Vec<f64> = (0..10_000)
+//!     .map(|n| n as f64 / sample_rate_hz)
+//!     .map(|t| 2.0 * (TAU * 922.0 * t).sin() + 0.5 * (TAU * 50.0 * t).sin() + 0.01 * (9e6 * t * t).sin())
+//!     .collect();
+//! let density = Welch::for_grid(sample_rate_hz, measured_g.len(), 1.0)?.estimate(&measured_g)?;
+//!
+//! let lines = harmonics(&[("teeth".into(), 37.0 * 24.9), ("mains".into(), 50.0)], 1, 5_000.0);
+//! let found = measure("housing", &lines, &density)?;
+//! assert!((found[0].measured_hz.unwrap() - 922.0).abs() < 0.1);
+//! assert!((found[0].level_g.unwrap() - 2.0).abs() < 0.05);
+//! assert!(found[0].unresolved_from.is_empty());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod summary;
+
+pub mod prediction;
+pub mod record;
+
+pub mod events;
+pub mod filtering;
+pub mod kinematics;
+pub mod levels;
+pub mod load;
+pub mod tones;
+
+pub mod findings;
+
+pub mod plot;
+pub mod report;
+
+mod error;
+
+pub use error::Error;

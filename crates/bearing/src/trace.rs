@@ -1,7 +1,13 @@
 //! Sampled channels on disk: `trace.npy` and `energy.npy`, NumPy structured arrays of little-endian f64.
 //!
 //! One record a sample, one named field a channel, so `numpy.load("trace.npy")["sensor.side.ay_m_s2"]` is a
-//! time history. Names end in their unit.
+//! time history. Names end in their unit. The files hold nothing but the samples: equal runs write equal bytes.
+
+mod header;
+mod reader;
+mod writer;
+
+pub use writer::TraceWriter;
 
 /// Channels sampled at a fixed interval.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -16,7 +22,7 @@ impl Trace {
     /// Values of the channel called `name`.
     pub fn get(&self, name: &str) -> Option<&[f64]> {
         let at = self.names.iter().position(|n| n == name)?;
-        Some(&self.columns[at])
+        self.columns.get(at).map(Vec::as_slice)
     }
 
     /// Number of samples.
@@ -29,3 +35,6 @@ impl Trace {
         self.len() == 0
     }
 }
+
+#[cfg(test)]
+mod tests;

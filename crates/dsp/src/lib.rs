@@ -1,1 +1,84 @@
-//! Stribeck dsp.
+//! Spectra, notch filters, envelopes and statistics of evenly sampled real signals, in double precision.
+//!
+//! The crate knows nothing of where a signal comes from: a simulated acceleration and a measured voltage
+//! enter through the same `&[f64]`. Nothing is printed; every refusal is an [`Error`] that says what to try.
+//!
+//! # Conventions
+//!
+//! They are those of `scipy.signal`, so that a figure can be checked in three lines of Python.
+//!
+//! - **Window**: the Hann window is the periodic one. MATLAB's symmetric windows are offered by that name.
+//! - **Welch**: 50 % overlap and removal of each segment's mean by default; a tail too short for one more
+//!   segment is left out, and [`Resolution::unused_s`] says how much that was.
+//! - **Scaling**: [`Scaling::Density`] is in unit²/Hz, `2|X|²/(fs Σw²)`; [`Scaling::Spectrum`] is in unit²,
+//!   `2|X|²/(Σw)²`, where a sinusoid of amplitude A reads A²/2. The factor 2 is that of a one-sided spectrum;
+//!   zero frequency and, for an even transform length, half the sample rate go without it.
+//! - **Grid is not resolution**: a record of T seconds resolves 1/T. Zero padding draws the same curve on a
+//!   finer grid. Every [`Spectrum`] carries a [`Resolution`] that states both.
+//! - **Notch**: [`Notch`] equals `scipy.signal.iirnotch`, whose width at −3 dB is exactly f₀/Q.
+//! - **Decibel**: `10 log₁₀` of a power, relative to one unit² (or unit²/Hz).
+//!
+//! Planned types ([`Welch`], [`Envelope`], [`EnvelopeSpectrum`]) allocate when they are made and never again.
+//! The transform picks its instructions at run time, so results agree to rounding, not to the bit, between
+//! machines of different instruction sets.
+//!
+//! # A measured sine
+//!
+//! An accelerometer sampled at 100 kHz for 30 ms sees 50 m/s² at 4671 Hz. Where is the line, how strong is
+//! it, what may be said about its frequency, and what is left of it behind a notch?
+//!
+//! ```
+//! use stribeck_dsp::{Notch, Welch};
+//! # fn main() -> Result<(), stribeck_dsp::Error> {
+//! let sample_rate_hz = 100_000.0;
+//! let measured: Vec<f64> = (0..3000)
+//!     .map(|n| 50.0 * (std::f64::consts::TAU * 4671.0 * n as f64 / sample_rate_hz).sin())
+//!     .collect();
+//!
+//! // A grid of 3 Hz is asked for; the record resolves 33 Hz, and the spectrum says so.
+//! let mut welch = Welch::for_grid(sample_rate_hz, measured.len(), 3.0)?;
+//! let spectrum = welch.estimate(&measured)?;
+//! assert!(spectrum.resolution().zero_padded);
+//! assert!((spectrum.resolution().resolution_hz - 33.3).abs() < 0.1);
+//!
+//! let peak = spectrum.peak(4000.0, 6000.0)?;
+//! let line = spectrum.sinusoid(&peak)?;
+//! assert!((line.frequency_hz - 4671.0).abs() < 0.1);
+//! assert!((line.amplitude - 50.0).abs() < 0.05);
+//!
+//! // The notch needs its transient to pass before it is judged.
+//! let notch = Notch::new(sample_rate_hz, 4671.0, 15.0)?;
+//! let filtered = notch.filter(&measured)?;
+//! let settled = notch.transient_samples(60.0)?;
+//! let left = filtered[settled..].iter().fold(0.0_f64, |most, y| most.max(y.abs()));
+//! assert!(left < 50.0e-3);
+//! # Ok(())
+//! # }
+//! ```
+
+// Units stand in square brackets, which rustdoc takes for links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
+mod error;
+mod window;
+
+mod options;
+mod spectrum;
+mod welch;
+
+mod peak;
+
+mod notch;
+
+mod envelope;
+
+pub mod statistics;
+
+pub use envelope::{Envelope, EnvelopeSpectrum, PeriodCount, PeriodVerdict};
+pub use error::{Error, Result};
+pub use notch::Notch;
+pub use options::{Averaging, Detrend, WelchOptions};
+pub use peak::{Peak, Sinusoid};
+pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
+pub use welch::Welch;
+pub use window::Window;

@@ -1,1 +1,100 @@
-//! Stribeck mesh.
+//! Plane finite element meshes made of quadrilaterals and triangles: annuli, discs, blocks, their oriented
+//! surfaces, their quality, and files that ParaView opens.
+//!
+//! The crate knows geometry only. A generator ([`Annulus`], [`Disc`], [`Rectangle`], [`SeatedBlock`],
+//! [`ArcBlock`]) describes one shape and makes a [`Part`]; parts are moved, turned and added to a [`Mesh`],
+//! which numbers the nodes of all bodies in one pair of coordinate arrays.
+//!
+//! Three conventions hold everywhere. Lengths are metres and angles radians, counter-clockwise from the x axis.
+//! Elements are counter-clockwise. Along a [`Surface`] the solid lies on the left and the outward normal
+//! points to the right.
+//!
+//! Nodes are numbered in rows, so that the quadrilaterals of a row form a [`Strip`]: all four corners advance
+//! by one from each to the next, and a kernel may load consecutive values instead of gathering them.
+//!
+//! # Example: a pipe on two supports
+//!
+//! ```
+//! use stribeck_mesh::{Annulus, Mesh, Quality, Rectangle, find_strips, vtu};
+//!
+//! # fn main() -> Result<(), stribeck_mesh::Error> {
+//! let pipe = Annulus {
+//!     inner_radius: 0.25,
+//!     outer_radius: 0.30,
+//!     facets: 180,
+//!     layers: 5,
+//!     start_angle: 0.0,
+//!     groove: None,
+//! };
+//! let support = Rectangle { x0: -0.02, y0: -0.4, width: 0.04, height: 0.1, columns: 4, rows: 10 };
+//!
+//! let mut mesh = Mesh::new();
+//! let placed = mesh.add("pipe", &pipe.part()?);
+//! mesh.add("left support", &support.part()?.translated(-0.1, 0.0));
+//! mesh.add("right support", &support.part()?.translated(0.1, 0.0));
+//! assert_eq!(placed.surface("outer").map(|s| s.facets()), Some(180));
+//!
+//! // Two strips in each row of the pipe, because the row closes on itself; one in each row of a support.
+//! assert_eq!(find_strips(&mesh.quads).len(), 2 * 5 + 10 + 10);
+//!
+//! // Steel: Poisson's ratio 0.3, pressure waves at 5857 m/s.
+//! let quality = Quality::of(&mesh, 0.3, 5857.0);
+//! assert!(quality.overall.critical_time_step > 1e-6);
+//! println!("{quality}");
+//!
+//! let height: Vec<f64> = mesh.y.clone();
+//! let mut file = Vec::new();
+//! vtu::write(&mut file, &mesh, &[vtu::Field::scalar("height", &height)], &[])?;
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Where to look
+//!
+//! | Question | File |
+//! |---|---|
+//! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
+//! | How is a shape divided? | `annulus.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
+//! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
+//! | How are bad cells made better? | `relax.rs` |
+
+// Units stand in brackets, as in "radius [m]", and are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
+
+mod mesh;
+mod part;
+
+mod annulus;
+mod groove;
+mod rows;
+
+mod core_grid;
+mod disc;
+mod gap;
+
+mod arc_block;
+mod rectangle;
+mod seated_block;
+
+pub mod strips;
+
+mod characteristic;
+pub mod quality;
+pub mod relax;
+
+pub mod vtu;
+
+mod error;
+
+pub use annulus::Annulus;
+pub use arc_block::ArcBlock;
+pub use characteristic::characteristic_length;
+pub use disc::Disc;
+pub use error::Error;
+pub use groove::Groove;
+pub use mesh::{Body, Mesh, Placed};
+pub use part::{Part, Surface};
+pub use quality::{BodyQuality, Quality};
+pub use rectangle::Rectangle;
+pub use seated_block::SeatedBlock;
+pub use strips::{Strip, find_strips};

@@ -1,0 +1,208 @@
+// Turns every <figure class="plot"> into a chart: drag to zoom, wheel to zoom at the cursor, double click to reset.
+(() => {
+  "use strict";
+
+  const floats = (text) => {
+    const raw = atob(text);
+    const bytes = new Uint8Array(raw.length);
+    for (let i = 0; i < raw.length; i++) bytes[i] = raw.charCodeAt(i);
+    return Array.from(new Float32Array(bytes.buffer), (v) => (Number.isNaN(v) ? null : v));
+  };
+
+  const PREFIXES = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"], [1e-12, "p"]];
+
+  const prefixOf = (largest) => {
+    const size = Math.abs(largest) * (1 + 1e-9);
+    if (!size) return [1, ""];
+    return PREFIXES.find(([factor]) => size >= factor) || PREFIXES[PREFIXES.length - 1];
+  };
+
+  const minus = (text) => (/^-0(\.0*)?$/.test(text) ? text.slice(1) : text.replace("-", "−"));
+
+  const places = (step) => Math.min(9, Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)));
+
+  // All ticks of an axis share one prefix; neighbours differ in their last decimal.
+  const tickTexts = (axis) => (u, splits, i, space, step) => {
+    const largest = splits.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
+    const [factor, prefix] = axis.prefixed ? prefixOf(largest) : [1, ""];
+    const unit = axis.prefixed && axis.unit ? " " + prefix + axis.unit : "";
+    return splits.map((v) => minus((v / factor).toFixed(places(step / factor))) + unit);
+  };
+
+  // Cursor readout: six digits tell neighbouring samples apart.
+  const readout = (axis, digits) => (u, v) => {
+    if (v == null) return "–";
+    const [factor, prefix] = axis.prefixed ? prefixOf(v) : [1, ""];
+    return minus(String(Number((v / factor).toPrecision(digits)))) + " " + prefix + axis.unit;
+  };
+
+  const tables = (spec) => {
+    const one = spec.series.map((s) => {
+      const y = floats(s.y);
+      const x = s.uniform ? y.map((_, n) => s.uniform[0] + s.uniform[1] * n) : floats(s.x).map((v) => s.origin + v);
+      return [x, y];
+    });
+    const shared = (a, b) => a.length === b.length && a[0] === b[0] && a[a.length - 1] === b[b.length - 1];
+    if (one.length && one.every(([x]) => shared(x, one[0][0]))) return { data: [one[0][0], ...one.map(([, y]) => y)], joined: false };
+    return { data: one.length ? uPlot.join(one) : [[], []], joined: true };
+  };
+
+  const theme = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+  // Lowest free row for each label, from left to right.
+  const rowsOf = (boxes) => {
+    const ends = [];
+    return boxes.map(([centre, width]) => {
+      let row = ends.findIndex((end) => end <= centre - width / 2);
+      if (row < 0) row = ends.length;
+      ends[row] = centre + width / 2;
+      return row;
+    });
+  };
+
+  // Steps of 1, 2 and 5 only: their multiples never need more decimals than the step itself.
+  const STEPS = [];
+  for (let power = -15; power <= 15; power++) for (const m of [1, 2, 5]) STEPS.push(Number(`${m}e${power}`));
+
+  const FONT = "12px system-ui, sans-serif";
+  const ROW = 15;
+  const ruler = document.createElement("canvas").getContext("2d");
+  ruler.font = FONT;
+  const widthOf = (label) => ruler.measureText(label).width + 10;
+
+  const visibleMarks = (marks, from, to) => marks.filter((m) => m.x >= from && m.x <= to).sort((a, b) => a.x - b.x);
+
+  const decorate = (spec, rowLimit) => ({
+    hooks: {
+      drawClear: (u) => {
+        const { ctx, bbox } = u;
+        ctx.save();
+        ctx.beginPath();
+        ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+        ctx.clip();
+        ctx.fillStyle = theme("--shade");
+        for (const [from, to] of spec.bands) {
+          const a = u.valToPos(from, "x", true), b = u.valToPos(to, "x", true);
+          ctx.fillRect(a, bbox.top, b - a, bbox.height);
+        }
+        ctx.restore();
+      },
+      draw: (u) => {
+        const { ctx, bbox } = u, ratio = devicePixelRatio;
+        const seen = visibleMarks(spec.marks, u.scales.x.min, u.scales.x.max);
+        const at = seen.map((m) => u.valToPos(m.x, "x", true));
+        const rows = rowsOf(seen.map((m, i) => [at[i], widthOf(m.label) * ratio]));
+        ctx.save();
+        ctx.font = FONT.replace("12", String(12 * ratio));
+        ctx.textAlign = "center";
+        ctx.textBaseline = "alphabetic";
+        ctx.lineWidth = ratio;
+        const tops = rows.map((row) => bbox.top - (3 + ROW * Math.min(row, rowLimit)) * ratio);
+        ctx.globalAlpha = 0.85;
+        seen.forEach((m, i) => {
+          ctx.strokeStyle = theme(m.colour);
+          ctx.setLineDash(m.dashed ? [5 * ratio, 4 * ratio] : []);
+          ctx.beginPath();
+          ctx.moveTo(at[i], tops[i]);
+          ctx.lineTo(at[i], bbox.top + bbox.height);
+          ctx.stroke();
+        });
+        ctx.globalAlpha = 1;
+        // Labels come after all lines, on ground of their own, so that no line crosses a word.
+        seen.forEach((m, i) => {
+          if (!m.label || rows[i] > rowLimit) return;
+          const half = widthOf(m.label) * ratio / 2;
+          const inside = Math.min(Math.max(at[i], half), ctx.canvas.width - half);
+          ctx.fillStyle = theme("--paper");
+          ctx.fillRect(inside - half + 3 * ratio, tops[i] - 13 * ratio, 2 * half - 6 * ratio, 14 * ratio);
+          ctx.fillStyle = theme(m.colour);
+          ctx.fillText(m.label, inside, tops[i] - 2 * ratio);
+        });
+        ctx.restore();
+      },
+    },
+  });
+
+  // Charts of one key zoom together: dragging does so in uPlot itself, the wheel here.
+  const linked = new Map();
+
+  const wheelZoom = (place, key) => ({
+    hooks: {
+      ready: (u) => {
+        const [low, high] = [u.scales.x.min, u.scales.x.max];
+        const group = key ? linked.get(key) || linked.set(key, []).get(key) : [];
+        group.push(u);
+        u.over.addEventListener("wheel", (e) => {
+          // A plain wheel scrolls the page until the chart has been clicked.
+          if (!(e.ctrlKey || e.metaKey || e.shiftKey || place.contains(document.activeElement))) return;
+          e.preventDefault();
+          const delta = e.deltaY || e.deltaX;
+          const factor = delta < 0 ? 0.75 : 1 / 0.75;
+          const { min, max } = u.scales.x;
+          const at = u.posToVal(e.offsetX, "x");
+          const from = Math.max(low, at - (at - min) * factor), to = Math.min(high, at + (max - at) * factor);
+          if (to - from > (high - low) * 1e-6) group.forEach((other) => other.setScale("x", { min: from, max: to }));
+        }, { passive: false });
+      },
+    },
+  });
+
+  const axisStyle = (axis, size) => ({
+    label: axis.prefixed || !axis.unit ? axis.label : `${axis.label} [${axis.unit}]`,
+    labelFont: "13px system-ui, sans-serif",
+    font: FONT,
+    labelSize: 22,
+    size,
+    stroke: () => theme("--ink"),
+    grid: { stroke: () => theme("--grid"), width: 1 },
+    ticks: { stroke: () => theme("--grid"), width: 1, size: 5 },
+    values: tickTexts(axis),
+    incrs: axis.unit === "°" ? [1, 5, 10, 15, 30, 45, 90] : STEPS,
+  });
+
+  const build = (figure) => {
+    const place = figure.querySelector(".chart");
+    const spec = JSON.parse(figure.querySelector('script[type="application/json"]').textContent);
+    const { data, joined } = tables(spec);
+    const width = () => Math.max(320, place.clientWidth);
+    const [from, to] = spec.x.range || [data[0][0] ?? 0, data[0][data[0].length - 1] ?? 1];
+    const pixels = (x) => ((x - from) / (to - from)) * (width() - 100);
+    const first = visibleMarks(spec.marks, from, to).map((m) => [pixels(m.x), widthOf(m.label)]);
+    const rowLimit = Math.min(5, Math.max(-1, ...rowsOf(first)));
+    const fixed = (range) => (range ? { range: () => range } : {});
+    const chart = new uPlot({
+      width: width(),
+      height: 330 + ROW * (rowLimit + 1),
+      padding: [12 + ROW * (rowLimit + 1), 22, 0, 4],
+      cursor: { drag: { x: true, y: false }, focus: { prox: 24 }, sync: spec.sync ? { key: spec.sync } : undefined },
+      legend: { live: true },
+      scales: { x: { time: false, ...(spec.x.range ? { range: (u, a, b) => (a == null ? spec.x.range : [a, b]) } : {}) }, y: fixed(spec.y.range) },
+      axes: [{ ...axisStyle(spec.x, 34), space: 80 }, { ...axisStyle(spec.y, 74), space: 36 }],
+      series: [
+        { label: spec.x.label, value: readout(spec.x, 6) },
+        ...spec.series.map((s) => ({
+          label: s.name,
+          stroke: () => theme(s.colour),
+          width: 1.2,
+          spanGaps: joined,
+          paths: s.points ? () => null : undefined,
+          points: s.points ? { show: true, size: 6, fill: () => theme(s.colour) } : { show: false },
+          value: readout(spec.y, 4),
+        })),
+      ],
+      plugins: [decorate(spec, rowLimit), wheelZoom(place, spec.sync)],
+    }, data, place);
+    if (spec.x.range) chart.setScale("x", { min: from, max: to });
+    // uPlot resets to the data; a figure with a fixed range resets to that.
+    if (spec.x.range) chart.over.addEventListener("dblclick", () => chart.setScale("x", { min: from, max: to }));
+    place.addEventListener("pointerdown", () => place.focus({ preventScroll: true }));
+    new ResizeObserver(() => chart.setSize({ width: width(), height: chart.height })).observe(place);
+    figure.classList.add("live");
+    return chart;
+  };
+
+  addEventListener("DOMContentLoaded", () => {
+    const charts = [...document.querySelectorAll("figure.plot")].map(build);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => charts.forEach((c) => c.redraw()));
+  });
+})();

@@ -1,0 +1,122 @@
+//! How fast cage and rollers really turned, beside rolling without slip.
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+
+use stribeck_bearing::kinematics::Kinematics;
+
+use crate::record::{Record, Roller};
+
+/// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
+const LOADED: f64 = 0.05;
+
+/// Measured frequencies [Hz], each beside the value for rolling without slip. All positive.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct KinematicsFinding {
+    /// Shaft.
+    pub shaft_hz: f64,
+    /// Cage; without one, the mean orbital frequency of the rollers.
+    pub cage_hz: Option<f64>,
+    /// Cage, no slip (fundamental train frequency).
+    pub expected_cage_hz: f64,
+    /// Number of rollers times the measured cage frequency.
+    pub bpfo_hz: Option<f64>,
+    /// Ball pass frequency of the outer raceway, no slip.
+    pub expected_bpfo_hz: f64,
+    /// Spin of a roller relative to the cage, mean of the loaded rollers.
+    pub roller_spin_hz: Option<f64>,
+    /// Spin of a roller relative to the cage, no slip.
+    pub expected_roller_spin_hz: f64,
+    /// Spin relative to the cage, mean of all rollers.
+    pub roller_spin_all_hz: Option<f64>,
+    /// Every roller.
+    pub rollers: Vec<RollerMotion>,
+}
+
+/// Measured motion of one roller.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RollerMotion {
+    /// Number, from 1.
+    pub roller: usize,
+    /// Orbital frequency [Hz], positive.
+    pub orbit_hz: f64,
+    /// Spin relative to the cage [Hz], positive.
+    pub spin_hz: f64,
+    /// True when it carries load on average.
+    pub loaded: bool,
+}
+
+/// Measures the motion recorded in `record`.
+pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding {
+    let time = record.time_s();
+    let rollers = record.rollers();
+    let orbits: Vec<Option<f64>> = rollers.iter().map(|r| rate(time, &r.orbit())).collect();
+    let guided = record.channel("cage.angle_rad").and_then(|angle| rate(time, angle));
+    let cage = guided.or_else(|| mean(orbits.iter().copied().flatten()));
+
+    let mean_load = |r: &Roller<'_>| mean(r.outer_normal().into_iter()).unwrap_or(0.0);
+    let loads: Vec<f64> = rollers.iter().map(mean_load).collect();
+    let largest = loads.iter().copied().fold(0.0, f64::max);
+    let motions: Vec<RollerMotion> = rollers
+        .iter()
+        .zip(&orbits)
+        .zip(&loads)
+        .filter_map(|((roller, orbit), &load)| {
+            let spin = rate(time, roller.spin)? - cage?;
+            Some(RollerMotion {
+                roller: roller.number,
+                orbit_hz: (*orbit)?.abs() / TAU,
+                spin_hz: spin.abs() / TAU,
+                loaded: load > LOADED * largest,
+            })
+        })
+        .collect();
+
+    let cage_hz = cage.map(|rate| rate.abs() / TAU);
+    KinematicsFinding {
+        shaft_hz: expected.shaft_hz,
+        cage_hz,
+        expected_cage_hz: expected.cage_hz,
+        bpfo_hz: cage_hz.filter(|_| !rollers.is_empty()).map(|hz| hz * rollers.len() as f64),
+        expected_bpfo_hz: expected.bpfo_hz,
+        roller_spin_hz: mean(motions.iter().filter(|m| m.loaded).map(|m| m.spin_hz)),
+        expected_roller_spin_hz: expected.roller_spin_hz,
+        roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
+        rollers: motions,
+    }
+}
+
+/// Rate [rad/s] of the straight line of least squares through `angle` [rad]; `None` for fewer than two times.
+pub fn rate(time_s: &[f64], angle: &[f64]) -> Option<f64> {
+    let (t0, a0) = (mean(time_s.iter().copied())?, mean(angle.iter().copied())?);
+    let (mut moment, mut spread) = (0.0, 0.0);
+    for (t, a) in time_s.iter().zip(angle) {
+        moment += (t - t0) * (a - a0);
+        spread += (t - t0) * (t - t0);
+    }
+    (spread > 0.0).then(|| moment / spread)
+}
+
+/// Arithmetic mean; `None` of nothing.
+pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0usize), |(sum, count), v| (sum + v, count + 1));
+    (count > 0).then(|| sum / count as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_rate_of_a_wobbling_rotation() {
+        // Whole wobbles leave the slope of least squares within 6A/(π N) of the mean rate over N wobbles.
+        let time: Vec<f64> = (0..3000).map(|n| n as f64 * 1e-5).collect();
+        let wobble = |t: f64| 1e-4 * (TAU * 1000.0 * t).sin();
+        let angle: Vec<f64> = time.iter().map(|t| 1.0 - 23.585 * t + wobble(*t)).collect();
+        let found = rate(&time, &angle).unwrap();
+        assert!((found + 23.585).abs() < 23.585e-3, "{found}");
+        assert_eq!(rate(&[0.0], &[1.0]), None);
+        assert_eq!(rate(&[], &[]), None);
+    }
+}

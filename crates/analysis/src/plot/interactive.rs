@@ -1,0 +1,179 @@
+//! The interactive form of a figure: its data as JSON for uPlot, which the page carries along.
+
+use maud::{Markup, PreEscaped, html};
+use serde::Serialize;
+
+use super::{Abscissa, Axis, Colour, Figure, Series, Style, base64};
+use crate::Error;
+
+/// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
+pub(super) const POINT_LIMIT: usize = 20_000;
+
+/// What `plot.js` reads.
+#[derive(Serialize)]
+struct Sent<'a> {
+    x: SentAxis<'a>,
+    y: SentAxis<'a>,
+    series: Vec<SentSeries<'a>>,
+    marks: Vec<SentMark<'a>>,
+    bands: Vec<(f64, f64)>,
+    sync: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct SentAxis<'a> {
+    label: &'a str,
+    unit: &'a str,
+    prefixed: bool,
+    range: Option<(f64, f64)>,
+}
+
+#[derive(Serialize)]
+struct SentSeries<'a> {
+    name: &'a str,
+    colour: &'static str,
+    points: bool,
+    /// Start and step, when uniform.
+    uniform: Option<(f64, f64)>,
+    /// Listed positions less `origin`, base64 f32.
+    x: Option<String>,
+    origin: f64,
+    /// Values, base64 f32.
+    y: String,
+}
+
+#[derive(Serialize)]
+struct SentMark<'a> {
+    x: f64,
+    label: &'a str,
+    colour: &'static str,
+    dashed: bool,
+}
+
+impl Figure {
+    /// The figure for the page: chart, static picture for print, caption, note and data.
+    ///
+    /// # Errors
+    /// [`Error::Drawing`] when the static picture cannot be drawn.
+    pub fn to_html(&self) -> Result<Markup, Error> {
+        let still = self.to_svg()?;
+        let data = self.data()?;
+        let shortened = self.series.iter().any(|s| s.y.len() > POINT_LIMIT);
+        Ok(html! {
+            figure id=(self.id) class="plot" {
+                h3 { (self.title) }
+                p class="caption" { (self.caption) }
+                div class="chart" tabindex="0" role="img" aria-label=(self.title) {}
+                div class="still" { (PreEscaped(still)) }
+                @if !self.bands.is_empty() {
+                    p class="key" {
+                        @for band in &self.bands { span class="shade" {} (band.label) " " }
+                    }
+                }
+                @if !self.note.is_empty() || shortened {
+                    p class="note" {
+                        (self.note)
+                        @if shortened { " Drawn with the extremes of each bucket kept." }
+                    }
+                }
+                script type="application/json" { (PreEscaped(data)) }
+            }
+        })
+    }
+
+    /// JSON that is safe inside a script element.
+    fn data(&self) -> Result<String, Error> {
+        let sent = Sent {
+            x: SentAxis::of(&self.x),
+            y: SentAxis::of(&self.y),
+            series: self.series.iter().map(SentSeries::of).collect(),
+            marks: self
+                .marks
+                .iter()
+                .map(|m| SentMark { x: m.x, label: &m.label, colour: m.colour.name(), dashed: m.dashed })
+                .collect(),
+            bands: self.bands.iter().map(|b| (b.from, b.to)).collect(),
+            sync: self.sync.as_deref(),
+        };
+        let text = serde_json::to_string(&sent)
+            .map_err(|why| Error::Drawing { figure: self.id.clone(), why: why.to_string() })?;
+        // "</script" inside a label would end the element.
+        Ok(text.replace('<', "\\u003c"))
+    }
+}
+
+impl<'a> SentAxis<'a> {
+    fn of(axis: &'a Axis) -> Self {
+        Self { label: &axis.label, unit: &axis.unit, prefixed: axis.prefixed, range: axis.range }
+    }
+}
+
+impl<'a> SentSeries<'a> {
+    fn of(series: &'a Series) -> Self {
+        let (name, colour, points) =
+            (series.name.as_str(), series.colour.name(), series.style == Style::Points);
+        match &series.x {
+            Abscissa::Uniform { start, step } if series.y.len() <= POINT_LIMIT => Self {
+                name,
+                colour,
+                points,
+                uniform: Some((*start, *step)),
+                x: None,
+                origin: 0.0,
+                y: base64::floats(&series.y),
+            },
+            _ => {
+                let kept = super::decimate::points(series, f64::NEG_INFINITY, f64::INFINITY, POINT_LIMIT);
+                let origin = kept.first().map_or(0.0, |p| p.0);
+                let (x, y): (Vec<f64>, Vec<f64>) = kept.iter().map(|p| (p.0 - origin, p.1)).unzip();
+                Self {
+                    name,
+                    colour,
+                    points,
+                    uniform: None,
+                    x: Some(base64::floats(&x)),
+                    origin,
+                    y: base64::floats(&y),
+                }
+            }
+        }
+    }
+}
+
+impl Colour {
+    /// Name of the CSS variable that holds it in the current theme.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Grey => "--c-grey",
+            Self::Blue => "--c-blue",
+            Self::Orange => "--c-orange",
+            Self::Green => "--c-green",
+            Self::Purple => "--c-purple",
+            Self::Red => "--c-red",
+            Self::Teal => "--c-teal",
+            Self::Brown => "--c-brown",
+            Self::Black => "--ink",
+        }
+    }
+}
+
+/// Style sheets and scripts that a page with figures needs: uPlot (MIT) and the code that feeds it.
+pub fn script() -> Markup {
+    html! {
+        style { (PreEscaped(include_str!("../../assets/uPlot.min.css"))) }
+        script { (PreEscaped(include_str!("../../assets/uPlot.iife.min.js"))) }
+        script { (PreEscaped(include_str!("../../assets/plot.js"))) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_a_label_cannot_end_the_script() {
+        let figure = Figure::new("x", "t", Axis::plain("</script>", ""), Axis::plain("y", ""))
+            .with(Series::sampled("s", Colour::Blue, 0.0, 1.0, vec![1.0, 2.0]));
+        assert!(!figure.data().unwrap().contains("</script>"));
+    }
+}

@@ -1,0 +1,294 @@
+//! The static form of a figure, for print, for readers without scripts and for the `figures` folder.
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{Axis, Colour, Figure, Scale, Style, decimate, labels, ticks};
+use crate::Error;
+
+/// Drawing units a pixel: the library rounds coordinates to whole units, which would turn gentle slopes into stairs.
+const FINE: u32 = 4;
+/// Size of every picture [units].
+const SIZE: (u32, u32) = (960 * FINE, 400 * FINE);
+/// Points drawn of one series: two a pixel of the widest chart.
+const POINTS: usize = 1800;
+/// Height of a text row above the chart [units].
+const ROW: u32 = 16 * FINE;
+/// Mean width of a character of the 12 px labels [units], measured on Latin text.
+const CHARACTER: f64 = 6.3 * FINE as f64;
+/// Space left of the chart [units].
+const LEFT: u32 = 92 * FINE;
+/// Space right of the chart [units].
+const RIGHT: u32 = 26 * FINE;
+/// Space below the chart [units].
+const BELOW: u32 = 56 * FINE;
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+impl Figure {
+    /// The figure as a self-contained SVG document, at most about 1800 points a series (extremes kept).
+    ///
+    /// # Errors
+    /// [`Error::Drawing`] when the drawing library refuses the ranges.
+    pub fn to_svg(&self) -> Result<String, Error> {
+        let mut text = String::new();
+        let height = self
+            .draw(&mut text)
+            .map_err(|why| Error::Drawing { figure: self.id.clone(), why: why.to_string() })?;
+        let drawn = format!("width=\"{}\" height=\"{height}\"", SIZE.0);
+        let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0 / FINE, height / FINE);
+        Ok(text.replacen(&drawn, &shown, 1))
+    }
+
+    /// Draws into `into` and returns the height [units].
+    fn draw(&self, into: &mut String) -> Result<u32, Box<dyn std::error::Error>> {
+        let (x, y) = (self.x_range(), self.y_range());
+        let placed = self.place_labels(x);
+        let label_rows = placed.iter().map(|l| l.1 + 1).max().unwrap_or(0) as u32;
+        let top = 34 * FINE + ROW * (1 + label_rows);
+        let height = SIZE.1 + ROW * label_rows;
+
+        let root = SVGBackend::with_string(into, (SIZE.0, height)).into_drawing_area();
+        root.fill(&WHITE)?;
+        text(&root, &self.title, (LEFT as i32, px(10)), 17, HPos::Left, &BLACK)?;
+        let mut chart = ChartBuilder::on(&root)
+            .margin_top(top)
+            .margin_left(LEFT)
+            .margin_right(RIGHT)
+            .margin_bottom(BELOW)
+            .build_cartesian_2d(x.0..x.1, y.0..y.1)?;
+
+        self.draw_bands(&chart, x, y)?;
+        draw_grid(&root, &chart, (&self.x, x), (&self.y, y))?;
+        self.draw_marks(&root, &chart, &placed, y)?;
+        self.draw_series(&mut chart, x)?;
+        self.draw_legend(&root)?;
+        root.present()?;
+        Ok(height)
+    }
+
+    /// Index, row and pixel position of every mark inside the horizontal range `x`.
+    fn place_labels(&self, x: (f64, f64)) -> Vec<(usize, usize, f64)> {
+        let width = f64::from(SIZE.0 - LEFT - RIGHT);
+        let inside: Vec<usize> =
+            (0..self.marks.len()).filter(|&i| (x.0..=x.1).contains(&self.marks[i].x)).collect();
+        let boxes: Vec<(f64, f64)> = inside
+            .iter()
+            .map(|&i| {
+                let centre = f64::from(LEFT) + width * (self.marks[i].x - x.0) / (x.1 - x.0);
+                (centre, CHARACTER * self.marks[i].label.chars().count() as f64 + f64::from(px(8)))
+            })
+            .collect();
+        let rows = labels::rows(&boxes);
+        inside.iter().zip(rows).zip(boxes).map(|((&i, row), (centre, _))| (i, row, centre)).collect()
+    }
+
+    fn draw_bands(
+        &self,
+        chart: &Chart<'_, '_>,
+        x: (f64, f64),
+        y: (f64, f64),
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        for band in &self.bands {
+            let (from, to) = (band.from.max(x.0), band.to.min(x.1));
+            if from < to {
+                let shade =
+                    Rectangle::new([(from, y.0), (to, y.1)], RGBColor(120, 120, 120).mix(0.13).filled());
+                chart.plotting_area().draw(&shade)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_marks(
+        &self,
+        root: &Area<'_>,
+        chart: &Chart<'_, '_>,
+        placed: &[(usize, usize, f64)],
+        y: (f64, f64),
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        let label_y = |row: usize, top: i32| top - px(3) - (ROW as i32) * row as i32;
+        for &(i, row, _) in placed {
+            let mark = &self.marks[i];
+            let (at, top) = chart.backend_coord(&(mark.x, y.1));
+            let (_, bottom) = chart.backend_coord(&(mark.x, y.0));
+            let from = label_y(row, top);
+            let dash = if mark.dashed { px(5) } else { bottom - from };
+            for start in (from..bottom).step_by((dash + px(4)).max(1) as usize) {
+                let line = [(at, start), (at, (start + dash).min(bottom))];
+                root.draw(&PathElement::new(line, mark.colour.rgb().stroke_width(FINE)))?;
+            }
+        }
+        // Labels come after all lines, on ground of their own, so that no line crosses a word.
+        for &(i, row, centre) in placed.iter().filter(|p| !self.marks[p.0].label.is_empty()) {
+            let mark = &self.marks[i];
+            let (_, top) = chart.backend_coord(&(mark.x, y.1));
+            let half = (0.5 * CHARACTER * mark.label.chars().count() as f64) as i32;
+            let at = (centre as i32).clamp(half + px(4), SIZE.0 as i32 - half - px(4));
+            let above = label_y(row, top) - px(14);
+            let ground = [(at - half, above), (at + half, above + px(14))];
+            root.draw(&Rectangle::new(ground, WHITE.filled()))?;
+            text(root, &mark.label, (at, above + px(1)), 12, HPos::Center, &mark.colour.rgb())?;
+        }
+        Ok(())
+    }
+
+    fn draw_series(
+        &self,
+        chart: &mut Chart<'_, '_>,
+        x: (f64, f64),
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        for series in &self.series {
+            let points = decimate::points(series, x.0, x.1, POINTS);
+            let colour = series.colour.rgb();
+            match series.style {
+                Style::Line => {
+                    chart.draw_series(LineSeries::new(points, colour.stroke_width(FINE)))?;
+                }
+                Style::Points => {
+                    chart.draw_series(points.into_iter().map(|p| Circle::new(p, px(3), colour.filled())))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Names of series and bands in one row that ends at the chart's right edge.
+    fn draw_legend(&self, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
+        let lines = self.series.iter().map(|s| (s.name.as_str(), s.colour.rgb()));
+        let bands = self.bands.iter().map(|b| (b.label.as_str(), RGBColor(205, 205, 205)));
+        let mut entries: Vec<(&str, RGBColor)> = Vec::new();
+        for entry in lines.chain(bands) {
+            if !entry.0.is_empty() && entries.iter().all(|e| e.0 != entry.0) {
+                entries.push(entry);
+            }
+        }
+        let width = |name: &str| (CHARACTER * name.chars().count() as f64) as i32 + px(34);
+        let mut left = (SIZE.0 - RIGHT) as i32 - entries.iter().map(|e| width(e.0)).sum::<i32>();
+        for (name, colour) in entries {
+            let key = [(left + px(14), px(38)), (left + px(28), px(42))];
+            root.draw(&Rectangle::new(key, colour.filled()))?;
+            text(root, name, (left + px(33), px(34)), 12, HPos::Left, &BLACK)?;
+            left += width(name);
+        }
+        Ok(())
+    }
+}
+
+impl Colour {
+    /// On white paper.
+    fn rgb(self) -> RGBColor {
+        match self {
+            Self::Grey => RGBColor(150, 154, 160),
+            Self::Blue => RGBColor(0, 94, 162),
+            Self::Orange => RGBColor(200, 80, 0),
+            Self::Green => RGBColor(0, 128, 96),
+            Self::Purple => RGBColor(134, 70, 156),
+            Self::Red => RGBColor(179, 32, 44),
+            Self::Teal => RGBColor(0, 128, 154),
+            Self::Brown => RGBColor(122, 92, 46),
+            Self::Black => RGBColor(20, 24, 28),
+        }
+    }
+}
+
+/// Ticks, grid lines, frame and axis names. The library's own mesh cannot carry one SI prefix for a whole axis.
+fn draw_grid(
+    root: &Area<'_>,
+    chart: &Chart<'_, '_>,
+    (x_axis, x): (&Axis, (f64, f64)),
+    (y_axis, y): (&Axis, (f64, f64)),
+) -> Result<(), Box<dyn std::error::Error>> {
+    let (frame, grid) = (RGBColor(90, 90, 90), RGBColor(226, 226, 226));
+    let (left, top) = chart.backend_coord(&(x.0, y.1));
+    let (right, bottom) = chart.backend_coord(&(x.1, y.0));
+    for (at, name) in tick_texts(x_axis, x, 10) {
+        let (across, _) = chart.backend_coord(&(at, y.0));
+        root.draw(&PathElement::new([(across, top), (across, bottom)], grid.stroke_width(FINE)))?;
+        text(root, &name, (across, bottom + px(7)), 12, HPos::Center, &BLACK)?;
+    }
+    for (at, name) in tick_texts(y_axis, y, 7) {
+        let (_, up) = chart.backend_coord(&(x.0, at));
+        root.draw(&PathElement::new([(left, up), (right, up)], grid.stroke_width(FINE)))?;
+        text(root, &name, (left - px(7), up - px(6)), 12, HPos::Right, &BLACK)?;
+    }
+    root.draw(&Rectangle::new([(left, top), (right, bottom)], frame.stroke_width(FINE)))?;
+    text(root, &axis_name(x_axis), ((left + right) / 2, bottom + px(28)), 13, HPos::Center, &BLACK)?;
+    let style = ("sans-serif", 13 * FINE).into_font().transform(FontTransform::Rotate270).color(&BLACK);
+    let name = axis_name(y_axis);
+    root.draw(&Text::new(name, (px(10), (top + bottom) / 2), style.pos(Pos::new(HPos::Center, VPos::Top))))?;
+    Ok(())
+}
+
+/// Positions and texts of the ticks of one axis.
+fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, String)> {
+    // Angles are read in twelfths of a turn, not in fifties.
+    let (at, step): (Vec<f64>, f64) = match axis.unit.as_str() {
+        "°" => ((0..=12).map(|n| 30.0 * f64::from(n)).filter(|a| (low..=high).contains(a)).collect(), 30.0),
+        _ => ticks(low, high, wanted),
+    };
+    let largest = at.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+    let (scale, unit) =
+        if axis.prefixed { (Scale::of(largest), axis.unit.as_str()) } else { (Scale::ONE, "") };
+    at.into_iter().map(|v| (v, scale.text(v, step, unit))).collect()
+}
+
+/// Quantity with its unit in brackets where ticks do not carry the unit already.
+fn axis_name(axis: &Axis) -> String {
+    if axis.prefixed || axis.unit.is_empty() {
+        axis.label.clone()
+    } else {
+        format!("{} [{}]", axis.label, axis.unit)
+    }
+}
+
+/// Units of so many pixels.
+const fn px(pixels: i32) -> i32 {
+    pixels * FINE as i32
+}
+
+/// Writes one line of `size` pixels with its upper edge at `at` [units].
+fn text(
+    root: &Area<'_>,
+    words: &str,
+    at: (i32, i32),
+    size: u32,
+    anchor: HPos,
+    colour: &impl Color,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let style = TextStyle::from(("sans-serif", size * FINE)).color(colour).pos(Pos::new(anchor, VPos::Top));
+    root.draw(&Text::new(words.to_owned(), at, style))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::{Band, Mark, Series};
+
+    #[test]
+    fn invariant_everything_asked_for_is_in_the_picture() {
+        let y = (0..3000).map(|n| 100.0 * (0.3 * n as f64).sin()).collect();
+        let mut figure =
+            Figure::new("a", "Acceleration <raw>", Axis::si("Time", "s"), Axis::plain("a_y", "g"))
+                .with(Series::sampled("side", Colour::Blue, 0.0, 1e-5, y));
+        figure.marks.push(Mark { x: 5.08e-3, label: "exit 1".into(), colour: Colour::Orange, dashed: true });
+        figure.bands.push(Band { from: 0.0, to: 7e-3, label: "transient".into() });
+        let svg = figure.to_svg().unwrap();
+        for wanted in
+            ["&lt;raw&gt;", "Time", "a_y [g]", "5 ms", "25 ms", "exit 1", "transient", "side", "−100"]
+        {
+            assert!(svg.contains(wanted), "{wanted} is missing");
+        }
+        assert!(svg.len() < 200_000, "{} bytes", svg.len());
+    }
+
+    #[test]
+    fn invariant_an_empty_figure_still_draws_its_frame() {
+        let figure = Figure::new("e", "Empty", Axis::si("Time", "s"), Axis::plain("a", "g"));
+        assert!(figure.to_svg().unwrap().contains("Empty"));
+    }
+}

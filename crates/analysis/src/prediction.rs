@@ -1,0 +1,196 @@
+//! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
+//! defect when, and who carries how much.
+
+use stribeck_bearing::kinematics::{Crossing, FacetCounts, Kinematics};
+use stribeck_bearing::run_info::MeshInfo;
+use stribeck_bearing::scene::{DefectScene, Scene};
+use stribeck_bearing::static_load::{RigidRings, roller_angles_deg};
+
+use crate::Error;
+
+/// Steps of the cage over one roller spacing in the static distribution.
+const CAGE_STEPS: usize = 30;
+
+/// Everything that geometry and speed predict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prediction {
+    /// Frequencies without slip.
+    pub kinematics: Kinematics,
+    /// Names and frequencies [Hz] of the fundamental facet-passing lines, from the actual mesh counts.
+    pub facet_lines: Vec<(String, f64)>,
+    /// Edges of the defect, when there is one.
+    pub defect: Option<DefectEdges>,
+    /// Passages over the defect that begin in the simulated time, in order of entry.
+    pub passages: Vec<Crossing>,
+}
+
+/// Angles [°] between which a roller's centre is over the defect, counter-clockwise from the x axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DefectEdges {
+    /// Where rollers arrive.
+    pub leading_deg: f64,
+    /// Its middle.
+    pub middle_deg: f64,
+    /// Where rollers leave.
+    pub trailing_deg: f64,
+}
+
+/// Roller force by angle between rigid rings, gathered over one roller spacing of cage positions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticCurve {
+    /// Angles [°], 0 to 360, ascending.
+    pub angle_deg: Vec<f64>,
+    /// Radial force on a roller that stands there [N]; zero over the defect.
+    pub force_n: Vec<f64>,
+    /// Largest of them [N].
+    pub largest_n: f64,
+    /// Largest of them without a defect [N].
+    pub largest_sound_n: f64,
+    /// Loaded rollers at the start.
+    pub loaded_rollers: usize,
+}
+
+impl Prediction {
+    /// Predicts from the resolved scene and the counts of the mesh that was run.
+    pub fn of(scene: &Scene, mesh: &MeshInfo) -> Self {
+        let kinematics = Kinematics::of(scene);
+        let counts = FacetCounts {
+            roller: mesh.roller_facets,
+            outer: outer_facets(scene, mesh.outer_facets),
+            inner: mesh.inner_facets as f64,
+        };
+        let facet_lines = kinematics.facet_tones(counts).map(|tone| (tone.name.to_owned(), tone.hz)).to_vec();
+        let edges = |defect: &DefectScene| {
+            let half_deg = (defect.length_mm / scene.bearing.outer_race_diameter_mm).to_degrees();
+            DefectEdges {
+                leading_deg: defect.angle_deg + half_deg,
+                middle_deg: defect.angle_deg,
+                trailing_deg: defect.angle_deg - half_deg,
+            }
+        };
+        let passages = |defect: &DefectScene| {
+            let duration_s = 1e-3 * scene.solver.duration_ms;
+            let traverse_s = 1e-3 * defect.length_mm / kinematics.contact_speed_m_s;
+            // Whoever enters in time leaves at most one traverse later.
+            kinematics.crossings(defect, scene.bearing.first_roller_deg, duration_s + traverse_s)
+        };
+        Self {
+            facet_lines,
+            defect: scene.defect.as_ref().map(edges),
+            passages: scene.defect.as_ref().map(passages).unwrap_or_default(),
+            kinematics,
+        }
+    }
+
+    /// Longest of the facet periods [s]: a median over it removes every facet line. Zero without facets or motion.
+    pub fn facet_period_s(&self) -> f64 {
+        let slowest = self.facet_lines.iter().map(|l| l.1).filter(|&hz| hz > 0.0).reduce(f64::min);
+        slowest.map_or(0.0, |hz| 1.0 / hz)
+    }
+
+    /// Static distribution of `support_n`, the vertical force through the rollers [N], rollers over the defect left out.
+    ///
+    /// # Errors
+    /// [`Error::Bearing`] when the rings find no equilibrium.
+    pub fn static_curve(&self, scene: &Scene, support_n: f64) -> Result<StaticCurve, Error> {
+        let rings = RigidRings::new(&scene.bearing, &scene.material);
+        let start = roller_angles_deg(&scene.bearing);
+        let spacing = 360.0 / scene.bearing.rollers as f64;
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        let mut largest_sound_n = 0.0f64;
+        for step in 0..CAGE_STEPS {
+            let turned = spacing * step as f64 / CAGE_STEPS as f64;
+            let all: Vec<f64> = start.iter().map(|a| (a - turned).rem_euclid(360.0)).collect();
+            let (inside, carrying): (Vec<f64>, Vec<f64>) = all.iter().partition(|&&a| self.over_defect(a));
+            largest_sound_n = largest_sound_n.max(rings.distribute(support_n, &all)?.max_roller_n());
+            let load = rings.distribute(support_n, &carrying)?;
+            points.extend(carrying.into_iter().zip(load.roller_n));
+            points.extend(inside.into_iter().map(|a| (a, 0.0)));
+        }
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (angle_deg, force_n): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+        Ok(StaticCurve {
+            largest_n: force_n.iter().copied().fold(0.0, f64::max),
+            largest_sound_n,
+            loaded_rollers: rings.distribute(support_n, &start)?.loaded_rollers(),
+            angle_deg,
+            force_n,
+        })
+    }
+
+    /// Width of the running median [s] for a defect that takes `traverse_s` to cross: one facet period, but on a coarse
+    /// mesh not more than a tenth of the traverse.
+    pub fn smoothing_s(&self, traverse_s: f64) -> f64 {
+        self.facet_period_s().min(0.1 * traverse_s)
+    }
+
+    fn over_defect(&self, angle_deg: f64) -> bool {
+        self.defect.is_some_and(|d| {
+            let from_middle = (angle_deg - d.middle_deg + 180.0).rem_euclid(360.0) - 180.0;
+            from_middle.abs() < d.leading_deg - d.middle_deg
+        })
+    }
+}
+
+/// Facets that a whole turn of the outer raceway would have at the spacing outside the defect; `facets` counts them all.
+fn outer_facets(scene: &Scene, facets: usize) -> f64 {
+    let all = facets as f64;
+    let Some(defect) = &scene.defect else { return all };
+    let part = defect.length_mm / (std::f64::consts::PI * scene.bearing.outer_race_diameter_mm);
+    // The floor is meshed as finely as the raceway, in two facets at least; the two walls take no angle.
+    let floor = (part * all).round().max(2.0);
+    ((all - floor - 2.0) / (1.0 - part)).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(outer_facets: usize, inner_facets: usize) -> MeshInfo {
+        MeshInfo { nodes: 0, quads: 0, triangles: 0, roller_facets: 112, outer_facets, inner_facets }
+    }
+
+    /// The paper's bearing with the counts of its 0.5 mm mesh.
+    #[test]
+    fn analytic_paper_events_and_lines() {
+        // Entries and exits of rollers 1 to 3 computed from Table 1 apart from this program [ms].
+        const EXPECTED_MS: [(f64, f64); 3] =
+            [(0.839_98, 5.079_51), (11.939_03, 16.178_56), (23.038_08, 27.277_61)];
+        let prediction = Prediction::of(&Scene::default(), &mesh(1257, 1030));
+        assert_eq!(prediction.passages.len(), 3);
+        for (roller, (found, (entry, exit))) in prediction.passages.iter().zip(EXPECTED_MS).enumerate() {
+            assert_eq!(found.roller, roller + 1);
+            assert!((1e3 * found.entry_s - entry).abs() < 1e-4, "{found:?}");
+            assert!((1e3 * found.exit_s - exit).abs() < 1e-4, "{found:?}");
+        }
+        let hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
+        // 1235 facets outside the defect's 5.73° stand for 1255 on a whole turn, two fewer than there are.
+        for (found, wanted) in hz.iter().zip([4671.5, 4711.4, 4716.0]) {
+            assert!((found - wanted).abs() < 1.0, "{hz:?}");
+        }
+    }
+
+    #[test]
+    fn analytic_static_curve_has_a_hole_and_relieving_neighbours() {
+        let scene = Scene::default();
+        let prediction = Prediction::of(&scene, &mesh(1257, 1030));
+        let curve = prediction.static_curve(&scene, 50_000.0).unwrap();
+        assert_eq!(curve.angle_deg.len(), 24 * CAGE_STEPS);
+        assert!(curve.angle_deg.is_sorted());
+        let at = |deg: f64| curve.force_n[curve.angle_deg.partition_point(|&a| a < deg)];
+        assert_eq!((at(89.9), at(270.0)), (0.0, 0.0));
+        // 10.40 kN at 20 mm thickness, a roller under the load; its neighbours gain 22 % when it unloads.
+        assert!((curve.largest_sound_n / 10.40e3 - 1.0).abs() < 0.01, "{}", curve.largest_sound_n);
+        // Over the defect's middle its neighbours stand at 75° and 105°, by symmetry equally loaded.
+        assert!((at(75.0) / at(105.0) - 1.0).abs() < 0.02, "{} {}", at(75.0), at(105.0));
+        assert!(at(105.0) > 0.97 * curve.largest_sound_n, "{}", at(105.0));
+    }
+
+    #[test]
+    fn invariant_a_sound_bearing_has_no_passage() {
+        let scene = Scene { defect: None, ..Scene::default() };
+        let prediction = Prediction::of(&scene, &mesh(0, 0));
+        assert!(prediction.passages.is_empty() && prediction.defect.is_none());
+        assert!((prediction.facet_period_s() - 1.0 / 4672.0).abs() < 1e-6);
+    }
+}

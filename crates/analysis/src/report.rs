@@ -1,0 +1,191 @@
+//! From a run directory to `report.html`, `summary.json` and `figures/*.svg`. Nothing here simulates: the same
+//! directory gives the same bytes.
+
+mod figures;
+mod tables;
+
+use std::fs;
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use stribeck_bearing::run_dir::{Run, write_atomic};
+use stribeck_bearing::run_info::Status;
+
+use crate::findings::Findings;
+use crate::plot::{self, Figure};
+use crate::summary::Summary;
+use crate::{Error, report::figures::Figures};
+
+/// Writes the report of the run in `run_dir` into that directory and returns its numbers.
+///
+/// An interrupted or diverged run gives a report of what exists, with a banner.
+///
+/// # Errors
+/// [`Error::Bearing`] when the directory is not a run, a file cannot be understood or the report cannot be written,
+/// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
+pub fn write(run_dir: &Path) -> Result<Summary, Error> {
+    let run = Run::read(run_dir)?;
+    let findings = Findings::of(&run)?;
+    write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
+
+    let figures = Figures::of(&run, &findings);
+    let folder = run_dir.join("figures");
+    fs::create_dir_all(&folder).map_err(|why| Error::Write { path: folder.clone(), why })?;
+    for figure in figures.all() {
+        let path = folder.join(format!("{}.svg", figure.id));
+        fs::write(&path, figure.to_svg()?).map_err(|why| Error::Write { path, why })?;
+    }
+    // The scene as written, comments and all; a run without it was refused above.
+    let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
+    let page = page(&run, &findings, &figures, &scene)?.into_string();
+    write_atomic(&run_dir.join("report.html"), page.as_bytes())?;
+    Ok(findings.summary)
+}
+
+/// `summary.json` with a final line end.
+fn json(summary: &Summary) -> Result<String, Error> {
+    let text = serde_json::to_string_pretty(summary).map_err(Error::Summary)?;
+    Ok(text + "\n")
+}
+
+fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Result<Markup, Error> {
+    let summary = &findings.summary;
+    let title = format!("{} – Stribeck", summary.scene);
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                // An empty picture keeps browsers from asking a server for an icon.
+                link rel="icon" href="data:,";
+                title { (title) }
+                (plot::script())
+                style { (PreEscaped(include_str!("../assets/report.css"))) }
+            }
+            body {
+                h1 { (summary.scene) }
+                p class="lead" { (lead(run, summary)) }
+                (banner(run))
+                (contents())
+                (opening(summary, findings))
+                (section("acceleration", "Acceleration", tables::levels(summary), &figures.acceleration, "No sensor was recorded.")?)
+                (section("spectra", "Spectra", html! {}, &figures.spectra, "The record is too short for a spectrum.")?)
+                (tables::tones(summary))
+                (tables::notch(summary))
+                (section("forces", "Contact forces over the defect", tables::events(summary), &figures.forces, "")?)
+                (section("load", "Load distribution", tables::loads(summary), &figures.load, "No roller was recorded.")?)
+                (section("energy", "Energy", html! {}, &figures.energy, "No energy was recorded.")?)
+                h2 #kinematics { "Kinematics" }
+                (tables::kinematics(summary))
+                (closing(run, summary, scene))
+            }
+        }
+    })
+}
+
+fn contents() -> Markup {
+    let entries = [
+        ("summary", "Summary"),
+        ("acceleration", "Acceleration"),
+        ("spectra", "Spectra"),
+        ("forces", "Contact forces"),
+        ("load", "Load"),
+        ("energy", "Energy"),
+        ("kinematics", "Kinematics"),
+        ("notes", "Notes"),
+        ("provenance", "Provenance"),
+    ];
+    html! { nav { @for (id, name) in entries { a href={ "#" (id) } { (name) } } } }
+}
+
+/// The sentence under the title.
+fn lead(run: &Run, summary: &Summary) -> String {
+    let scene = &run.scene;
+    let defect = scene.defect.as_ref().map_or("a sound outer raceway".to_owned(), |d| {
+        format!("a spall of {} × {} mm on the outer raceway", d.length_mm, d.depth_mm)
+    });
+    format!(
+        "{} rollers under {} kN at {} rpm, {defect}; {:.1} ms on record.",
+        scene.bearing.rollers,
+        1e-3 * scene.operation.load_n,
+        scene.operation.speed_rpm,
+        summary.run.simulated_ms
+    )
+}
+
+/// Says loudly when a run did not complete.
+fn banner(run: &Run) -> Markup {
+    let what = match run.info.status {
+        Status::Complete => return html! {},
+        Status::Running => "This run is still going, or was killed.",
+        Status::Interrupted => "This run was interrupted.",
+        Status::Diverged => "This run diverged and was stopped.",
+    };
+    let why = run.info.stop_reason.as_deref().unwrap_or("No reason was recorded.");
+    html! {
+        div class="banner" role="alert" {
+            strong { (what) } " " (why) " The report shows what exists: "
+            (run.info.steps) " of " (run.info.steps_planned) " steps."
+        }
+    }
+}
+
+fn opening(summary: &Summary, findings: &Findings) -> Markup {
+    html! {
+        h2 #summary { "Summary" }
+        (tables::comparison(summary, findings))
+        p class="hint" {
+            "Paper: Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its thickness, cage, \
+             damping and sensor place are not published, so levels agree when they are within a factor of two. A dash means \
+             that the record cannot tell; the reason is in the "
+            a href="#notes" { "notes" } "."
+        }
+        p class="hint" {
+            "Figures: drag to zoom, double-click to reset; the wheel zooms at the cursor with Ctrl or Shift, or after a click \
+             into the figure. Click a name in a legend to hide its curve."
+        }
+    }
+}
+
+/// A heading, the figures (`otherwise` when there are none) and what stands after them.
+fn section(
+    id: &str,
+    name: &str,
+    after: Markup,
+    figures: &[Figure],
+    otherwise: &str,
+) -> Result<Markup, Error> {
+    let drawn = figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        h2 id=(id) { (name) }
+        @if drawn.is_empty() { p { (otherwise) } }
+        @for figure in drawn { (figure) }
+        (after)
+    })
+}
+
+fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
+    html! {
+        h2 #notes { "Notes" }
+        @if summary.notes.is_empty() && run.info.warnings.is_empty() { p { "None." } }
+        ul class="notes" {
+            @for note in &summary.notes { li { (sentence(note)) } }
+            @for warning in &run.info.warnings { li { "Warning of the run: " (warning) } }
+        }
+        h2 #provenance { "Provenance" }
+        (tables::provenance(&run.info, summary))
+        details {
+            summary { "The scene, with every default" }
+            pre { (scene) }
+        }
+    }
+}
+
+/// A note with a capital and a full stop.
+fn sentence(note: &str) -> String {
+    let mut letters = note.chars();
+    let first: String = letters.next().map(|c| c.to_uppercase().collect()).unwrap_or_default();
+    let stop = if note.ends_with('.') { "" } else { "." };
+    format!("{first}{}{stop}", letters.as_str())
+}

@@ -1,0 +1,204 @@
+//! `summary.json`: every figure that the report states, under stable names. What a run cannot yield is `null`, with
+//! the reason in `notes`.
+
+use serde::{Deserialize, Serialize};
+use stribeck_bearing::run_info::{MeshInfo, RunInfo, Status};
+use stribeck_dsp::Resolution;
+
+use crate::filtering::NotchFinding;
+use crate::kinematics::KinematicsFinding;
+use crate::load::LoadFinding;
+use crate::tones::Tone;
+
+/// Everything a run says, in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// Name of the scene.
+    pub scene: String,
+    /// How the run ended.
+    pub status: Status,
+    /// Sizes of the mesh.
+    pub mesh: MeshInfo,
+    /// Cost.
+    pub run: RunCost,
+    /// Energy balance.
+    pub energy: EnergyFinding,
+    /// Measured motion.
+    pub kinematics: KinematicsFinding,
+    /// Passages over the defect.
+    pub events: Vec<Event>,
+    /// Forces on the rollers.
+    pub load: LoadFinding,
+    /// Facet lines at every sensor: the leading sensor first, fundamentals first.
+    pub tones: Vec<Tone>,
+    /// Impulses and what lies between them, at the leading sensor.
+    pub levels: LevelsFinding,
+    /// The notch at the facet tone.
+    pub notch: Option<NotchFinding>,
+    /// What the spectra can tell apart.
+    pub spectrum: Option<SpectrumFinding>,
+    /// Why something is missing, and what to be careful with.
+    pub notes: Vec<String>,
+}
+
+/// What the run cost.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RunCost {
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps planned.
+    pub steps_planned: u64,
+    /// Time step [ns].
+    pub time_step_ns: f64,
+    /// Simulated time on record [ms].
+    pub simulated_ms: f64,
+    /// Samples that can be used.
+    pub samples: usize,
+    /// Wall-clock time of the time loop [s].
+    pub wall_s: f64,
+    /// Processor time of the whole run [s].
+    pub cpu_s: f64,
+    /// Wall-clock time before the first step [s].
+    pub setup_s: f64,
+    /// Worker threads.
+    pub threads: usize,
+    /// Wall-clock time of the time loop for one element and one step [ns].
+    pub ns_per_element_step: Option<f64>,
+}
+
+/// Energy balance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EnergyFinding {
+    /// Largest |imbalance| divided by the peak strain energy.
+    pub max_relative_error: f64,
+    /// Peak strain energy [J].
+    pub peak_strain_j: f64,
+}
+
+/// One passage of a roller over the defect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// Roller, from 1.
+    pub roller: usize,
+    /// Unloading read from the force [ms].
+    pub entry_ms: Option<f64>,
+    /// Re-stressing read from the force [ms].
+    pub exit_ms: Option<f64>,
+    /// Centre over the leading edge without slip [ms].
+    pub expected_entry_ms: f64,
+    /// Centre over the trailing edge without slip [ms].
+    pub expected_exit_ms: f64,
+    /// Recorded centre over the leading edge [ms].
+    pub path_entry_ms: Option<f64>,
+    /// Recorded centre over the trailing edge [ms].
+    pub path_exit_ms: Option<f64>,
+    /// Force before the defect [N].
+    pub level_n: Option<f64>,
+    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g].
+    pub impulse_g: Option<f64>,
+}
+
+/// Levels of a_y [g], mean over each sampling interval.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct LevelsFinding {
+    /// Sensor that the figures of this section belong to.
+    pub sensor: Option<String>,
+    /// Largest magnitude within 1 ms of any exit.
+    pub impulse_g: Option<f64>,
+    /// Largest magnitude away from events (from 0.5 ms before an entry to 2 ms after the exit).
+    pub between_g: Option<f64>,
+    /// The same behind the notch, its transient left out.
+    pub between_filtered_g: Option<f64>,
+    /// Magnitude that 1 % of the samples between events exceed.
+    pub between_p99_g: Option<f64>,
+    /// The same behind the notch.
+    pub between_filtered_p99_g: Option<f64>,
+    /// Root mean square between events.
+    pub between_rms_g: Option<f64>,
+    /// The same behind the notch.
+    pub between_filtered_rms_g: Option<f64>,
+    /// Largest magnitude within 1 ms of any exit, behind the notch.
+    pub impulse_filtered_g: Option<f64>,
+    /// Every sensor.
+    pub sensors: Vec<SensorLevels>,
+}
+
+/// Levels of a_y at one sensor [g].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SensorLevels {
+    /// Sensor.
+    pub sensor: String,
+    /// Largest magnitude within 1 ms of any exit.
+    pub impulse_g: Option<f64>,
+    /// Largest magnitude between events.
+    pub between_g: Option<f64>,
+    /// Root mean square between events.
+    pub between_rms_g: Option<f64>,
+    /// Largest magnitude between events behind the notch, its transient left out.
+    pub between_filtered_g: Option<f64>,
+    /// Root mean square between events behind the notch.
+    pub between_filtered_rms_g: Option<f64>,
+}
+
+/// What the spectra can tell apart.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SpectrumFinding {
+    /// Length of the record [s].
+    pub record_s: f64,
+    /// Length of a segment [s].
+    pub segment_s: f64,
+    /// Segments averaged.
+    pub segments: usize,
+    /// Window.
+    pub window: String,
+    /// One over the length of a segment [Hz].
+    pub resolution_hz: f64,
+    /// Width of a line at −3 dB [Hz].
+    pub width_3db_hz: f64,
+    /// Width of a line at −6 dB [Hz]: closer lines merge.
+    pub width_6db_hz: f64,
+    /// Equivalent noise bandwidth [Hz].
+    pub noise_bandwidth_hz: f64,
+    /// Distance between points of the drawn curve [Hz].
+    pub grid_hz: f64,
+    /// True when the grid is finer than the resolution.
+    pub zero_padded: bool,
+}
+
+impl RunCost {
+    /// Cost from the run's own account and what of it can be used.
+    pub fn of(info: &RunInfo, samples: usize, simulated_s: f64) -> Self {
+        let elements = (info.mesh.quads + info.mesh.triangles) as f64;
+        let work = info.steps as f64 * elements;
+        Self {
+            steps: info.steps,
+            steps_planned: info.steps_planned,
+            time_step_ns: 1e9 * info.time_step_s,
+            simulated_ms: 1e3 * simulated_s,
+            samples,
+            wall_s: info.wall_s,
+            cpu_s: info.cpu_s,
+            setup_s: info.setup_s,
+            threads: info.threads,
+            ns_per_element_step: (work > 0.0).then(|| 1e9 * info.wall_s / work),
+        }
+    }
+}
+
+impl SpectrumFinding {
+    /// The statement of a spectrum as numbers.
+    pub fn of(resolution: &Resolution) -> Self {
+        Self {
+            record_s: resolution.record_s,
+            segment_s: resolution.segment_s,
+            segments: resolution.segments,
+            window: resolution.window.to_string(),
+            resolution_hz: resolution.resolution_hz,
+            width_3db_hz: resolution.width_3db_hz,
+            width_6db_hz: resolution.width_6db_hz,
+            noise_bandwidth_hz: resolution.noise_bandwidth_hz,
+            grid_hz: resolution.grid_hz,
+            zero_padded: resolution.zero_padded,
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! A run of closed forms through the whole report: every number must come back, and every figure must be there.
+
+mod synthetic;
+
+use std::fs;
+use std::path::Path;
+
+use stribeck_analysis::report;
+use stribeck_analysis::summary::Summary;
+use stribeck_bearing::run_info::Status;
+use synthetic::{ENTRY_LAG_S, EXIT_LEAD_S, IMPULSE_G, NOISE_G, SLIP, SUPPORT_N, Scratch, TONE_G, TONE_HZ};
+
+/// The whole record of the paper, 30 ms at 100 kHz.
+const SAMPLES: usize = 3000;
+/// Largest page that mails and reviews still take.
+const PAGE_LIMIT_BYTES: u64 = 15_000_000;
+
+fn close(found: Option<f64>, wanted: f64, tolerance: f64, what: &str) {
+    let found = found.unwrap_or_else(|| panic!("{what} is missing"));
+    assert!((found - wanted).abs() <= tolerance, "{what}: {found} instead of {wanted} ± {tolerance}");
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+fn whole(name: &str) -> (Scratch, Summary) {
+    let folder = Scratch::new(name);
+    synthetic::write(&folder.0, Status::Complete, SAMPLES);
+    let summary = report::write(&folder.0).expect("a report");
+    (folder, summary)
+}
+
+#[test]
+fn analytic_every_number_of_the_synthetic_run_comes_back() {
+    // The slope of least squares of exact data is exact to rounding.
+    const EXACT: f64 = 1e-6;
+    // The median moves a step by less than a tenth of the facet period of 0.21 ms; a slip of 0.1 % moves nothing more.
+    const EVENT_MS: f64 = 0.03;
+    let (_folder, summary) = whole("numbers");
+
+    let motion = &summary.kinematics;
+    close(motion.cage_hz, motion.expected_cage_hz * (1.0 - SLIP), EXACT, "cage");
+    close(motion.bpfo_hz, 24.0 * motion.expected_cage_hz * (1.0 - SLIP), 24.0 * EXACT, "BPFO");
+    close(motion.roller_spin_hz, motion.expected_roller_spin_hz, EXACT, "spin");
+
+    assert_eq!(summary.events.iter().map(|e| e.roller).collect::<Vec<_>>(), [1, 2, 3]);
+    for event in &summary.events {
+        close(event.entry_ms, event.expected_entry_ms + 1e3 * ENTRY_LAG_S, EVENT_MS, "entry");
+        close(event.exit_ms, event.expected_exit_ms - 1e3 * EXIT_LEAD_S, EVENT_MS, "exit");
+        // Slip delays the path: by 0.1 % of the time since the start.
+        close(event.path_exit_ms, event.expected_exit_ms * (1.0 + SLIP), 0.01, "path");
+    }
+
+    // 30 ms hold 140.2 periods of the ripple of 10 %: the rest averages to less than 0.1/(2π·140).
+    close(summary.load.mean_n, SUPPORT_N, 2e-4 * SUPPORT_N, "vertical force");
+    close(summary.load.inner_mean_n, SUPPORT_N + 24.0 * 0.39, 2e-4 * SUPPORT_N, "vertical force, inner");
+    assert!(summary.load.max_roller_n < summary.load.max_roller_peak_n);
+}
+
+#[test]
+fn analytic_tone_levels_and_notch_of_the_synthetic_run() {
+    let (_folder, summary) = whole("levels");
+    let tone = &summary.tones[0];
+    assert_eq!((tone.sensor.as_str(), tone.name.as_str(), tone.harmonic), ("side", "roller_vertices", 1));
+    // Three impulses of 180 g leak a few g/√Hz into the line: 5 % of its amplitude.
+    close(tone.measured_hz, TONE_HZ, 2.0, "tone");
+    close(tone.level_g, TONE_G, 0.05 * TONE_G, "amplitude of the tone");
+    assert!(tone.prominence_db > Some(15.0), "{:?}", tone.prominence_db);
+    let sixth =
+        summary.tones.iter().find(|t| t.sensor == "side" && t.harmonic == 6).expect("a sixth harmonic");
+    close(sixth.level_g, 0.2 * TONE_G, 0.1 * TONE_G, "sixth harmonic");
+
+    // An impulse rides on tone, harmonic and noise.
+    let riding = 1.2 * TONE_G + NOISE_G;
+    close(summary.levels.impulse_g, IMPULSE_G, riding, "impulse");
+    // What is left of an impulse 2 ms later is 180 g · e⁻⁸, nothing.
+    let between = summary.levels.between_g.expect("samples between the events");
+    assert!(between > TONE_G && between <= riding + 1e-6, "{between}");
+    let filtered = summary.levels.between_filtered_g.expect("samples after the transient");
+    assert!(filtered < 0.2 * TONE_G + NOISE_G + 8.0, "{filtered}");
+
+    let notch = summary.notch.as_ref().expect("a notch");
+    close(Some(notch.centre_hz), TONE_HZ, 2.0, "centre");
+    close(notch.attenuation_4545_db, 3.9, 0.3, "attenuation at 4545 Hz");
+    assert!(notch.attenuation_db > Some(15.0), "{:?}", notch.attenuation_db);
+
+    let spectrum = summary.spectrum.as_ref().expect("a spectrum");
+    close(Some(spectrum.record_s), 0.03, 1e-9, "record");
+    close(Some(spectrum.resolution_hz), 33.333, 0.001, "resolution");
+    close(Some(spectrum.grid_hz), 3.0, 0.001, "grid");
+    assert!(spectrum.zero_padded && spectrum.segments == 1);
+    assert!(summary.notes.iter().any(|n| n.contains("envelope")), "{:?}", summary.notes);
+}
+
+#[test]
+fn invariant_the_summary_has_its_stable_names() {
+    let (folder, summary) = whole("names");
+    let text = read(&folder.0, "summary.json");
+    let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    for path in [
+        "/mesh/nodes",
+        "/mesh/quads",
+        "/mesh/triangles",
+        "/mesh/roller_facets",
+        "/mesh/outer_facets",
+        "/mesh/inner_facets",
+        "/run/steps",
+        "/run/time_step_ns",
+        "/run/wall_s",
+        "/run/cpu_s",
+        "/run/threads",
+        "/run/ns_per_element_step",
+        "/energy/max_relative_error",
+        "/kinematics/cage_hz",
+        "/kinematics/bpfo_hz",
+        "/kinematics/roller_spin_hz",
+        "/kinematics/expected_cage_hz",
+        "/kinematics/expected_bpfo_hz",
+        "/kinematics/expected_roller_spin_hz",
+        "/events/2/roller",
+        "/events/2/entry_ms",
+        "/events/2/exit_ms",
+        "/events/2/expected_entry_ms",
+        "/events/2/expected_exit_ms",
+        "/load/mean_n",
+        "/load/expected_n",
+        "/load/max_roller_n",
+        "/tones/0/name",
+        "/tones/0/predicted_hz",
+        "/tones/0/measured_hz",
+        "/tones/0/level_g",
+        "/levels/impulse_g",
+        "/levels/between_g",
+        "/levels/between_filtered_g",
+        "/notch/centre_hz",
+        "/notch/q",
+        "/notch/attenuation_db",
+        "/notch/attenuation_4545_db",
+        "/spectrum/record_s",
+        "/spectrum/resolution_hz",
+        "/spectrum/grid_hz",
+        "/spectrum/window",
+        "/spectrum/segments",
+    ] {
+        assert!(json.pointer(path).is_some_and(|v| !v.is_null()), "{path} is missing");
+    }
+    // 300 s over 968 000 steps of 106 000 elements.
+    close(summary.run.ns_per_element_step, 2.923_7, 1e-3, "ns per element and step");
+    assert_eq!(serde_json::from_str::<Summary>(&text).expect("a summary"), summary);
+}
+
+#[test]
+fn invariant_the_page_holds_every_figure_and_needs_no_network() {
+    let (folder, _) = whole("page");
+    let page = read(&folder.0, "report.html");
+    assert!((page.len() as u64) < PAGE_LIMIT_BYTES, "{} bytes", page.len());
+    for figure in [
+        "acceleration",
+        "acceleration-notched",
+        "acceleration-shoulder",
+        "acceleration-seat",
+        "acceleration-bottom",
+        "acceleration-instant",
+        "spectrum",
+        "spectrum-zoom",
+        "spectrum-sensors",
+        "force-1",
+        "force-2",
+        "force-3",
+        "load-distribution",
+        "energy",
+        "energy-error",
+    ] {
+        assert!(page.contains(&format!("<figure id=\"{figure}\"")), "{figure} is not in the page");
+        let picture = read(&folder.0, &format!("figures/{figure}.svg"));
+        assert!(
+            picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"),
+            "{figure}.svg is broken"
+        );
+    }
+    // Addresses may be named (a namespace, a comment), never loaded.
+    for loading in ["src=\"http", "href=\"http", "url(http", "@import", "fetch(", "<link rel=\"stylesheet\""]
+    {
+        assert!(!page.contains(loading), "the page loads something: {loading}");
+    }
+    assert!(!page.contains("role=\"alert\""), "a complete run has no banner");
+}
+
+#[test]
+fn invariant_the_same_directory_gives_the_same_bytes() {
+    let (folder, _) = whole("bytes");
+    let first = read(&folder.0, "report.html");
+    report::write(&folder.0).expect("a second report");
+    assert!(first == read(&folder.0, "report.html"), "the page changed");
+}
+
+#[test]
+fn invariant_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
+    let folder = Scratch::new("diverged");
+    // 4 ms: roller 1 has entered the defect and not left it.
+    synthetic::write(&folder.0, Status::Diverged, 400);
+    let summary = report::write(&folder.0).expect("a report");
+    let page = read(&folder.0, "report.html");
+    assert!(page.contains("This run diverged") && page.contains("near roller 1"), "no banner");
+    assert_eq!(summary.events.len(), 1);
+    assert!(summary.events[0].entry_ms.is_some() && summary.events[0].exit_ms.is_none());
+    assert_eq!((summary.levels.impulse_g, summary.levels.between_filtered_g), (None, None));
+    assert!(summary.notes.iter().any(|n| n.contains("until the record ends")), "{:?}", summary.notes);
+    assert!(summary.notes.iter().any(|n| n.contains("no impulse level")), "{:?}", summary.notes);
+}
+
+#[test]
+fn invariant_a_trace_cut_inside_a_row_or_of_no_row_is_reported() {
+    for (name, samples, cut) in [("cut", 500, 12_345), ("none", 0, 0), ("one", 1, 0)] {
+        let folder = Scratch::new(name);
+        synthetic::write(&folder.0, Status::Interrupted, samples);
+        let trace = folder.0.join("trace.npy");
+        let length = fs::metadata(&trace).expect("a trace").len();
+        let file = fs::OpenOptions::new().write(true).open(&trace).expect("a trace");
+        file.set_len(length - cut).expect("a shorter trace");
+        let summary = report::write(&folder.0).expect("a report");
+        assert!(summary.run.samples + usize::from(cut > 0) <= samples, "{name}: {}", summary.run.samples);
+        assert!(read(&folder.0, "report.html").contains("was interrupted"), "{name}");
+        if samples < 2 {
+            assert_eq!((summary.kinematics.cage_hz, summary.spectrum), (None, None), "{name}");
+        }
+    }
+}
+
+#[test]
+fn invariant_samples_after_a_bad_number_are_left_out() {
+    let folder = Scratch::new("nan");
+    synthetic::write(&folder.0, Status::Diverged, 300);
+    let trace = folder.0.join("trace.npy");
+    let mut bytes = fs::read(&trace).expect("a trace");
+    // The last value of the last row but nine.
+    let channels = 1 + 4 * 4 + 24 * 9 + 5;
+    let at = bytes.len() - 9 * channels * 8 - 8;
+    bytes[at..at + 8].copy_from_slice(&f64::NAN.to_le_bytes());
+    fs::write(&trace, bytes).expect("a writable folder");
+    let summary = report::write(&folder.0).expect("a report");
+    assert_eq!(summary.run.samples, 290);
+    assert!(summary.notes.iter().any(|n| n.contains("10 samples")), "{:?}", summary.notes);
+}
+
+#[test]
+fn invariant_what_is_no_run_is_refused_with_advice() {
+    let folder = Scratch::new("absent");
+    let error = report::write(&folder.0).expect_err("nothing there").to_string();
+    assert!(error.contains("is not a run") && error.contains("`scene.ron` is missing"), "{error}");
+    synthetic::write(&folder.0, Status::Complete, 10);
+    fs::write(folder.0.join("trace.npy"), "no trace").expect("a writable folder");
+    let error = report::write(&folder.0).expect_err("no trace").to_string();
+    assert!(error.contains("trace.npy"), "{error}");
+    assert!(!folder.0.join("report.html").exists());
+}

@@ -1,0 +1,224 @@
+//! A run directory made of closed forms: every number that the report should find is written down here.
+
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+use stribeck_bearing::kinematics::{Crossing, Kinematics};
+use stribeck_bearing::run_dir::RunDir;
+use stribeck_bearing::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
+use stribeck_bearing::scene::Scene;
+use stribeck_bearing::trace::TraceWriter;
+
+/// Standard acceleration of gravity [m/s²].
+pub(crate) const G: f64 = 9.806_65;
+/// Facet tone [Hz], 0.05 % above the prediction.
+pub(crate) const TONE_HZ: f64 = 4674.0;
+/// Its amplitude at the leading sensor [g].
+pub(crate) const TONE_G: f64 = 40.0;
+/// Peak of each impulse before tone and noise are added [g].
+pub(crate) const IMPULSE_G: f64 = 180.0;
+/// Half width of the uniform noise [g].
+pub(crate) const NOISE_G: f64 = 8.0;
+/// Delay of unloading behind the leading edge [s].
+pub(crate) const ENTRY_LAG_S: f64 = 0.15e-3;
+/// Lead of re-stressing before the trailing edge [s].
+pub(crate) const EXIT_LEAD_S: f64 = 0.20e-3;
+/// Fraction by which the cage is slower than rolling without slip.
+pub(crate) const SLIP: f64 = 0.001;
+/// Vertical force through the rollers [N].
+pub(crate) const SUPPORT_N: f64 = 50_120.0;
+/// Sampling interval [s].
+pub(crate) const INTERVAL_S: f64 = 1e-5;
+
+/// A folder that is removed at the end of a test.
+pub(crate) struct Scratch(pub(crate) PathBuf);
+
+impl Scratch {
+    /// An empty folder of this name.
+    pub(crate) fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("stribeck-analysis-{}-{name}", std::process::id()));
+        std::fs::remove_dir_all(&path).ok();
+        Self(path)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+/// Uniform noise in −1 to 1 that is the same on every machine.
+pub(crate) struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        2.0 * ((self.0 >> 40) as f64 / (1u64 << 24) as f64) - 1.0
+    }
+}
+
+/// What `run.json` says.
+pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
+    RunInfo {
+        version: "0.1.0".into(),
+        commit: "synthetic".into(),
+        scene_hash: Scene::default().hash(),
+        machine: "closed forms".into(),
+        threads: 2,
+        status,
+        stop_reason: (status == Status::Diverged)
+            .then(|| "energy imbalance 3.1 % at step 4000, t = 3.2 ms, near roller 1".into()),
+        time_step_s: 31e-9,
+        critical_time_step_s: 33e-9,
+        steps: 968_000,
+        steps_planned: 968_000,
+        interval_s: INTERVAL_S,
+        samples,
+        mesh: MeshInfo {
+            nodes: 110_000,
+            quads: 100_000,
+            triangles: 6_000,
+            roller_facets: 112,
+            outer_facets: 1257,
+            inner_facets: 1030,
+        },
+        wall_s: 300.0,
+        cpu_s: 590.0,
+        setup_s: 4.0,
+        energy: EnergyInfo { max_relative_error: 2.5e-3, peak_strain_j: 0.8 },
+        expected_support_n: SUPPORT_N,
+        warnings: vec!["the sensor `seat` lies under the adapter".into()],
+    }
+}
+
+/// Writes the paper's scene with `samples` samples into `path`.
+pub(crate) fn write(path: &Path, status: Status, samples: usize) {
+    let scene = Scene::default();
+    let dir = RunDir::create(path).expect("a free folder");
+    let info = info(status, samples);
+    dir.start(&scene, &info).expect("a writable folder");
+    write_trace(&dir, &scene, samples);
+    write_energy(&dir, samples);
+}
+
+fn crossings(scene: &Scene) -> Vec<Crossing> {
+    let defect = scene.defect.as_ref().expect("the default has one");
+    Kinematics::of(scene).crossings(defect, scene.bearing.first_roller_deg, 40e-3)
+}
+
+fn write_trace(dir: &RunDir, scene: &Scene, samples: usize) {
+    let mut names = vec!["time_s".to_owned()];
+    for sensor in &scene.output.sensors {
+        for component in ["ax", "ay", "ax_instant", "ay_instant"] {
+            names.push(format!("sensor.{}.{component}_m_s2", sensor.name));
+        }
+    }
+    let per_roller = [
+        "x_m",
+        "y_m",
+        "spin_rad",
+        "outer_fx_n",
+        "outer_fy_n",
+        "inner_fx_n",
+        "inner_fy_n",
+        "cage_fx_n",
+        "cage_fy_n",
+    ];
+    for roller in 1..=scene.bearing.rollers {
+        names.extend(per_roller.iter().map(|what| format!("roller.{roller}.{what}")));
+    }
+    names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad", "seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    let mut writer = TraceWriter::create(dir.trace(), &names).expect("a writable folder");
+    let mut noise = Noise(3);
+    let crossings = crossings(scene);
+    for n in 0..samples {
+        let t = n as f64 * INTERVAL_S;
+        let mut row = vec![t];
+        for (number, _) in scene.output.sensors.iter().enumerate() {
+            let ay = G * acceleration_g(t, number, &crossings, &mut noise);
+            let instant = ay + 2000.0 * G * noise.next();
+            row.extend([0.3 * ay, ay, 0.3 * instant, instant]);
+        }
+        rollers(scene, t, &crossings, &mut row);
+        let cage = -TAU * Kinematics::of(scene).cage_hz * (1.0 - SLIP) * t;
+        row.extend([0.0, 0.0, cage, 0.0, -SUPPORT_N + 60.0]);
+        writer.push(&row).expect("a writable folder");
+    }
+    writer.finish().expect("a writable folder");
+}
+
+/// Tone, impulses at the exits and noise.
+fn acceleration_g(t: f64, sensor: usize, crossings: &[Crossing], noise: &mut Noise) -> f64 {
+    let strength = [1.0, 1.4, 0.7, 2.0][sensor % 4];
+    let tone = TONE_G * (TAU * TONE_HZ * t).sin() + 0.2 * TONE_G * (6.0 * TAU * TONE_HZ * t).sin();
+    let impulse: f64 = crossings
+        .iter()
+        .map(|c| t - (c.exit_s - EXIT_LEAD_S))
+        .filter(|&since| since >= 0.0)
+        .map(|since| IMPULSE_G * (-since / 0.25e-3).exp() * (TAU * 9000.0 * since).cos())
+        .sum();
+    strength * (tone + impulse + NOISE_G * noise.next())
+}
+
+/// Motion and forces of all rollers: the upper ones share the load by the cosine, those in the defect carry nothing.
+fn rollers(scene: &Scene, t: f64, crossings: &[Crossing], row: &mut Vec<f64>) {
+    let k = Kinematics::of(scene);
+    let count = scene.bearing.rollers;
+    let angle_of = |roller: usize| {
+        let start = scene.bearing.first_roller_deg.to_radians() + TAU * roller as f64 / count as f64;
+        start - TAU * k.cage_hz * (1.0 - SLIP) * t
+    };
+    let unloaded = |roller: usize| {
+        crossings
+            .iter()
+            .any(|c| c.roller == roller + 1 && (c.entry_s + ENTRY_LAG_S..c.exit_s - EXIT_LEAD_S).contains(&t))
+    };
+    let share = |roller: usize| if unloaded(roller) { 0.0 } else { angle_of(roller).sin().max(0.0) };
+    let vertical: f64 = (0..count).map(|r| share(r) * angle_of(r).sin()).sum();
+    let ripple = 1.0 + 0.1 * (TAU * TONE_HZ * t).sin();
+    for roller in 0..count {
+        let (sin, cos) = angle_of(roller).sin_cos();
+        let force = SUPPORT_N * share(roller) / vertical * ripple;
+        let spin = TAU * (k.roller_spin_hz - k.cage_hz * (1.0 - SLIP)) * t;
+        row.extend([91e-3 * cos, 91e-3 * sin, spin]);
+        row.extend([-force * cos, -force * sin, force * cos, force * sin + 0.39, 0.0, 0.0]);
+    }
+}
+
+fn write_energy(dir: &RunDir, samples: usize) {
+    let names = [
+        "time_s",
+        "kinetic_j",
+        "strain_j",
+        "hourglass_j",
+        "contact_j",
+        "friction_j",
+        "damping_j",
+        "contact_damping_j",
+        "external_j",
+        "drive_j",
+        "relative_error",
+    ];
+    let mut writer = TraceWriter::create(dir.energy(), &names).expect("a writable folder");
+    for n in 0..samples {
+        let t = n as f64 * INTERVAL_S;
+        let strain = 0.7 + 0.05 * (TAU * 90.0 * t).sin();
+        let friction = 12.0 * t;
+        let row = [
+            t,
+            30.0 - 0.05 * (TAU * 90.0 * t).sin(),
+            strain,
+            0.002,
+            0.1,
+            friction,
+            1.5 * t,
+            0.8 * t,
+            0.3 * t,
+            14.0 * t,
+            2.5e-3 * t / 30e-3,
+        ];
+        writer.push(&row).expect("a writable folder");
+    }
+    writer.finish().expect("a writable folder");
+}

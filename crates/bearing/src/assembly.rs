@@ -1,0 +1,378 @@
+//! From a scene to a model: bodies, constraints, contact pairs.
+
+use std::f64::consts::{PI, TAU};
+
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+use stribeck_mesh::{Annulus, ArcBlock, Disc, Groove, Mesh, Part, Placed, SeatedBlock};
+use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
+
+use crate::{
+    error::Error,
+    kinematics::{FacetCounts, Kinematics},
+    run_info::MeshInfo,
+    scene::{ContactMethod, RollerCopies, Scene},
+};
+
+/// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
+const CAGE_ELEMENT_MM: f64 = 2.0;
+
+/// Integration points on a facet of the adapter's seat: two conforming surfaces need fewer than a line contact.
+const SEAT_POINTS: usize = 2;
+
+/// A scene made into bodies, in mesh numbers.
+#[derive(Debug)]
+pub struct Assembly {
+    /// The model.
+    pub model: Model,
+    /// Speeds.
+    pub kinematics: Kinematics,
+    /// Facets that pass the contacts.
+    pub facets: FacetCounts,
+    outer: Placed,
+    inner: Placed,
+    adapter: Placed,
+    rollers: Vec<Placed>,
+    cage: Option<Placed>,
+}
+
+/// The same in slot numbers, ready to run.
+#[derive(Debug)]
+pub struct Machine {
+    /// Bodies in motion.
+    pub dynamics: Dynamics,
+    /// All contacts.
+    pub contacts: Contacts,
+    /// The load on the adapter.
+    pub load: NodalLoad,
+    /// Slots of the outer ring.
+    pub outer: Vec<u32>,
+    /// Slots of the inner ring.
+    pub inner: Vec<u32>,
+    /// Slots of the adapter.
+    pub adapter: Vec<u32>,
+    /// Slots of each roller.
+    pub rollers: Vec<RollerSlots>,
+    /// Number of the cage among the rigid bodies.
+    pub cage: Option<usize>,
+    /// Slots on the outer surface of the outer ring.
+    pub housing: Vec<u32>,
+    /// Pairs of each roller.
+    pub roller_pairs: Vec<RollerPairs>,
+    /// Pair of outer ring and adapter.
+    pub seat_pair: usize,
+}
+
+/// Slots of one roller.
+#[derive(Debug, Clone)]
+pub struct RollerSlots {
+    /// All of them.
+    pub all: Vec<u32>,
+    /// The one in the centre.
+    pub centre: u32,
+    /// One on the rim, for the angle.
+    pub rim: u32,
+}
+
+/// Contact pairs of one roller; the resultant is the force on the roller.
+#[derive(Debug, Clone, Copy)]
+pub struct RollerPairs {
+    /// With the outer raceway.
+    pub outer: usize,
+    /// With the inner raceway.
+    pub inner: usize,
+    /// With the two walls of its pocket.
+    pub cage: Option<[usize; 2]>,
+}
+
+/// Angle of roller `i` (from 0) at the start [rad].
+pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
+    scene.bearing.first_roller_deg.to_radians() + TAU * i as f64 / scene.bearing.rollers as f64
+}
+
+impl Assembly {
+    /// Meshes every body of the scene.
+    ///
+    /// # Errors
+    /// When a dimension or a count cannot be meshed.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let b = &scene.bearing;
+        let size = 1e-3 * scene.mesh.size_mm;
+        let mut mesh = Mesh::new();
+        let outer_radius = 0.5e-3 * b.outer_race_diameter_mm;
+        let inner_radius = 0.5e-3 * b.inner_race_diameter_mm;
+        let around = |radius: f64| ((TAU * radius / size).round() as usize).max(8);
+        let through = |thickness_mm: f64| ((1e-3 * thickness_mm / size).round() as usize).max(1);
+
+        let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius));
+        let outer = Annulus {
+            inner_radius: outer_radius,
+            outer_radius: outer_radius + 1e-3 * b.outer_ring_thickness_mm,
+            facets: outer_facets,
+            layers: through(b.outer_ring_thickness_mm),
+            start_angle: 0.0,
+            groove: scene.defect.as_ref().map(|d| Groove {
+                centre_angle: d.angle_deg.to_radians(),
+                length: 1e-3 * d.length_mm,
+                depth: 1e-3 * d.depth_mm,
+            }),
+        };
+        let outer = mesh.add("outer ring", &outer.part()?);
+
+        let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
+        let inner = Annulus {
+            inner_radius: inner_radius - 1e-3 * b.inner_ring_thickness_mm,
+            outer_radius: inner_radius,
+            facets: inner_facets,
+            layers: through(b.inner_ring_thickness_mm),
+            start_angle: 0.0,
+            groove: None,
+        };
+        let inner = mesh.add("inner ring", &inner.part()?);
+
+        let adapter = SeatedBlock {
+            width: 1e-3 * scene.adapter.width_mm,
+            height: 1e-3 * scene.adapter.height_mm,
+            seat_radius: outer_radius + 1e-3 * b.outer_ring_thickness_mm,
+            columns: ((1e-3 * scene.adapter.width_mm / size).round() as usize).max(2),
+            rows: adapter_rows(scene, size),
+        };
+        let adapter = mesh.add("adapter", &adapter.part()?);
+
+        let roller_radius = 0.5e-3 * b.roller_diameter_mm;
+        let disc = Disc { radius: roller_radius, facets: scene.mesh.roller_facets, size, rotation: 0.0 };
+        let disc = disc.part()?;
+        // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
+        let path = outer_radius - roller_radius;
+        let rollers = (0..b.rollers)
+            .map(|i| {
+                let angle = roller_angle(scene, i);
+                let turned = match scene.mesh.roller_copies {
+                    RollerCopies::Translated => disc.clone(),
+                    RollerCopies::Rotated => disc.rotated(angle),
+                };
+                let (s, c) = angle.sin_cos();
+                mesh.add(format!("roller {}", i + 1), &turned.translated(path * c, path * s))
+            })
+            .collect();
+
+        let cage = match cage_part(scene, path, roller_radius)? {
+            Some(part) => Some(mesh.add("cage", &part)),
+            None => None,
+        };
+
+        let m = &scene.material;
+        let steel = Elastic::new(1e9 * m.youngs_modulus_gpa, m.poissons_ratio, m.density_kg_m3)?;
+        let mut model = Model::new(mesh, steel, 1e-3 * b.thickness_mm)?;
+        model.hourglass_scale = scene.solver.hourglass_scale;
+        model.gravity = [0.0, -scene.operation.gravity_m_s2];
+        if let Some(cage) = &cage {
+            model.behaviour[cage.body] = Behaviour::Rigid;
+        }
+        let kinematics = Kinematics::of(scene);
+        for &n in &surface(&inner, "inner").nodes {
+            model.motion[n as usize] = Motion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s };
+        }
+        for &n in &surface(&adapter, "top").nodes {
+            model.motion[n as usize] = Motion::HeldX;
+        }
+        let facets = FacetCounts {
+            roller: scene.mesh.roller_facets,
+            outer: effective_outer_facets(scene, outer_facets, outer_radius),
+            inner: inner_facets as f64,
+        };
+        Ok(Self { model, kinematics, facets, outer, inner, adapter, rollers, cage })
+    }
+
+    /// Counts for `run.json`.
+    pub fn mesh_info(&self) -> MeshInfo {
+        let mesh = &self.model.mesh;
+        MeshInfo {
+            nodes: mesh.x.len(),
+            quads: mesh.quads.len(),
+            triangles: mesh.triangles.len(),
+            roller_facets: self.facets.roller,
+            outer_facets: surface(&self.outer, "inner").facets(),
+            inner_facets: surface(&self.inner, "outer").facets(),
+        }
+    }
+
+    /// Lays everything out for `threads` workers.
+    ///
+    /// # Errors
+    /// When the solver or contact refuses the model.
+    pub fn machine(&self, scene: &Scene, threads: usize) -> Result<Machine, Error> {
+        let model = &self.model;
+        let mut loaded = vec![false; model.mesh.x.len()];
+        let top = surface(&self.adapter, "top");
+        let mut touching = vec![
+            surface(&self.outer, "inner"),
+            surface(&self.outer, "outer"),
+            surface(&self.inner, "outer"),
+            surface(&self.adapter, "seat"),
+        ];
+        touching.extend(self.rollers.iter().map(|r| surface(r, "rim")));
+        let first_piece = touching.len();
+        let pieces = self.cage.iter().flat_map(|c| &c.surfaces).map(|(_, s)| s);
+        touching.extend(pieces);
+        for &n in touching.iter().flat_map(|s| &s.nodes).chain(&top.nodes) {
+            loaded[n as usize] = true;
+        }
+
+        let mut dynamics = Dynamics::new(model, &loaded, threads)?;
+        let slot = |&n: &u32| dynamics.layout().slot_of_node[n as usize];
+        let slots = |s: &stribeck_mesh::Surface| s.nodes.iter().map(slot).collect::<Vec<u32>>();
+        let body = |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
+        let (x, y) = (&dynamics.state.x, &dynamics.state.y);
+        let names = ["outer raceway", "outer ring's back", "inner raceway", "adapter seat"];
+        let surfaces = touching
+            .iter()
+            .enumerate()
+            .map(|(i, s)| {
+                let name = names.get(i).map_or_else(|| format!("surface {i}"), |n| (*n).to_owned());
+                Surface::new(name, slots(s), s.closed, x, y)
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+
+        let (pairs, roller_pairs) = self.pairs(scene, first_piece)?;
+        let seat_pair = pairs.len() - 1;
+        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y);
+        contacts.set_parallel(threads > 1);
+
+        let rollers = self
+            .rollers
+            .iter()
+            .map(|r| RollerSlots {
+                all: body(r.body),
+                centre: slot(&r.mark("centre").expect("a disc marks its centre")),
+                rim: slot(&surface(r, "rim").nodes[0]),
+            })
+            .collect();
+        let machine = Machine {
+            contacts,
+            load: NodalLoad::new(spread_load(scene.operation.load_n, &slots(top))),
+            outer: body(self.outer.body),
+            inner: body(self.inner.body),
+            adapter: body(self.adapter.body),
+            rollers,
+            cage: self.cage.as_ref().map(|_| 0),
+            housing: slots(surface(&self.outer, "outer")),
+            roller_pairs,
+            seat_pair,
+            dynamics: {
+                dynamics.set_time_step(1.0)?;
+                dynamics
+            },
+        };
+        Ok(machine)
+    }
+
+    /// Contact pairs, the seat last.
+    fn pairs(&self, scene: &Scene, first_piece: usize) -> Result<(Vec<PairSpec>, Vec<RollerPairs>), Error> {
+        let c = &scene.contact;
+        let size = 1e-3 * scene.mesh.size_mm;
+        let steel = self.model.materials[0];
+        let base = Law::penalty(c.penalty_scale * steel.youngs_modulus() / size)?;
+        // A surface layer is half an element deep.
+        let base = base.with_damping(c.damping_ratio, 0.5 * steel.density() * size)?;
+        let rolling = base.with_friction(c.friction)?;
+        let seat = base.with_friction(c.seat_friction)?;
+        let method = |points| match c.method {
+            ContactMethod::Collocated => Method::Collocated,
+            ContactMethod::Integrated => Method::Integrated { points },
+        };
+        let mut pairs = Vec::new();
+        let mut roller_pairs = Vec::new();
+        let n = self.rollers.len();
+        for i in 0..n {
+            let first = 4 + i;
+            let mut pair = |second| {
+                pairs.push(PairSpec { first, second, law: rolling, method: method(c.points_per_facet) });
+                pairs.len() - 1
+            };
+            roller_pairs.push(RollerPairs {
+                outer: pair(0),
+                inner: pair(2),
+                cage: self.cage.as_ref().map(|_| [pair(first_piece + (i + n - 1) % n), pair(first_piece + i)]),
+            });
+        }
+        // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
+        let points = SEAT_POINTS;
+        pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points } });
+        Ok((pairs, roller_pairs))
+    }
+}
+
+fn surface<'a>(placed: &'a Placed, name: &str) -> &'a stribeck_mesh::Surface {
+    placed.surface(name).expect("the generator of this body names this surface")
+}
+
+/// Rows of the adapter: cells of the wanted size on average between its crown and its sides.
+fn adapter_rows(scene: &Scene, size: f64) -> usize {
+    let a = &scene.adapter;
+    let radius = 0.5 * scene.bearing.outer_race_diameter_mm + scene.bearing.outer_ring_thickness_mm;
+    let half = 0.5 * a.width_mm;
+    let side = a.height_mm + radius - (radius * radius - half * half).sqrt();
+    let middle = (a.height_mm * a.height_mm * side).cbrt();
+    ((1e-3 * middle / size).round() as usize).max(2)
+}
+
+/// Facets a full turn would have at the spacing outside the defect.
+fn effective_outer_facets(scene: &Scene, facets: usize, radius: f64) -> f64 {
+    let Some(d) = &scene.defect else { return facets as f64 };
+    let sector = 1e-3 * d.length_mm / radius;
+    let floor = (1e-3 * d.length_mm / (TAU * radius / facets as f64)).round().max(2.0);
+    // Two facets are walls and take no angle.
+    (facets as f64 - floor - 2.0) * TAU / (TAU - sector)
+}
+
+/// Load on the top edge, an equal share a facet.
+fn spread_load(load: f64, slots: &[u32]) -> Vec<(u32, f64, f64)> {
+    let share = load / (slots.len() - 1) as f64;
+    let at_end = |i: usize| if i == 0 || i == slots.len() - 1 { 0.5 } else { 1.0 };
+    slots.iter().enumerate().map(|(i, &s)| (s, 0.0, -share * at_end(i))).collect()
+}
+
+/// All pieces of the cage as one body, or `None` without a cage. Surfaces in the order of the rollers: piece i lies
+/// between roller i and the next one counter-clockwise.
+fn cage_part(scene: &Scene, path: f64, roller_radius: f64) -> Result<Option<Part>, Error> {
+    let Some(cage) = &scene.cage else { return Ok(None) };
+    let outer = 0.5e-3 * cage.outer_diameter_mm;
+    let inner = outer - 1e-3 * cage.thickness_mm;
+    let reach = roller_radius + 1e-6 * cage.pocket_clearance_um;
+    let half_width = pocket_half_width(inner, outer, path, reach);
+    let pieces = scene.bearing.rollers;
+    let gap = 2.0 * (half_width / outer).asin();
+    let arc = (TAU / pieces as f64 - gap) * outer;
+    let mut joined = Part::default();
+    for i in 0..pieces {
+        let piece = ArcBlock {
+            inner_radius: inner,
+            outer_radius: outer,
+            right_line_angle: roller_angle(scene, i),
+            left_line_angle: roller_angle(scene, i) + TAU / pieces as f64,
+            half_width,
+            rows: ((cage.thickness_mm / CAGE_ELEMENT_MM).round() as usize).max(1),
+            columns: ((1e3 * arc / CAGE_ELEMENT_MM).round() as usize).max(1),
+        };
+        let piece = piece.part()?;
+        let first = joined.x.len() as u32;
+        joined.x.extend(&piece.x);
+        joined.y.extend(&piece.y);
+        joined.quads.extend(piece.quads.iter().map(|q| q.map(|n| n + first)));
+        let mut boundary = piece.surface("boundary").expect("an arc block names its boundary").clone();
+        boundary.nodes.iter_mut().for_each(|n| *n += first);
+        joined.surfaces.push((format!("piece {}", i + 1), boundary));
+    }
+    Ok(Some(joined))
+}
+
+/// Half width of a pocket whose walls come within `reach` of the centre of a roller on radius `path`.
+fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
+    if (inner..=outer).contains(&path) {
+        return reach;
+    }
+    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on `edge`.
+    let edge = if path < inner { inner } else { outer };
+    let height = (edge * edge + path * path - reach * reach) / (2.0 * path);
+    (edge * edge - height * height).max(0.0).sqrt().min(PI * edge)
+}

@@ -1,0 +1,291 @@
+//! Ideal kinematics: who turns how fast when nothing slips, when a roller crosses the defect, and which tones the facets
+//! of a mesh make.
+//!
+//! Angles count counter-clockwise from the x axis. The inner ring turns clockwise, so its angular velocity and that of
+//! the cage are negative, and that of a roller is positive. Frequencies are magnitudes.
+
+use std::f64::consts::TAU;
+
+use crate::scene::{BearingScene, DefectScene, Scene};
+
+/// Speeds of a bearing whose outer ring stands still and whose rollers do not slip.
+///
+/// Three definitions of the cage's speed differ by one part in ten thousand, because a bearing with clearance has no
+/// single pitch circle; each has its own field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kinematics {
+    /// Shaft frequency f_s [Hz].
+    pub shaft_hz: f64,
+    /// Cage frequency, the fundamental train frequency [Hz]: f_s·D_i/(D_i + D_o), rolling on both raceways with the
+    /// roller's centre half-way between them. Event times use this one.
+    pub cage_hz: f64,
+    /// Cage frequency by the paper's equation (1), BPFO/N_r [Hz].
+    pub cage_equation_1_hz: f64,
+    /// Cage frequency of rollers that ride on the outer raceway [Hz]: the centre's path has the radius (D_o − D_r)/2.
+    /// The initial velocities use this one.
+    pub cage_outer_hz: f64,
+    /// Ball (here roller) pass frequency of the outer raceway, the paper's equation (1) [Hz].
+    pub bpfo_hz: f64,
+    /// Roller pass frequency of the inner raceway [Hz].
+    pub bpfi_hz: f64,
+    /// Roller spin frequency by the textbook formula, f_s·D_p/(2·D_r)·(1 − (D_r/D_p)²) [Hz].
+    pub bsf_hz: f64,
+    /// Spin of a roller relative to the cage, f_c·D_o/D_r with [`Kinematics::cage_hz`] [Hz].
+    pub roller_spin_hz: f64,
+    /// Angular velocity of the inner ring [rad/s], negative: clockwise.
+    pub shaft_rad_s: f64,
+    /// Angular velocity of the cage with rollers riding on the outer raceway [rad/s], negative.
+    pub cage_rad_s: f64,
+    /// Angular velocity of a roller in space, riding on the outer raceway [rad/s], positive.
+    pub roller_rad_s: f64,
+    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], positive.
+    pub roller_relative_rad_s: f64,
+    /// Speed of the contact point along the outer raceway [m/s], with [`Kinematics::cage_hz`].
+    pub contact_speed_m_s: f64,
+    bearing: Dimensions,
+}
+
+/// What kinematics needs of a bearing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Dimensions {
+    outer_m: f64,
+    inner_m: f64,
+    rollers: f64,
+}
+
+/// Facets of the polygons that a mesh makes of the circles.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FacetCounts {
+    /// Facets (= vertices) of a roller.
+    pub roller: usize,
+    /// Effective facets of the outer raceway: 2π divided by the angle of one facet outside the defect, so that the
+    /// finer facets of a graded defect do not count.
+    pub outer: f64,
+    /// Effective facets of the inner raceway, defined likewise.
+    pub inner: f64,
+}
+
+/// A tone that the facets make.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tone {
+    /// Stable name: `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
+    pub name: &'static str,
+    /// Fundamental frequency [Hz].
+    pub hz: f64,
+}
+
+impl Tone {
+    /// Frequency of harmonic `n` [Hz]; 1 is the fundamental.
+    pub fn harmonic_hz(&self, n: usize) -> f64 {
+        self.hz * n as f64
+    }
+}
+
+/// One roller crossing the defect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossing {
+    /// Roller, from 1.
+    pub roller: usize,
+    /// Time at which its centre stands over the leading edge [s].
+    pub entry_s: f64,
+    /// Time at which its centre stands over the middle of the defect [s].
+    pub centre_s: f64,
+    /// Time at which its centre stands over the trailing edge [s].
+    pub exit_s: f64,
+}
+
+impl Kinematics {
+    /// Kinematics of a scene's bearing at its speed.
+    pub fn of(scene: &Scene) -> Self {
+        Self::new(&scene.bearing, scene.operation.speed_rpm)
+    }
+
+    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise.
+    pub fn new(bearing: &BearingScene, speed_rpm: f64) -> Self {
+        let shaft_hz = speed_rpm / 60.0;
+        let (outer, inner) = (bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm);
+        let (roller, count) = (bearing.roller_diameter_mm, bearing.rollers as f64);
+        let pitch = (outer + inner) / 2.0;
+        let cage_hz = shaft_hz * inner / (inner + outer);
+        let bpfo_hz = shaft_hz * count / 2.0 * (1.0 - roller / pitch);
+        // Riding on the outer raceway, the roller touches the inner one at radius (D_o − 2 D_r)/2 in the load zone,
+        // where the ring has come up by the clearance; the ring's surface speed is that of its own radius.
+        let centre_path = (outer - roller) / 2.0;
+        let cage_outer_hz = shaft_hz * (inner / 2.0) / (2.0 * centre_path);
+        let cage_rad_s = -TAU * cage_outer_hz;
+        let roller_rad_s = -cage_rad_s * centre_path / (roller / 2.0);
+        Self {
+            shaft_hz,
+            cage_hz,
+            cage_equation_1_hz: bpfo_hz / count,
+            cage_outer_hz,
+            bpfo_hz,
+            bpfi_hz: shaft_hz * count / 2.0 * (1.0 + roller / pitch),
+            bsf_hz: shaft_hz * pitch / (2.0 * roller) * (1.0 - (roller / pitch).powi(2)),
+            roller_spin_hz: cage_hz * outer / roller,
+            shaft_rad_s: -TAU * shaft_hz,
+            cage_rad_s,
+            roller_rad_s,
+            roller_relative_rad_s: roller_rad_s - cage_rad_s,
+            contact_speed_m_s: TAU * cage_hz * outer / 2.0 * 1e-3,
+            bearing: Dimensions { outer_m: outer * 1e-3, inner_m: inner * 1e-3, rollers: count },
+        }
+    }
+
+    /// Facet-passing tones of a mesh, THEORY §5.
+    ///
+    /// A roller shows its vertices to both raceways at N_v·f_spin; the nodes of the outer raceway pass a contact at
+    /// N_o·f_c, those of the inner one at N_i·(f_s − f_c). Spin is the same number at both raceways, so the roller has
+    /// one tone, not two.
+    pub fn facet_tones(&self, facets: FacetCounts) -> [Tone; 3] {
+        [
+            Tone { name: "roller_vertices", hz: facets.roller as f64 * self.roller_spin_hz },
+            Tone { name: "outer_race_nodes", hz: facets.outer * self.cage_hz },
+            Tone { name: "inner_race_nodes", hz: facets.inner * (self.shaft_hz - self.cage_hz) },
+        ]
+    }
+
+    /// The paper's equation (2) for the outer and the inner raceway [Hz], elements of `size_mm`: for comparison only.
+    ///
+    /// The value for the inner raceway uses the cage's speed where the speed of the contact relative to the inner ring
+    /// belongs, so it stands for no motion in the bearing.
+    pub fn paper_noise_hz(&self, size_mm: f64) -> (f64, f64) {
+        let tone = |diameter_m: f64| TAU * self.cage_hz * diameter_m / (2.0 * size_mm * 1e-3);
+        (tone(self.bearing.outer_m), tone(self.bearing.inner_m))
+    }
+
+    /// Rollers that leave `defect` within `duration_s`, in the order of their entry.
+    ///
+    /// Roller 1 starts at `first_roller_deg`, the others follow counter-clockwise, and all move clockwise: the leading
+    /// edge is the one at the larger angle. A roller that starts inside the defect has a negative entry time. Empty when
+    /// the shaft stands still.
+    pub fn crossings(&self, defect: &DefectScene, first_roller_deg: f64, duration_s: f64) -> Vec<Crossing> {
+        let speed = 360.0 * self.cage_hz;
+        if !(speed > 0.0 && duration_s.is_finite()) {
+            return Vec::new();
+        }
+        let half = (defect.length_mm * 1e-3 / self.bearing.outer_m).to_degrees();
+        let mut crossings = Vec::new();
+        for roller in 0..self.bearing.rollers as usize {
+            let start = first_roller_deg + 360.0 * roller as f64 / self.bearing.rollers;
+            let trailing = defect.angle_deg - half;
+            let mut exit_s = (start - trailing).rem_euclid(360.0) / speed;
+            while exit_s <= duration_s {
+                let (centre_s, entry_s) = (exit_s - half / speed, exit_s - 2.0 * half / speed);
+                crossings.push(Crossing { roller: roller + 1, entry_s, centre_s, exit_s });
+                exit_s += 360.0 / speed;
+            }
+        }
+        crossings.sort_by(|a, b| a.entry_s.total_cmp(&b.entry_s));
+        crossings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The notes print four or five digits.
+    const PRINTED: f64 = 1.5e-4;
+    /// Closed forms evaluated twice.
+    const ROUNDING: f64 = 1e-12;
+
+    fn paper() -> Kinematics {
+        Kinematics::of(&Scene::default())
+    }
+
+    fn assert_close(ours: f64, theirs: f64, relative: f64) {
+        assert!((ours - theirs).abs() <= relative * theirs.abs(), "{ours} instead of {theirs}");
+    }
+
+    #[test]
+    fn analytic_speeds_of_table_1() {
+        let k = paper();
+        assert_close(k.shaft_hz, 8.333_333, PRINTED);
+        assert_close(k.shaft_rad_s, -52.360, PRINTED);
+        assert_close(k.cage_equation_1_hz, 3.7545, PRINTED);
+        assert_close(k.cage_outer_hz, 3.7537, PRINTED);
+        assert_close(360.0 * k.cage_hz, 1_351.467_194_197_164_4, ROUNDING);
+        assert_close(k.bpfo_hz, 90.11, PRINTED);
+        assert_close(k.bpfi_hz, 200.0 - 90.109, PRINTED);
+        assert_close(k.cage_rad_s, -23.585, PRINTED);
+        assert_close(k.contact_speed_m_s, 2.358_755_227_143_012_3, ROUNDING);
+    }
+
+    #[test]
+    fn analytic_roller_spin_lies_in_the_band_of_the_three_definitions() {
+        let k = paper();
+        assert!((41.707..=41.718).contains(&k.roller_spin_hz), "{}", k.roller_spin_hz);
+        assert!((41.707..=41.718).contains(&k.bsf_hz), "{}", k.bsf_hz);
+        assert_close(k.roller_relative_rad_s / TAU, 41.707, PRINTED);
+    }
+
+    #[test]
+    fn invariant_contact_points_do_not_slip() {
+        // Riding on the outer raceway: the roller's outermost point stands still, its innermost one moves with the ring.
+        let k = paper();
+        let centre = k.cage_rad_s * 91.0e-3;
+        assert!((centre + k.roller_rad_s * 9.0e-3).abs() < 1e-12);
+        assert_close(centre - k.roller_rad_s * 9.0e-3, k.shaft_rad_s * 81.98e-3, ROUNDING);
+        assert!(k.cage_rad_s < 0.0 && k.roller_rad_s > 0.0);
+    }
+
+    #[test]
+    fn analytic_facet_tones_of_the_paper_mesh() {
+        let facets = FacetCounts { roller: 112, outer: 1257.0, inner: 1030.0 };
+        let tones = paper().facet_tones(facets);
+        assert_eq!(tones.map(|tone| tone.name), ["roller_vertices", "outer_race_nodes", "inner_race_nodes"]);
+        assert_close(tones[0].hz, 4671.5, PRINTED);
+        assert_close(tones[1].hz, 4719.0, PRINTED);
+        assert_close(tones[2].hz, 4716.0, PRINTED);
+        assert_eq!(tones[0].harmonic_hz(6), 6.0 * tones[0].hz);
+    }
+
+    #[test]
+    fn analytic_equation_2_of_the_paper() {
+        // The paper rounds its cage frequency to 3.75 Hz and the inner raceway to 164 mm.
+        const ROUNDED_INPUT: f64 = 1.5e-3;
+        let (outer, inner) = paper().paper_noise_hz(0.5);
+        assert_close(outer, 4712.0, ROUNDED_INPUT);
+        assert_close(inner, 3864.0, ROUNDED_INPUT);
+    }
+
+    #[test]
+    fn analytic_event_times_of_the_reference() {
+        let text = include_str!("../../../fixtures/reference/event_times.json");
+        let reference: serde_json::Value = serde_json::from_str(text).expect("valid JSON");
+        let scene = Scene::default();
+        let defect = scene.defect.as_ref().expect("the default has one");
+        let crossings = paper().crossings(defect, scene.bearing.first_roller_deg, 30e-3);
+        assert_eq!(crossings.iter().map(|c| c.roller).collect::<Vec<_>>(), [1, 2, 3]);
+        for crossing in crossings {
+            let expected = &reference[format!("roller{}", crossing.roller)];
+            let ms = |key: &str| expected[key].as_f64().expect("a number");
+            assert_close(crossing.entry_s * 1e3, ms("lead_edge_ms"), 1e-11);
+            assert_close(crossing.centre_s * 1e3, ms("centre_ms"), 1e-11);
+            assert_close(crossing.exit_s * 1e3, ms("trail_edge_ms"), 1e-11);
+        }
+    }
+
+    #[test]
+    fn analytic_crossings_repeat_at_bpfo() {
+        // One second: exits come at 24 times the cage frequency, whatever the roller's first angle.
+        let k = paper();
+        let scene = Scene::default();
+        let defect = scene.defect.as_ref().expect("the default has one");
+        let crossings = k.crossings(defect, 94.0, 1.0);
+        assert_eq!(crossings.len(), 90);
+        for pair in crossings.windows(2) {
+            assert_close(pair[1].exit_s - pair[0].exit_s, 1.0 / (24.0 * k.cage_hz), 1e-9);
+        }
+        let inside = k.crossings(defect, 91.0, 6e-3);
+        assert!(inside[0].entry_s < 0.0 && inside[0].roller == 1);
+    }
+
+    #[test]
+    fn invariant_a_standing_shaft_has_no_events() {
+        let scene = Scene::default();
+        let defect = scene.defect.as_ref().expect("the default has one");
+        assert_eq!(Kinematics::new(&scene.bearing, 0.0).crossings(defect, 94.0, 1.0).len(), 0);
+    }
+}

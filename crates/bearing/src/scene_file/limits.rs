@@ -1,0 +1,234 @@
+//! The range of every number and the spelling of every name.
+
+use std::fmt;
+
+use super::origin::Finding;
+use super::suggest::shortest;
+use super::syntax::Schema;
+use crate::scene::Scene;
+
+/// Longest name of a scene or sensor: they become folder and channel names.
+const MAX_NAME: usize = 64;
+/// Most sensors: each adds a handful of channels to every sample.
+const MAX_SENSORS: usize = 64;
+
+/// An interval of valid values.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    low: f64,
+    low_included: bool,
+    high: f64,
+    high_included: bool,
+}
+
+/// 0 < x ≤ high.
+const fn positive(high: f64) -> Range {
+    Range { low: 0.0, low_included: false, high, high_included: true }
+}
+
+/// low ≤ x ≤ high.
+const fn within(low: f64, high: f64) -> Range {
+    Range { low, low_included: true, high, high_included: true }
+}
+
+impl Range {
+    fn contains(self, x: f64) -> bool {
+        let above = if self.low_included { x >= self.low } else { x > self.low };
+        let below = if self.high_included { x <= self.high } else { x < self.high };
+        above && below
+    }
+}
+
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let from = if self.low_included { "from" } else { "above" };
+        let to = if self.high_included { "to" } else { "and below" };
+        write!(f, "{from} {} {to} {}", self.low, self.high)
+    }
+}
+
+/// Everything outside its range.
+pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
+    let schema = Schema::new();
+    let mut found: Vec<Finding> =
+        numbers(scene).into_iter().filter_map(|number| number.finding(&schema)).collect();
+    found.extend(names(scene));
+    found
+}
+
+/// One number of the scene and what it may be.
+struct Number {
+    path: String,
+    value: f64,
+    range: Range,
+    unit: &'static str,
+}
+
+impl Number {
+    fn finding(&self, schema: &Schema) -> Option<Finding> {
+        let Self { path, value, range, unit } = self;
+        if range.contains(*value) {
+            return None;
+        }
+        let message = if value.is_finite() {
+            format!("`{path}` is {value}, outside its range")
+        } else {
+            format!("`{path}` is {value}, which is not a finite number")
+        };
+        let default = schema.default_of(path).map(|v| format!("the default is {v}"));
+        let suggestion = if *value < 0.0 && range.contains(-value) {
+            format!("without the minus sign: {}", -value)
+        } else {
+            default.unwrap_or_default()
+        };
+        let allowed = format!("{range} {unit}").trim_end().to_owned();
+        Some(Finding { fields: vec![path.clone()], message, allowed, suggestion })
+    }
+}
+
+/// Every number of the scene. A test holds this list against the fields of [`Scene`].
+#[rustfmt::skip]
+fn numbers(scene: &Scene) -> Vec<Number> {
+    let Scene { bearing: b, adapter, material, mesh, operation, contact, solver, output, .. } = scene;
+    let mut list = Vec::new();
+    let mut add = |path: &str, value: f64, range: Range, unit: &'static str| {
+        list.push(Number { path: path.to_owned(), value, range, unit });
+    };
+    add("bearing.outer_race_diameter_mm", b.outer_race_diameter_mm, positive(20_000.0), "mm");
+    add("bearing.outer_ring_thickness_mm", b.outer_ring_thickness_mm, positive(5_000.0), "mm");
+    add("bearing.inner_race_diameter_mm", b.inner_race_diameter_mm, positive(20_000.0), "mm");
+    add("bearing.inner_ring_thickness_mm", b.inner_ring_thickness_mm, positive(5_000.0), "mm");
+    add("bearing.rollers", b.rollers as f64, within(3.0, 400.0), "");
+    add("bearing.roller_diameter_mm", b.roller_diameter_mm, positive(5_000.0), "mm");
+    add("bearing.thickness_mm", b.thickness_mm, positive(10_000.0), "mm");
+    add("bearing.first_roller_deg", b.first_roller_deg, within(-360.0, 360.0), "°");
+    if let Some(cage) = &scene.cage {
+        add("cage.outer_diameter_mm", cage.outer_diameter_mm, positive(20_000.0), "mm");
+        add("cage.thickness_mm", cage.thickness_mm, positive(5_000.0), "mm");
+        add("cage.pocket_clearance_um", cage.pocket_clearance_um, within(0.0, 10_000.0), "µm");
+    }
+    add("adapter.width_mm", adapter.width_mm, positive(50_000.0), "mm");
+    add("adapter.height_mm", adapter.height_mm, positive(50_000.0), "mm");
+    if let Some(defect) = &scene.defect {
+        add("defect.length_mm", defect.length_mm, positive(20_000.0), "mm");
+        add("defect.depth_mm", defect.depth_mm, positive(5_000.0), "mm");
+        add("defect.angle_deg", defect.angle_deg, within(-360.0, 360.0), "°");
+    }
+    add("material.youngs_modulus_gpa", material.youngs_modulus_gpa, positive(10_000.0), "GPa");
+    let poisson = Range { low: 0.0, low_included: true, high: 0.5, high_included: false };
+    add("material.poissons_ratio", material.poissons_ratio, poisson, "");
+    add("material.density_kg_m3", material.density_kg_m3, positive(1e5), "kg/m³");
+    add("mesh.size_mm", mesh.size_mm, positive(1_000.0), "mm");
+    add("mesh.roller_facets", mesh.roller_facets as f64, within(8.0, 100_000.0), "");
+    if let Some(facets) = mesh.outer_facets {
+        add("mesh.outer_facets", facets as f64, within(16.0, 1e6), "");
+    }
+    if let Some(facets) = mesh.inner_facets {
+        add("mesh.inner_facets", facets as f64, within(16.0, 1e6), "");
+    }
+    add("operation.load_n", operation.load_n, positive(1e9), "N");
+    add("operation.speed_rpm", operation.speed_rpm, within(0.0, 100_000.0), "rpm");
+    add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
+    add("contact.points_per_facet", contact.points_per_facet as f64, within(1.0, 16.0), "");
+    add("contact.penalty_scale", contact.penalty_scale, positive(1_000.0), "");
+    add("contact.damping_ratio", contact.damping_ratio, within(0.0, 1.0), "");
+    add("contact.friction", contact.friction, within(0.0, 2.0), "");
+    add("contact.seat_friction", contact.seat_friction, within(0.0, 2.0), "");
+    add("solver.duration_ms", solver.duration_ms, positive(60_000.0), "ms");
+    add("solver.time_step_factor", solver.time_step_factor, positive(1.0), "");
+    add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
+    add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");
+    add("output.interval_us", output.interval_us, within(0.01, 1e6), "µs");
+    for (i, sensor) in output.sensors.iter().enumerate() {
+        add(&format!("output.sensors[{i}].angle_deg"), sensor.angle_deg, within(-360.0, 360.0), "°");
+    }
+    list
+}
+
+/// Names that cannot be folders or channels, and sensors that share one.
+fn names(scene: &Scene) -> Vec<Finding> {
+    const NAME: &str = "letters, digits, `_` and `-`, a letter or digit first, at most 64 characters";
+    const SENSOR: &str = "letters, digits and `_`, a letter first, at most 64 characters";
+    let mut found = Vec::new();
+    let plain = |name: &str, extra: &str| {
+        name.len() <= MAX_NAME && name.chars().all(|c| c.is_ascii_alphanumeric() || extra.contains(c))
+    };
+    if !(plain(&scene.name, "_-") && scene.name.starts_with(|c: char| c.is_ascii_alphanumeric())) {
+        found.push(bad_name("name".to_owned(), &scene.name, NAME));
+    }
+    let sensors = &scene.output.sensors;
+    if sensors.is_empty() || sensors.len() > MAX_SENSORS {
+        found.push(Finding {
+            fields: vec!["output.sensors".to_owned()],
+            message: format!("`output.sensors` has {} entries", sensors.len()),
+            allowed: format!("1 to {MAX_SENSORS} sensors"),
+            suggestion: "the report needs one acceleration at least: `[(name: \"side\", angle_deg: 0.0)]`"
+                .to_owned(),
+        });
+    }
+    for (i, sensor) in sensors.iter().enumerate() {
+        let path = format!("output.sensors[{i}].name");
+        if !(plain(&sensor.name, "_") && sensor.name.starts_with(|c: char| c.is_ascii_alphabetic())) {
+            found.push(bad_name(path, &sensor.name, SENSOR));
+        } else if let Some(first) = sensors[..i].iter().position(|other| other.name == sensor.name) {
+            found.push(Finding {
+                fields: vec![path],
+                message: format!("sensors {first} and {i} are both called `{}`", sensor.name),
+                allowed: "a name of its own for each sensor".to_owned(),
+                suggestion: format!("rename one of them, for example `{}_2`", sensor.name),
+            });
+        }
+    }
+    found
+}
+
+fn bad_name(path: String, name: &str, allowed: &str) -> Finding {
+    let mut kept: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '_').take(20).collect();
+    if !kept.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        kept.insert(0, 's');
+    }
+    let shown = shorten(name);
+    Finding {
+        message: format!("`{path}` is {shown:?}, which cannot name a folder or a channel"),
+        fields: vec![path],
+        allowed: allowed.to_owned(),
+        suggestion: format!("{kept:?}"),
+    }
+}
+
+fn shorten(text: &str) -> String {
+    let shown: String = text.chars().take(MAX_NAME).collect();
+    if shown.len() < text.len() { shown + "…" } else { shown }
+}
+
+/// A number as the messages of this module family write it.
+pub(crate) fn number(value: f64) -> String {
+    shortest(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_every_number_of_a_scene_has_a_range() {
+        let mut scene = Scene::default();
+        scene.mesh.outer_facets = Some(1257);
+        scene.mesh.inner_facets = Some(1030);
+        let text = scene.to_ron();
+        let outline = super::super::outline::Outline::of(&text);
+        let listed: Vec<String> = numbers(&scene).into_iter().map(|number| number.path).collect();
+        for entry in &outline.entries {
+            let is_number = text[entry.value.clone()].parse::<f64>().is_ok();
+            assert_eq!(is_number, listed.contains(&entry.path), "{}", entry.path);
+        }
+        for path in &listed {
+            assert!(outline.get(path).is_some(), "{path} is not a field");
+        }
+    }
+
+    #[test]
+    fn invariant_the_defaults_are_in_range() {
+        assert_eq!(findings(&Scene::default()).len(), 0);
+    }
+}

@@ -1,0 +1,135 @@
+//! `--set field.path=value`: writes one value into the text of the complete scene and reads that text again.
+//!
+//! Working on the text keeps RON's own rules for enums, options and numbers: an override means exactly what the same
+//! words would mean in the file.
+
+use super::origin::{Override, command_line};
+use super::outline::{Outline, is_single_value};
+use super::problem::{Place, Problem, SceneError};
+use super::suggest;
+use super::syntax::{Schema, deserialize};
+use crate::scene::Scene;
+
+/// Applies `arguments` in order; the result is not yet checked for meaning.
+pub(crate) fn apply<S: AsRef<str>>(
+    mut scene: Scene,
+    arguments: &[S],
+) -> Result<(Scene, Vec<Override>), SceneError> {
+    let schema = Schema::new();
+    let mut set = Vec::with_capacity(arguments.len());
+    for argument in arguments {
+        let (next, by) = apply_one(&scene, argument.as_ref(), &schema)?;
+        scene = next;
+        set.push(by);
+    }
+    Ok((scene, set))
+}
+
+fn apply_one(scene: &Scene, argument: &str, schema: &Schema) -> Result<(Scene, Override), Box<Problem>> {
+    let whole = command_line(argument, 0, argument.len());
+    let Some((path, value)) = argument.split_once('=') else {
+        let example = "write `--set field=value`, for example `--set mesh.size_mm=1.0`";
+        return Err(refuse("", format!("`{argument}` has no `=`"), example.to_owned(), whole));
+    };
+    let path = path.trim();
+    let text = scene.to_ron();
+    let outline = Outline::of(&text);
+    let by = Override { path: path.to_owned(), argument: argument.to_owned() };
+    known(path, argument, schema, &outline)?;
+
+    let value = quoted(value.trim(), schema.default_of(path));
+    if !is_single_value(&value) {
+        let message = format!("`{path}` is given `{value}`, which is not one complete value");
+        let suggestion = match schema.default_of(path) {
+            Some(default) if !default.contains('\n') => format!("`{path}={default}` is the default"),
+            _ => format!("`{path}` takes {}", schema.kind(path)),
+        };
+        return Err(refuse(path, message, suggestion, by.place_of_value()));
+    }
+    let text = write(&text, &outline, path, &value);
+    match deserialize(&text) {
+        Ok(scene) => Ok((scene, by)),
+        Err(fault) => Err(Box::new(fault.problem(by.place_of_value()))),
+    }
+}
+
+/// Refuses a path that no scene has.
+fn known(path: &str, argument: &str, schema: &Schema, outline: &Outline) -> Result<(), Box<Problem>> {
+    let mark = command_line(argument, 0, argument.find('=').unwrap_or(argument.len()));
+    if schema.default_of(path).is_some() && (outline.get(path).is_some() || !path.contains('[')) {
+        return Ok(());
+    }
+    if let Some((list, _)) = path.split_once('[')
+        && schema.default_of(path).is_some()
+    {
+        let count = (0..).take_while(|i| outline.get(&format!("{list}[{i}]")).is_some()).count();
+        let message = format!("`{path}` does not exist: `{list}` has {count} items, numbered from 0");
+        let all = format!("give the whole list: `{list}=[ … ]`");
+        return Err(refuse(path, message, all, mark));
+    }
+    // The longest prefix that exists is the section; what follows is the unknown name.
+    let mut section = path;
+    while let Some((parent, _)) = section.rsplit_once('.') {
+        section = parent;
+        if !schema.names_in(section).is_empty() {
+            break;
+        }
+    }
+    if !path.contains('.') || schema.names_in(section).is_empty() {
+        section = "";
+    }
+    let name = path.strip_prefix(section).unwrap_or(path).trim_start_matches('.');
+    let siblings = schema.names_in(section);
+    let full: Vec<&str> = schema.paths();
+    let leaf = path.rsplit_once('.').map_or(path, |(_, leaf)| leaf);
+    let named = |p: &&&str| p.rsplit_once('.').is_some_and(|(_, name)| suggest::same_quantity(name, leaf));
+    let suggestion = match full.iter().find(named) {
+        // Right name, wrong section or none: the most common slip. A slip of the unit deserves the factor.
+        Some(home) if !home.starts_with(&format!("{section}.")) => format!("did you mean `{home}`?"),
+        _ => match suggest::nearest(path, &full).filter(|near| near.contains('.')) {
+            Some(near) if section.is_empty() => format!("did you mean `{near}`?"),
+            _ => with_section(suggest::field(name, &siblings, &full), section, &siblings),
+        },
+    };
+    Err(refuse(path, format!("no field `{path}` in a scene"), suggestion, mark))
+}
+
+/// Writes the names of a suggestion as `--set` wants them, with their section.
+fn with_section(suggestion: String, section: &str, names: &[&str]) -> String {
+    if section.is_empty() {
+        return suggestion;
+    }
+    let full = |text: String, name: &&str| text.replace(&format!("`{name}`"), &format!("`{section}.{name}`"));
+    names.iter().fold(suggestion, full)
+}
+
+/// Quotes a bare word for a text field: the shell has already eaten the user's quotes.
+fn quoted(value: &str, default: Option<&str>) -> String {
+    let wants_text = default.is_some_and(|default| default.starts_with('"'));
+    if wants_text && !value.starts_with('"') && !value.starts_with('r') {
+        return format!("{value:?}");
+    }
+    value.to_owned()
+}
+
+/// The complete scene's text with `value` at `path`. A section that is `None` is opened first.
+fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
+    if let Some(entry) = outline.get(path) {
+        let (start, end) = (entry.value.start, entry.value.end);
+        return format!("{}{value}{}", &text[..start], &text[end..]);
+    }
+    match path.rsplit_once('.') {
+        Some((section, name)) => write(text, outline, section, &format!("({name}: {value})")),
+        None => text.to_owned(),
+    }
+}
+
+fn refuse(field: &str, message: String, suggestion: String, place: Place) -> Box<Problem> {
+    Box::new(Problem { field: field.to_owned(), message, allowed: String::new(), suggestion, place })
+}
+
+impl From<Box<Problem>> for SceneError {
+    fn from(problem: Box<Problem>) -> Self {
+        (*problem).into()
+    }
+}

@@ -1,0 +1,142 @@
+//! What the user may have meant: the nearest name, the missing or other unit, the section where a name belongs.
+
+/// Names closer than this (Jaro–Winkler, 1 is equal) are worth proposing.
+const NEAR: f64 = 0.80;
+
+/// Unit suffixes: text, dimension, size in the first unit of that dimension.
+const UNITS: &[(&str, &str, f64)] = &[
+    ("m", "length", 1.0),
+    ("cm", "length", 1e-2),
+    ("mm", "length", 1e-3),
+    ("um", "length", 1e-6),
+    ("nm", "length", 1e-9),
+    ("in", "length", 0.0254),
+    ("n", "force", 1.0),
+    ("kn", "force", 1e3),
+    ("lbf", "force", 4.448_221_615_260_5),
+    ("s", "time", 1.0),
+    ("ms", "time", 1e-3),
+    ("us", "time", 1e-6),
+    ("ns", "time", 1e-9),
+    ("pa", "pressure", 1.0),
+    ("kpa", "pressure", 1e3),
+    ("mpa", "pressure", 1e6),
+    ("gpa", "pressure", 1e9),
+    ("deg", "angle", 1.0),
+    ("rad", "angle", 180.0 / std::f64::consts::PI),
+    ("rpm", "speed", 1.0),
+    ("hz", "speed", 60.0),
+    ("rad_s", "speed", 30.0 / std::f64::consts::PI),
+    ("kg_m3", "density", 1.0),
+    ("g_cm3", "density", 1e3),
+    ("m_s2", "acceleration", 1.0),
+    ("g", "acceleration", 9.806_65),
+    ("per_s", "rate", 1.0),
+    ("per_ms", "rate", 1e3),
+];
+
+/// A name without its unit, and the unit.
+fn split_unit(name: &str) -> (&str, Option<&'static (&'static str, &'static str, f64)>) {
+    let longest = UNITS
+        .iter()
+        .filter(|unit| name.strip_suffix(unit.0).is_some_and(|stem| stem.ends_with('_') && stem.len() > 1))
+        .max_by_key(|unit| unit.0.len());
+    match longest {
+        Some(unit) => (&name[..name.len() - unit.0.len() - 1], Some(unit)),
+        None => (name, None),
+    }
+}
+
+/// True when two names differ in their unit at most.
+pub(crate) fn same_quantity(a: &str, b: &str) -> bool {
+    split_unit(a).0 == split_unit(b).0
+}
+
+/// The name in `valid` that is most like `found`, when one is.
+pub(crate) fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
+    let found = found.to_lowercase();
+    let rated = valid.iter().map(|name| (strsim::jaro_winkler(&found, &name.to_lowercase()), *name));
+    let best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 >= NEAR).then_some(best.1)
+}
+
+/// What to write instead of the unknown field `found`.
+///
+/// `siblings` are the names valid in that place, `all` the dotted paths of every field there is.
+pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> String {
+    let (stem, unit) = split_unit(found);
+    if let Some(name) = siblings.iter().find(|name| split_unit(name).0 == stem) {
+        return match (unit, split_unit(name).1) {
+            (None, Some(_)) => format!("did you mean `{name}`? The unit is part of the name"),
+            (Some(ours), Some(theirs)) if ours.1 == theirs.1 => {
+                let factor = shortest(ours.2 / theirs.2);
+                format!("did you mean `{name}`? 1 in `{found}` is {factor} in `{name}`")
+            }
+            _ => format!("did you mean `{name}`?"),
+        };
+    }
+    // `roller_count` for `rollers` is near; so is `diameter` inside `roller_diameter_mm`, once the unit is off.
+    if let Some(name) = nearest(found, siblings) {
+        return format!("did you mean `{name}`?");
+    }
+    let elsewhere = all.iter().find_map(|path| {
+        let (section, name) = path.rsplit_once('.')?;
+        (name == found || split_unit(name).0 == stem).then_some((section, name))
+    });
+    if let Some((section, name)) = elsewhere {
+        return format!("`{name}` belongs in `{section}: ( … )`");
+    }
+    let stems: Vec<&str> = siblings.iter().map(|name| split_unit(name).0).collect();
+    match nearest(stem, &stems).and_then(|near| siblings.iter().find(|name| split_unit(name).0 == near)) {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => format!("valid here: {}", list(siblings)),
+    }
+}
+
+/// `` `a`, `b`, `c` ``.
+pub(crate) fn list(names: &[&str]) -> String {
+    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// A number with at most nine significant digits and no rounding dust.
+pub(crate) fn shortest(value: f64) -> String {
+    format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIBLINGS: &[&str] = &["load_n", "speed_rpm", "gravity_m_s2"];
+    const ALL: &[&str] = &["bearing.rollers", "mesh.size_mm", "operation.load_n", "solver.duration_ms"];
+
+    #[test]
+    fn analytic_a_missing_unit_is_proposed() {
+        assert!(field("load", SIBLINGS, ALL).contains("`load_n`"));
+    }
+
+    #[test]
+    fn analytic_another_unit_is_converted() {
+        assert_eq!(
+            field("load_kn", SIBLINGS, ALL),
+            "did you mean `load_n`? 1 in `load_kn` is 1000 in `load_n`"
+        );
+        assert!(field("gravity_g", SIBLINGS, ALL).contains("9.80665 in `gravity_m_s2`"));
+    }
+
+    #[test]
+    fn analytic_a_typing_error_is_recognised() {
+        assert_eq!(field("sped_rpm", SIBLINGS, ALL), "did you mean `speed_rpm`?");
+    }
+
+    #[test]
+    fn analytic_a_name_in_the_wrong_section_is_sent_home() {
+        assert_eq!(field("size_mm", SIBLINGS, ALL), "`size_mm` belongs in `mesh: ( … )`");
+        assert_eq!(field("duration", SIBLINGS, ALL), "`duration_ms` belongs in `solver: ( … )`");
+    }
+
+    #[test]
+    fn analytic_a_stranger_gets_the_list() {
+        assert_eq!(field("qqq", SIBLINGS, ALL), "valid here: `load_n`, `speed_rpm`, `gravity_m_s2`");
+    }
+}

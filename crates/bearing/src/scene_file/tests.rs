@@ -1,0 +1,359 @@
+//! What a user may write into a scene file or behind `--set`, and what the answer is.
+
+use proptest::prelude::*;
+
+use super::{Place, Problem, SceneError};
+use crate::scene::{ContactMethod, DampingFrame, RollerCopies, Scene, Start};
+
+/// The only problem of `result`.
+fn only(result: Result<Scene, SceneError>) -> Problem {
+    let error = result.expect_err("the scene must be refused");
+    assert_eq!(error.problems().len(), 1, "{error}");
+    error.problems()[0].clone()
+}
+
+fn parse(text: &str) -> Result<Scene, SceneError> {
+    Scene::parse(text, "x.ron")
+}
+
+/// Line and column of a problem in a file, and the underlined text.
+fn mark(problem: &Problem) -> (usize, usize, String) {
+    match &problem.place {
+        Place::File { line, column, source, width, .. } => {
+            (*line, *column, source.chars().skip(column - 1).take(*width).collect())
+        }
+        other => panic!("not in a file: {other:?}"),
+    }
+}
+
+#[test]
+fn analytic_an_empty_group_is_the_default_scene() {
+    assert_eq!(parse("()").expect("valid"), Scene::default());
+}
+
+#[test]
+fn invariant_the_scene_of_the_paper_spells_out_the_defaults() {
+    let text = include_str!("../../../../fixtures/scenes/singh2014.ron");
+    assert_eq!(parse(text).expect("valid"), Scene::default());
+    let spelled: Vec<String> =
+        super::outline::Outline::of(text).entries.into_iter().map(|e| e.path).collect();
+    for entry in super::outline::Outline::of(&Scene::default().to_ron()).entries {
+        assert!(spelled.contains(&entry.path), "`{}` is missing in singh2014.ron", entry.path);
+    }
+}
+
+#[test]
+fn invariant_the_quick_scene_holds_the_exit_of_roller_1() {
+    let scene = parse(include_str!("../../../../fixtures/scenes/quick.ron")).expect("valid");
+    assert_eq!(scene.bearing, Scene::default().bearing);
+    assert!(scene.solver.duration_ms > 5.08 + 0.5, "the exit and half a millisecond of ringing");
+}
+
+#[test]
+fn invariant_the_resolved_scene_reads_back_equal() {
+    let mut scene = Scene { defect: None, ..Scene::default() };
+    scene.mesh.outer_facets = Some(1257);
+    scene.bearing.thickness_mm = 0.1 + 0.2;
+    scene.operation.load_n = 1.234_567_890_123_456_7e5;
+    scene.contact.method = ContactMethod::Collocated;
+    scene.solver.start = Start::Sudden;
+    let text = scene.to_ron();
+    assert_eq!(parse(&text).expect("valid"), scene);
+    assert_eq!(parse(&text).expect("valid").to_ron(), text);
+    assert!(text.contains("method: collocated"), "{text}");
+}
+
+#[test]
+fn analytic_the_hash_is_fnv_1a_of_the_content() {
+    let plain = parse("()").expect("valid");
+    let spelled = parse("( /* same */ mesh: (size_mm: 0.5))").expect("valid");
+    assert_eq!(plain.hash(), spelled.hash());
+    assert_eq!(plain.hash().len(), 16);
+    let other = parse("(mesh: (size_mm: 0.6))").expect("valid");
+    assert_ne!(plain.hash(), other.hash());
+}
+
+#[test]
+fn analytic_an_unknown_field_shows_line_column_and_the_right_name() {
+    let problem = only(parse("(\n  operation: (\n    load_kn: 50,\n  ),\n)"));
+    assert_eq!(mark(&problem), (3, 5, "load_kn".to_owned()));
+    assert_eq!(problem.field, "operation.load_kn");
+    assert!(problem.suggestion.contains("did you mean `load_n`? 1 in `load_kn` is 1000"), "{problem}");
+
+    let problem = only(parse("(operation: (load: 50))"));
+    assert!(problem.suggestion.contains("`load_n`"), "{problem}");
+    let problem = only(parse("(baering: (rollers: 24))"));
+    assert_eq!(problem.suggestion, "did you mean `bearing`?");
+    let problem = only(parse("(speed_rpm: 500)"));
+    assert_eq!(problem.suggestion, "`speed_rpm` belongs in `operation: ( … )`");
+    let problem = only(parse("(cage: (clearance_um: 500))"));
+    assert!(problem.suggestion.contains("`pocket_clearance_um`"), "{problem}");
+}
+
+#[test]
+fn analytic_the_message_draws_the_line_and_the_mark() {
+    let error = parse("(\n  // ü\n  bearing: (roller_diameter_mm: -18.0),\n)").expect_err("negative");
+    let expected = "\
+`bearing.roller_diameter_mm` is -18, outside its range
+  --> x.ron:3:33
+   |
+ 3 |   bearing: (roller_diameter_mm: -18.0),
+   |                                 ^^^^^
+   = allowed: above 0 to 5000 mm
+   = try: without the minus sign: 18
+";
+    assert_eq!(error.to_string(), expected);
+}
+
+#[test]
+fn analytic_numbers_outside_their_range_are_all_reported() {
+    let text = "(solver: (time_step_factor: 1.2, duration_ms: 0), material: (poissons_ratio: 0.5), \
+                contact: (friction: NaN), operation: (load_n: inf), mesh: (roller_facets: 7))";
+    let error = parse(text).expect_err("five errors");
+    let fields: Vec<&str> = error.problems().iter().map(|p| p.field.as_str()).collect();
+    let expected = [
+        "material.poissons_ratio",
+        "mesh.roller_facets",
+        "operation.load_n",
+        "contact.friction",
+        "solver.duration_ms",
+        "solver.time_step_factor",
+    ];
+    assert_eq!(fields, expected);
+    assert!(error.to_string().contains("NaN, which is not a finite number"));
+    assert!(error.to_string().contains("from 0 and below 0.5"));
+}
+
+#[test]
+fn analytic_wrong_types_name_the_field_and_what_belongs_there() {
+    for (text, field, value, kind) in [
+        ("(bearing: (rollers: 24.5))", "bearing.rollers", "24.5", "whole number"),
+        ("(bearing: (rollers: -3))", "bearing.rollers", "-3", "whole number"),
+        ("(bearing: (rollers: \"x\"))", "bearing.rollers", "\"x\"", "whole number"),
+        ("(mesh: (size_mm: big))", "mesh.size_mm", "big", "a number"),
+        ("(mesh: (size_mm: nan))", "mesh.size_mm", "nan", "a number"),
+        ("(mesh: 3)", "mesh", "3", "group"),
+        ("(name: quick)", "name", "quick", "text in double quotes"),
+        ("(output: (sensors: 3))", "output.sensors", "3", "list"),
+        ("(mesh: (outer_facets: -1))", "mesh.outer_facets", "-1", "or `None`"),
+    ] {
+        let problem = only(parse(text));
+        assert_eq!(problem.field, field, "{problem}");
+        assert_eq!(mark(&problem).2, value, "{problem}");
+        assert!(problem.message.contains(kind), "{problem}");
+    }
+}
+
+#[test]
+fn analytic_a_wrong_word_is_corrected() {
+    let problem = only(parse("(contact: (method: colocated))"));
+    assert_eq!(problem.field, "contact.method");
+    assert_eq!(problem.suggestion, "did you mean `collocated`?");
+    assert_eq!(problem.allowed, "`collocated`, `integrated`");
+}
+
+#[test]
+fn analytic_broken_text_is_located() {
+    let problem = only(parse("(bearing: (rollers: 24"));
+    assert!(problem.message.contains("ends too early"), "{problem}");
+    let problem = only(parse(""));
+    assert!(problem.message.contains("empty"), "{problem}");
+    let problem = only(parse("(bearing: (rollers: 24 thickness_mm: 20))"));
+    assert_eq!(mark(&problem).0, 1);
+    assert!(problem.suggestion.contains("comma"), "{problem}");
+    let problem = only(parse("(name: \"a\", name: \"b\")"));
+    assert!(problem.message.contains("twice"), "{problem}");
+    let problem = only(parse("(output: (sensors: [(name: \"a\")]))"));
+    assert!(problem.message.contains("no field `angle_deg`"), "{problem}");
+    assert!(parse("() trailing").is_err());
+}
+
+#[test]
+fn analytic_overlapping_bodies_are_refused_with_numbers() {
+    let problem = only(parse("(bearing: (\n inner_race_diameter_mm: 165.0))"));
+    assert!(problem.message.contains("200 − inner raceway 165 − 2 × roller 18 = -1 mm"), "{problem}");
+    assert_eq!(mark(&problem), (2, 26, "165.0".to_owned()));
+    assert_eq!(problem.suggestion, "`roller_diameter_mm` of at most 17.5");
+    assert!(parse("(bearing: (inner_race_diameter_mm: 164.0))").is_ok(), "zero clearance is allowed");
+    let problem = only(parse("(bearing: (inner_race_diameter_mm: 160.0))"));
+    assert!(problem.message.contains("rattle"), "{problem}");
+}
+
+#[test]
+fn analytic_roller_count_on_the_pitch_circle() {
+    // 2 asin(18 / 181.98) = 11.355°, so 31 rollers touch nowhere and 32 do. A pocket of radius 9.9 mm cuts ±5.85° out of
+    // the cage, more than half of 360° / 31.
+    assert!(parse("(cage: None, bearing: (rollers: 31))").is_ok());
+    let problem = only(parse("(cage: None, bearing: (rollers: 32))"));
+    assert_eq!(problem.allowed, "at most 31 rollers");
+    let problem = only(parse("(bearing: (rollers: 31), cage: (pocket_clearance_um: 900))"));
+    assert!(problem.message.contains("31 pockets leave nothing of the cage"), "{problem}");
+}
+
+#[test]
+fn analytic_impossible_cage_adapter_defect_mesh_and_sampling() {
+    for (text, field, words) in [
+        ("(cage: (outer_diameter_mm: 200))", "cage.outer_diameter_mm", "between the raceways"),
+        ("(cage: (thickness_mm: 17))", "cage.outer_diameter_mm", "between the raceways"),
+        ("(cage: (outer_diameter_mm: 199.9, thickness_mm: 0.01))", "", ""),
+        ("(adapter: (width_mm: 220))", "adapter.width_mm", "as wide as the outer ring (220 mm)"),
+        ("(defect: (length_mm: 700))", "defect.length_mm", "longer than the whole raceway"),
+        ("(defect: (length_mm: 400))", "defect.length_mm", "longer than any load zone"),
+        ("(defect: (depth_mm: 7))", "defect.depth_mm", "too deep"),
+        ("(mesh: (size_mm: 11))", "mesh.size_mm", "more than"),
+        ("(mesh: (size_mm: 1e-6))", "mesh.size_mm", "elements"),
+        ("(mesh: (roller_facets: 99999))", "mesh.roller_facets", "1.9e10 elements"),
+        ("(mesh: (outer_facets: 1000000, size_mm: 0.2))", "mesh.outer_facets", "5.0e7 elements"),
+        ("(bearing: (inner_ring_thickness_mm: 82))", "bearing.inner_ring_thickness_mm", "no bore"),
+        ("(solver: (duration_ms: 0.015))", "output.interval_us", "more than half"),
+        ("(solver: (duration_ms: 6e4), output: (interval_us: 0.01))", "output.interval_us", "samples"),
+        ("(output: (sensors: []))", "output.sensors", "0 entries"),
+        (
+            "(output: (sensors: [(name: \"a\", angle_deg: 0), (name: \"a\", angle_deg: 1)]))",
+            "output.sensors[1].name",
+            "both called `a`",
+        ),
+        ("(output: (sensors: [(name: \"a b\", angle_deg: 0)]))", "output.sensors[0].name", "cannot name"),
+        ("(name: \"../x\")", "name", "cannot name"),
+    ] {
+        if words.is_empty() {
+            assert!(parse(text).is_ok(), "{text}");
+            continue;
+        }
+        let problem = only(parse(text));
+        assert_eq!(problem.field, field, "{problem}");
+        assert!(problem.message.contains(words), "{problem}");
+        assert!(!problem.allowed.is_empty() && !problem.suggestion.is_empty(), "{problem}");
+    }
+}
+
+#[test]
+fn analytic_overrides_reach_every_kind_of_field() {
+    let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid");
+    assert_eq!(set(&["mesh.size_mm=1"]).mesh.size_mm, 1.0);
+    assert_eq!(set(&["mesh.roller_facets=56"]).mesh.roller_facets, 56);
+    assert_eq!(set(&["mesh.outer_facets=700"]).mesh.outer_facets, Some(700));
+    assert_eq!(set(&["cage=None"]).cage, None);
+    assert_eq!(set(&["cage=None", "cage.thickness_mm=3.5"]).cage.map(|c| c.thickness_mm), Some(3.5));
+    assert_eq!(set(&["defect=(length_mm: 5.0)"]).defect.map(|d| d.length_mm), Some(5.0));
+    assert_eq!(set(&["contact.method=collocated"]).contact.method, ContactMethod::Collocated);
+    assert_eq!(set(&["mesh.roller_copies=rotated"]).mesh.roller_copies, RollerCopies::Rotated);
+    assert_eq!(set(&["solver.damping_frame=absolute"]).solver.damping_frame, DampingFrame::Absolute);
+    assert_eq!(set(&["solver.duration_ms = 2"]).solver.duration_ms, 2.0);
+    assert_eq!(set(&["name=quick"]).name, "quick");
+    assert_eq!(set(&["name=\"quick\""]).name, "quick");
+    assert_eq!(set(&["output.sensors[1].angle_deg=-22.5"]).output.sensors[1].angle_deg, -22.5);
+    assert_eq!(set(&["output.sensors=[(name: \"a\", angle_deg: 1)]"]).output.sensors.len(), 1);
+    assert_eq!(set(&["mesh.size_mm=2", "mesh.size_mm=1"]).mesh.size_mm, 1.0);
+}
+
+#[test]
+fn analytic_errors_in_overrides_point_at_the_command_line() {
+    let refuse = |argument: &str| only(Scene::default().with_overrides(&[argument]));
+    for (argument, words) in [
+        ("mesh.size=1", "did you mean `mesh.size_mm`?"),
+        ("mesh.siz_mm=1", "did you mean `mesh.size_mm`?"),
+        ("load_kn=50", "did you mean `operation.load_n`?"),
+        ("size_mm=1", "did you mean `mesh.size_mm`?"),
+        ("solver.size_mm=1", "did you mean `mesh.size_mm`?"),
+        ("operation.load_kn=50", "1 in `load_kn` is 1000 in `operation.load_n`"),
+        ("cage=none", "`None`, with a capital letter"),
+        ("mesh.size_mm=-1", "without the minus sign"),
+        ("mesh.size_mm=big", "which is not a number"),
+        ("mesh.size_mm=1, roller_facets: 3", "not one complete value"),
+        ("mesh.size_mm=", "not one complete value"),
+        ("mesh.size_mm", "has no `=`"),
+        ("contact.method=smooth", "not one of its words"),
+        ("output.sensors[9].angle_deg=1", "has 4 items"),
+        ("cage=(thicknes_mm: 3)", "did you mean `thickness_mm`?"),
+        ("=3", "no field"),
+    ] {
+        let problem = refuse(argument);
+        let shown = problem.to_string();
+        assert!(shown.contains(words), "{argument}\n{shown}");
+        assert!(matches!(problem.place, Place::CommandLine { .. }), "{argument}\n{shown}");
+        assert!(shown.contains(&format!("--set {argument}")), "{shown}");
+    }
+}
+
+#[test]
+fn analytic_an_override_may_repair_a_file_or_break_it() {
+    let folder = std::env::temp_dir().join(format!("stribeck-scene-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let path = folder.join("x.ron");
+    std::fs::write(&path, "(mesh: (size_mm: -1.0))").expect("writable");
+    assert!(Scene::read(&path).is_err());
+    assert_eq!(Scene::read_with(&path, &["mesh.size_mm=2.0"]).expect("repaired").mesh.size_mm, 2.0);
+    let problem = only(Scene::read_with(&path, &["mesh=(size_mm: -2.0)"]));
+    assert!(matches!(problem.place, Place::CommandLine { .. }), "{problem}");
+    std::fs::remove_dir_all(&folder).expect("removable");
+}
+
+#[test]
+fn analytic_files_that_are_no_scene_are_refused() {
+    let folder = std::env::temp_dir().join(format!("stribeck-files-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let refuse = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).expect("writable");
+        only(Scene::read(&path)).to_string()
+    };
+    assert!(refuse("binary", &[0xff, 0xfe, 0, 1]).contains("not text"));
+    assert!(refuse("nul", b"(\0)").contains("not text: byte 1"));
+    assert!(refuse("huge", &vec![b' '; (1 << 20) + 1]).contains("larger than 1048576 bytes"));
+    assert!(refuse("empty", b"").contains("the scene is empty"));
+    assert!(refuse("cut", b"(bearing: (rollers: 2").contains("ends too early"));
+    assert!(only(Scene::read(folder.join("missing.ron"))).to_string().contains("cannot read scene"));
+    assert!(only(Scene::read(&folder)).to_string().contains("is a folder"));
+    std::fs::write(folder.join("bom.ron"), "\u{feff}()").expect("writable");
+    assert!(Scene::read(folder.join("bom.ron")).is_ok());
+    std::fs::remove_dir_all(&folder).expect("removable");
+}
+
+#[test]
+fn invariant_deep_nesting_is_refused() {
+    assert!(parse(&"(".repeat(100_000)).is_err());
+    assert!(parse(&format!("(bearing: {}", "[".repeat(100_000))).is_err());
+    assert!(Scene::default().with_overrides(&[format!("bearing={}", "(a:".repeat(50_000))]).is_err());
+}
+
+#[test]
+fn invariant_a_scene_cut_anywhere_is_refused_and_never_panics() {
+    let text = Scene::default().to_ron();
+    let end = text.trim_end().len();
+    for cut in (0..end).filter(|cut| text.is_char_boundary(*cut)) {
+        let error = parse(&text[..cut]).expect_err("a part of a scene is no scene");
+        assert!(!error.to_string().is_empty());
+    }
+}
+
+proptest! {
+    #[test]
+    fn invariant_any_text_gets_an_answer(text in "[(){}\\[\\]:,\"a-z_0-9. \\n\\-é]{0,60}") {
+        let shown = parse(&text).map_or_else(|e| e.to_string(), |scene| scene.to_ron());
+        prop_assert!(!shown.is_empty());
+    }
+
+    #[test]
+    fn invariant_any_override_gets_an_answer(text in "[a-z_.=(){}\\[\\]0-9\"é ]{0,40}") {
+        let shown = Scene::default().with_overrides(&[text]).map_or_else(|e| e.to_string(), |s| s.to_ron());
+        prop_assert!(!shown.is_empty());
+    }
+
+    #[test]
+    fn invariant_a_damaged_scene_gets_an_answer(at in 0_usize..1500, with in "[(){}:,\"0-9a-z. ]{1}") {
+        let mut text = Scene::default().to_ron();
+        let at = at.min(text.len() - 1);
+        text.replace_range(at..=at, &with);
+        let shown = parse(&text).map_or_else(|e| e.to_string(), |scene| scene.to_ron());
+        prop_assert!(!shown.is_empty());
+    }
+
+    #[test]
+    fn invariant_every_number_survives_the_round_trip(load in 1e-3_f64..1e9, angle in -360.0_f64..360.0) {
+        let mut scene = Scene::default();
+        scene.operation.load_n = load;
+        scene.bearing.first_roller_deg = angle;
+        prop_assert_eq!(parse(&scene.to_ron()).expect("in range"), scene);
+    }
+}

@@ -1,0 +1,336 @@
+//! Static load distribution between two rigid rings: which roller carries how much, THEORY §6.
+//!
+//! After Stribeck and Sjövall, with a radial clearance and the compliance of a plane-strain line contact: the roller's
+//! half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the ring's thickness
+//! (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
+
+use crate::error::Error;
+use crate::scene::{BearingScene, MaterialScene, Scene};
+
+/// Unbalanced force, as a part of the load, at which the search ends.
+const TOLERANCE: f64 = 1e-10;
+/// The search is a damped Newton iteration on a convex energy; it needs about ten.
+const MAX_ITERATIONS: usize = 200;
+
+/// Load and approach of each roller in static equilibrium.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StaticLoad {
+    /// Displacement of the outer ring towards the inner one [m], (x, y).
+    pub shift_m: [f64; 2],
+    /// Radial force through each roller [N], zero where there is a gap; in the order of the angles.
+    pub roller_n: Vec<f64>,
+    /// Elastic approach of the two raceways at each roller [m]; negative where there is a gap.
+    pub approach_m: Vec<f64>,
+}
+
+impl StaticLoad {
+    /// Largest roller load [N].
+    pub fn max_roller_n(&self) -> f64 {
+        self.roller_n.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Largest approach [m].
+    pub fn max_approach_m(&self) -> f64 {
+        self.approach_m.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// Rollers that carry load.
+    pub fn loaded_rollers(&self) -> usize {
+        self.roller_n.iter().filter(|load| **load > 0.0).count()
+    }
+}
+
+/// Two rigid rings with elastic line contacts between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RigidRings {
+    /// Radial clearance at each roller when the rings are concentric [m]: half the diametral one.
+    clearance_m: f64,
+    /// Length of the line contacts, the out-of-plane thickness [m].
+    length_m: f64,
+    compliance: LineContacts,
+}
+
+/// The two contacts of one roller in series.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct LineContacts {
+    /// (1 − ν²)/(π E) [m²/N].
+    softness: f64,
+    /// E* = E/(2(1 − ν²)) [Pa].
+    modulus: f64,
+    /// Poisson's ratio [-].
+    poisson: f64,
+    /// Radius of the roller [m].
+    roller: f64,
+    /// Outer and inner contact: effective radius and ring thickness [m].
+    sides: [(f64, f64); 2],
+}
+
+impl LineContacts {
+    /// Approach of the two raceways [m] under the line load `w` [N/m], and its derivative [m²/N].
+    ///
+    /// ```text
+    /// b² = 4 w R / (π E*)
+    /// δ  = Σ w (1−ν²)/(π E) · [2 ln(4 r/b) − 1 + 2 ln(2 h/b) − ν/(1−ν)]     over both contacts
+    /// ```
+    fn approach(&self, w: f64) -> (f64, f64) {
+        let mut sum = (0.0, 0.0);
+        for (radius, depth) in self.sides {
+            let half_width = (4.0 * w * radius / (std::f64::consts::PI * self.modulus)).sqrt();
+            let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
+            let ring = 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
+            sum.0 += w * self.softness * (roller + ring);
+            // b grows with the root of w, so each logarithm loses 1/(2w).
+            sum.1 += self.softness * (roller + ring - 2.0);
+        }
+        sum
+    }
+
+    /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²].
+    fn load(&self, delta: f64) -> (f64, f64) {
+        // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real load.
+        let mut w = delta / (80.0 * self.softness);
+        for _ in 0..100 {
+            let (at, slope) = self.approach(w);
+            let step = (delta - at) / slope;
+            w = (w + step).max(0.1 * w);
+            if step.abs() <= 1e-14 * w {
+                break;
+            }
+        }
+        (w, 1.0 / self.approach(w).1)
+    }
+}
+
+impl RigidRings {
+    /// Rings, rollers and material of a bearing.
+    pub fn new(bearing: &BearingScene, material: &MaterialScene) -> Self {
+        let roller = bearing.roller_diameter_mm * 5e-4;
+        let (outer, inner) = (bearing.outer_race_diameter_mm * 5e-4, bearing.inner_race_diameter_mm * 5e-4);
+        let e = material.youngs_modulus_gpa * 1e9;
+        let nu = material.poissons_ratio;
+        let softness = (1.0 - nu * nu) / (std::f64::consts::PI * e);
+        Self {
+            clearance_m: outer - inner - 2.0 * roller,
+            length_m: bearing.thickness_mm * 1e-3,
+            compliance: LineContacts {
+                softness,
+                modulus: e / (2.0 * (1.0 - nu * nu)),
+                poisson: nu,
+                roller,
+                sides: [
+                    (1.0 / (1.0 / roller - 1.0 / outer), bearing.outer_ring_thickness_mm * 1e-3),
+                    (1.0 / (1.0 / roller + 1.0 / inner), bearing.inner_ring_thickness_mm * 1e-3),
+                ],
+            },
+        }
+    }
+
+    /// Equilibrium of the outer ring under `load_n`, downwards, over rollers at `angles_deg` (90° is the top).
+    ///
+    /// A roller that carries nothing, because it stands in a defect, is left out of the list. Horizontal forces balance
+    /// too, so the angles need not be symmetric.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Input`] for a load that is not positive, or for rollers that all lie below the load;
+    /// [`Error::NoEquilibrium`] when the load is beyond the law of a line contact.
+    pub fn distribute(&self, load_n: f64, angles_deg: &[f64]) -> Result<StaticLoad, Error> {
+        if !(load_n > 0.0 && load_n.is_finite()) {
+            return Err(Error::Input {
+                field: "load_n",
+                value: load_n,
+                allowed: "above 0 N".to_owned(),
+                suggestion: "A bearing without load has no load distribution",
+            });
+        }
+        let directions: Vec<[f64; 2]> =
+            angles_deg.iter().map(|angle| [angle.to_radians().cos(), angle.to_radians().sin()]).collect();
+        let upper = directions.iter().filter(|n| n[1] > 1e-9).count();
+        if upper < 2 {
+            return Err(Error::Input {
+                field: "angles_deg",
+                value: upper as f64,
+                allowed: "at least 2 rollers in the upper half".to_owned(),
+                suggestion: "The ring would fall past the rollers",
+            });
+        }
+        self.newton(load_n, &directions)
+    }
+
+    /// Damped Newton iteration on the ring's displacement; the energy is convex, so the residual's energy norm falls.
+    fn newton(&self, load_n: f64, directions: &[[f64; 2]]) -> Result<StaticLoad, Error> {
+        // Start where every upper roller is pressed a little: the stiffness is then regular.
+        let mut shift = [0.0, -2.0 * self.clearance_m - 1e-6];
+        let mut residual = self.residual(shift, load_n, directions);
+        for _ in 0..MAX_ITERATIONS {
+            if residual.force() <= TOLERANCE * load_n {
+                return Ok(self.solution(shift, directions));
+            }
+            let step = residual.newton_step();
+            let mut scale = 1.0;
+            loop {
+                let next = [shift[0] + scale * step[0], shift[1] + scale * step[1]];
+                let tried = self.residual(next, load_n, directions);
+                // Armijo on the energy; at the end rounding hides the decrease, so a smaller force is enough.
+                let slope = step[0] * residual.unbalanced[0] + step[1] * residual.unbalanced[1];
+                let enough = tried.energy <= residual.energy - 1e-4 * scale * slope;
+                if enough || tried.force() < residual.force() || scale < 1e-6 {
+                    (shift, residual) = (next, tried);
+                    break;
+                }
+                scale *= 0.5;
+            }
+        }
+        Err(Error::NoEquilibrium { iterations: MAX_ITERATIONS, residual_n: residual.force(), load_n })
+    }
+
+    /// Approach at a roller [m]: the outer ring moves against the roller's direction, less the clearance.
+    fn approach(&self, shift: [f64; 2], direction: [f64; 2]) -> f64 {
+        -(shift[0] * direction[0] + shift[1] * direction[1]) - self.clearance_m
+    }
+
+    fn residual(&self, shift: [f64; 2], load_n: f64, directions: &[[f64; 2]]) -> Residual {
+        let mut out = Residual { unbalanced: [0.0, -load_n], energy: load_n * shift[1], stiffness: [0.0; 3] };
+        for n in directions {
+            let approach = self.approach(shift, *n);
+            if approach <= 0.0 {
+                continue;
+            }
+            let (w, slope) = self.compliance.load(approach);
+            let (force, k) = (w * self.length_m, slope * self.length_m);
+            out.unbalanced[0] += force * n[0];
+            out.unbalanced[1] += force * n[1];
+            out.stiffness[0] += k * n[0] * n[0];
+            out.stiffness[1] += k * n[0] * n[1];
+            out.stiffness[2] += k * n[1] * n[1];
+            // ∫ w dδ = w δ/2 − w² (1−ν²)/(π E): integrated by parts, each of the two contacts giving half of it.
+            out.energy += self.length_m * (0.5 * w * approach - self.compliance.softness * w * w);
+        }
+        out
+    }
+
+    fn solution(&self, shift_m: [f64; 2], directions: &[[f64; 2]]) -> StaticLoad {
+        let approach_m: Vec<f64> = directions.iter().map(|n| self.approach(shift_m, *n)).collect();
+        let load =
+            |delta: &f64| if *delta > 0.0 { self.compliance.load(*delta).0 * self.length_m } else { 0.0 };
+        StaticLoad { shift_m, roller_n: approach_m.iter().map(load).collect(), approach_m }
+    }
+}
+
+/// Forces on the outer ring at one trial displacement.
+struct Residual {
+    /// Contact forces and load [N].
+    unbalanced: [f64; 2],
+    /// Energy [J], up to a constant.
+    energy: f64,
+    /// Stiffness xx, xy, yy [N/m].
+    stiffness: [f64; 3],
+}
+
+impl Residual {
+    fn force(&self) -> f64 {
+        self.unbalanced[0].hypot(self.unbalanced[1])
+    }
+
+    /// Displacement that balances the linearised forces [m].
+    fn newton_step(&self) -> [f64; 2] {
+        let [xx, xy, yy] = self.stiffness;
+        // A single loaded roller leaves one direction without stiffness; a trace of it keeps the step finite.
+        let trace = 1e-9 * (xx + yy) + f64::MIN_POSITIVE;
+        let (xx, yy) = (xx + trace, yy + trace);
+        let determinant = xx * yy - xy * xy;
+        let [fx, fy] = self.unbalanced;
+        [(yy * fx - xy * fy) / determinant, (xx * fy - xy * fx) / determinant]
+    }
+}
+
+/// Angles of a scene's rollers at the start [°], roller 1 first.
+pub fn roller_angles_deg(bearing: &BearingScene) -> Vec<f64> {
+    let step = 360.0 / bearing.rollers as f64;
+    (0..bearing.rollers).map(|i| bearing.first_roller_deg + step * i as f64).collect()
+}
+
+/// Load distribution of a scene at its start, under its load alone (no weights).
+///
+/// # Errors
+///
+/// As [`RigidRings::distribute`].
+pub fn at_start(scene: &Scene) -> Result<StaticLoad, Error> {
+    let rings = RigidRings::new(&scene.bearing, &scene.material);
+    rings.distribute(scene.operation.load_n, &roller_angles_deg(&scene.bearing))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The reference table prints three digits.
+    const PRINTED: f64 = 0.01;
+
+    fn centred(thickness_mm: f64, without: &[usize]) -> StaticLoad {
+        let scene = Scene::default();
+        let bearing = BearingScene { thickness_mm, first_roller_deg: 90.0, ..scene.bearing };
+        let mut angles = roller_angles_deg(&bearing);
+        for at in without {
+            angles.remove(*at);
+        }
+        RigidRings::new(&bearing, &scene.material).distribute(50_000.0, &angles).expect("equilibrium")
+    }
+
+    /// A roller stands under the load; thickness [mm], loaded rollers, largest load [kN], approach [µm], gain of the
+    /// neighbours when that roller unloads.
+    #[test]
+    fn analytic_load_distribution_of_the_paper_bearing() {
+        for (thickness, loaded, max_kn, approach_um, gain) in [
+            (5.0, 11, 9.20, 80.0, 1.21),
+            (10.0, 9, 9.65, 45.7, 1.22),
+            (20.0, 9, 10.40, 26.5, 1.22),
+            (50.0, 7, 11.98, 13.3, 1.26),
+        ] {
+            let load = centred(thickness, &[]);
+            assert_eq!(load.loaded_rollers(), loaded, "t = {thickness} mm");
+            let close = |ours: f64, theirs: f64| (ours / theirs - 1.0).abs() < PRINTED;
+            assert!(close(load.max_roller_n() / 1e3, max_kn), "{} kN", load.max_roller_n() / 1e3);
+            assert!(close(load.max_approach_m() * 1e6, approach_um), "{} µm", load.max_approach_m() * 1e6);
+            let unloaded = centred(thickness, &[0]);
+            let ratio = unloaded.max_roller_n() / load.roller_n[1];
+            assert!(close(ratio, gain), "gain {ratio} at t = {thickness} mm");
+        }
+    }
+
+    #[test]
+    fn analytic_stribeck_number_without_clearance() {
+        // Without clearance and with Q ∝ δ, Q_max = 4 W/Z; line contact stiffens a little: Stribeck's 4.08.
+        let scene = Scene::default();
+        let bearing =
+            BearingScene { inner_race_diameter_mm: 164.0, first_roller_deg: 90.0, ..scene.bearing.clone() };
+        let load = RigidRings::new(&bearing, &scene.material)
+            .distribute(50_000.0, &roller_angles_deg(&bearing))
+            .expect("equilibrium");
+        let stribeck = load.max_roller_n() * 24.0 / 50_000.0;
+        assert!((stribeck - 4.08).abs() < 0.06, "{stribeck}");
+    }
+
+    #[test]
+    fn conserves_the_load_in_both_directions() {
+        let scene = Scene::default();
+        let load = at_start(&scene).expect("equilibrium");
+        let mut sum = [0.0, 0.0];
+        for (force, angle) in load.roller_n.iter().zip(roller_angles_deg(&scene.bearing)) {
+            sum[0] += force * angle.to_radians().cos();
+            sum[1] += force * angle.to_radians().sin();
+        }
+        assert!((sum[1] / 50_000.0 - 1.0).abs() < 1e-9 && sum[0].abs() < 1e-4, "{sum:?}");
+    }
+
+    #[test]
+    fn invariant_bad_loads_and_positions_are_refused() {
+        let scene = Scene::default();
+        let rings = RigidRings::new(&scene.bearing, &scene.material);
+        assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());
+        assert!(rings.distribute(f64::NAN, &[60.0, 90.0, 120.0]).is_err());
+        assert!(rings.distribute(1.0, &[270.0]).is_err());
+        // 10^12 N squeeze the bearing flat: an answer or an error, never a hang.
+        assert!(rings.distribute(1e15, &[60.0, 90.0, 120.0]).is_err());
+    }
+}

@@ -1,0 +1,195 @@
+//! A trace on disk: what NumPy would read, what a killed run leaves, what is refused.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use proptest::prelude::*;
+
+use super::{Trace, TraceWriter, header};
+use crate::error::Error;
+
+/// A file of its own for each call, removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new() -> Self {
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        Self(std::env::temp_dir().join(format!("stribeck-trace-{}-{number}.npy", std::process::id())))
+    }
+
+    fn write(&self, names: &[&str], rows: &[Vec<f64>]) -> Vec<u8> {
+        let mut writer = TraceWriter::create(&self.0, names).expect("writable");
+        for row in rows {
+            writer.push(row).expect("writable");
+        }
+        writer.finish().expect("writable");
+        std::fs::read(&self.0).expect("readable")
+    }
+
+    fn read(&self, bytes: &[u8]) -> Result<Trace, Error> {
+        std::fs::write(&self.0, bytes).expect("writable");
+        Trace::read(&self.0)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        std::fs::remove_file(&self.0).ok();
+    }
+}
+
+fn rows(count: usize) -> Vec<Vec<f64>> {
+    (0..count).map(|i| vec![i as f64 * 1e-5, (i as f64).sin()]).collect()
+}
+
+#[test]
+fn analytic_the_file_is_a_structured_npy_array() {
+    let file = Scratch::new();
+    let bytes = file.write(&["time_s", "ay_m_s2"], &rows(3));
+    let data = bytes.len() - 3 * 16;
+    assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
+    assert_eq!(usize::from(u16::from_le_bytes([bytes[8], bytes[9]])) + 10, data);
+    assert_eq!(data % 64, 0, "NumPy aligns the data to 64 bytes");
+    let text = std::str::from_utf8(&bytes[10..data]).expect("ASCII");
+    let expected =
+        "{'descr': [('time_s', '<f8'), ('ay_m_s2', '<f8')], 'fortran_order': False, 'shape': (3,), }";
+    assert_eq!(text.trim_end(), expected);
+    assert!(text.ends_with('\n'));
+    assert_eq!(&bytes[data + 16..data + 24], &1e-5_f64.to_le_bytes());
+}
+
+#[test]
+fn invariant_equal_samples_make_equal_bytes() {
+    let (a, b) = (Scratch::new(), Scratch::new());
+    assert_eq!(a.write(&["time_s", "x"], &rows(250)), b.write(&["time_s", "x"], &rows(250)));
+}
+
+#[test]
+fn invariant_a_killed_run_loses_at_most_a_hundred_rows() {
+    let file = Scratch::new();
+    let mut writer = TraceWriter::create(&file.0, &["time_s", "x"]).expect("writable");
+    for row in rows(250) {
+        writer.push(&row).expect("writable");
+    }
+    // What another process sees while the writer still runs.
+    let seen = Trace::read(&file.0).expect("readable");
+    assert_eq!(seen.len(), 200);
+    let text = std::fs::read(&file.0).expect("readable");
+    assert!(String::from_utf8_lossy(&text).contains("'shape': (200,)"));
+    drop(writer);
+    assert_eq!(Trace::read(&file.0).expect("readable").len(), 250);
+}
+
+#[test]
+fn invariant_a_file_cut_at_any_byte_is_read_or_refused() {
+    let file = Scratch::new();
+    let bytes = file.write(&["time_s", "x"], &rows(4));
+    let data = bytes.len() - 4 * 16;
+    for cut in 0..bytes.len() {
+        match file.read(&bytes[..cut]) {
+            Ok(trace) => assert_eq!(trace.len(), (cut - data) / 16, "cut at {cut}"),
+            Err(error) => assert!(cut < data && error.to_string().contains("header") || cut < 6, "{error}"),
+        }
+    }
+}
+
+#[test]
+fn invariant_a_file_damaged_at_any_byte_never_panics() {
+    let file = Scratch::new();
+    let bytes = file.write(&["time_s", "x"], &rows(2));
+    for at in 0..bytes.len() {
+        for value in [0, b'\'', b'(', 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[at] = value;
+            if let Ok(trace) = file.read(&damaged) {
+                assert!(trace.len() <= bytes.len() / 8, "byte {at}");
+            }
+        }
+    }
+}
+
+#[test]
+fn analytic_foreign_files_are_refused_with_a_reason() {
+    let file = Scratch::new();
+    let npy = |text: &str| {
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((text.len() as u16).to_le_bytes());
+        bytes.extend(text.bytes());
+        bytes
+    };
+    let plain = npy("{'descr': '<f8', 'fortran_order': False, 'shape': (3,), }\n");
+    let single = npy("{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3,), }\n");
+    let fortran = npy("{'descr': [('a', '<f8')], 'fortran_order': True, 'shape': (3,), }\n");
+    let twins = npy("{'descr': [('a', '<f8'), ('a', '<f8')], 'fortran_order': False, 'shape': (3,), }\n");
+    let mut claim = b"\x93NUMPY\x02\x00".to_vec();
+    claim.extend(u32::MAX.to_le_bytes());
+    for (bytes, words) in [
+        (b"PK\x03\x04".to_vec(), "does not begin like a `.npy` file"),
+        (plain, "not named little-endian doubles"),
+        (single, "channel `a` is not a little-endian double"),
+        (fortran, "fortran_order"),
+        (twins, "two channels are called `a`"),
+        (claim, "claims 4294967295 bytes"),
+        (b"\x93NUMPY\x09\x00\x00\x00".to_vec(), "version 9"),
+    ] {
+        let error = file.read(&bytes).expect_err("foreign").to_string();
+        assert!(error.contains(words), "{error}");
+    }
+    assert!(Trace::read(std::env::temp_dir()).is_err());
+}
+
+#[test]
+fn invariant_wrong_rows_and_names_are_refused() {
+    let file = Scratch::new();
+    let mut writer = TraceWriter::create(&file.0, &["time_s", "x"]).expect("writable");
+    assert!(writer.push(&[1.0]).is_err());
+    assert_eq!(writer.rows(), 0);
+    for names in [&[][..], &["a", "a"], &[""], &["a'b"], &["µ"]] {
+        assert!(TraceWriter::create(&file.0, names).is_err(), "{names:?}");
+    }
+}
+
+#[test]
+fn analytic_many_channels_take_version_2() {
+    let file = Scratch::new();
+    let names: Vec<String> = (0..4000).map(|i| format!("roller.{i}.outer_n")).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let row: Vec<f64> = (0..4000).map(f64::from).collect();
+    let bytes = file.write(&names, std::slice::from_ref(&row));
+    assert_eq!(bytes[6], 2);
+    let trace = file.read(&bytes).expect("readable");
+    assert_eq!(trace.get("roller.3999.outer_n"), Some(&[3999.0][..]));
+    let few = header::encode(&["a"], 0).expect("short").len();
+    assert_eq!(header::encode(&["a"], u64::MAX).expect("short").len(), few, "the header never grows");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn analytic_a_full_disk_says_what_is_safe() {
+    // The kernel's /dev/full refuses every write as a full disk does.
+    let error = TraceWriter::create("/dev/full", &["time_s"]).map(|_| ()).expect_err("full").to_string();
+    assert!(error.contains("cannot create `/dev/full`") && error.contains("Nothing was written"), "{error}");
+}
+
+proptest! {
+    #[test]
+    fn invariant_any_bits_survive_the_round_trip(
+        channels in 1_usize..5,
+        bits in proptest::collection::vec(any::<u64>(), 0..800),
+    ) {
+        let file = Scratch::new();
+        let names: Vec<String> = (0..channels).map(|i| format!("channel {i}")).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let rows: Vec<Vec<f64>> =
+            bits.chunks_exact(channels).map(|row| row.iter().map(|b| f64::from_bits(*b)).collect()).collect();
+        let bytes = file.write(&names, &rows);
+        let trace = file.read(&bytes).expect("readable");
+        prop_assert_eq!(trace.len(), rows.len());
+        for (i, row) in rows.iter().enumerate() {
+            for (column, value) in trace.columns.iter().zip(row) {
+                prop_assert_eq!(column[i].to_bits(), value.to_bits());
+            }
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Writing a trace so that it is readable at every moment.
+
+use std::fs::File;
+use std::io::{Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use super::header;
+use crate::error::Error;
+
+/// Rows that a killed run may lose: one millisecond at 100 kHz.
+const ROWS_PER_FLUSH: u64 = 100;
+
+/// Appends rows to a `.npy` file.
+///
+/// Rows go to disk every hundred, first the data and then the number of rows in the header, so that a run which is
+/// killed leaves a file that NumPy opens.
+///
+/// # Examples
+///
+/// ```
+/// use stribeck_bearing::trace::{Trace, TraceWriter};
+///
+/// let path = std::env::temp_dir().join(format!("example-{}.npy", std::process::id()));
+/// let mut trace = TraceWriter::create(&path, &["time_s", "ay_m_s2"])?;
+/// trace.push(&[0.0, 9.81])?;
+/// trace.finish()?;
+/// assert_eq!(Trace::read(&path)?.get("ay_m_s2"), Some(&[9.81][..]));
+/// # std::fs::remove_file(&path).ok();
+/// # Ok::<(), stribeck_bearing::error::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct TraceWriter {
+    path: PathBuf,
+    file: File,
+    names: Vec<String>,
+    /// Rows pushed but not yet on disk.
+    pending: Vec<u8>,
+    rows: u64,
+    rows_on_disk: u64,
+    header_length: u64,
+    /// A write failed; what is on disk stays as it is.
+    failed: bool,
+}
+
+impl TraceWriter {
+    /// Creates the file at `path`, or empties it, with one channel per name.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Trace`] for names that are empty, equal or not printable ASCII; [`Error::Io`] when the file cannot be
+    /// written.
+    pub fn create<S: AsRef<str>>(path: impl AsRef<Path>, names: &[S]) -> Result<Self, Error> {
+        let path = path.as_ref().to_owned();
+        let bad = |message| Error::Trace { path: path.clone(), message };
+        header::check_names(names).map_err(bad)?;
+        let first = header::encode(names, 0).map_err(bad)?;
+        let io = |source| Error::Io {
+            action: "create",
+            path: path.clone(),
+            kept: "Nothing was written; choose a folder that can be written with --out".to_owned(),
+            source,
+        };
+        let mut file = File::create(&path).map_err(io)?;
+        file.write_all(&first).map_err(io)?;
+        Ok(Self {
+            file,
+            names: names.iter().map(|name| name.as_ref().to_owned()).collect(),
+            pending: Vec::with_capacity(names.len() * 8 * ROWS_PER_FLUSH as usize),
+            rows: 0,
+            rows_on_disk: 0,
+            header_length: first.len() as u64,
+            failed: false,
+            path,
+        })
+    }
+
+    /// Rows pushed so far.
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// Channel names, in the order of [`TraceWriter::push`].
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Adds one sample, one value a channel.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Trace`] when the number of values is not that of the channels; [`Error::Io`] when the disk refuses, with
+    /// the number of rows that are safe.
+    pub fn push(&mut self, row: &[f64]) -> Result<(), Error> {
+        if row.len() != self.names.len() {
+            let message =
+                format!("a row of {} values was pushed into {} channels", row.len(), self.names.len());
+            return Err(Error::Trace { path: self.path.clone(), message });
+        }
+        self.pending.extend(row.iter().flat_map(|value| value.to_le_bytes()));
+        self.rows += 1;
+        if self.rows - self.rows_on_disk >= ROWS_PER_FLUSH { self.flush() } else { Ok(()) }
+    }
+
+    /// Brings every pushed row to the file.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the disk refuses, with the number of rows that are safe. After a failure nothing more is written.
+    pub fn flush(&mut self) -> Result<(), Error> {
+        let written = self.write_pending();
+        self.failed |= written.is_err();
+        written.map_err(|source| Error::Io {
+            action: "write",
+            path: self.path.clone(),
+            kept: format!(
+                "The first {} rows stay readable; free some space and repeat the run",
+                self.rows_on_disk
+            ),
+            source,
+        })
+    }
+
+    /// Flushes and closes the file.
+    ///
+    /// # Errors
+    ///
+    /// As [`TraceWriter::flush`].
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.flush()
+    }
+
+    fn write_pending(&mut self) -> std::io::Result<()> {
+        if self.failed {
+            return Err(std::io::Error::other("an earlier write to this file failed"));
+        }
+        if self.pending.is_empty() {
+            return Ok(());
+        }
+        // Data first: a header that promises too few rows is harmless, one that promises too many is not.
+        let end = self.header_length + self.rows_on_disk * 8 * self.names.len() as u64;
+        self.file.seek(SeekFrom::Start(end))?;
+        self.file.write_all(&self.pending)?;
+        let header = header::encode(&self.names, self.rows).map_err(std::io::Error::other)?;
+        self.file.seek(SeekFrom::Start(0))?;
+        self.file.write_all(&header)?;
+        self.rows_on_disk = self.rows;
+        self.pending.clear();
+        Ok(())
+    }
+}
+
+impl Drop for TraceWriter {
+    /// Saves the last rows of a run that ends early; an error has nobody left to hear it.
+    fn drop(&mut self) {
+        if !self.failed {
+            self.write_pending().ok();
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! All contacts of a model: one more force on nodes.
+
+use rayon::prelude::*;
+use stribeck_solver::{
+    Force,
+    force::RankOne,
+    state::{Energy, Moment, NodeForces},
+};
+
+use crate::{
+    law::Law,
+    pass::{History, Pass, Sum, Weights},
+    points::{Method, Points},
+    search::Tree,
+    surface::Surface,
+};
+
+/// Two surfaces that may touch.
+#[derive(Debug, Clone, Copy)]
+pub struct PairSpec {
+    /// Index of one surface; the resultant of the pair is the force on its body.
+    pub first: usize,
+    /// Index of the other.
+    pub second: usize,
+    /// What acts between them.
+    pub law: Law,
+    /// Where it acts.
+    pub method: Method,
+}
+
+/// What one pair does now.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Resultant {
+    /// Force on the first surface's body [N].
+    pub force: [f64; 2],
+    /// Deepest penetration [m].
+    pub penetration: f64,
+}
+
+/// What contact remembers from step to step, for checkpoints.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ContactState {
+    history: Vec<History>,
+    friction: f64,
+    damping: f64,
+    next_search: u64,
+}
+
+/// All contacts of a model.
+#[derive(Debug)]
+pub struct Contacts {
+    surfaces: Vec<Surface>,
+    trees: Vec<Tree>,
+    pairs: Vec<Pair>,
+    thickness: f64,
+    skin: f64,
+    next_search: u64,
+    fastest: f64,
+    preload: Option<f64>,
+    parallel: bool,
+    energy: Energy,
+}
+
+#[derive(Debug)]
+struct Pair {
+    spec: PairSpec,
+    passes: [Pass; 2],
+    push: Vec<(u32, [f64; 2])>,
+    found: Vec<(u32, u32)>,
+    sum: [Sum; 2],
+}
+
+/// Longest time between two searches, in steps: speeds may change meanwhile.
+const LONGEST_REST: f64 = 400.0;
+
+/// Speeds are allowed for with this margin between searches.
+const SPEED_MARGIN: f64 = 2.0;
+
+/// Least speed allowed for between searches [m/s]: what an impact may give to a surface at rest.
+const LEAST_SPEED: f64 = 2.0;
+
+impl Contacts {
+    /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
+    pub fn new(surfaces: Vec<Surface>, pairs: &[PairSpec], thickness: f64, x: &[f64], y: &[f64]) -> Self {
+        let shortest =
+            surfaces.iter().flat_map(|s| &s.length).copied().fold(f64::INFINITY, f64::min).min(1.0);
+        let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
+        let skin = 0.4 * mean.max(shortest);
+        let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin)).collect();
+        let pairs = pairs
+            .iter()
+            .map(|spec| {
+                let pass = |secondary: usize, primary: usize| {
+                    let points = Points::new(&surfaces[secondary], spec.method);
+                    Pass::new(secondary, primary, points, &spec.law, &surfaces)
+                };
+                Pair {
+                    spec: *spec,
+                    passes: [pass(spec.first, spec.second), pass(spec.second, spec.first)],
+                    push: Vec::new(),
+                    found: Vec::new(),
+                    sum: [Sum::default(); 2],
+                }
+            })
+            .collect();
+        Self {
+            surfaces,
+            trees,
+            pairs,
+            thickness,
+            skin,
+            next_search: 0,
+            fastest: 0.0,
+            preload: None,
+            parallel: false,
+            energy: Energy::default(),
+        }
+    }
+
+    /// Evaluates pairs in parallel from now on; the result is the same to the bit.
+    pub fn set_parallel(&mut self, parallel: bool) {
+        self.parallel = parallel;
+    }
+
+    /// For a static preload: leaves damping and friction out and rounds the corner of the penalty law over a gap
+    /// of `softness` [m] (zero for the sharp law), so that Newton's method sees bodies before they touch. `None`
+    /// takes everything in again.
+    pub fn set_preload(&mut self, softness: Option<f64>) {
+        self.preload = softness;
+        self.next_search = 0;
+    }
+
+    /// What each pair does, in the order given.
+    pub fn resultants(&self) -> impl Iterator<Item = Resultant> {
+        self.pairs.iter().map(|p| {
+            let [a, b] = &p.sum;
+            Resultant {
+                force: [a.force[0] - b.force[0], a.force[1] - b.force[1]],
+                penetration: a.penetration.max(b.penetration),
+            }
+        })
+    }
+
+    /// Slots that contact may push.
+    pub fn slots(&self) -> impl Iterator<Item = u32> {
+        self.surfaces.iter().flat_map(|s| s.slots.iter().copied())
+    }
+
+    /// What contact remembers.
+    pub fn state(&self) -> ContactState {
+        ContactState {
+            history: self.pairs.iter().flat_map(|p| &p.passes).flat_map(|p| &p.history).copied().collect(),
+            friction: self.energy.friction,
+            damping: self.energy.damping,
+            next_search: self.next_search,
+        }
+    }
+
+    /// Resumes from what contact remembered; false when it belongs to other contacts.
+    pub fn restore(&mut self, state: &ContactState) -> bool {
+        let mut rest = state.history.as_slice();
+        for pass in self.pairs.iter_mut().flat_map(|p| &mut p.passes) {
+            let Some((own, others)) = rest.split_at_checked(pass.history.len()) else { return false };
+            pass.history.copy_from_slice(own);
+            rest = others;
+        }
+        self.energy.friction = state.friction;
+        self.energy.damping = state.damping;
+        self.next_search = 0;
+        rest.is_empty()
+    }
+
+    fn search(&mut self, at: &Moment<'_>) {
+        let grow = 0.5 * self.skin;
+        for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
+            tree.update(surface, at.x, at.y, grow);
+        }
+        let Self { trees, surfaces, pairs, .. } = self;
+        for pair in pairs.iter_mut() {
+            trees[pair.spec.first].pairs(&trees[pair.spec.second], &mut pair.found);
+            let [first, second] = &mut pair.passes;
+            first.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+            pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
+            pair.found.sort_unstable();
+            second.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+        }
+        let speed = |&n: &u32| at.vx[n as usize].hypot(at.vy[n as usize]);
+        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(speed).fold(0.0, f64::max);
+        // Two points may approach each other, each at the highest speed.
+        self.fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
+        let rest = if at.dt > 0.0 { self.skin / (self.fastest * at.dt) } else { 0.0 };
+        self.next_search = at.step + rest.clamp(1.0, LONGEST_REST) as u64;
+    }
+
+    fn weights(&self, spec: &PairSpec) -> Weights {
+        weights(spec, self.thickness, self.fastest, self.preload)
+    }
+}
+
+/// Each of the two passes carries half of the stiffness.
+fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
+    let law =
+        if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
+    Weights { law, thickness: 0.5 * thickness, fastest, softness: preload.unwrap_or(0.0) }
+}
+
+impl Force for Contacts {
+    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+        if at.step >= self.next_search || self.preload.is_some() {
+            self.search(&at);
+        }
+        let Self { surfaces, pairs, thickness, fastest, preload, .. } = self;
+        let evaluate = |pair: &mut Pair| {
+            let w = weights(&pair.spec, *thickness, *fastest, *preload);
+            pair.push.clear();
+            for (pass, sum) in pair.passes.iter_mut().zip(&mut pair.sum) {
+                *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
+            }
+        };
+        if self.parallel {
+            pairs.par_iter_mut().for_each(evaluate);
+        } else {
+            pairs.iter_mut().for_each(evaluate);
+        }
+        self.energy.stored = 0.0;
+        for pair in &self.pairs {
+            for &(slot, [fx, fy]) in &pair.push {
+                force.fx[slot as usize] += fx;
+                force.fy[slot as usize] += fy;
+            }
+            for sum in &pair.sum {
+                self.energy.stored += sum.stored;
+                self.energy.friction += sum.friction;
+                self.energy.damping += sum.damping;
+            }
+        }
+    }
+
+    fn energy(&self) -> Energy {
+        self.energy
+    }
+
+    fn stiffness_bound(&self, dt: f64, bound: &mut [f64]) {
+        // A contact spring pulls on the difference of two displacements: (a − b)² ≤ 2a² + 2b². Each pass has half
+        // the stiffness, and both act on a node. A surface touches one other at a time, so pairs do not add up.
+        let mut own = vec![0.0_f64; bound.len()];
+        for pair in &self.pairs {
+            let law = &pair.spec.law;
+            let lagged = if dt > 0.0 { 2.0 * law.damping / dt } else { 0.0 };
+            for surface in [pair.spec.first, pair.spec.second] {
+                let surface = &self.surfaces[surface];
+                for (&slot, length) in surface.slots.iter().zip(surface.tributary()) {
+                    let k = 2.0 * (law.stiffness + lagged) * length * self.thickness;
+                    own[slot as usize] = own[slot as usize].max(k);
+                }
+            }
+        }
+        bound.iter_mut().zip(own).for_each(|(b, k)| *b += k);
+    }
+
+    fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne)) {
+        for pair in &self.pairs {
+            for pass in &pair.passes {
+                pass.tangent(&self.surfaces, x, y, &self.weights(&pair.spec), visit);
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Contact laws: penalty, damping, Coulomb friction (THEORY §4.2–4.3).
+
+use crate::error::Error;
+
+/// Normal and tangential law of one pair of surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Law {
+    /// Penalty stiffness [Pa/m]: pressure a metre of penetration.
+    pub stiffness: f64,
+    /// Contact damping [Pa s/m]: pressure a metre a second of approach; zero for none.
+    pub damping: f64,
+    /// Coulomb coefficient [-]; zero for none.
+    pub friction: f64,
+    /// Tangential stiffness while sticking, as a share of the normal one [-].
+    pub tangential: f64,
+}
+
+/// Tangential stiffness of a contact between like elastic bodies relative to the normal one is 2(1−ν)/(2−ν) = 0.82
+/// (Mindlin); it must not exceed 1, or it would enter the critical time step.
+const TANGENTIAL: f64 = 0.8;
+
+impl Law {
+    /// Penalty only. Stiffness in [Pa/m].
+    ///
+    /// # Errors
+    /// When the stiffness is not positive.
+    pub fn penalty(stiffness: f64) -> Result<Self, Error> {
+        check("penalty stiffness [Pa/m]", stiffness, stiffness > 0.0, "positive")?;
+        Ok(Self { stiffness, damping: 0.0, friction: 0.0, tangential: TANGENTIAL })
+    }
+
+    /// Adds damping as a fraction of critical, for surface layers of `mass` [kg/m²] on each side.
+    ///
+    /// # Errors
+    /// When the ratio is negative or above 2.
+    pub fn with_damping(mut self, ratio: f64, mass: f64) -> Result<Self, Error> {
+        check("contact damping ratio", ratio, (0.0..=2.0).contains(&ratio), "between 0 and 2")?;
+        check("surface mass [kg/m²]", mass, mass > 0.0, "positive")?;
+        // Two equal masses on one spring: the reduced mass is half of one.
+        self.damping = 2.0 * ratio * (self.stiffness * 0.5 * mass).sqrt();
+        Ok(self)
+    }
+
+    /// Adds Coulomb friction.
+    ///
+    /// # Errors
+    /// When the coefficient is negative or above 10.
+    pub fn with_friction(mut self, coefficient: f64) -> Result<Self, Error> {
+        check("friction coefficient", coefficient, (0.0..=10.0).contains(&coefficient), "between 0 and 10")?;
+        self.friction = coefficient;
+        Ok(self)
+    }
+}
+
+fn check(field: &'static str, value: f64, ok: bool, allowed: &'static str) -> Result<(), Error> {
+    if value.is_finite() && ok { Ok(()) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}

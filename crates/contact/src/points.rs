@@ -1,0 +1,68 @@
+//! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
+
+use crate::surface::Surface;
+
+/// Where the penalty acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// At the nodes (two-pass node-to-segment).
+    Collocated,
+    /// At this many points on every facet, equal weights, and at corners.
+    Integrated {
+        /// Points on a facet.
+        points: usize,
+    },
+}
+
+/// Contact points, facet by facet.
+#[derive(Debug, Clone)]
+pub(crate) struct Points {
+    /// Place on the facet, 0 … 1.
+    pub(crate) place: Vec<f64>,
+    /// Length of surface that the point stands for [m].
+    pub(crate) weight: Vec<f64>,
+    /// First point of each facet; one more entry than facets.
+    pub(crate) first: Vec<u32>,
+}
+
+impl Points {
+    pub(crate) fn new(surface: &Surface, method: Method) -> Self {
+        let mut points = Self { place: Vec::new(), weight: Vec::new(), first: vec![0] };
+        let tributary = surface.tributary();
+        for f in 0..surface.facets() {
+            match method {
+                Method::Collocated => points.push(0.0, tributary[f]),
+                Method::Integrated { points: n } => {
+                    let share = surface.length[f] / n as f64;
+                    if surface.corner[f] {
+                        points.push(0.0, 0.5 * share);
+                    }
+                    (0..n).for_each(|i| points.push((i as f64 + 0.5) / n as f64, share));
+                }
+            }
+            // The last node of an open surface begins no facet.
+            if !surface.closed && f + 1 == surface.facets() {
+                let weight = match method {
+                    Method::Collocated => tributary[f + 1],
+                    Method::Integrated { points: n } => 0.5 * surface.length[f] / n as f64,
+                };
+                points.push(1.0, weight);
+            }
+            points.first.push(points.place.len() as u32);
+        }
+        points
+    }
+
+    fn push(&mut self, place: f64, weight: f64) {
+        self.place.push(place);
+        self.weight.push(weight);
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.place.len()
+    }
+
+    pub(crate) fn of_facet(&self, facet: usize) -> std::ops::Range<usize> {
+        self.first[facet] as usize..self.first[facet + 1] as usize
+    }
+}

@@ -1,0 +1,84 @@
+//! Rings, with or without a rectangular groove in the inner surface.
+
+use std::f64::consts::TAU;
+
+use crate::error::{count, elements, finite, positive};
+use crate::groove::{self, Groove};
+use crate::rows::{self, NextRow};
+use crate::{Error, Part};
+
+/// An annulus about the origin, made of quadrilaterals in circumferential rows.
+///
+/// Row 0 of the nodes is the inner surface, the last row the outer one; each row runs counter-clockwise and
+/// node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
+/// (counter-clockwise, its first node at `start_angle`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Annulus {
+    /// Radius of the inner circle [m].
+    pub inner_radius: f64,
+    /// Radius of the outer circle [m].
+    pub outer_radius: f64,
+    /// Facets of each of the two surfaces.
+    pub facets: usize,
+    /// Elements through the thickness, equally thick where there is no groove.
+    pub layers: usize,
+    /// Angle of the first node of the outer surface [rad], and of every row when there is no groove.
+    pub start_angle: f64,
+    /// Rectangular groove in the inner surface.
+    pub groove: Option<Groove>,
+}
+
+impl Annulus {
+    /// Makes the mesh.
+    ///
+    /// # Errors
+    /// Radii that are not positive or not in order, fewer than 8 facets, no layer; for a groove see
+    /// [`Groove`].
+    pub fn part(&self) -> Result<Part, Error> {
+        self.check()?;
+        let (n, layers) = (self.facets, self.layers);
+        let mut part = Part::default();
+        for row in 0..=layers {
+            let radius = self.row_radius(row);
+            for column in 0..n {
+                let (sin, cos) = self.column_angle(column).sin_cos();
+                part.push_node(radius * cos, radius * sin);
+            }
+        }
+        part.quads = rows::quads(0, layers, n, true, NextRow::Outwards);
+        part.push_surface("inner", (0..n as u32).rev().collect(), true);
+        part.push_surface("outer", (0..n).map(|c| rows::node(layers, c, n)).collect(), true);
+        if let Some(groove) = &self.groove {
+            groove::cut(self, groove, &mut part)?;
+        }
+        Ok(part)
+    }
+
+    pub(crate) fn row_radius(&self, row: usize) -> f64 {
+        // The last row is written out, so that no rounding moves the outer surface.
+        if row == self.layers {
+            return self.outer_radius;
+        }
+        self.inner_radius + (self.outer_radius - self.inner_radius) * row as f64 / self.layers as f64
+    }
+
+    pub(crate) fn column_angle(&self, column: usize) -> f64 {
+        self.start_angle + TAU * column as f64 / self.facets as f64
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        const SHAPE: &str = "annulus";
+        positive(SHAPE, "inner_radius", self.inner_radius)?;
+        positive(SHAPE, "outer_radius", self.outer_radius)?;
+        finite(SHAPE, "start_angle", self.start_angle)?;
+        count(SHAPE, "facets", self.facets, 8, "divide the circumference by the element size")?;
+        count(SHAPE, "layers", self.layers, 1, "divide the thickness by the element size")?;
+        elements(SHAPE, "layers", self.layers, self.facets)?;
+        if self.outer_radius <= self.inner_radius {
+            let (field, value, limit) = ("outer_radius", self.outer_radius, self.inner_radius);
+            let advice = "swap the radii or check them";
+            return Err(Error::OutOfRange { shape: SHAPE, field, value, relation: "above", limit, advice });
+        }
+        Ok(())
+    }
+}

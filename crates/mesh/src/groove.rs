@@ -1,0 +1,189 @@
+//! A rectangular groove in the inner surface of an annulus.
+
+use std::f64::consts::TAU;
+
+use crate::annulus::Annulus;
+use crate::error::{MOST, finite, positive};
+use crate::relax::{inside_out, raise_critical_step};
+use crate::{Error, Part, rows};
+
+/// A rectangular groove: a floor on a larger radius between two radial walls.
+///
+/// No element is removed, so the rows stay strips: two neighbouring nodes of the inner surface stand at the
+/// same angle, one on the inner radius and one on the floor, and the facet between them is the wall. The
+/// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
+/// and equally long on the rest of the inner surface. The rows below follow smoothly; near the walls the nodes
+/// are moved to keep the critical time step up ([`raise_critical_step`]).
+///
+/// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
+/// leaves less than a quarter of the inner surface or more floor than facets, and a groove so deep or a
+/// layer so thick that some element stays inside out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Groove {
+    /// Angle of the middle of the groove [rad].
+    pub centre_angle: f64,
+    /// Arc length between the walls, measured on the inner circle [m].
+    pub length: f64,
+    /// Height of the walls [m].
+    pub depth: f64,
+}
+
+/// Poisson's ratio for which the cells under a groove are shaped; the best shape hardly depends on it.
+const POISSON: f64 = 0.3;
+
+/// Passes of Gauss–Seidel that spread the displacement of the inner row, and passes of the pattern search
+/// for each layer that the groove is deep.
+const SPREAD: usize = 100;
+const SWEEPS: usize = 60;
+
+/// Columns on each side of a wall, and rows below it, that the pattern search may move.
+const REACH: usize = 8;
+
+/// Cuts the groove into an annulus of equal cells by moving its nodes.
+pub(crate) fn cut(annulus: &Annulus, groove: &Groove, part: &mut Part) -> Result<(), Error> {
+    let plan = Plan::new(annulus, groove)?;
+    let (n, layers) = (annulus.facets, annulus.layers);
+    let (angle, radius) = spread(&plan, n, layers);
+    for row in 0..layers {
+        for column in 0..n {
+            let at = row * n + column;
+            let (sin, cos) = (annulus.column_angle(column) + angle[at]).sin_cos();
+            let r = annulus.row_radius(row) + radius[at];
+            (part.x[at], part.y[at]) = (r * cos, r * sin);
+        }
+    }
+    plan.place_walls(annulus, groove, part);
+    let deep = (groove.depth * layers as f64 / (annulus.outer_radius - annulus.inner_radius)) as usize;
+    raise_critical_step(part, &plan.movable(annulus, groove), POISSON, SWEEPS * (1 + deep));
+    match inside_out(part) {
+        None => Ok(()),
+        Some((element, area)) => {
+            let advice = "make the groove shallower, or use more `facets` or other `layers`";
+            Err(Error::Tangled { shape: "groove", element, area, advice })
+        }
+    }
+}
+
+/// Where the nodes of the inner row go.
+struct Plan {
+    /// Column of the upper node of the first (clockwise) wall.
+    first: usize,
+    /// Facets of the floor.
+    floor: usize,
+    /// Angular displacement of each inner node [rad], and its rise onto the floor [m].
+    angle: Vec<f64>,
+    rise: Vec<f64>,
+}
+
+impl Plan {
+    fn new(annulus: &Annulus, groove: &Groove) -> Result<Plan, Error> {
+        let n = annulus.facets;
+        let sector = check(annulus, groove)?;
+        let floor = ((n as f64 * sector / TAU).round() as usize).max(2);
+        // Two walls, the floor and at least a few facets elsewhere share the inner surface.
+        if floor + 2 + 4 > n {
+            let advice = "use more facets or a shorter groove";
+            let (shape, field) = ("annulus with a groove", "facets");
+            return Err(Error::Count { shape, field, value: n, least: floor + 6, most: MOST, advice });
+        }
+        let rest = n - 2 - floor;
+        // The columns are chosen so that the middle of the groove moves by less than half a facet.
+        let middle = (groove.centre_angle - annulus.start_angle) * n as f64 / TAU;
+        let from = (middle - 0.5 * (floor + 2) as f64).round();
+        let first = from.rem_euclid(n as f64) as usize % n;
+        let (mut angle, mut rise) = (vec![0.0; n], vec![0.0; n]);
+        for m in 0..n {
+            let target = if m == 0 {
+                -0.5 * sector
+            } else if m <= floor + 1 {
+                -0.5 * sector + sector * (m - 1) as f64 / floor as f64
+            } else {
+                0.5 * sector + (TAU - sector) * (m - 2 - floor) as f64 / rest as f64
+            };
+            let uniform = TAU * (from + m as f64 - middle) / n as f64;
+            angle[(first + m) % n] = target - uniform;
+            rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { groove.depth } else { 0.0 };
+        }
+        Ok(Plan { first, floor, angle, rise })
+    }
+
+    /// Writes the four wall nodes out, so that no rounding tilts a wall.
+    fn place_walls(&self, annulus: &Annulus, groove: &Groove, part: &mut Part) {
+        let half = 0.5 * groove.length / annulus.inner_radius;
+        let (top, bottom) = (annulus.inner_radius, annulus.inner_radius + groove.depth);
+        let (a, b) = (groove.centre_angle - half, groove.centre_angle + half);
+        for (column, angle, radius) in [
+            (self.first, a, top),
+            (self.first + 1, a, bottom),
+            (self.first + 1 + self.floor, b, bottom),
+            (self.first + 2 + self.floor, b, top),
+        ] {
+            let (sin, cos) = angle.sin_cos();
+            let at = column % annulus.facets;
+            (part.x[at], part.y[at]) = (radius * cos, radius * sin);
+        }
+    }
+
+    /// Interior nodes near the walls.
+    fn movable(&self, annulus: &Annulus, groove: &Groove) -> Vec<bool> {
+        let (n, layers) = (annulus.facets, annulus.layers);
+        let mut movable = vec![false; n * (layers + 1)];
+        let cell = TAU * annulus.inner_radius / n as f64;
+        let layer = (annulus.outer_radius - annulus.inner_radius) / layers as f64;
+        // A groove of several layers disturbs as many columns as it is deep.
+        let columns = REACH + (groove.depth / cell).ceil() as usize;
+        let rows = REACH + (groove.depth / layer).ceil() as usize;
+        let window = 2 * columns + 2;
+        for wall in [self.first, self.first + 1 + self.floor] {
+            for step in 0..window.min(n) {
+                let column = (wall + n + step - columns.min(n)) % n;
+                for row in 1..layers.min(rows + 1) {
+                    movable[rows::node(row, column, n) as usize] = true;
+                }
+            }
+        }
+        movable
+    }
+}
+
+/// Displacement of all nodes (angle [rad], radius [m]): given on the inner row, zero on the outer one,
+/// and harmonic between them, which keeps it smooth and between its extremes.
+fn spread(plan: &Plan, n: usize, layers: usize) -> (Vec<f64>, Vec<f64>) {
+    let start = |inner: &[f64]| -> Vec<f64> {
+        (0..n * (layers + 1)).map(|i| inner[i % n] * (1.0 - (i / n) as f64 / layers as f64)).collect()
+    };
+    let (mut angle, mut radius) = (start(&plan.angle), start(&plan.rise));
+    for _ in 0..SPREAD {
+        for row in 1..layers {
+            for column in 0..n {
+                let (here, left, right) =
+                    (row * n + column, row * n + (column + n - 1) % n, row * n + (column + 1) % n);
+                for field in [&mut angle, &mut radius] {
+                    field[here] = 0.25 * (field[left] + field[right] + field[here - n] + field[here + n]);
+                }
+            }
+        }
+    }
+    (angle, radius)
+}
+
+/// Refuses what cannot be cut; gives the angle between the walls [rad].
+fn check(annulus: &Annulus, groove: &Groove) -> Result<f64, Error> {
+    const SHAPE: &str = "groove";
+    finite(SHAPE, "centre_angle", groove.centre_angle)?;
+    positive(SHAPE, "length", groove.length)?;
+    positive(SHAPE, "depth", groove.depth)?;
+    let refuse = |field, value, limit, advice| {
+        Err(Error::OutOfRange { shape: SHAPE, field, value, relation: "at most", limit, advice })
+    };
+    let limit = 0.75 * TAU * annulus.inner_radius;
+    if groove.length > limit {
+        return refuse("length", groove.length, limit, "a quarter of the inner surface must remain");
+    }
+    // A hair more, because 60 % of a difference of radii is rounded.
+    let limit = 0.6 * (1.0 + 1e-9) * (annulus.outer_radius - annulus.inner_radius);
+    if groove.depth > limit {
+        return refuse("depth", groove.depth, limit, "keep it below 60 % of the thickness");
+    }
+    Ok(groove.length / annulus.inner_radius)
+}

@@ -1,0 +1,199 @@
+//! Annuli with and without a groove: areas, walls, orientation, size of the cells.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+
+use common::*;
+use stribeck_mesh::{Annulus, Error, Groove, Part, find_strips};
+
+/// A ring of 200 mm bore and 10 mm thickness in cells of 0.5 mm.
+const RING: Annulus = Annulus {
+    inner_radius: 0.1,
+    outer_radius: 0.11,
+    facets: 1257,
+    layers: 20,
+    start_angle: 0.3,
+    groove: None,
+};
+
+const GROOVE: Groove = Groove { centre_angle: 0.5 * PI, length: 0.01, depth: 0.2e-3 };
+
+fn ring(groove: Option<Groove>) -> Part {
+    Annulus { groove, ..RING }.part().expect("a ring that can be made")
+}
+
+/// Area of a regular polygon of n corners on a circle [m²].
+fn polygon(radius: f64, n: usize) -> f64 {
+    0.5 * n as f64 * radius * radius * (TAU / n as f64).sin()
+}
+
+/// Position in row 0 of the upper node of the clockwise wall: the only one followed by a node at its angle.
+fn wall_column(part: &Part, n: usize) -> usize {
+    let same_angle = |c: usize| {
+        let ([x1, y1], [x2, y2]) = (point(part, c as u32), point(part, ((c + 1) % n) as u32));
+        (x1 * y2 - x2 * y1).abs() < 1e-12 && x1.hypot(y1) < x2.hypot(y2)
+    };
+    let found: Vec<usize> = (0..n).filter(|c| same_angle(*c)).collect();
+    assert_eq!(found.len(), 1, "one wall climbs along the row");
+    found[0]
+}
+
+#[test]
+fn analytic_area_of_two_polygons() {
+    let part = ring(None);
+    let expected = polygon(0.11, 1257) - polygon(0.1, 1257);
+    // The sum over 25 140 elements adds their roundings.
+    assert_close(part.area(), expected, 1e-12, "area");
+    assert!(smallest_jacobian(&part) > 0.0);
+}
+
+#[test]
+fn invariant_boundary_is_two_oriented_circles() {
+    let part = ring(None);
+    assert_boundary_is(&part, &["inner", "outer"]);
+    // Solid on the left: the outer circle encloses it, the inner one is walked the other way round.
+    assert_close(
+        area_on_the_left(&part, &surface(&part, "outer").nodes),
+        polygon(0.11, 1257),
+        1e-12,
+        "outer",
+    );
+    assert_close(
+        area_on_the_left(&part, &surface(&part, "inner").nodes),
+        -polygon(0.1, 1257),
+        1e-12,
+        "inner",
+    );
+    let [x, y] = point(&part, surface(&part, "outer").nodes[0]);
+    assert_close(y.atan2(x), 0.3, ROUNDING, "start angle");
+}
+
+#[test]
+fn invariant_rows_are_two_strips_each() {
+    let part = ring(Some(GROOVE));
+    let strips = find_strips(&part.quads);
+    assert_eq!(strips.len(), 2 * 20, "one strip and the quadrilateral that closes the row");
+    let mut covered = 0;
+    for strip in &strips {
+        assert_eq!(strip.first_element, covered, "strips follow each other");
+        for i in 0..strip.len {
+            let expected = strip.corners.map(|c| c + i as u32);
+            assert_eq!(part.quads[strip.first_element + i], expected);
+        }
+        covered += strip.len;
+    }
+    assert_eq!(covered, part.quads.len());
+    assert_eq!(strips.iter().map(|s| s.len).max(), Some(1256));
+}
+
+/// The groove takes the polygonal ring sector between floor and inner surface out of the ring.
+#[test]
+fn analytic_groove_has_its_length_depth_and_area() {
+    let part = ring(Some(GROOVE));
+    let n = 1257;
+    let sector = GROOVE.length / RING.inner_radius;
+    let floor_facets = (GROOVE.length / (TAU * 0.1 / n as f64)).round() as usize;
+    assert_eq!(floor_facets, 20);
+    let top = wall_column(&part, n);
+    let floor_radius = RING.inner_radius + GROOVE.depth;
+    for (column, angle, radius) in [
+        (top, 0.5 * PI - 0.5 * sector, RING.inner_radius),
+        (top + 1, 0.5 * PI - 0.5 * sector, floor_radius),
+        (top + 1 + floor_facets, 0.5 * PI + 0.5 * sector, floor_radius),
+        (top + 2 + floor_facets, 0.5 * PI + 0.5 * sector, RING.inner_radius),
+    ] {
+        let [x, y] = point(&part, (column % n) as u32);
+        assert_close(y.atan2(x), angle, ROUNDING, "wall angle");
+        assert_close(x.hypot(y), radius, ROUNDING, "wall radius");
+    }
+    for wall in [top, top + 1 + floor_facets] {
+        let ([x1, y1], [x2, y2]) = (point(&part, (wall % n) as u32), point(&part, ((wall + 1) % n) as u32));
+        // The wall is short beside the coordinates, which costs three digits.
+        assert_close((x2 - x1).hypot(y2 - y1), GROOVE.depth, 1e-10, "wall length");
+    }
+
+    let fan = |radius: f64, sector: f64, facets: usize| {
+        0.5 * facets as f64 * radius * radius * (sector / facets as f64).sin()
+    };
+    let rest = fan(RING.inner_radius, TAU - sector, n - 2 - floor_facets);
+    let expected = polygon(RING.outer_radius, n) - rest - fan(floor_radius, sector, floor_facets);
+    assert_close(part.area(), expected, 1e-12, "area");
+}
+
+#[test]
+fn invariant_groove_keeps_facets_outer_circle_and_orientation() {
+    let (plain, cut) = (ring(None), ring(Some(GROOVE)));
+    assert_eq!(surface(&cut, "inner").facets(), 1257);
+    assert_eq!(cut.quads, plain.quads, "no element is removed or renumbered");
+    let outer = 20 * 1257..21 * 1257;
+    assert_eq!(cut.x[outer.clone()], plain.x[outer.clone()]);
+    assert_eq!(cut.y[outer.clone()], plain.y[outer]);
+    assert!(smallest_jacobian(&cut) > 0.0);
+    // Far from the groove every cell still has nearly its nominal size.
+    let row = |r: usize, c: usize| cut.x[r * 1257 + c].hypot(cut.y[r * 1257 + c]);
+    let opposite = (wall_column(&cut, 1257) + 640) % 1257;
+    for r in 0..=20 {
+        assert_close(row(r, opposite), 0.1 + 0.5e-3 * r as f64, 1e-12, "radius of a far row");
+    }
+}
+
+/// A cell of 0.2 mm among cells of 0.5 mm would have 0.4 of the length; slanted cells keep three quarters.
+#[test]
+fn invariant_groove_keeps_the_critical_step() {
+    let kept = relative_length(&ring(Some(GROOVE)), 0.5e-3);
+    assert!(kept > 0.72, "the groove leaves {kept:.3} of the length of a 0.5 mm square");
+    assert!(relative_length(&ring(None), 0.5e-3) > 0.99);
+}
+
+#[test]
+fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
+    for (facets, layers) in [(1257, 20), (628, 10), (314, 5), (157, 2)] {
+        for (centre_angle, length, depth) in [
+            (0.0, 0.01, 0.05e-3),
+            (0.5 * PI, 0.001, 0.2e-3),
+            (-2.0, 0.04, 0.5e-3),
+            (7.0, 0.01, 1e-3),
+            (3.0, 0.02, 3e-3),
+        ] {
+            let groove = Some(Groove { centre_angle, length, depth });
+            let part = Annulus { facets, layers, groove, ..RING }.part().expect("a groove that can be cut");
+            assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");
+            // Two or five layers are too few to spread the facet by which the walls shift the rows.
+            let least = if layers >= 10 { 0.7 } else { 0.45 };
+            let kept = relative_length(&part, 0.01 / layers as f64);
+            assert!(kept > least, "{facets} facets, {groove:?}: {kept:.3}");
+            assert_boundary_is(&part, &["inner", "outer"]);
+        }
+    }
+}
+
+/// The deepest groove that is promised, through six layers of ten.
+#[test]
+fn invariant_deepest_groove_stays_in_order() {
+    let groove = Some(Groove { depth: 6e-3, ..GROOVE });
+    let part = Annulus { facets: 628, layers: 10, groove, ..RING }.part().expect("60 % of the thickness");
+    assert!(smallest_jacobian(&part) > 0.0);
+    assert!(relative_length(&part, 1e-3) > 0.35);
+}
+
+#[test]
+fn invariant_refusals_name_field_and_limit() {
+    let refused = |annulus: Annulus| annulus.part().expect_err("a ring that cannot be made").to_string();
+    let with = |groove: Groove| Annulus { groove: Some(groove), ..RING };
+    for (message, parts) in [
+        (refused(Annulus { inner_radius: -0.1, ..RING }), ["inner_radius", "-0.1"]),
+        (refused(Annulus { inner_radius: f64::NAN, ..RING }), ["inner_radius", "NaN"]),
+        (refused(Annulus { outer_radius: 0.1, ..RING }), ["outer_radius", "above 0.1"]),
+        (refused(Annulus { start_angle: f64::INFINITY, ..RING }), ["start_angle", "inf"]),
+        (refused(Annulus { facets: 7, ..RING }), ["facets", "between 8"]),
+        (refused(Annulus { layers: 0, ..RING }), ["layers", "between 1"]),
+        (refused(with(Groove { depth: 6.1e-3, ..GROOVE })), ["depth", "60 %"]),
+        (refused(with(Groove { length: 0.0, ..GROOVE })), ["length", "above zero"]),
+        (refused(with(Groove { length: 0.6, ..GROOVE })), ["length", "at most"]),
+    ] {
+        assert!(parts.iter().all(|p| message.contains(p)), "{message}");
+    }
+    let few = Annulus { facets: 8, ..with(Groove { length: 0.2, ..GROOVE }) };
+    assert!(matches!(few.part(), Err(Error::Count { field: "facets", value: 8, .. })));
+}

@@ -1,0 +1,124 @@
+//! The file format, read back byte by byte from the offsets in its header.
+
+use stribeck_mesh::{Disc, Error, Mesh, Part, Rectangle, vtu};
+
+fn mesh() -> Mesh {
+    let disc = Disc { radius: 1.0, facets: 24, size: 0.25, rotation: 0.1 };
+    let plate = Rectangle { x0: -2.0, y0: -2.0, width: 4.0, height: 1.0, columns: 8, rows: 2 };
+    let mut mesh = Mesh::new();
+    mesh.add("disc", &disc.part().expect("a disc"));
+    mesh.add("plate", &plate.part().expect("a plate"));
+    mesh
+}
+
+/// The value of an XML attribute in a line.
+fn attribute<'a>(line: &'a str, name: &str) -> &'a str {
+    let from = line.find(&format!("{name}=\"")).expect("the attribute") + name.len() + 2;
+    &line[from..from + line[from..].find('"').expect("a closing quote")]
+}
+
+/// Type, components and bytes of a named array.
+fn array(file: &[u8], name: &str) -> (String, usize, Vec<u8>) {
+    let marker = b"<AppendedData encoding=\"raw\">\n_";
+    let start = file.windows(marker.len()).position(|w| w == marker).expect("appended data");
+    let header = std::str::from_utf8(&file[..start]).expect("a text header");
+    let named = format!("Name=\"{name}\"");
+    let line = header.lines().find(|l| l.contains(&named)).unwrap_or_else(|| panic!("no array {name}"));
+    let offset: usize = attribute(line, "offset").parse().expect("a number");
+    let at = start + marker.len() + offset;
+    let len = u64::from_le_bytes(file[at..at + 8].try_into().expect("8 bytes")) as usize;
+    let components = attribute(line, "NumberOfComponents").parse().expect("a number");
+    (attribute(line, "type").to_owned(), components, file[at + 8..at + 8 + len].to_vec())
+}
+
+fn decoded<T, const N: usize>(bytes: &[u8], decode: fn([u8; N]) -> T) -> Vec<T> {
+    assert_eq!(bytes.len() % N, 0, "whole values");
+    bytes.chunks_exact(N).map(|c| decode(c.try_into().expect("a whole value"))).collect()
+}
+
+#[test]
+fn invariant_file_gives_back_the_mesh() {
+    let mesh = mesh();
+    let height: Vec<f64> = mesh.y.iter().map(|y| y + 0.1).collect();
+    let velocity: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(x, y)| [-*y, *x, 0.0]).collect();
+    let number: Vec<f64> = (0..mesh.elements()).map(|e| e as f64).collect();
+    let nodes = [vtu::Field::scalar("height <m>", &height), vtu::Field::vector("velocity", &velocity)];
+    let mut file = Vec::new();
+    vtu::write(&mut file, &mesh, &nodes, &[vtu::Field::scalar("number", &number)]).expect("a file");
+
+    let (kind, components, data) = array(&file, "points");
+    assert_eq!((kind.as_str(), components), ("Float64", 3));
+    let expected: Vec<f64> = mesh.x.iter().zip(&mesh.y).flat_map(|(x, y)| [*x, *y, 0.0]).collect();
+    assert_eq!(decoded(&data, f64::from_le_bytes), expected, "coordinates keep all their digits");
+
+    let connectivity = decoded(&array(&file, "connectivity").2, i32::from_le_bytes);
+    let offsets = decoded(&array(&file, "offsets").2, i64::from_le_bytes);
+    let types = array(&file, "types").2;
+    assert_eq!((offsets.len(), types.len()), (mesh.elements(), mesh.elements()));
+    let mut from = 0;
+    for (cell, (end, kind)) in offsets.iter().zip(&types).enumerate() {
+        let found: Vec<u32> = connectivity[from..*end as usize].iter().map(|n| *n as u32).collect();
+        let (corners, code) = match mesh.quads.get(cell) {
+            Some(quad) => (quad.to_vec(), 9),
+            None => (mesh.triangles[cell - mesh.quads.len()].to_vec(), 5),
+        };
+        assert_eq!((found, *kind), (corners, code), "cell {cell}");
+        from = *end as usize;
+    }
+    assert_eq!(from, connectivity.len());
+
+    let (kind, components, data) = array(&file, "height &lt;m&gt;");
+    assert_eq!((kind.as_str(), components), ("Float32", 1));
+    let expected: Vec<f32> = height.iter().map(|h| *h as f32).collect();
+    assert_eq!(decoded(&data, f32::from_le_bytes), expected);
+    let (_, components, data) = array(&file, "velocity");
+    assert_eq!(components, 3);
+    let expected: Vec<f32> = velocity.iter().flatten().map(|v| *v as f32).collect();
+    assert_eq!(decoded(&data, f32::from_le_bytes), expected);
+    let numbers = decoded(&array(&file, "number").2, f32::from_le_bytes);
+    assert_eq!(numbers.last(), Some(&(mesh.elements() as f32 - 1.0)));
+
+    let bodies = decoded(&array(&file, "body").2, i32::from_le_bytes);
+    for (index, body) in mesh.bodies.iter().enumerate() {
+        assert!(body.quads.clone().all(|q| bodies[q] == index as i32));
+        assert!(body.triangles.clone().all(|t| bodies[mesh.quads.len() + t] == index as i32));
+    }
+}
+
+#[test]
+fn invariant_header_counts_points_and_cells() {
+    let mesh = mesh();
+    let mut file = Vec::new();
+    vtu::write(&mut file, &mesh, &[], &[]).expect("a file");
+    let text = String::from_utf8_lossy(&file);
+    let piece = text.lines().find(|l| l.starts_with("<Piece")).expect("a piece");
+    assert_eq!(attribute(piece, "NumberOfPoints"), mesh.x.len().to_string());
+    assert_eq!(attribute(piece, "NumberOfCells"), mesh.elements().to_string());
+    assert!(file.ends_with(b"\n</AppendedData>\n</VTKFile>\n"));
+}
+
+#[test]
+fn invariant_meshes_of_one_kind_or_none() {
+    let mut triangle = Mesh::new();
+    let (x, y) = (vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]);
+    triangle.add("triangle", &Part { x, y, triangles: vec![[0, 1, 2]], ..Part::default() });
+    for (mesh, expected) in [(triangle, vec![3]), (Mesh::new(), vec![])] {
+        let mut file = Vec::new();
+        vtu::write(&mut file, &mesh, &[], &[]).expect("a file");
+        assert_eq!(decoded(&array(&file, "offsets").2, i64::from_le_bytes), expected);
+    }
+}
+
+#[test]
+fn invariant_refusals_name_the_array() {
+    let mesh = mesh();
+    let short = [1.0, 2.0];
+    let fields = [vtu::Field::scalar("pressure", &short)];
+    let message = vtu::write(&mut Vec::new(), &mesh, &fields, &[]).expect_err("too short").to_string();
+    assert!(message.contains("`pressure`") && message.contains("2 entries"), "{message}");
+    let result = vtu::write(&mut Vec::new(), &mesh, &[], &fields);
+    assert!(matches!(result, Err(Error::ArrayLength { of: "elements", .. })));
+
+    let mut full: &mut [u8] = &mut [0; 10];
+    assert!(matches!(vtu::write(&mut full, &mesh, &[], &[]), Err(Error::Write(_))));
+}

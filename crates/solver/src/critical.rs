@@ -1,0 +1,197 @@
+//! Critical time step from the largest natural frequency of the whole model, contact included (THEORY §2.4).
+
+use crate::{
+    dynamics::Dynamics,
+    element::{quad_forces, triangle_forces},
+    force::Force,
+};
+
+/// Result of the frequency iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// Critical time step 2 / ω_max [s], ω_max taken at its upper bound.
+    pub time_step: f64,
+    /// Upper bound of the largest natural frequency [rad/s].
+    pub frequency: f64,
+    /// Lanczos iterations.
+    pub iterations: usize,
+    /// Bound of the error of ω², relative.
+    pub residual: f64,
+}
+
+/// Relative residual of ω² at which the iteration stops.
+const ACCURACY: f64 = 2e-3;
+
+/// Most Lanczos iterations.
+const ITERATIONS: usize = 400;
+
+/// Displacement of a probe [m]: strains of about 1e-6, where the response is linear and rounding is 1e-8 of it.
+const PROBE: f64 = 1e-9;
+
+impl Dynamics {
+    /// Elastic forces [N] of all elements at positions `x`, `y`, added to `fx`, `fy`.
+    pub fn elastic_forces(&self, x: &[f64], y: &[f64], fx: &mut [f64], fy: &mut [f64]) {
+        let elements = self.elements();
+        for body in &elements.bodies {
+            for (c, reference) in &elements.quads[body.quads.clone()] {
+                let c = c.map(|n| n as usize);
+                let f = quad_forces(c.map(|n| x[n]), c.map(|n| y[n]), reference, &body.stiffness);
+                for (n, f) in c.into_iter().zip(f) {
+                    fx[n] += f[0];
+                    fy[n] += f[1];
+                }
+            }
+            for (c, reference) in &elements.triangles[body.triangles.clone()] {
+                let c = c.map(|n| n as usize);
+                let [f, g] = triangle_forces(c.map(|n| x[n]), c.map(|n| y[n]), reference, &body.stiffness);
+                for (n, f) in c.into_iter().zip([f, g, [-f[0] - g[0], -f[1] - g[1]]]) {
+                    fx[n] += f[0];
+                    fy[n] += f[1];
+                }
+            }
+        }
+    }
+
+    /// Critical time step of elements and forces at the present positions.
+    ///
+    /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add in
+    /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms).
+    pub fn critical_time_step(&self, forces: &[&dyn Force], dt: f64) -> Critical {
+        let mut bound = vec![0.0; self.state.x.len()];
+        forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
+        let free: Vec<usize> = self.elastic_slots();
+        let operator = Operator { dynamics: self, bound, free };
+        operator.largest()
+    }
+}
+
+struct Operator<'a> {
+    dynamics: &'a Dynamics,
+    bound: Vec<f64>,
+    free: Vec<usize>,
+}
+
+/// Positions and forces of a probe.
+#[derive(Default, Clone)]
+struct Field {
+    x: Vec<f64>,
+    y: Vec<f64>,
+}
+
+impl Operator<'_> {
+    /// out = M⁻½ (K + D) M⁻½ v, with K from central differences of the elastic forces.
+    fn apply(&self, v: &[f64], out: &mut [f64], at: &mut Field, force: &mut [Field; 2]) {
+        let d = self.dynamics;
+        let (mass, n) = (d.mass(), self.free.len());
+        let largest = v.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let lightest = self.free.iter().map(|&s| mass[s]).fold(f64::INFINITY, f64::min);
+        let h = PROBE * lightest.sqrt() / largest;
+        for (side, sign) in force.iter_mut().zip([1.0, -1.0]) {
+            at.x.copy_from_slice(&d.state.x);
+            at.y.copy_from_slice(&d.state.y);
+            for (i, &s) in self.free.iter().enumerate() {
+                let scale = sign * h / mass[s].sqrt();
+                at.x[s] += scale * v[i];
+                at.y[s] += scale * v[n + i];
+            }
+            side.x.fill(0.0);
+            side.y.fill(0.0);
+            d.elastic_forces(&at.x, &at.y, &mut side.x, &mut side.y);
+        }
+        let [plus, minus] = force;
+        for (i, &s) in self.free.iter().enumerate() {
+            let root = mass[s].sqrt();
+            let diagonal = self.bound[s] / mass[s];
+            out[i] = (minus.x[s] - plus.x[s]) / (2.0 * h * root) + diagonal * v[i];
+            out[n + i] = (minus.y[s] - plus.y[s]) / (2.0 * h * root) + diagonal * v[n + i];
+        }
+    }
+
+    fn largest(&self) -> Critical {
+        let n = 2 * self.free.len();
+        let slots = self.dynamics.state.x.len();
+        let field = || Field { x: vec![0.0; slots], y: vec![0.0; slots] };
+        let (mut at, mut force) = (field(), [field(), field()]);
+        // A fixed, rough start vector has a part along every mode.
+        let mut seed = 0x2545_f491_4f6c_dd1d_u64;
+        let mut v: Vec<f64> = (0..n)
+            .map(|_| {
+                seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+            })
+            .collect();
+        normalise(&mut v);
+        let (mut before, mut w) = (vec![0.0; n], vec![0.0; n]);
+        let (mut alpha, mut beta) = (Vec::new(), Vec::new());
+        let mut critical = Critical { time_step: f64::NAN, frequency: f64::NAN, iterations: 0, residual: 1.0 };
+        for k in 1..=ITERATIONS.min(n.max(1)) {
+            self.apply(&v, &mut w, &mut at, &mut force);
+            let last_beta = beta.last().copied().unwrap_or(0.0);
+            let a: f64 = w.iter().zip(&v).map(|(p, q)| p * q).sum();
+            for i in 0..n {
+                w[i] -= a * v[i] + last_beta * before[i];
+            }
+            alpha.push(a);
+            let b = w.iter().map(|p| p * p).sum::<f64>().sqrt();
+            let (value, tail) = largest_of_tridiagonal(&alpha, &beta);
+            let residual = b * tail.abs() / value;
+            let frequency = (value * (1.0 + residual)).sqrt();
+            critical = Critical { time_step: 2.0 / frequency, frequency, iterations: k, residual };
+            if residual < ACCURACY || b <= 1e-12 * value {
+                break;
+            }
+            beta.push(b);
+            before.copy_from_slice(&v);
+            v.iter_mut().zip(&w).for_each(|(v, w)| *v = w / b);
+        }
+        critical
+    }
+}
+
+fn normalise(v: &mut [f64]) {
+    let length = v.iter().map(|p| p * p).sum::<f64>().sqrt();
+    v.iter_mut().for_each(|p| *p /= length);
+}
+
+/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the sign count, and the last component of
+/// its unit eigenvector.
+fn largest_of_tridiagonal(alpha: &[f64], beta: &[f64]) -> (f64, f64) {
+    let n = alpha.len();
+    let off = |i: usize| if i == 0 || i > beta.len() { 0.0 } else { beta[i - 1] };
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for i in 0..n {
+        low = low.max(alpha[i]);
+        high = high.max(alpha[i] + off(i).abs() + if i + 1 < n { off(i + 1).abs() } else { 0.0 });
+    }
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        // Number of negative pivots = number of eigenvalues below `middle`.
+        let mut pivot = 1.0;
+        let mut below = 0;
+        for i in 0..n {
+            let b = off(i);
+            pivot = alpha[i] - middle - b * b / pivot;
+            if pivot == 0.0 {
+                pivot = f64::MIN_POSITIVE;
+            }
+            below += usize::from(pivot < 0.0);
+        }
+        if below == n { high = middle } else { low = middle }
+    }
+    let value = high;
+    // Eigenvector by the recurrence from the first row, scaled as it goes.
+    let (mut previous, mut current, mut squares) = (0.0, 1.0, 1.0);
+    for i in 1..n {
+        let next = ((value - alpha[i - 1]) * current - off(i - 1) * previous) / off(i);
+        previous = current;
+        current = next;
+        squares += next * next;
+        if squares > 1e200 {
+            let scale = 1.0 / squares.sqrt();
+            previous *= scale;
+            current *= scale;
+            squares = 1.0;
+        }
+    }
+    (value, current / squares.sqrt())
+}

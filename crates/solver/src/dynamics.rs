@@ -1,0 +1,390 @@
+//! The time loop's one step, and what is known about the model while it runs.
+
+use std::sync::Mutex;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
+    error::{Error, check},
+    force::Force,
+    layout::{Layout, lay_out},
+    model::{Behaviour, Model, Motion},
+    rigid::{RigidBody, RigidMotion, RigidState},
+    state::{Moment, NodeForces, State},
+    sweep::{Drive, Scratch, TileFields, sweep},
+    tile::Tile,
+};
+
+/// A model in motion.
+#[derive(Debug)]
+pub struct Dynamics {
+    /// What changes in time.
+    pub state: State,
+    /// Place and motion of each rigid body, in the order of the mesh.
+    pub rigid: Vec<RigidState>,
+    /// Work of prescribed motions since the start [J].
+    pub drive: DriveWork,
+    layout: Layout,
+    tiles: Vec<Tile>,
+    rigid_bodies: Vec<RigidBody>,
+    mass: Vec<f64>,
+    motion: Vec<Motion>,
+    elements: Elements,
+    forces: NodeForces,
+    scratch: Vec<Mutex<Scratch>>,
+    time_step: f64,
+    gravity: [f64; 2],
+    parallel: bool,
+}
+
+/// Work of prescribed motions [J].
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct DriveWork {
+    /// Up to half a step after the positions' time.
+    total: f64,
+    /// Of the last step, half of which lies after the positions' time.
+    last: f64,
+}
+
+impl DriveWork {
+    /// Work up to the time of the positions before the last step [J].
+    pub fn at_last_positions(&self) -> f64 {
+        self.total - 0.5 * self.last
+    }
+}
+
+/// All elements in slot numbers, for energies and statics.
+#[derive(Debug, Clone)]
+pub(crate) struct Elements {
+    pub(crate) quads: Vec<([u32; 4], QuadReference)>,
+    pub(crate) triangles: Vec<([u32; 3], TriangleReference)>,
+    /// Ranges of one body's elastic elements.
+    pub(crate) bodies: Vec<ElasticBody>,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) struct ElasticBody {
+    pub(crate) quads: std::ops::Range<usize>,
+    pub(crate) triangles: std::ops::Range<usize>,
+    pub(crate) stiffness: Stiffness,
+}
+
+/// Elastic energy [J].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ElasticEnergy {
+    /// Strain energy.
+    pub strain: f64,
+    /// Energy in the hourglass stiffness.
+    pub hourglass: f64,
+}
+
+impl Dynamics {
+    /// Lays the model out for `threads` workers. `loaded` says which nodes other forces may push.
+    ///
+    /// # Errors
+    /// When the model holds impossible numbers, elements or nodes.
+    pub fn new(model: &Model, loaded: &[bool], threads: usize) -> Result<Self, Error> {
+        model.check()?;
+        let (quads, triangles) = model.references()?;
+        let masses = model.masses(&quads, &triangles)?;
+        let layout = lay_out(model, &quads, &triangles);
+        let at_slot = |f: &dyn Fn(usize) -> f64, ghost: f64| -> Vec<f64> {
+            let mut v: Vec<f64> =
+                layout.node_of_slot.iter().map(|n| n.map_or(ghost, |n| f(n as usize))).collect();
+            if ghost == 0.0 {
+                layout.ghosts.iter().for_each(|&(g, _)| v[g as usize] = 0.0);
+            }
+            v
+        };
+        let mass = at_slot(&|n| masses[n], 0.0);
+        let mut state = State {
+            x: at_slot(&|n| model.mesh.x[n], f64::NAN),
+            y: at_slot(&|n| model.mesh.y[n], f64::NAN),
+            vx: vec![0.0; layout.len()],
+            vy: vec![0.0; layout.len()],
+            ..State::default()
+        };
+        pad(&layout, &mut state);
+
+        let motion: Vec<Motion> = layout
+            .node_of_slot
+            .iter()
+            .map(|n| n.map_or(Motion::Free, |n| model.motion[n as usize]))
+            .collect();
+        let is_loaded: Vec<bool> =
+            layout.node_of_slot.iter().map(|n| n.is_some_and(|n| loaded[n as usize])).collect();
+        let mut tiles = Vec::new();
+        let (mut rigid_bodies, mut rigid) = (Vec::new(), Vec::new());
+        for t in &layout.tiles {
+            if model.behaviour[t.body] == Behaviour::Rigid {
+                let (body, at) = RigidBody::new(t.body, t.slots.clone(), &state.x, &state.y, &mass);
+                rigid_bodies.push(body);
+                rigid.push(at);
+            }
+            let stiffness = model.stiffness(t.body);
+            let (moves, pushed) = (&motion[t.slots.clone()], &is_loaded[t.slots.clone()]);
+            let mut tile = Tile::new(t, &quads, &triangles, stiffness, moves, pushed);
+            if model.behaviour[t.body] == Behaviour::Rigid {
+                tile.finish.clear();
+                tile.loaded.clear();
+            }
+            tiles.push(tile);
+        }
+        let largest = tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
+        let elements = Elements::new(model, &layout, &quads, &triangles);
+        let n = layout.len();
+        Ok(Self {
+            state,
+            rigid,
+            drive: DriveWork::default(),
+            tiles,
+            rigid_bodies,
+            mass,
+            motion,
+            elements,
+            forces: NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] },
+            scratch: (0..threads.max(1)).map(|_| Mutex::new(Scratch::new(largest))).collect(),
+            time_step: 0.0,
+            gravity: model.gravity,
+            parallel: threads > 1,
+            layout,
+        })
+    }
+
+    /// Where every node lives.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Mass of each slot [kg]; zero for ghosts and padding.
+    pub fn mass(&self) -> &[f64] {
+        &self.mass
+    }
+
+    /// All elements, in slot numbers.
+    pub(crate) fn elements(&self) -> &Elements {
+        &self.elements
+    }
+
+    /// Own slots of elastic bodies: what moves by mass and force.
+    pub(crate) fn elastic_slots(&self) -> Vec<usize> {
+        let tiles = self.tiles.iter().filter(|t| !t.finish.is_empty());
+        tiles.flat_map(|t| t.slots.start..t.slots.start + t.own).filter(|&n| self.mass[n] > 0.0).collect()
+    }
+
+    /// Whether (x, y) of a slot answer to forces.
+    pub(crate) fn free_components(&self, slot: usize) -> [bool; 2] {
+        match self.motion[slot] {
+            Motion::Free => [true, true],
+            Motion::HeldX => [false, true],
+            Motion::HeldY => [true, false],
+            Motion::Held | Motion::Rotating { .. } => [false, false],
+        }
+    }
+
+    /// Acceleration of gravity [m/s²].
+    pub fn gravity(&self) -> [f64; 2] {
+        self.gravity
+    }
+
+    /// The time step [s].
+    pub fn time_step(&self) -> f64 {
+        self.time_step
+    }
+
+    /// Sets the time step [s].
+    ///
+    /// # Errors
+    /// When it is not positive.
+    pub fn set_time_step(&mut self, dt: f64) -> Result<(), Error> {
+        check("time step [s]", dt, dt > 0.0, "positive")?;
+        self.time_step = dt;
+        for tile in &mut self.tiles {
+            let mass = &self.mass[tile.slots.clone()];
+            tile.step_over_mass = mass.iter().map(|&m| if m > 0.0 { dt / m } else { 0.0 }).collect();
+        }
+        Ok(())
+    }
+
+    /// The moment that forces see.
+    pub fn moment(&self) -> Moment<'_> {
+        let s = &self.state;
+        Moment {
+            step: s.step,
+            time: s.time,
+            dt: self.time_step,
+            x: &s.x,
+            y: &s.y,
+            vx: &s.vx,
+            vy: &s.vy,
+        }
+    }
+
+    /// One step: everything pushes, every tile sums its elements and moves its nodes (THEORY §2.3).
+    ///
+    /// With more than one thread, call it from within a rayon pool of that size.
+    pub fn step(&mut self, forces: &mut [&mut dyn Force]) {
+        let mut pushed = std::mem::take(&mut self.forces);
+        for force in forces {
+            force.accumulate(self.moment(), &mut pushed);
+        }
+        self.forces = pushed;
+        for &(ghost, owner) in &self.layout.ghosts {
+            self.state.x[ghost as usize] = self.state.x[owner as usize];
+            self.state.y[ghost as usize] = self.state.y[owner as usize];
+        }
+        self.sweep_tiles();
+        for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid) {
+            body.advance(at, &mut self.state, &mut self.forces, self.time_step, self.gravity);
+        }
+        self.state.step += 1;
+        self.state.time = self.state.step as f64 * self.time_step;
+    }
+
+    fn sweep_tiles(&mut self) {
+        let fields = TileFields {
+            x: &mut self.state.x,
+            y: &mut self.state.y,
+            vx: &mut self.state.vx,
+            vy: &mut self.state.vy,
+            fx: &mut self.forces.fx,
+            fy: &mut self.forces.fy,
+        };
+        let drive = Drive { dt: self.time_step, gravity: self.gravity };
+        let scratch = if self.parallel { self.scratch.as_slice() } else { &self.scratch[..1] };
+        let work = sweep_all(&self.tiles, fields, scratch, drive);
+        self.drive.total += work;
+        self.drive.last = work;
+    }
+
+    /// Strain and hourglass energy of the present positions [J].
+    pub fn elastic_energy(&self) -> ElasticEnergy {
+        let (x, y) = (&self.state.x, &self.state.y);
+        let mut sum = ElasticEnergy::default();
+        for body in &self.elements.bodies {
+            let k = &body.stiffness;
+            for (c, reference) in &self.elements.quads[body.quads.clone()] {
+                let [strain, hourglass] =
+                    quad_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
+                sum.strain += strain;
+                sum.hourglass += hourglass;
+            }
+            for (c, reference) in &self.elements.triangles[body.triangles.clone()] {
+                sum.strain +=
+                    triangle_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
+            }
+        }
+        sum
+    }
+
+    /// Kinetic energy [J] at the positions before the last step, given the velocities and rigid states before it:
+    /// ½ m v⁻·v⁺, the form that a linear model conserves exactly (THEORY §2.5).
+    pub fn kinetic_energy(&self, vx: &[f64], vy: &[f64], rigid: &[RigidState]) -> f64 {
+        let s = &self.state;
+        let mut sum = 0.0;
+        for tile in self.tiles.iter().filter(|t| !t.finish.is_empty()) {
+            for n in tile.slots.clone() {
+                sum += 0.5 * self.mass[n] * (vx[n] * s.vx[n] + vy[n] * s.vy[n]);
+            }
+        }
+        for ((body, before), after) in self.rigid_bodies.iter().zip(rigid).zip(&self.rigid) {
+            sum += body.kinetic(before, after);
+        }
+        sum
+    }
+
+    /// Work of gravity [J] if every node had come from the origin: −(potential energy).
+    pub fn gravity_work(&self) -> f64 {
+        let [gx, gy] = self.gravity;
+        if gx == 0.0 && gy == 0.0 {
+            return 0.0;
+        }
+        let s = &self.state;
+        (0..self.mass.len()).map(|n| self.mass[n] * (gx * s.x[n] + gy * s.y[n])).sum()
+    }
+
+    /// The rigid part of a body's motion, from the nodes of the given slots.
+    pub fn rigid_motion(&self, slots: &[u32]) -> RigidMotion {
+        let s = &self.state;
+        RigidMotion::of(slots.iter().map(|&n| {
+            let n = n as usize;
+            (self.mass[n], [s.x[n], s.y[n]], [s.vx[n], s.vy[n]])
+        }))
+    }
+
+    /// Gives rigid body `at` (in mesh order of rigid bodies) a velocity [m/s] and spin [rad/s] about its centre.
+    pub fn launch_rigid(&mut self, at: usize, velocity: [f64; 2], spin: f64) {
+        self.rigid[at].velocity = velocity;
+        self.rigid[at].spin = spin;
+    }
+
+    /// Mesh body number of each rigid body.
+    pub fn rigid_body_numbers(&self) -> impl Iterator<Item = usize> {
+        self.rigid_bodies.iter().map(|r| r.body)
+    }
+}
+
+/// Padding lanes of congruent tiles copy their neighbour's place, so that their elements rest.
+fn pad(layout: &Layout, state: &mut State) {
+    for slot in 1..layout.len() {
+        if layout.node_of_slot[slot].is_none() {
+            state.x[slot] = state.x[slot - 1];
+            state.y[slot] = state.y[slot - 1];
+        }
+    }
+}
+
+/// Sweeps tiles, halving the list while there are threads to share it; the sum of works has the order of the tree.
+fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>], drive: Drive) -> f64 {
+    match tiles {
+        [] => 0.0,
+        [tile] => {
+            let worker = rayon::current_thread_index().unwrap_or(0) % scratch.len();
+            let mut scratch = scratch[worker].lock().unwrap_or_else(|e| e.into_inner());
+            sweep(tile, fields, &mut scratch, drive)
+        }
+        _ => {
+            let (left, right) = tiles.split_at(tiles.len() / 2);
+            let cut = right[0].slots.start - left[0].slots.start;
+            let (a, b) = fields.split_at(cut);
+            let (p, q) = if scratch.len() > 1 {
+                rayon::join(|| sweep_all(left, a, scratch, drive), || sweep_all(right, b, scratch, drive))
+            } else {
+                (sweep_all(left, a, scratch, drive), sweep_all(right, b, scratch, drive))
+            };
+            p + q
+        }
+    }
+}
+
+impl<'a> TileFields<'a> {
+    fn split_at(self, at: usize) -> (TileFields<'a>, TileFields<'a>) {
+        let (x, x2) = self.x.split_at_mut(at);
+        let (y, y2) = self.y.split_at_mut(at);
+        let (vx, vx2) = self.vx.split_at_mut(at);
+        let (vy, vy2) = self.vy.split_at_mut(at);
+        let (fx, fx2) = self.fx.split_at_mut(at);
+        let (fy, fy2) = self.fy.split_at_mut(at);
+        (TileFields { x, y, vx, vy, fx, fy }, TileFields { x: x2, y: y2, vx: vx2, vy: vy2, fx: fx2, fy: fy2 })
+    }
+}
+
+impl Elements {
+    fn new(model: &Model, layout: &Layout, quads: &[QuadReference], triangles: &[TriangleReference]) -> Self {
+        let slot = |n: u32| layout.slot_of_node[n as usize];
+        let elastic = |b: &usize| model.behaviour[*b] == Behaviour::Elastic;
+        Self {
+            quads: model.mesh.quads.iter().zip(quads).map(|(c, r)| (c.map(slot), *r)).collect(),
+            triangles: model.mesh.triangles.iter().zip(triangles).map(|(c, r)| (c.map(slot), *r)).collect(),
+            bodies: (0..model.mesh.bodies.len())
+                .filter(elastic)
+                .map(|b| ElasticBody {
+                    quads: model.mesh.bodies[b].quads.clone(),
+                    triangles: model.mesh.bodies[b].triangles.clone(),
+                    stiffness: model.stiffness(b),
+                })
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! What can go wrong in this crate.
+
+/// Errors of the solver.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number is outside its range.
+    #[error("{field} = {value}: must be {allowed}")]
+    OutOfRange {
+        /// Name of the quantity.
+        field: &'static str,
+        /// The value given.
+        value: f64,
+        /// The values allowed, in words.
+        allowed: &'static str,
+    },
+    /// An element has no or negative area.
+    #[error("element {element} of body `{body}` has area {area:e} m²: corners must run counter-clockwise around a positive area")]
+    BadElement {
+        /// Body name.
+        body: String,
+        /// Element number within the mesh.
+        element: usize,
+        /// Signed area [m²].
+        area: f64,
+    },
+    /// A node carries no mass although it may move.
+    #[error("node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid")]
+    MasslessNode {
+        /// Body name.
+        body: String,
+        /// Node number within the mesh.
+        node: usize,
+    },
+    /// The static preload did not find equilibrium.
+    #[error("static preload did not converge: after {iterations} iterations the unbalanced force is {residual_n:.3e} N, allowed {allowed_n:.3e} N, largest at x = {x_mm:.3} mm, y = {y_mm:.3} mm of body `{body}`; {advice}")]
+    NoEquilibrium {
+        /// Newton iterations done.
+        iterations: usize,
+        /// Unbalanced force [N].
+        residual_n: f64,
+        /// What would have been accepted [N].
+        allowed_n: f64,
+        /// Body with the largest unbalanced force.
+        body: String,
+        /// Where [mm].
+        x_mm: f64,
+        /// Where [mm].
+        y_mm: f64,
+        /// What to try.
+        advice: &'static str,
+    },
+    /// The static stiffness matrix could not be factorised.
+    #[error("static preload: the stiffness matrix could not be factorised ({0}); a body is probably held by nothing: check constraints and contacts")]
+    Factorisation(String),
+}
+
+/// Checks that `value` is finite and `ok`.
+pub(crate) fn check(field: &'static str, value: f64, ok: bool, allowed: &'static str) -> Result<(), Error> {
+    if value.is_finite() && ok { Ok(()) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}

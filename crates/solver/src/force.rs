@@ -1,0 +1,62 @@
+//! Anything that pushes on nodes besides the elements: contact, loads.
+
+use crate::state::{Energy, Moment, NodeForces};
+
+/// One rank-one piece of a tangent stiffness, k · d dᵀ over up to four nodes.
+#[derive(Debug, Clone, Copy)]
+pub struct RankOne {
+    /// Slots.
+    pub nodes: [u32; 4],
+    /// Direction, (x, y) of each node in turn; zeros for nodes that are not used.
+    pub direction: [f64; 8],
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+}
+
+/// Anything that pushes on nodes.
+pub trait Force {
+    /// Adds this force [N] to every node it touches.
+    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces);
+
+    /// Energy stored now; dissipated and supplied since the start [J].
+    fn energy(&self) -> Energy {
+        Energy::default()
+    }
+
+    /// Adds to each node an upper bound of the stiffness [N/m] that this force can give it, damping included:
+    /// the sum over nodes of bound · |u|² is never below the force's own quadratic form (THEORY §2.4).
+    fn stiffness_bound(&self, _dt: f64, _bound: &mut [f64]) {}
+
+    /// Visits the tangent stiffness at positions `x`, `y` [m], those last given to `accumulate`.
+    fn tangent(&self, _x: &[f64], _y: &[f64], _visit: &mut dyn FnMut(RankOne)) {}
+}
+
+/// Constant forces on nodes.
+#[derive(Debug, Clone, Default)]
+pub struct NodalLoad {
+    loads: Vec<(u32, f64, f64)>,
+    supplied: f64,
+}
+
+impl NodalLoad {
+    /// Loads as (slot, force x [N], force y [N]).
+    pub fn new(loads: Vec<(u32, f64, f64)>) -> Self {
+        Self { loads, supplied: 0.0 }
+    }
+}
+
+impl Force for NodalLoad {
+    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+        for &(node, fx, fy) in &self.loads {
+            let n = node as usize;
+            force.fx[n] += fx;
+            force.fy[n] += fy;
+            // The velocity times the step is the displacement since the last call.
+            self.supplied += at.dt * (fx * at.vx[n] + fy * at.vy[n]);
+        }
+    }
+
+    fn energy(&self) -> Energy {
+        Energy { supplied: self.supplied, ..Energy::default() }
+    }
+}

@@ -1,0 +1,252 @@
+//! How nodes and elements lie in memory (design: PERFORMANCE.md).
+//!
+//! Nodes live in **slots**. A **tile** is a run of slots that one thread works on: its own nodes, then *ghosts*,
+//! copies of neighbours' nodes that its seam elements read. A tile computes every element that touches one of its
+//! own nodes, so no two tiles write to the same node and the sum at a node has one fixed order whatever the number
+//! of threads.
+//!
+//! Two kinds of tile: a piece of one body, whose quadrilaterals form strips; and eight congruent bodies side by
+//! side, node by node, so that one instruction works on the same element of all eight.
+
+use std::ops::Range;
+
+use stribeck_mesh::Mesh;
+
+use crate::{
+    element::{QuadReference, TriangleReference},
+    model::{Behaviour, Model, Motion},
+};
+
+/// Congruent bodies that share a tile.
+pub(crate) const LANES: usize = 8;
+
+/// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
+const TILE_NODES: usize = 8000;
+
+/// No slot.
+const NONE: u32 = u32::MAX;
+
+/// Where every node lives.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    /// Slot of each mesh node.
+    pub slot_of_node: Vec<u32>,
+    /// Mesh node of each slot; ghosts name the node that they copy, padding names `None`.
+    pub node_of_slot: Vec<Option<u32>>,
+    /// (ghost slot, slot of the node it copies), ascending.
+    pub(crate) ghosts: Vec<(u32, u32)>,
+    /// The tiles, in slot order.
+    pub(crate) tiles: Vec<TileLayout>,
+}
+
+/// One tile, in local slot numbers (relative to `slots.start`).
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TileLayout {
+    /// Slots, own and ghosts.
+    pub(crate) slots: Range<usize>,
+    /// How many of them are own.
+    pub(crate) own: usize,
+    /// The body of the (first) elements; all elements of a tile share one material.
+    pub(crate) body: usize,
+    /// Quadrilaterals, local corners, and their number in the mesh. In a tile of congruent bodies those of the
+    /// first body, whose corners are multiples of [`LANES`].
+    pub(crate) quads: Vec<([u32; 4], usize)>,
+    /// Triangles, likewise.
+    pub(crate) triangles: Vec<([u32; 3], usize)>,
+    /// True for a tile of congruent bodies.
+    pub(crate) congruent: bool,
+}
+
+/// Lays a model out.
+pub(crate) fn lay_out(model: &Model, quads: &[QuadReference], triangles: &[TriangleReference]) -> Layout {
+    let mesh = &model.mesh;
+    let mut layout = Layout {
+        slot_of_node: vec![NONE; mesh.x.len()],
+        node_of_slot: Vec::new(),
+        ghosts: Vec::new(),
+        tiles: Vec::new(),
+    };
+    let groups = congruent_groups(model, quads, triangles);
+    for group in &groups {
+        match group.as_slice() {
+            [body] => layout.add_body(model, *body),
+            bodies => bodies.chunks(LANES).for_each(|some| layout.add_congruent(mesh, some)),
+        }
+    }
+    layout
+}
+
+impl Layout {
+    /// Number of slots.
+    pub fn len(&self) -> usize {
+        self.node_of_slot.len()
+    }
+
+    /// True when there is no slot.
+    pub fn is_empty(&self) -> bool {
+        self.node_of_slot.is_empty()
+    }
+
+    fn add_congruent(&mut self, mesh: &Mesh, bodies: &[usize]) {
+        let first = &mesh.bodies[bodies[0]];
+        let start = self.len();
+        for n in 0..first.nodes.len() {
+            for lane in 0..LANES {
+                let node = bodies.get(lane).map(|&b| mesh.bodies[b].nodes.start + n);
+                if let Some(node) = node {
+                    self.slot_of_node[node] = self.len() as u32;
+                }
+                self.node_of_slot.push(node.map(|n| n as u32));
+            }
+        }
+        let local = |n: u32| (n - first.nodes.start as u32) * LANES as u32;
+        self.tiles.push(TileLayout {
+            slots: start..self.len(),
+            own: self.len() - start,
+            body: bodies[0],
+            quads: first.quads.clone().map(|e| (mesh.quads[e].map(local), e)).collect(),
+            triangles: first.triangles.clone().map(|e| (mesh.triangles[e].map(local), e)).collect(),
+            congruent: true,
+        });
+    }
+
+    fn add_body(&mut self, model: &Model, b: usize) {
+        let mesh = &model.mesh;
+        let body = &mesh.bodies[b];
+        let tile_of_node = match model.behaviour[b] {
+            Behaviour::Elastic => bisect(mesh, body.nodes.clone()),
+            Behaviour::Rigid => vec![0; body.nodes.len()],
+        };
+        let tiles = tile_of_node.iter().max().map_or(0, |&t| t + 1);
+        let of = |n: u32| tile_of_node[n as usize - body.nodes.start];
+
+        // Own nodes of all tiles first, so that ghosts can name them.
+        let mut own: Vec<Vec<u32>> = vec![Vec::new(); tiles];
+        for n in body.nodes.clone() {
+            own[of(n as u32)].push(n as u32);
+        }
+        let mut quads: Vec<Vec<usize>> = vec![Vec::new(); tiles];
+        let mut triangles: Vec<Vec<usize>> = vec![Vec::new(); tiles];
+        if model.behaviour[b] == Behaviour::Elastic {
+            for e in body.quads.clone() {
+                each_tile(&mesh.quads[e].map(of), |t| quads[t].push(e));
+            }
+            for e in body.triangles.clone() {
+                each_tile(&mesh.triangles[e].map(of), |t| triangles[t].push(e));
+            }
+        }
+        let mut local = vec![NONE; body.nodes.len()];
+        for t in 0..tiles {
+            let start = self.len();
+            for &n in &own[t] {
+                self.slot_of_node[n as usize] = self.len() as u32;
+                local[n as usize - body.nodes.start] = (self.len() - start) as u32;
+                self.node_of_slot.push(Some(n));
+            }
+            let mut ghosts = Vec::new();
+            let corner_lists = quads[t]
+                .iter()
+                .flat_map(|&e| mesh.quads[e])
+                .chain(triangles[t].iter().flat_map(|&e| mesh.triangles[e]));
+            for n in corner_lists {
+                let entry = &mut local[n as usize - body.nodes.start];
+                if *entry == NONE {
+                    *entry = (self.len() - start) as u32;
+                    self.node_of_slot.push(Some(n));
+                    ghosts.push(n);
+                }
+            }
+            let at = |n: u32| local[n as usize - body.nodes.start];
+            self.tiles.push(TileLayout {
+                slots: start..self.len(),
+                own: own[t].len(),
+                body: b,
+                quads: quads[t].iter().map(|&e| (mesh.quads[e].map(at), e)).collect(),
+                triangles: triangles[t].iter().map(|&e| (mesh.triangles[e].map(at), e)).collect(),
+                congruent: false,
+            });
+            for n in own[t].iter().chain(&ghosts) {
+                local[*n as usize - body.nodes.start] = NONE;
+            }
+        }
+        for tile in &self.tiles[self.tiles.len() - tiles..] {
+            for ghost in tile.slots.start + tile.own..tile.slots.end {
+                let node = self.node_of_slot[ghost].expect("a ghost copies a node");
+                self.ghosts.push((ghost as u32, self.slot_of_node[node as usize]));
+            }
+        }
+    }
+}
+
+/// Calls `f` once for each distinct tile.
+fn each_tile(tiles: &[usize], mut f: impl FnMut(usize)) {
+    for (i, &t) in tiles.iter().enumerate() {
+        if !tiles[..i].contains(&t) {
+            f(t);
+        }
+    }
+}
+
+/// Tile of each node of a body: recursive bisection along the longer side until a tile is small enough.
+/// Within a tile nodes keep their order, so rows stay rows.
+fn bisect(mesh: &Mesh, nodes: Range<usize>) -> Vec<usize> {
+    let mut tile = vec![0; nodes.len()];
+    let mut next = 1;
+    let mut todo = vec![(0, nodes.clone().collect::<Vec<_>>())];
+    while let Some((t, members)) = todo.pop() {
+        if members.len() <= TILE_NODES {
+            continue;
+        }
+        let extent = |v: &[f64]| {
+            let (lo, hi) = members
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &n| (lo.min(v[n]), hi.max(v[n])));
+            hi - lo
+        };
+        let along = if extent(&mesh.x) >= extent(&mesh.y) { &mesh.x } else { &mesh.y };
+        let mut sorted = members;
+        sorted.sort_by(|&a, &b| along[a].total_cmp(&along[b]).then(a.cmp(&b)));
+        let upper = sorted.split_off(sorted.len() / 2);
+        for &n in &upper {
+            tile[n - nodes.start] = next;
+        }
+        todo.push((t, sorted));
+        todo.push((next, upper));
+        next += 1;
+    }
+    tile
+}
+
+/// Elastic bodies grouped by equal shape, connectivity and material; every other body is alone.
+fn congruent_groups(model: &Model, quads: &[QuadReference], triangles: &[TriangleReference]) -> Vec<Vec<usize>> {
+    let bodies = &model.mesh.bodies;
+    let congruent = |a: usize, b: usize| {
+        let (p, q) = (&bodies[a], &bodies[b]);
+        let same_corner = |m: u32, n: u32| m - p.nodes.start as u32 == n - q.nodes.start as u32;
+        model.behaviour[a] == Behaviour::Elastic
+            && model.behaviour[b] == Behaviour::Elastic
+            && model.materials[a] == model.materials[b]
+            && p.nodes.len() == q.nodes.len()
+            && p.nodes.clone().chain(q.nodes.clone()).all(|n| model.motion[n] == Motion::Free)
+            && p.nodes.len() * LANES <= 4 * TILE_NODES
+            && p.quads.len() == q.quads.len()
+            && p.triangles.len() == q.triangles.len()
+            && p.quads.clone().zip(q.quads.clone()).all(|(e, f)| {
+                let (c, d) = (model.mesh.quads[e], model.mesh.quads[f]);
+                c.into_iter().zip(d).all(|(m, n)| same_corner(m, n)) && quads[e].is_congruent(&quads[f])
+            })
+            && p.triangles.clone().zip(q.triangles.clone()).all(|(e, f)| {
+                let (c, d) = (model.mesh.triangles[e], model.mesh.triangles[f]);
+                c.into_iter().zip(d).all(|(m, n)| same_corner(m, n))
+                    && triangles[e].is_congruent(&triangles[f])
+            })
+    };
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for b in 0..bodies.len() {
+        match groups.iter_mut().find(|g| congruent(g[0], b)) {
+            Some(group) => group.push(b),
+            None => groups.push(vec![b]),
+        }
+    }
+    groups
+}

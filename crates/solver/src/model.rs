@@ -1,0 +1,154 @@
+//! What the user of the solver gives: a mesh, what its bodies are made of, and how nodes may move.
+
+use std::f64::consts::PI;
+
+use stribeck_mesh::Mesh;
+
+use crate::{
+    element::{QuadReference, Stiffness, TriangleReference, bad},
+    error::{Error, check},
+    material::Elastic,
+};
+
+/// How a body behaves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Behaviour {
+    /// Deforms elastically.
+    Elastic,
+    /// Moves as one piece; its elements give mass only.
+    Rigid,
+}
+
+/// How a node may move.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Motion {
+    /// By its forces.
+    #[default]
+    Free,
+    /// By its forces, x held.
+    HeldX,
+    /// By its forces, y held.
+    HeldY,
+    /// Not at all.
+    Held,
+    /// On a circle about `centre` [m] at `rate` [rad/s], counter-clockwise positive.
+    Rotating {
+        /// Centre of rotation [m].
+        centre: [f64; 2],
+        /// Angular velocity [rad/s].
+        rate: f64,
+    },
+}
+
+/// A mesh with materials, behaviour and constraints.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The mesh; positions are the stress-free reference.
+    pub mesh: Mesh,
+    /// Material of each body.
+    pub materials: Vec<Elastic>,
+    /// Behaviour of each body.
+    pub behaviour: Vec<Behaviour>,
+    /// Motion of each node.
+    pub motion: Vec<Motion>,
+    /// Out-of-plane thickness [m].
+    pub thickness: f64,
+    /// Hourglass stiffness, 1 = exact bending of a square.
+    pub hourglass_scale: f64,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: [f64; 2],
+}
+
+impl Model {
+    /// All bodies elastic, of one material, all nodes free, no gravity.
+    ///
+    /// # Errors
+    /// When the thickness is not positive.
+    pub fn new(mesh: Mesh, material: Elastic, thickness: f64) -> Result<Self, Error> {
+        check("thickness [m]", thickness, thickness > 0.0, "positive")?;
+        let (bodies, nodes) = (mesh.bodies.len(), mesh.x.len());
+        Ok(Self {
+            mesh,
+            materials: vec![material; bodies],
+            behaviour: vec![Behaviour::Elastic; bodies],
+            motion: vec![Motion::Free; nodes],
+            thickness,
+            hourglass_scale: 1.0,
+            gravity: [0.0; 2],
+        })
+    }
+
+    /// Element constants of a body.
+    pub fn stiffness(&self, body: usize) -> Stiffness {
+        Stiffness::new(&self.materials[body], self.thickness, self.hourglass_scale)
+    }
+
+    /// Corner positions of element `e` [m].
+    pub(crate) fn corners<const N: usize>(&self, e: &[u32; N]) -> [[f64; 2]; N] {
+        e.map(|n| [self.mesh.x[n as usize], self.mesh.y[n as usize]])
+    }
+
+    /// References of all quadrilaterals and triangles, in mesh order.
+    ///
+    /// # Errors
+    /// When an element has no positive area.
+    pub(crate) fn references(&self) -> Result<(Vec<QuadReference>, Vec<TriangleReference>), Error> {
+        let mut quads = Vec::with_capacity(self.mesh.quads.len());
+        let mut triangles = Vec::with_capacity(self.mesh.triangles.len());
+        for body in &self.mesh.bodies {
+            for e in body.quads.clone() {
+                let corners = self.corners(&self.mesh.quads[e]);
+                quads.push(QuadReference::new(&corners, self.thickness).map_err(bad(&body.name, e))?);
+            }
+            for e in body.triangles.clone() {
+                let corners = self.corners(&self.mesh.triangles[e]);
+                triangles.push(TriangleReference::new(&corners, self.thickness).map_err(bad(&body.name, e))?);
+            }
+        }
+        Ok((quads, triangles))
+    }
+
+    /// Lumped mass of every node [kg]: a quarter of each quadrilateral, a third of each triangle.
+    ///
+    /// # Errors
+    /// When a node of an elastic body belongs to no element.
+    pub(crate) fn masses(
+        &self,
+        quads: &[QuadReference],
+        triangles: &[TriangleReference],
+    ) -> Result<Vec<f64>, Error> {
+        let mut mass = vec![0.0; self.mesh.x.len()];
+        for (b, body) in self.mesh.bodies.iter().enumerate() {
+            let density = self.materials[b].density();
+            for e in body.quads.clone() {
+                for n in self.mesh.quads[e] {
+                    mass[n as usize] += 0.25 * density * quads[e].volume;
+                }
+            }
+            for e in body.triangles.clone() {
+                for n in self.mesh.triangles[e] {
+                    mass[n as usize] += density * triangles[e].volume / 3.0;
+                }
+            }
+            if let Some(node) = body.nodes.clone().find(|&n| mass[n] <= 0.0) {
+                return Err(Error::MasslessNode { body: body.name.clone(), node });
+            }
+        }
+        Ok(mass)
+    }
+
+    /// Checks numbers that the fields allow but the solver does not.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        check("thickness [m]", self.thickness, self.thickness > 0.0, "positive")?;
+        check("hourglass scale", self.hourglass_scale, self.hourglass_scale >= 0.0, "zero or positive")?;
+        check("gravity x [m/s²]", self.gravity[0], true, "finite")?;
+        check("gravity y [m/s²]", self.gravity[1], true, "finite")?;
+        for motion in &self.motion {
+            if let Motion::Rotating { rate, .. } = motion {
+                // Half a turn a millisecond is far beyond any bearing and still harmless.
+                check("rotation rate [rad/s]", *rate, rate.abs() < 1e6 * PI, "below π·10⁶")?;
+            }
+        }
+        Ok(())
+    }
+}

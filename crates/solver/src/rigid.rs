@@ -1,0 +1,149 @@
+//! Bodies that move as one piece, and the rigid part of the motion of bodies that do not.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+
+use crate::state::{NodeForces, State};
+
+/// Place and motion of a rigid body.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct RigidState {
+    /// Centre of mass [m].
+    pub centre: [f64; 2],
+    /// Rotation since the start [rad], counter-clockwise positive.
+    pub angle: f64,
+    /// Velocity of the centre [m/s], half a step earlier.
+    pub velocity: [f64; 2],
+    /// Angular velocity [rad/s], half a step earlier.
+    pub spin: f64,
+}
+
+/// What does not change about a rigid body.
+#[derive(Debug, Clone)]
+pub(crate) struct RigidBody {
+    pub(crate) body: usize,
+    slots: Range<usize>,
+    /// Node positions relative to the centre of mass at angle zero [m].
+    arm: Vec<[f64; 2]>,
+    pub(crate) mass: f64,
+    pub(crate) inertia: f64,
+}
+
+impl RigidBody {
+    /// From node positions and masses in `slots`.
+    pub(crate) fn new(
+        body: usize,
+        slots: Range<usize>,
+        x: &[f64],
+        y: &[f64],
+        mass: &[f64],
+    ) -> (Self, RigidState) {
+        let total: f64 = mass[slots.clone()].iter().sum();
+        let moment = |v: &[f64]| slots.clone().map(|n| mass[n] * v[n]).sum::<f64>() / total;
+        let centre = [moment(x), moment(y)];
+        let arm: Vec<[f64; 2]> = slots.clone().map(|n| [x[n] - centre[0], y[n] - centre[1]]).collect();
+        let inertia =
+            slots.clone().zip(&arm).map(|(n, a)| mass[n] * (a[0] * a[0] + a[1] * a[1])).sum::<f64>();
+        let state = RigidState { centre, ..RigidState::default() };
+        (Self { body, slots, arm, mass: total, inertia }, state)
+    }
+
+    /// One step under the forces on its nodes and gravity; moves the nodes.
+    pub(crate) fn advance(
+        &self,
+        at: &mut RigidState,
+        state: &mut State,
+        forces: &mut NodeForces,
+        dt: f64,
+        gravity: [f64; 2],
+    ) {
+        let (mut fx, mut fy, mut torque) = (0.0, 0.0, 0.0);
+        for n in self.slots.clone() {
+            let (px, py) = (forces.fx[n], forces.fy[n]);
+            if px != 0.0 || py != 0.0 {
+                fx += px;
+                fy += py;
+                torque += (state.x[n] - at.centre[0]) * py - (state.y[n] - at.centre[1]) * px;
+                forces.fx[n] = 0.0;
+                forces.fy[n] = 0.0;
+            }
+        }
+        at.velocity[0] += dt * (fx / self.mass + gravity[0]);
+        at.velocity[1] += dt * (fy / self.mass + gravity[1]);
+        at.spin += dt * torque / self.inertia;
+        at.centre[0] += dt * at.velocity[0];
+        at.centre[1] += dt * at.velocity[1];
+        at.angle += dt * at.spin;
+        self.place(at, state, Some(dt));
+    }
+
+    /// Puts the nodes where the body is; with a time step, also sets their velocities.
+    pub(crate) fn place(&self, at: &RigidState, state: &mut State, dt: Option<f64>) {
+        let (s, c) = at.angle.sin_cos();
+        for (n, a) in self.slots.clone().zip(&self.arm) {
+            let x = at.centre[0] + c * a[0] - s * a[1];
+            let y = at.centre[1] + s * a[0] + c * a[1];
+            if let Some(dt) = dt {
+                state.vx[n] = (x - state.x[n]) / dt;
+                state.vy[n] = (y - state.y[n]) / dt;
+            }
+            state.x[n] = x;
+            state.y[n] = y;
+        }
+    }
+
+    /// Kinetic energy [J] at the time of the positions, from the half steps before and after.
+    pub(crate) fn kinetic(&self, before: &RigidState, after: &RigidState) -> f64 {
+        let [u, v] = [before.velocity, after.velocity];
+        0.5 * self.mass * (u[0] * v[0] + u[1] * v[1]) + 0.5 * self.inertia * before.spin * after.spin
+    }
+}
+
+/// The rigid part of a body's motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RigidMotion {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Centre of mass [m].
+    pub centre: [f64; 2],
+    /// Its velocity [m/s].
+    pub velocity: [f64; 2],
+    /// Moment of inertia about the centre of mass [kg m²].
+    pub inertia: f64,
+    /// Angular velocity that carries the body's angular momentum [rad/s].
+    pub spin: f64,
+}
+
+impl RigidMotion {
+    /// Sums over nodes `(mass, x, y, vx, vy)`.
+    pub fn of(nodes: impl Iterator<Item = (f64, [f64; 2], [f64; 2])> + Clone) -> Self {
+        let mut sum = [0.0; 5];
+        for (m, p, v) in nodes.clone() {
+            sum[0] += m;
+            sum[1] += m * p[0];
+            sum[2] += m * p[1];
+            sum[3] += m * v[0];
+            sum[4] += m * v[1];
+        }
+        let mass = sum[0];
+        let centre = [sum[1] / mass, sum[2] / mass];
+        let velocity = [sum[3] / mass, sum[4] / mass];
+        let (mut inertia, mut momentum) = (0.0, 0.0);
+        for (m, p, v) in nodes {
+            let r = [p[0] - centre[0], p[1] - centre[1]];
+            let u = [v[0] - velocity[0], v[1] - velocity[1]];
+            inertia += m * (r[0] * r[0] + r[1] * r[1]);
+            momentum += m * (r[0] * u[1] - r[1] * u[0]);
+        }
+        Self { mass, centre, velocity, inertia, spin: momentum / inertia }
+    }
+
+    /// Velocity of the rigid motion at a point [m/s].
+    pub fn velocity_at(&self, p: [f64; 2]) -> [f64; 2] {
+        [
+            self.velocity[0] - self.spin * (p[1] - self.centre[1]),
+            self.velocity[1] + self.spin * (p[0] - self.centre[0]),
+        ]
+    }
+}

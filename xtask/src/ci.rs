@@ -1,0 +1,86 @@
+//! `cargo xtask ci`: everything that must hold before a change is accepted.
+
+mod documents;
+mod layers;
+mod markdown;
+mod sources;
+
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result, ensure};
+
+use crate::workspace;
+
+/// Flags of `ci`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Only the checks of text, which compile nothing
+    #[arg(long)]
+    quick: bool,
+}
+
+/// One check: its name, and what is wrong (nothing, when all is well).
+type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
+
+const CHECKS: [Check; 6] = [
+    ("crates depend on each other in one direction", layers::check),
+    ("only bearing and above know bearings", sources::check_words),
+    ("ARCHITECTURE names every crate", documents::check_architecture),
+    ("THEORY has every section that code cites", documents::check_citations),
+    ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
+    ("commands in the documents exist", documents::check_commands),
+];
+
+pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+    let root = workspace::root();
+    let mut failed = Vec::new();
+    for (name, check) in CHECKS {
+        // A document that is missing is one more complaint, not the end of the checks.
+        let complaints = check(&root).unwrap_or_else(|error| vec![format!("{error:#}")]);
+        println!("{} {name}", if complaints.is_empty() { "ok    " } else { "FAILED" });
+        for complaint in &complaints {
+            println!("         {complaint}");
+        }
+        if !complaints.is_empty() {
+            failed.push(name.to_owned());
+        }
+    }
+    if !options.quick {
+        for arguments in cargo_steps(&layers::crates(&root)?) {
+            let name = format!("cargo {}", arguments.join(" "));
+            println!("run    {name}");
+            if !cargo(&root, &arguments)? {
+                failed.push(name);
+            }
+        }
+    }
+    ensure!(failed.is_empty(), "{} of the checks failed: {}", failed.len(), failed.join("; "));
+    println!("all checks passed");
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What cargo has to accept: format, lints, documentation, and the tests of each crate by itself.
+fn cargo_steps(crates: &[String]) -> Vec<Vec<String>> {
+    let words = |line: &str| line.split(' ').map(str::to_owned).collect::<Vec<_>>();
+    let mut steps = vec![
+        words("fmt --all --check"),
+        words("clippy --workspace --all-targets -- -D warnings"),
+        words("doc --workspace --no-deps"),
+    ];
+    steps.extend(crates.iter().map(|name| words(&format!("test --release -p stribeck-{name}"))));
+    steps.push(words("test --release -p xtask"));
+    steps
+}
+
+/// Runs cargo in the workspace; true when it is content.
+fn cargo(root: &Path, arguments: &[String]) -> Result<bool> {
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let status = Command::new(program)
+        .args(arguments)
+        .current_dir(root)
+        .env("RUSTDOCFLAGS", "-D warnings")
+        .status()
+        .context("cannot start cargo")?;
+    Ok(status.success())
+}

@@ -1,0 +1,169 @@
+//! The documents against the code.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use clap::Parser;
+
+use super::{layers, markdown, sources};
+use crate::Cli;
+
+fn read(root: &Path, name: &str) -> Result<String> {
+    std::fs::read_to_string(root.join(name)).with_context(|| format!("cannot read {name}"))
+}
+
+/// Every crate is in ARCHITECTURE, and every crate in ARCHITECTURE exists.
+pub(crate) fn check_architecture(root: &Path) -> Result<Vec<String>> {
+    let text = read(root, "docs/ARCHITECTURE.md")?;
+    let exist: BTreeSet<String> = layers::crates(root)?.into_iter().collect();
+    Ok(compare_crates(&text, &exist))
+}
+
+fn compare_crates(text: &str, exist: &BTreeSet<String>) -> Vec<String> {
+    let mut named = BTreeSet::new();
+    for prefix in ["crates/", "stribeck-", "stribeck_"] {
+        for (at, _) in text.match_indices(prefix) {
+            let rest = &text[at + prefix.len()..];
+            let end = rest.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(rest.len());
+            named.insert(rest[..end].to_owned());
+        }
+    }
+    named.remove("");
+    let unknown =
+        named.difference(exist).map(|name| format!("ARCHITECTURE names the crate `{name}`: there is none"));
+    let silent =
+        exist.difference(&named).map(|name| format!("ARCHITECTURE says nothing about `crates/{name}`"));
+    unknown.chain(silent).collect()
+}
+
+/// Every section of THEORY that the crates cite exists.
+pub(crate) fn check_citations(root: &Path) -> Result<Vec<String>> {
+    let theory = read(root, "docs/THEORY.md")?;
+    let sections: BTreeSet<&str> = theory.lines().filter_map(markdown::section_number).collect();
+    let mut complaints = Vec::new();
+    for file in sources::rust_files(&root.join("crates"))? {
+        let text =
+            std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        let name = file.strip_prefix(root).unwrap_or(&file).display().to_string();
+        for cited in markdown::citations(&text).into_iter().filter(|cited| !sections.contains(cited)) {
+            complaints.push(format!("{name} cites THEORY §{cited}, which has no heading"));
+        }
+    }
+    Ok(complaints)
+}
+
+/// The terms of each section of GLOSSARY are in order, and none is there twice.
+pub(crate) fn check_glossary(root: &Path) -> Result<Vec<String>> {
+    Ok(compare_terms(&read(root, "docs/GLOSSARY.md")?))
+}
+
+fn compare_terms(text: &str) -> Vec<String> {
+    let sections = markdown::terms(text);
+    let mut complaints = Vec::new();
+    let mut count = BTreeMap::new();
+    for term in sections.iter().flatten() {
+        *count.entry(term.to_lowercase()).or_insert(0) += 1;
+    }
+    if count.is_empty() {
+        complaints.push("GLOSSARY has no terms (`**term**` at the start of a line)".to_owned());
+    }
+    for pair in sections.iter().flat_map(|terms| terms.windows(2)) {
+        if pair[0].to_lowercase() > pair[1].to_lowercase() {
+            complaints.push(format!("GLOSSARY: `{}` stands behind `{}`", pair[1], pair[0]));
+        }
+    }
+    let twice = count.iter().filter(|(_, count)| **count > 1);
+    complaints.extend(twice.map(|(term, _)| format!("GLOSSARY explains `{term}` twice")));
+    complaints
+}
+
+/// Every `cargo xtask …` in the documents is accepted by the command line, and every fixture it names exists.
+pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in documents(root)? {
+        for command in markdown::code(&read(root, &name)?) {
+            complaints.extend(wrong_command(root, command).map(|why| format!("{name}: `{command}`: {why}")));
+        }
+    }
+    Ok(complaints)
+}
+
+/// README, CONTRIBUTING and what lies in `docs/`.
+fn documents(root: &Path) -> Result<Vec<String>> {
+    let mut names = vec!["README.md".to_owned()];
+    for name in ["CONTRIBUTING.md"] {
+        if root.join(name).exists() {
+            names.push(name.to_owned());
+        }
+    }
+    let entries = std::fs::read_dir(root.join("docs")).context("cannot read docs/")?;
+    let mut docs: Vec<String> = entries
+        .flatten()
+        .map(|entry| format!("docs/{}", entry.file_name().to_string_lossy()))
+        .filter(|name| name.ends_with(".md"))
+        .collect();
+    docs.sort();
+    names.append(&mut docs);
+    Ok(names)
+}
+
+/// Why a command of the documents would fail; `None` when it would not, or is no command of ours.
+fn wrong_command(root: &Path, command: &str) -> Option<String> {
+    let at = command.find("cargo xtask")?;
+    // What stands behind a comment, a pipe or another command is not ours; nor is a placeholder such as `[SCENE]`.
+    let ours = command[at..].split(['#', '|', ';', '&', '>']).next().unwrap_or_default();
+    let words: Vec<&str> =
+        ours.split_whitespace().skip(2).filter(|word| !word.contains(['[', '…', '<'])).collect();
+    if words.is_empty() {
+        return None;
+    }
+    let missing = words.iter().find(|word| word.starts_with("fixtures/") && !root.join(word).exists());
+    if let Some(missing) = missing {
+        return Some(format!("there is no `{missing}`"));
+    }
+    let parsed = Cli::try_parse_from(std::iter::once("cargo xtask").chain(words.iter().copied()));
+    let wrong = parsed.err().filter(clap::Error::use_stderr)?;
+    let text = wrong.to_string();
+    Some(text.lines().next().unwrap_or_default().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_crates_and_architecture_agree() {
+        let exist = BTreeSet::from(["mesh".to_owned(), "solver".to_owned()]);
+        assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
+        let complaints = compare_crates("crates/mesh and crates/mush", &exist);
+        assert_eq!(complaints.len(), 2, "{complaints:?}");
+    }
+
+    #[test]
+    fn invariant_glossaries_out_of_order_are_found() {
+        assert!(compare_terms("**Bore** x\n**cage** y").is_empty());
+        assert_eq!(compare_terms("**cage** x\n**Bore** y").len(), 1);
+        assert_eq!(compare_terms("**cage** x\n## More\n**Cage** y").len(), 1);
+        assert_eq!(compare_terms("no terms").len(), 1);
+    }
+
+    #[test]
+    fn invariant_commands_that_do_not_exist_are_found() {
+        let root = Path::new("/nowhere");
+        for fine in [
+            "cargo xtask simulate",
+            "cargo xtask simulate [SCENE] --set mesh.size_mm=1.0 --no-report # coarse",
+            "time cargo xtask ci --quick && ls",
+            "cargo build",
+            "cargo xtask --help",
+        ] {
+            assert_eq!(wrong_command(root, fine), None, "{fine}");
+        }
+        for wrong in
+            ["cargo xtask simulat", "cargo xtask report --fast", "cargo xtask simulate fixtures/scenes/x.ron"]
+        {
+            assert!(wrong_command(root, wrong).is_some(), "{wrong}");
+        }
+    }
+}

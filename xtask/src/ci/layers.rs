@@ -1,0 +1,83 @@
+//! The crates and the arrows between them.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+
+/// Every crate and what it depends on of ours. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
+const LAYERS: [(&str, &[&str]); 6] = [
+    ("mesh", &[]),
+    ("solver", &["mesh"]),
+    ("contact", &["mesh", "solver"]),
+    ("bearing", &["contact", "mesh", "solver"]),
+    ("dsp", &[]),
+    ("analysis", &["bearing", "dsp"]),
+];
+
+/// Names of the folders in `crates/`, sorted.
+pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
+    let folder = root.join("crates");
+    let entries = std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut names: Vec<String> = entries
+        .flatten()
+        .filter(|entry| entry.path().join("Cargo.toml").exists())
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    Ok(names)
+}
+
+pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in crates(root)? {
+        let file = root.join("crates").join(&name).join("Cargo.toml");
+        let text =
+            std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+        match LAYERS.iter().find(|layer| layer.0 == name) {
+            Some((_, allowed)) => complaints.extend(compare(&name, &text, allowed)),
+            None => complaints.push(format!("crate `{name}` has no place in the list of layers")),
+        }
+    }
+    Ok(complaints)
+}
+
+/// Holds the dependencies in a manifest against those allowed; those of tests may be fewer but not others.
+fn compare(name: &str, manifest: &str, allowed: &[&str]) -> Vec<String> {
+    let mut section = "";
+    let mut found = Vec::new();
+    let mut complaints = Vec::new();
+    for line in manifest.lines().map(str::trim) {
+        if line.starts_with('[') {
+            section = line;
+        }
+        let ours = line.strip_prefix("stribeck-").filter(|_| section.ends_with("dependencies]"));
+        let Some(rest) = ours else { continue };
+        let to = rest.split(['.', ' ', '=']).next().unwrap_or_default();
+        if !allowed.contains(&to) {
+            complaints
+                .push(format!("`{name}` depends on `{to}` ({section}), against the direction of the layers"));
+        } else if section == "[dependencies]" {
+            found.push(to);
+        }
+    }
+    for missing in allowed.iter().filter(|to| !found.contains(to)) {
+        complaints.push(format!("`{name}` does not depend on `{missing}`: take the arrow out of the list"));
+    }
+    complaints
+}
+
+#[cfg(test)]
+mod tests {
+    use super::compare;
+
+    #[test]
+    fn invariant_arrows_against_the_layers_are_found() {
+        let manifest = "[package]\nname = \"stribeck-solver\"\n[dependencies]\nstribeck-mesh.workspace = true\n\
+                        stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = true\n";
+        let complaints = compare("solver", manifest, &["mesh"]);
+        assert_eq!(complaints.len(), 2);
+        assert!(complaints[0].contains("`contact`") && complaints[1].contains("`dsp`"));
+        assert_eq!(compare("solver", "[dependencies]\nfaer.workspace = true\n", &["mesh"]).len(), 1);
+        assert!(compare("solver", "[dependencies]\nstribeck-mesh.workspace = true\n", &["mesh"]).is_empty());
+    }
+}

@@ -1,0 +1,90 @@
+//! The little of Markdown that the checks need.
+
+/// Text of every piece of code: the lines of fenced blocks, and what stands between backticks elsewhere.
+pub(crate) fn code(text: &str) -> Vec<&str> {
+    let mut fenced = false;
+    let mut found = Vec::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("```") {
+            fenced = !fenced;
+        } else if fenced {
+            found.push(line.trim());
+        } else {
+            found.extend(line.split('`').skip(1).step_by(2));
+        }
+    }
+    found
+}
+
+/// Number of a section heading, `## 4.1 Gap` or `## §4.1 Gap` → `4.1`.
+pub(crate) fn section_number(line: &str) -> Option<&str> {
+    let title = line.strip_prefix('#')?.trim_start_matches('#').trim_start();
+    let first = title.trim_start_matches('§').split([' ', '\t']).next()?;
+    let number = first.trim_end_matches(['.', ':']);
+    let digits = number.starts_with(|c: char| c.is_ascii_digit());
+    (digits && number.chars().all(|c| c.is_ascii_digit() || c == '.')).then_some(number)
+}
+
+/// Sections cited in `text` as `THEORY §4.1`, also in a list: `THEORY §2, §4.1 and §5`.
+pub(crate) fn citations(text: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    for (at, _) in text.match_indices("THEORY §") {
+        let mut rest = &text[at + "THEORY §".len()..];
+        loop {
+            let end = rest.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(rest.len());
+            let number = rest[..end].trim_end_matches('.');
+            if number.is_empty() {
+                break;
+            }
+            found.push(number);
+            let next = [", §", " and §", ", and §"].iter().find_map(|glue| rest[end..].strip_prefix(glue));
+            let Some(next) = next else { break };
+            rest = next;
+        }
+    }
+    found
+}
+
+/// Terms of a glossary, per section: what stands in bold at the start of a line, a list item or a table row.
+pub(crate) fn terms(text: &str) -> Vec<Vec<&str>> {
+    let mut sections = vec![Vec::new()];
+    for line in text.lines() {
+        if line.starts_with('#') {
+            sections.push(Vec::new());
+        }
+        let start = line.trim_start_matches([' ', '-', '*', '|']);
+        let bold = line.trim_start_matches([' ', '-', '|']).starts_with("**");
+        if let (true, Some((term, _)), Some(section)) = (bold, start.split_once("**"), sections.last_mut()) {
+            section.push(term);
+        }
+    }
+    sections
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_code_is_found_in_fences_and_backticks() {
+        let text = "Run `cargo xtask ci` or `x`.\n```sh\ncargo xtask simulate\n```\nno code";
+        assert_eq!(code(text), ["cargo xtask ci", "x", "cargo xtask simulate"]);
+    }
+
+    #[test]
+    fn analytic_sections_and_their_citations() {
+        assert_eq!(section_number("## 4.1 Gap"), Some("4.1"));
+        assert_eq!(section_number("### §12. Statics"), Some("12"));
+        assert_eq!(section_number("## Contact"), None);
+        assert_eq!(section_number("4.1 Gap"), None);
+        let text = "See THEORY §4.1. Also THEORY §2, §3.1 and §5; not THEORY §x.";
+        assert_eq!(citations(text), ["4.1", "2", "3.1", "5"]);
+    }
+
+    #[test]
+    fn analytic_terms_of_a_glossary() {
+        let text =
+            "# Words\n**bore** a hole\n- **cage** a ring\n## More\n| **apex** | top |\nplain **bold** text";
+        assert_eq!(terms(text), [vec![], vec!["bore", "cage"], vec!["apex"]]);
+    }
+}

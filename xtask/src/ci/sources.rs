@@ -1,0 +1,84 @@
+//! What the sources of a crate may say.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+/// Crates that must be of use outside bearings.
+const GENERAL: [&str; 4] = ["mesh", "solver", "contact", "dsp"];
+/// Words of bearings.
+const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
+
+/// All Rust files below `folder`, sorted.
+pub(crate) fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        let entries =
+            std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
+        for path in entries.flatten().map(|entry| entry.path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+pub(crate) fn check_words(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in GENERAL {
+        for file in rust_files(&root.join("crates").join(name).join("src"))? {
+            let text =
+                std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+            for (number, line) in text.lines().enumerate() {
+                if let Some(word) = word_of_bearings(line) {
+                    let file = file.strip_prefix(root).unwrap_or(&file).display();
+                    complaints.push(format!("{file}:{}: `{word}` belongs to the crate bearing", number + 1));
+                }
+            }
+        }
+    }
+    Ok(complaints)
+}
+
+/// The first word of bearings in a line, also as part of an identifier (`roller_count`, `CageBody`).
+fn word_of_bearings(line: &str) -> Option<&'static str> {
+    let mut spaced = String::with_capacity(line.len() + 8);
+    for c in line.chars() {
+        // A capital begins a new word, so that `BlockAge` is no cage.
+        if c.is_uppercase() || !c.is_alphabetic() {
+            spaced.push(' ');
+        }
+        if c.is_alphabetic() {
+            spaced.extend(c.to_lowercase());
+        }
+    }
+    // In `ROLLER` every letter would be a word of its own, so capitals are also looked at as they stand.
+    let lower = line.to_lowercase();
+    let words = spaced.split(' ').chain(lower.split(|c: char| !c.is_alphabetic()));
+    let singular =
+        |word: &str| WORDS.iter().copied().find(|w| *w == word || word.strip_suffix('s') == Some(*w));
+    words.into_iter().find_map(singular)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::word_of_bearings;
+
+    #[test]
+    fn invariant_words_are_found_in_prose_and_identifiers() {
+        for line in
+            ["the rollers turn", "let roller_count = 1;", "struct CageBody;", "const ROLLER: f64", "Spalls!"]
+        {
+            assert!(word_of_bearings(line).is_some(), "{line}");
+        }
+        for line in ["a package", "the controller", "let blockage = 1;", "BlockAge", "scrollers", "race way"]
+        {
+            assert_eq!(word_of_bearings(line), None, "{line}");
+        }
+    }
+}
