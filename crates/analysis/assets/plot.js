@@ -43,8 +43,9 @@
       return [x, y];
     });
     const shared = (a, b) => a.length === b.length && a[0] === b[0] && a[a.length - 1] === b[b.length - 1];
-    if (one.length && one.every(([x]) => shared(x, one[0][0]))) return { data: [one[0][0], ...one.map(([, y]) => y)], joined: false };
-    return { data: one.length ? uPlot.join(one) : [[], []], joined: true };
+    if (one.length && one.every(([x]) => shared(x, one[0][0]))) return [one[0][0], ...one.map(([, y]) => y)];
+    // Joining leaves undefined where only another curve has a point; uPlot draws across that, and breaks at null.
+    return one.length ? uPlot.join(one) : [[], []];
   };
 
   const theme = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -97,7 +98,7 @@
         ctx.textAlign = "center";
         ctx.textBaseline = "alphabetic";
         ctx.lineWidth = ratio;
-        const tops = rows.map((row) => bbox.top - (3 + ROW * Math.min(row, rowLimit)) * ratio);
+        const tops = rows.map((row) => bbox.top - (8 + ROW * Math.min(row, rowLimit)) * ratio);
         ctx.globalAlpha = 0.85;
         seen.forEach((m, i) => {
           ctx.strokeStyle = theme(m.colour);
@@ -163,7 +164,7 @@
   const build = (figure) => {
     const place = figure.querySelector(".chart");
     const spec = JSON.parse(figure.querySelector('script[type="application/json"]').textContent);
-    const { data, joined } = tables(spec);
+    const data = tables(spec);
     const width = () => Math.max(320, place.clientWidth);
     const [from, to] = spec.x.range || [data[0][0] ?? 0, data[0][data[0].length - 1] ?? 1];
     const pixels = (x) => ((x - from) / (to - from)) * (width() - 100);
@@ -173,7 +174,7 @@
     const chart = new uPlot({
       width: width(),
       height: 330 + ROW * (rowLimit + 1),
-      padding: [12 + ROW * (rowLimit + 1), 22, 0, 4],
+      padding: [14 + ROW * (rowLimit + 1), 22, 0, 4],
       cursor: { drag: { x: true, y: false }, focus: { prox: 24 }, sync: spec.sync ? { key: spec.sync } : undefined },
       legend: { live: true },
       scales: { x: { time: false, ...(spec.x.range ? { range: (u, a, b) => (a == null ? spec.x.range : [a, b]) } : {}) }, y: fixed(spec.y.range) },
@@ -184,7 +185,6 @@
           label: s.name,
           stroke: () => theme(s.colour),
           width: 1.2,
-          spanGaps: joined,
           paths: s.points ? () => null : undefined,
           points: s.points ? { show: true, size: 6, fill: () => theme(s.colour) } : { show: false },
           value: readout(spec.y, 4),

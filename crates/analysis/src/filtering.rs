@@ -17,7 +17,7 @@ const SETTLED_DB: f64 = 60.0;
 /// How a tone comes out of the notch, in the summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NotchFinding {
-    /// Centre [Hz]: the measured dominant facet tone, or the predicted one when none is measured.
+    /// Centre [Hz]: the measured dominant facet tone, or the predicted one when none is measured anywhere.
     pub centre_hz: f64,
     /// Centre of the paper's notch [Hz].
     pub paper_centre_hz: f64,

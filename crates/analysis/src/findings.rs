@@ -1,19 +1,19 @@
 //! From the samples of a run to its [`Summary`] and to the signals that the figures draw.
 
-use stribeck_bearing::kinematics::Crossing;
+mod passages;
+
 use stribeck_bearing::run_dir::Run;
 use stribeck_bearing::run_info::Status;
 use stribeck_dsp::{PeriodCount, PeriodVerdict, Spectrum, Welch};
 
+use self::passages::{crossing_forces, level_finding, picked_events};
 use crate::Error;
-use crate::events::{self, Passage};
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
-use crate::levels;
 use crate::load::{self, Distribution};
 use crate::prediction::{Prediction, StaticCurve};
 use crate::record::Record;
-use crate::summary::{EnergyFinding, Event, LevelsFinding, RunCost, SensorLevels, SpectrumFinding, Summary};
+use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones::{self, Tone};
 
 /// Grid of the spectra [Hz]: the paper's 3 Hz. The resolution is that of the record.
@@ -86,9 +86,13 @@ impl Findings {
         let mut notes = notes_on(run, &record);
 
         let mut sensors = sensor_signals(run, &record, &mut notes)?;
-        let lines = tones::harmonics(&prediction.facet_lines, HARMONICS, 0.5 * record.sample_rate_hz());
+        let motion = kinematics::measure(&record, &prediction.kinematics);
+        let mut lines = tones::harmonics(&prediction.facet_lines, HARMONICS, 0.5 * record.sample_rate_hz());
+        for line in &mut lines {
+            line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
+        }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
-        let filter = filter(&record, &prediction, &measured, &mut notes)?;
+        let filter = filter(&record, &prediction, &sensors, &measured, &mut notes)?;
         if let Some(filter) = &filter {
             filter_sensors(filter, &record, &mut sensors)?;
         }
@@ -121,7 +125,7 @@ impl Findings {
                 max_relative_error: run.info.energy.max_relative_error,
                 peak_strain_j: run.info.energy.peak_strain_j,
             },
-            kinematics: kinematics::measure(&record, &prediction.kinematics),
+            kinematics: motion,
             events,
             load,
             tones: measured,
@@ -152,9 +156,11 @@ impl Findings {
 /// What must be said before any number is read.
 fn notes_on(run: &Run, record: &Record<'_>) -> Vec<String> {
     let mut notes = Vec::new();
-    if run.info.status != Status::Complete {
-        let why = run.info.stop_reason.as_deref().unwrap_or("no reason was recorded");
-        notes.push(format!("the run did not complete: {why}"));
+    match (run.info.status, &run.info.stop_reason) {
+        (Status::Complete, _) => {}
+        (Status::Running, _) => notes.push("the run is still going, or was killed".into()),
+        (_, Some(why)) => notes.push(format!("the run did not complete: {why}")),
+        (_, None) => notes.push("the run did not complete; no reason was recorded".into()),
     }
     if record.discarded() > 0 {
         notes.push(format!(
@@ -225,29 +231,39 @@ fn measured_tones(
     Ok(all)
 }
 
-/// A notch at the dominant facet tone of the leading sensor, or at the predicted one when none is measured.
+/// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or at the
+/// predicted one.
 fn filter(
     record: &Record<'_>,
     prediction: &Prediction,
+    sensors: &[SensorSignal],
     measured: &[Tone],
     notes: &mut Vec<String>,
 ) -> Result<Option<Filter>, Error> {
     if record.is_empty() {
         return Ok(None);
     }
-    let leading = measured.first().map(|t| t.sensor.clone());
-    let of_leading: Vec<Tone> =
-        measured.iter().filter(|t| Some(&t.sensor) == leading.as_ref()).cloned().collect();
-    let centre = tones::dominant(&of_leading).and_then(|t| t.measured_hz);
     let predicted = prediction.facet_lines.first().map(|l| l.1).filter(|&hz| hz > 0.0);
-    let centre_hz = centre.or(predicted).unwrap_or(PAPER_CENTRE_HZ);
-    if centre.is_none() {
-        notes.push(format!(
-            "no facet tone stands {} dB above its surroundings at the leading sensor: the notch is at the predicted \
-             {centre_hz:.1} Hz",
-            tones::LEAST_PROMINENCE_DB
-        ));
-    }
+    let leading = sensors.first().and_then(|s| tones::dominant(measured, &s.name));
+    let centre_hz = match (leading.or_else(|| tones::clearest(measured)), predicted) {
+        (Some(tone), _) => {
+            if leading.is_none() {
+                notes.push(format!(
+                    "no facet tone stands {} dB above its surroundings at the leading sensor: the notch is at that of sensor {}",
+                    tones::LEAST_PROMINENCE_DB,
+                    tone.sensor
+                ));
+            }
+            tone.measured_hz.or(predicted).unwrap_or(PAPER_CENTRE_HZ)
+        }
+        (None, predicted) => {
+            notes.push(format!(
+                "no facet tone stands {} dB above its surroundings at any sensor: the notch is at the predicted one",
+                tones::LEAST_PROMINENCE_DB
+            ));
+            predicted.unwrap_or(PAPER_CENTRE_HZ)
+        }
+    };
     if centre_hz >= 0.5 * record.sample_rate_hz() {
         notes.push(format!(
             "no notch: {centre_hz} Hz is not below half the sampling rate, {} Hz",
@@ -270,146 +286,10 @@ fn filter_sensors(filter: &Filter, record: &Record<'_>, sensors: &mut [SensorSig
     Ok(())
 }
 
-/// One event for every passage that begins within the record.
-fn picked_events(record: &Record<'_>, prediction: &Prediction, notes: &mut Vec<String>) -> Vec<Event> {
-    let Some(edges) = prediction.defect else { return Vec::new() };
-    let time = record.time_s();
-    let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
-    let mut events = Vec::new();
-    for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {
-        let mut event = Event::expected(passage);
-        match record.roller(passage.roller) {
-            None => notes.push(format!("roller {} is not in the trace", passage.roller)),
-            Some(roller) => {
-                let orbit = roller.orbit();
-                let near = |edge: f64, expected: f64| {
-                    let all = events::crossings(time, &orbit, edge.to_radians());
-                    let gap = |t: &f64| (t - expected).abs();
-                    let traverse = passage.exit_s - passage.entry_s;
-                    all.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).filter(|t| gap(t) < traverse)
-                };
-                let path_entry = near(edges.leading_deg, passage.entry_s);
-                let path_exit = near(edges.trailing_deg, passage.exit_s);
-                let seen = Passage {
-                    entry_s: passage.entry_s,
-                    exit_s: passage.exit_s,
-                    middle_s: near(edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
-                    smoothing_s: prediction.smoothing_s(passage.exit_s - passage.entry_s),
-                };
-                let picked = events::pick(time, &roller.outer_normal(), &seen);
-                notes.extend(picked.notes.iter().map(|n| format!("roller {}: {n}", passage.roller)));
-                event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
-                event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
-                event.level_n = picked.level_n;
-                event.path_entry_ms = path_entry.map(|t| 1e3 * t);
-                event.path_exit_ms = path_exit.map(|t| 1e3 * t);
-            }
-        }
-        events.push(event);
-    }
-    events
-}
-
-/// Levels at every sensor; fills in the impulse of each event at the leading one.
-fn level_finding(
-    time: &[f64],
-    sensors: &[SensorSignal],
-    events: &mut [Event],
-    filter: Option<&Filter>,
-    notes: &mut Vec<String>,
-) -> LevelsFinding {
-    let passages: Vec<(f64, f64)> = events.iter().map(Event::extent_s).collect();
-    let start = time.first().copied().unwrap_or(0.0);
-    let settled = start + filter.map_or(0.0, Filter::transient_s);
-    let exits: Vec<f64> = events.iter().filter_map(|e| e.exit_ms).map(|t| 1e-3 * t).collect();
-    let impulses: Vec<_> = exits.iter().map(|&t| levels::impulse_span(time, t)).collect();
-    let quiet = levels::quiet_spans(time, &passages, start);
-    let quiet_settled = levels::quiet_spans(time, &passages, settled);
-
-    let mut finding = LevelsFinding::default();
-    for (number, sensor) in sensors.iter().enumerate() {
-        let impulse = levels::level(&sensor.raw_g, &impulses);
-        let between = levels::level(&sensor.raw_g, &quiet);
-        let filtered = levels::level(&sensor.filtered_g, &quiet_settled);
-        if number == 0 {
-            finding.sensor = Some(sensor.name.clone());
-            finding.impulse_g = impulse.map(|l| l.peak);
-            finding.impulse_filtered_g = levels::level(&sensor.filtered_g, &impulses).map(|l| l.peak);
-            finding.between_g = between.map(|l| l.peak);
-            finding.between_p99_g = between.map(|l| l.p99);
-            finding.between_rms_g = between.map(|l| l.rms);
-            finding.between_filtered_g = filtered.map(|l| l.peak);
-            finding.between_filtered_p99_g = filtered.map(|l| l.p99);
-            finding.between_filtered_rms_g = filtered.map(|l| l.rms);
-            for event in events.iter_mut() {
-                let span = event.exit_ms.map(|t| levels::impulse_span(time, 1e-3 * t));
-                event.impulse_g = span.and_then(|s| levels::level(&sensor.raw_g, &[s])).map(|l| l.peak);
-            }
-        }
-        finding.sensors.push(SensorLevels {
-            sensor: sensor.name.clone(),
-            impulse_g: impulse.map(|l| l.peak),
-            between_g: between.map(|l| l.peak),
-            between_rms_g: between.map(|l| l.rms),
-            between_filtered_g: filtered.map(|l| l.peak),
-            between_filtered_rms_g: filtered.map(|l| l.rms),
-        });
-    }
-    if !sensors.is_empty() && finding.impulse_g.is_none() {
-        notes.push("no impulse level: no roller leaves the defect within the record".into());
-    }
-    if !sensors.is_empty() && finding.between_filtered_g.is_none() {
-        notes.push(format!(
-            "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of events",
-            1e3 * (settled - start)
-        ));
-    }
-    finding
-}
-
-fn crossing_forces(
-    record: &Record<'_>,
-    events: &[Event],
-    filter: Option<&Filter>,
-) -> Result<Vec<CrossingForce>, Error> {
-    let mut forces = Vec::new();
-    for event in events {
-        let Some(roller) = record.roller(event.roller) else { continue };
-        let raw_n: Vec<f64> = roller.outer_fy.iter().map(|f| -f).collect();
-        let filtered_n = filter.map(|f| f.force(&raw_n)).transpose()?.unwrap_or_default();
-        forces.push(CrossingForce { roller: event.roller, raw_n, filtered_n });
-    }
-    Ok(forces)
-}
-
 /// Says whether the record is long enough for envelope analysis instead of drawing one that means nothing.
 fn note_on_envelope(record_s: f64, bpfo_hz: f64, notes: &mut Vec<String>) {
     let Ok(count) = PeriodCount::new(record_s, bpfo_hz) else { return };
     if count.verdict() == PeriodVerdict::TooFew {
         notes.push(format!("no envelope spectrum: {count}"));
-    }
-}
-
-impl Event {
-    /// An event of which only the expected times are known.
-    fn expected(passage: &Crossing) -> Self {
-        Self {
-            roller: passage.roller,
-            entry_ms: None,
-            exit_ms: None,
-            expected_entry_ms: 1e3 * passage.entry_s,
-            expected_exit_ms: 1e3 * passage.exit_s,
-            path_entry_ms: None,
-            path_exit_ms: None,
-            level_n: None,
-            impulse_g: None,
-        }
-    }
-
-    /// Earliest and latest time [s] that belongs to the passage, measured or expected.
-    fn extent_s(&self) -> (f64, f64) {
-        let entry = self.entry_ms.map_or(self.expected_entry_ms, |t| t.min(self.expected_entry_ms));
-        let exit = self.exit_ms.map_or(self.expected_exit_ms, |t| t.max(self.expected_exit_ms));
-        (1e-3 * entry, 1e-3 * exit)
     }
 }

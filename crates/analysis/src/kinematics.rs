@@ -47,6 +47,20 @@ pub struct RollerMotion {
     pub loaded: bool,
 }
 
+impl KinematicsFinding {
+    /// Recorded over slip-free frequency of the facet line called `name`; `None` when that motion was not recorded.
+    pub fn ratio(&self, name: &str) -> Option<f64> {
+        let (cage, expected) = (self.cage_hz?, self.expected_cage_hz);
+        let ratio = match name {
+            "roller_vertices" => self.roller_spin_hz? / self.expected_roller_spin_hz,
+            "outer_race_nodes" => cage / expected,
+            "inner_race_nodes" => (self.shaft_hz - cage) / (self.shaft_hz - expected),
+            _ => return None,
+        };
+        Some(ratio).filter(|r| r.is_finite())
+    }
+}
+
 /// Measures the motion recorded in `record`.
 pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding {
     let time = record.time_s();
@@ -107,6 +121,19 @@ pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn analytic_a_slow_cage_slows_the_outer_and_speeds_the_inner_line() {
+        let motion = KinematicsFinding {
+            shaft_hz: 8.0,
+            cage_hz: Some(3.9),
+            expected_cage_hz: 4.0,
+            ..KinematicsFinding::default()
+        };
+        assert!((motion.ratio("outer_race_nodes").unwrap() - 0.975).abs() < 1e-12);
+        assert!((motion.ratio("inner_race_nodes").unwrap() - 1.025).abs() < 1e-12);
+        assert_eq!((motion.ratio("roller_vertices"), motion.ratio("else")), (None, None));
+    }
 
     #[test]
     fn analytic_rate_of_a_wobbling_rotation() {

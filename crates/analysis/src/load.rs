@@ -35,12 +35,12 @@ pub struct LoadFinding {
     pub static_loaded_rollers: Option<usize>,
 }
 
-/// Mean force at each angle that some roller visited.
+/// Mean force by angle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Distribution {
     /// Angles [°], 0 to 360 counter-clockwise from the x axis, ascending.
     pub angle_deg: Vec<f64>,
-    /// Mean normal force of the outer raceway [N] there.
+    /// Mean normal force of the outer raceway [N] there; not a number where no roller came.
     pub mean_n: Vec<f64>,
 }
 
@@ -85,10 +85,10 @@ pub fn distribution(record: &Record<'_>) -> Distribution {
             count[bin] += 1;
         }
     }
-    let visited: Vec<usize> = (0..bins).filter(|&b| count[b] > 0).collect();
+    let mean = |b: usize| if count[b] > 0 { sum[b] / count[b] as f64 } else { f64::NAN };
     Distribution {
-        angle_deg: visited.iter().map(|&b| (b as f64 + 0.5) * BIN_DEG).collect(),
-        mean_n: visited.iter().map(|&b| sum[b] / count[b] as f64).collect(),
+        angle_deg: (0..bins).map(|b| (b as f64 + 0.5) * BIN_DEG).collect(),
+        mean_n: (0..bins).map(mean).collect(),
     }
 }
 

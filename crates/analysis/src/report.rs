@@ -1,7 +1,9 @@
 //! From a run directory to `report.html`, `summary.json` and `figures/*.svg`. Nothing here simulates: the same
 //! directory gives the same bytes.
 
+mod comparison;
 mod figures;
+mod signals;
 mod tables;
 
 use std::fs;
@@ -122,7 +124,7 @@ fn banner(run: &Run) -> Markup {
         Status::Interrupted => "This run was interrupted.",
         Status::Diverged => "This run diverged and was stopped.",
     };
-    let why = run.info.stop_reason.as_deref().unwrap_or("No reason was recorded.");
+    let why = run.info.stop_reason.as_deref().unwrap_or_default();
     html! {
         div class="banner" role="alert" {
             strong { (what) } " " (why) " The report shows what exists: "
@@ -134,7 +136,7 @@ fn banner(run: &Run) -> Markup {
 fn opening(summary: &Summary, findings: &Findings) -> Markup {
     html! {
         h2 #summary { "Summary" }
-        (tables::comparison(summary, findings))
+        (comparison::table(summary, findings))
         p class="hint" {
             "Paper: Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its thickness, cage, \
              damping and sensor place are not published, so levels agree when they are within a factor of two. A dash means \

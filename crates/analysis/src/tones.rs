@@ -15,8 +15,10 @@ pub struct Line {
     pub name: String,
     /// Multiple of the fundamental, from 1.
     pub harmonic: usize,
-    /// Predicted frequency [Hz].
+    /// Predicted frequency without slip [Hz].
     pub predicted_hz: f64,
+    /// The same from the recorded motion, when there is one [Hz].
+    pub from_motion_hz: Option<f64>,
 }
 
 /// A predicted line beside its measurement at one sensor.
@@ -28,8 +30,10 @@ pub struct Tone {
     pub name: String,
     /// Multiple of the fundamental, from 1.
     pub harmonic: usize,
-    /// Predicted frequency [Hz].
+    /// Predicted frequency without slip [Hz].
     pub predicted_hz: f64,
+    /// The same from the recorded motion of cage and rollers [Hz].
+    pub from_motion_hz: Option<f64>,
     /// Frequency of the highest line within reach of the prediction [Hz]; `None` when no peak there stands at least
     /// [`LEAST_PROMINENCE_DB`] above its surroundings.
     pub measured_hz: Option<f64>,
@@ -41,7 +45,7 @@ pub struct Tone {
     pub unresolved_from: Vec<String>,
 }
 
-/// A prediction holds for a measured line within this fraction of it: no bearing slips more and still rolls.
+/// A prediction, without slip or from the recorded motion, holds for a measured line within this fraction of it.
 pub const REACH: f64 = 0.005;
 /// A peak counts as a line when it stands this far above its surroundings [dB]: noise of the same mean reaches it in
 /// about one band of a hundred.
@@ -59,6 +63,7 @@ pub fn harmonics(fundamentals: &[(String, f64)], most: usize, limit_hz: f64) -> 
                 name: name.clone(),
                 harmonic,
                 predicted_hz: harmonic as f64 * hz,
+                from_motion_hz: None,
             })
         })
         .filter(|line| line.predicted_hz > 0.0 && line.predicted_hz < limit_hz)
@@ -92,7 +97,9 @@ pub fn measure(sensor: &str, lines: &[Line], spectrum: &Spectrum) -> Result<Vec<
     let resolution = spectrum.resolution();
     let mut tones: Vec<Tone> = lines.iter().map(|line| Tone::unmeasured(sensor, line)).collect();
     for group in unresolved(lines, resolution) {
-        let (lowest, highest) = (lines[group[0]].predicted_hz, lines[group[group.len() - 1]].predicted_hz);
+        let expected = group.iter().flat_map(|&at| lines[at].expected_hz());
+        let (lowest, highest) =
+            expected.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), hz| (low.min(hz), high.max(hz)));
         // A short record cannot place a line better than half a resolution.
         let reach = |f: f64| (REACH * f).max(0.5 * resolution.resolution_hz);
         let limit = 0.5 * spectrum.sample_rate_hz();
@@ -109,8 +116,8 @@ pub fn measure(sensor: &str, lines: &[Line], spectrum: &Spectrum) -> Result<Vec<
         let line = spectrum.sinusoid(&peak).map_err(Error::Signal)?;
         let prominence = prominence_db(spectrum, &peak, (lowest, highest));
         for &at in &group {
-            let off = (line.frequency_hz - lines[at].predicted_hz).abs();
-            if off > reach(lines[at].predicted_hz) {
+            let near = |hz: f64| (line.frequency_hz - hz).abs() <= reach(hz);
+            if !lines[at].expected_hz().any(near) {
                 continue;
             }
             tones[at].prominence_db = prominence;
@@ -133,10 +140,23 @@ fn prominence_db(spectrum: &Spectrum, peak: &Peak, (lowest, highest): (f64, f64)
     spectrum.stands_above_db(peak, from, to, EXCLUDED_WIDTHS * width + to_group).ok()
 }
 
-/// The strongest measured fundamental, if any line was measured.
-pub fn dominant(tones: &[Tone]) -> Option<&Tone> {
+/// The strongest measured fundamental at `sensor`, if any line was measured there.
+pub fn dominant<'a>(tones: &'a [Tone], sensor: &str) -> Option<&'a Tone> {
+    let here = tones.iter().filter(|t| t.sensor == sensor && t.harmonic == 1 && t.measured_hz.is_some());
+    here.max_by(|a, b| a.level_g.unwrap_or(0.0).total_cmp(&b.level_g.unwrap_or(0.0)))
+}
+
+/// The measured fundamental that stands out most at any sensor.
+pub fn clearest(tones: &[Tone]) -> Option<&Tone> {
     let measured = tones.iter().filter(|t| t.harmonic == 1 && t.measured_hz.is_some());
-    measured.max_by(|a, b| a.level_g.unwrap_or(0.0).total_cmp(&b.level_g.unwrap_or(0.0)))
+    measured.max_by(|a, b| a.prominence_db.unwrap_or(0.0).total_cmp(&b.prominence_db.unwrap_or(0.0)))
+}
+
+impl Line {
+    /// Where the line may stand [Hz]: without slip and, when known, by the recorded motion.
+    fn expected_hz(&self) -> impl Iterator<Item = f64> {
+        [Some(self.predicted_hz), self.from_motion_hz].into_iter().flatten()
+    }
 }
 
 impl Tone {
@@ -146,6 +166,7 @@ impl Tone {
             name: line.name.clone(),
             harmonic: line.harmonic,
             predicted_hz: line.predicted_hz,
+            from_motion_hz: line.from_motion_hz,
             measured_hz: None,
             level_g: None,
             prominence_db: None,
@@ -199,7 +220,8 @@ mod tests {
         assert_eq!((tones[1].measured_hz, tones[2].measured_hz), (None, None));
         // The third harmonics lie 133 Hz apart: resolved, except the two raceways.
         assert!(tones[6].unresolved_from.is_empty() && tones[7].unresolved_from.len() == 1);
-        assert_eq!(dominant(&tones).map(|t| t.harmonic), Some(1));
+        assert_eq!(dominant(&tones, "side"), Some(&tones[0]));
+        assert_eq!((dominant(&tones, "bottom"), clearest(&tones)), (None, Some(&tones[0])));
     }
 
     #[test]
@@ -212,10 +234,21 @@ mod tests {
     }
 
     #[test]
+    fn analytic_recorded_motion_claims_a_line_that_slip_has_moved() {
+        // Rollers 1 % slower than rolling: the line is out of reach of the prediction without slip.
+        let mut lines = harmonics(&[("roller vertices".into(), 4721.2)], 1, 5e4);
+        let signal = tone_in_noise(30_000);
+        assert_eq!(measure("side", &lines, &spectrum_of(&signal)).unwrap()[0].measured_hz, None);
+        lines[0].from_motion_hz = Some(4674.5);
+        let found = measure("side", &lines, &spectrum_of(&signal)).unwrap()[0].measured_hz;
+        assert!((found.unwrap() - 4674.0).abs() < 0.5, "{found:?}");
+    }
+
+    #[test]
     fn invariant_silence_measures_nothing() {
         let tones = measure("side", &paper_lines(), &spectrum_of(&vec![0.0; 3000])).unwrap();
         assert!(tones.iter().all(|t| t.measured_hz.is_none() && t.level_g.is_none()));
-        assert_eq!(dominant(&tones), None);
+        assert_eq!((dominant(&tones, "side"), clearest(&tones)), (None, None));
     }
 
     #[test]

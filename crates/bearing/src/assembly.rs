@@ -155,10 +155,7 @@ impl Assembly {
             })
             .collect();
 
-        let cage = match cage_part(scene, path, roller_radius)? {
-            Some(part) => Some(mesh.add("cage", &part)),
-            None => None,
-        };
+        let cage = cage_part(scene, path, roller_radius)?.map(|part| mesh.add("cage", &part));
 
         let m = &scene.material;
         let steel = Elastic::new(1e9 * m.youngs_modulus_gpa, m.poissons_ratio, m.density_kg_m3)?;
@@ -218,7 +215,7 @@ impl Assembly {
             loaded[n as usize] = true;
         }
 
-        let mut dynamics = Dynamics::new(model, &loaded, threads)?;
+        let dynamics = Dynamics::new(model, &loaded, threads)?;
         let slot = |&n: &u32| dynamics.layout().slot_of_node[n as usize];
         let slots = |s: &stribeck_mesh::Surface| s.nodes.iter().map(slot).collect::<Vec<u32>>();
         let body = |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
@@ -247,9 +244,9 @@ impl Assembly {
                 rim: slot(&surface(r, "rim").nodes[0]),
             })
             .collect();
-        let machine = Machine {
+        Ok(Machine {
             contacts,
-            load: NodalLoad::new(spread_load(scene.operation.load_n, &slots(top))),
+            load: NodalLoad::on_edge(&slots(top), x, y, [0.0, -scene.operation.load_n]),
             outer: body(self.outer.body),
             inner: body(self.inner.body),
             adapter: body(self.adapter.body),
@@ -258,12 +255,8 @@ impl Assembly {
             housing: slots(surface(&self.outer, "outer")),
             roller_pairs,
             seat_pair,
-            dynamics: {
-                dynamics.set_time_step(1.0)?;
-                dynamics
-            },
-        };
-        Ok(machine)
+            dynamics,
+        })
     }
 
     /// Contact pairs, the seat last.
@@ -323,13 +316,6 @@ fn effective_outer_facets(scene: &Scene, facets: usize, radius: f64) -> f64 {
     let floor = (1e-3 * d.length_mm / (TAU * radius / facets as f64)).round().max(2.0);
     // Two facets are walls and take no angle.
     (facets as f64 - floor - 2.0) * TAU / (TAU - sector)
-}
-
-/// Load on the top edge, an equal share a facet.
-fn spread_load(load: f64, slots: &[u32]) -> Vec<(u32, f64, f64)> {
-    let share = load / (slots.len() - 1) as f64;
-    let at_end = |i: usize| if i == 0 || i == slots.len() - 1 { 0.5 } else { 1.0 };
-    slots.iter().enumerate().map(|(i, &s)| (s, 0.0, -share * at_end(i))).collect()
 }
 
 /// All pieces of the cage as one body, or `None` without a cage. Surfaces in the order of the rollers: piece i lies

@@ -24,6 +24,15 @@ pub enum Error {
     #[error("contact: {0}")]
     Contact(#[from] stribeck_contact::Error),
 
+    /// The system gives no threads.
+    #[error("cannot start {threads} worker threads: {source}. Try fewer with --threads")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// The system's answer.
+        source: rayon::ThreadPoolBuildError,
+    },
+
     /// A number given to a function of this crate lies outside its range.
     #[error("`{field}` is {value}; allowed: {allowed}. {suggestion}")]
     Input {

@@ -55,13 +55,19 @@ impl Dynamics {
     /// Critical time step of elements and forces at the present positions.
     ///
     /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add in
-    /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms).
+    /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms). Rigid bodies
+    /// have no K: D over their mass and inertia bounds theirs. Infinite when nothing has stiffness.
     pub fn critical_time_step(&self, forces: &[&dyn Force], dt: f64) -> Critical {
         let mut bound = vec![0.0; self.state.x.len()];
         forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
+        let rigid = self.rigid_frequency_bound(&bound).sqrt();
         let free: Vec<usize> = self.elastic_slots();
-        let operator = Operator { dynamics: self, bound, free };
-        operator.largest()
+        let elastic = Operator { dynamics: self, bound, free }.largest();
+        // D couples no two bodies, so the larger of the two is that of the whole.
+        if elastic.frequency >= rigid {
+            return elastic;
+        }
+        Critical { time_step: 2.0 / rigid, frequency: rigid, residual: 0.0, ..elastic }
     }
 }
 
@@ -109,6 +115,9 @@ impl Operator<'_> {
 
     fn largest(&self) -> Critical {
         let n = 2 * self.free.len();
+        if n == 0 {
+            return Critical { time_step: f64::INFINITY, frequency: 0.0, iterations: 0, residual: 0.0 };
+        }
         let slots = self.dynamics.state.x.len();
         let field = || Field { x: vec![0.0; slots], y: vec![0.0; slots] };
         let (mut at, mut force) = (field(), [field(), field()]);
@@ -124,7 +133,7 @@ impl Operator<'_> {
         let (mut before, mut w) = (vec![0.0; n], vec![0.0; n]);
         let (mut alpha, mut beta) = (Vec::new(), Vec::new());
         let mut critical = Critical { time_step: f64::NAN, frequency: f64::NAN, iterations: 0, residual: 1.0 };
-        for k in 1..=ITERATIONS.min(n.max(1)) {
+        for k in 1..=ITERATIONS.min(n) {
             self.apply(&v, &mut w, &mut at, &mut force);
             let last_beta = beta.last().copied().unwrap_or(0.0);
             let a: f64 = w.iter().zip(&v).map(|(p, q)| p * q).sum();

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
-    error::{Error, check},
+    error::{Error, check, check_count},
     force::Force,
     layout::{Layout, lay_out},
     model::{Behaviour, Model, Motion},
@@ -86,6 +86,8 @@ impl Dynamics {
     /// When the model holds impossible numbers, elements or nodes.
     pub fn new(model: &Model, loaded: &[bool], threads: usize) -> Result<Self, Error> {
         model.check()?;
+        let (found, nodes) = (loaded.len(), model.mesh.x.len());
+        check_count("number of entries in `loaded`", found, nodes, "one for each node of the mesh")?;
         let (quads, triangles) = model.references()?;
         let masses = model.masses(&quads, &triangles)?;
         let layout = lay_out(model, &quads, &triangles);
@@ -181,6 +183,12 @@ impl Dynamics {
             Motion::HeldY => [true, false],
             Motion::Held | Motion::Rotating { .. } => [false, false],
         }
+    }
+
+    /// Upper bound of ω² [rad²/s²] of all rigid bodies whose nodes have at most the stiffness `bound` [N/m].
+    pub(crate) fn rigid_frequency_bound(&self, bound: &[f64]) -> f64 {
+        let bodies = self.rigid_bodies.iter().zip(&self.rigid);
+        bodies.map(|(body, at)| body.frequency_bound(at, &self.state, bound)).fold(0.0, f64::max)
     }
 
     /// Acceleration of gravity [m/s²].

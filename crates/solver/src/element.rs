@@ -58,14 +58,10 @@ impl Stiffness {
 
 /// Signed area of a polygon [m²].
 pub(crate) fn area(corners: &[[f64; 2]]) -> f64 {
-    let n = corners.len();
-    let twice: f64 = (0..n)
-        .map(|i| {
-            let ([xa, ya], [xb, yb]) = (corners[i], corners[(i + 1) % n]);
-            xa * yb - xb * ya
-        })
-        .sum();
-    0.5 * twice
+    // A fan from the first corner, so that an element far from the origin loses no digits.
+    let [x0, y0] = corners[0];
+    let twice = |w: &[[f64; 2]]| (w[0][0] - x0) * (w[1][1] - y0) - (w[1][0] - x0) * (w[0][1] - y0);
+    0.5 * corners[1..].windows(2).map(twice).sum::<f64>()
 }
 
 /// Corners relative to the first, turned so that the first side direction (or, for quads, the line joining the

@@ -25,7 +25,7 @@ pub enum Error {
         area: f64,
     },
     /// A node carries no mass although it may move.
-    #[error("node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid")]
+    #[error("node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid (with at least one element)")]
     MasslessNode {
         /// Body name.
         body: String,
@@ -58,4 +58,14 @@ pub enum Error {
 /// Checks that `value` is finite and `ok`.
 pub(crate) fn check(field: &'static str, value: f64, ok: bool, allowed: &'static str) -> Result<(), Error> {
     if value.is_finite() && ok { Ok(()) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}
+
+/// Checks that a list of the user has one entry for each of `wanted` things.
+pub(crate) fn check_count(
+    field: &'static str,
+    found: usize,
+    wanted: usize,
+    allowed: &'static str,
+) -> Result<(), Error> {
+    check(field, found as f64, found == wanted, allowed)
 }

@@ -39,6 +39,25 @@ pub struct NodalLoad {
 }
 
 impl NodalLoad {
+    /// A total force [N] spread evenly along an edge: each node takes its share of the edge's length.
+    ///
+    /// `slots` lists the nodes along the edge; `x`, `y` [m] are positions by slot.
+    pub fn on_edge(slots: &[u32], x: &[f64], y: &[f64], total: [f64; 2]) -> Self {
+        let length = |pair: &[u32]| {
+            let (a, b) = (pair[0] as usize, pair[1] as usize);
+            (x[b] - x[a]).hypot(y[b] - y[a])
+        };
+        let whole: f64 = slots.windows(2).map(length).sum();
+        let mut share = vec![0.0; slots.len()];
+        for (i, pair) in slots.windows(2).enumerate() {
+            let half = 0.5 * length(pair) / whole;
+            share[i] += half;
+            share[i + 1] += half;
+        }
+        let loads = slots.iter().zip(share).map(|(&s, part)| (s, part * total[0], part * total[1]));
+        Self::new(loads.collect())
+    }
+
     /// Loads as (slot, force x [N], force y [N]).
     pub fn new(loads: Vec<(u32, f64, f64)>) -> Self {
         Self { loads, supplied: 0.0 }

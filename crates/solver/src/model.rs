@@ -6,7 +6,7 @@ use stribeck_mesh::Mesh;
 
 use crate::{
     element::{QuadReference, Stiffness, TriangleReference, bad},
-    error::{Error, check},
+    error::{Error, check, check_count},
     material::Elastic,
 };
 
@@ -111,7 +111,7 @@ impl Model {
     /// Lumped mass of every node [kg]: a quarter of each quadrilateral, a third of each triangle.
     ///
     /// # Errors
-    /// When a node of an elastic body belongs to no element.
+    /// When a node of an elastic body, or every node of a rigid one, belongs to no element.
     pub(crate) fn masses(
         &self,
         quads: &[QuadReference],
@@ -130,7 +130,15 @@ impl Model {
                     mass[n as usize] += density * triangles[e].volume / 3.0;
                 }
             }
-            if let Some(node) = body.nodes.clone().find(|&n| mass[n] <= 0.0) {
+            let massless = |&n: &usize| mass[n] <= 0.0;
+            let node = match self.behaviour[b] {
+                Behaviour::Elastic => body.nodes.clone().find(massless),
+                // A rigid body may have nodes that only carry contact, but needs some mass.
+                Behaviour::Rigid => {
+                    body.nodes.clone().all(|n| massless(&n)).then_some(body.nodes.start)
+                }
+            };
+            if let Some(node) = node {
                 return Err(Error::MasslessNode { body: body.name.clone(), node });
             }
         }
@@ -139,6 +147,10 @@ impl Model {
 
     /// Checks numbers that the fields allow but the solver does not.
     pub(crate) fn check(&self) -> Result<(), Error> {
+        let (bodies, nodes) = (self.mesh.bodies.len(), self.mesh.x.len());
+        check_count("number of materials", self.materials.len(), bodies, "one for each body of the mesh")?;
+        check_count("number of behaviours", self.behaviour.len(), bodies, "one for each body of the mesh")?;
+        check_count("number of motions", self.motion.len(), nodes, "one for each node of the mesh")?;
         check("thickness [m]", self.thickness, self.thickness > 0.0, "positive")?;
         check("hourglass scale", self.hourglass_scale, self.hourglass_scale >= 0.0, "zero or positive")?;
         check("gravity x [m/s²]", self.gravity[0], true, "finite")?;

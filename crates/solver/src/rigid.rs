@@ -93,6 +93,19 @@ impl RigidBody {
         }
     }
 
+    /// Upper bound of ω² [rad²/s²] when each node has at most the stiffness `bound` [N/m].
+    ///
+    /// The largest eigenvalue of translation and rotation together is at most the sum of the two alone.
+    pub(crate) fn frequency_bound(&self, at: &RigidState, state: &State, bound: &[f64]) -> f64 {
+        let (mut translation, mut rotation) = (0.0, 0.0);
+        for n in self.slots.clone() {
+            let r = [state.x[n] - at.centre[0], state.y[n] - at.centre[1]];
+            translation += bound[n];
+            rotation += bound[n] * (r[0] * r[0] + r[1] * r[1]);
+        }
+        translation / self.mass + rotation / self.inertia
+    }
+
     /// Kinetic energy [J] at the time of the positions, from the half steps before and after.
     pub(crate) fn kinetic(&self, before: &RigidState, after: &RigidState) -> f64 {
         let [u, v] = [before.velocity, after.velocity];

@@ -2,22 +2,19 @@
 
 use super::Series;
 
-/// Points of `series` between `from` and `to`, at most about `limit` of them, extremes kept, in order.
-///
-/// Gaps (values that are not finite) are dropped.
-pub(super) fn points(series: &Series, from: f64, to: f64, limit: usize) -> Vec<(f64, f64)> {
-    let all: Vec<(f64, f64)> = series
-        .y
-        .iter()
-        .enumerate()
-        .map(|(n, &y)| (series.position(n), y))
-        .filter(|&(x, y)| y.is_finite() && (from..=to).contains(&x))
+/// Points of `series` between `from` and `to` in runs without a gap, at most about `limit` of them, extremes kept, in
+/// order.
+pub(super) fn runs(series: &Series, from: f64, to: f64, limit: usize) -> Vec<Vec<(f64, f64)>> {
+    let shown: Vec<(f64, f64)> = (0..series.y.len())
+        .map(|n| (series.position(n), series.y[n]))
+        .filter(|p| (from..=to).contains(&p.0))
         .collect();
-    if all.len() <= limit {
-        return all;
-    }
-    let bucket = (2 * all.len()).div_ceil(limit.max(2));
-    all.chunks(bucket).flat_map(extremes).collect()
+    let bucket = if shown.len() <= limit { 1 } else { (2 * shown.len()).div_ceil(limit.max(2)) };
+    shown
+        .split(|p| !p.1.is_finite())
+        .filter(|run| !run.is_empty())
+        .map(|run| run.chunks(bucket).flat_map(extremes).collect())
+        .collect()
 }
 
 /// Smallest and largest point of a bucket, in the order in which they occur.
@@ -41,9 +38,17 @@ mod tests {
         let mut y: Vec<f64> = (0..10_000).map(|n| (0.01 * n as f64).sin()).collect();
         y[4321] = 50.0;
         y[4322] = -60.0;
-        let few = points(&Series::sampled("s", Colour::Blue, 0.0, 1.0, y), 0.0, 1e4, 500);
+        let runs = runs(&Series::sampled("s", Colour::Blue, 0.0, 1.0, y), 0.0, 1e4, 500);
+        let [few] = &runs[..] else { panic!("{} runs", runs.len()) };
         assert!(few.len() <= 500, "{}", few.len());
         assert!(few.contains(&(4321.0, 50.0)) && few.contains(&(4322.0, -60.0)));
         assert!(few.windows(2).all(|w| w[0].0 < w[1].0));
+    }
+
+    #[test]
+    fn invariant_gaps_stay_gaps() {
+        let y = vec![f64::NAN, 1.0, 2.0, f64::NAN, f64::NAN, 3.0];
+        let runs = runs(&Series::sampled("s", Colour::Blue, 0.0, 1.0, y), 0.0, 9.0, 100);
+        assert_eq!(runs, [vec![(1.0, 1.0), (2.0, 2.0)], vec![(5.0, 3.0)]]);
     }
 }

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
-use super::{Abscissa, Axis, Colour, Figure, Series, Style, base64};
+use super::{Abscissa, Axis, Colour, Figure, Series, Style, base64, decimate};
 use crate::Error;
 
 /// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
@@ -123,7 +123,7 @@ impl<'a> SentSeries<'a> {
                 y: base64::floats(&series.y),
             },
             _ => {
-                let kept = super::decimate::points(series, f64::NEG_INFINITY, f64::INFINITY, POINT_LIMIT);
+                let kept = thinned(series);
                 let origin = kept.first().map_or(0.0, |p| p.0);
                 let (x, y): (Vec<f64>, Vec<f64>) = kept.iter().map(|p| (p.0 - origin, p.1)).unzip();
                 Self {
@@ -138,6 +138,18 @@ impl<'a> SentSeries<'a> {
             }
         }
     }
+}
+
+/// The points to send, a gap between runs marked by a value that is not a number.
+fn thinned(series: &Series) -> Vec<(f64, f64)> {
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    for run in decimate::runs(series, f64::NEG_INFINITY, f64::INFINITY, POINT_LIMIT) {
+        if let (Some(last), Some(first)) = (kept.last(), run.first()) {
+            kept.push((0.5 * (last.0 + first.0), f64::NAN));
+        }
+        kept.extend(run);
+    }
+    kept
 }
 
 impl Colour {
@@ -160,6 +172,8 @@ impl Colour {
 /// Style sheets and scripts that a page with figures needs: uPlot (MIT) and the code that feeds it.
 pub fn script() -> Markup {
     html! {
+        // The licence asks for its text in every copy, and every page is one.
+        (PreEscaped(concat!("<!-- uPlot:\n", include_str!("../../assets/uPlot.LICENSE"), "-->")))
         style { (PreEscaped(include_str!("../../assets/uPlot.min.css"))) }
         script { (PreEscaped(include_str!("../../assets/uPlot.iife.min.js"))) }
         script { (PreEscaped(include_str!("../../assets/plot.js"))) }

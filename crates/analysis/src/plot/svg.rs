@@ -142,14 +142,15 @@ impl Figure {
         x: (f64, f64),
     ) -> Result<(), Box<dyn std::error::Error>> {
         for series in &self.series {
-            let points = decimate::points(series, x.0, x.1, POINTS);
             let colour = series.colour.rgb();
-            match series.style {
-                Style::Line => {
-                    chart.draw_series(LineSeries::new(points, colour.stroke_width(FINE)))?;
-                }
-                Style::Points => {
-                    chart.draw_series(points.into_iter().map(|p| Circle::new(p, px(3), colour.filled())))?;
+            for run in decimate::runs(series, x.0, x.1, POINTS) {
+                match series.style {
+                    Style::Line => {
+                        chart.draw_series(LineSeries::new(run, colour.stroke_width(FINE)))?;
+                    }
+                    Style::Points => {
+                        chart.draw_series(run.into_iter().map(|p| Circle::new(p, px(3), colour.filled())))?;
+                    }
                 }
             }
         }

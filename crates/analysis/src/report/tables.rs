@@ -4,142 +4,7 @@ use maud::{Markup, html};
 use stribeck_bearing::run_info::RunInfo;
 
 use super::figures::spoken;
-use crate::findings::Findings;
 use crate::summary::Summary;
-
-/// One line of the comparison at the head of the page.
-struct Row {
-    quantity: String,
-    ours: Option<String>,
-    expected: String,
-    paper: &'static str,
-}
-
-/// Key numbers beside what theory expects and what the paper reports.
-pub(super) fn comparison(summary: &Summary, findings: &Findings) -> Markup {
-    let rows = motion_rows(summary).into_iter().chain(noise_rows(summary, findings)).chain(sum_rows(summary));
-    html! {
-        div class="scroll" {
-            table {
-                thead { tr { th { "Quantity" } th class="n" { "This run" } th class="n" { "Expected" } th class="n" { "Paper" } } }
-                tbody {
-                    @for row in rows {
-                        tr {
-                            td { (row.quantity) }
-                            (cell(row.ours))
-                            td class="n" { (row.expected) }
-                            td class="n wrap" { (row.paper) }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-fn motion_rows(summary: &Summary) -> Vec<Row> {
-    let motion = &summary.kinematics;
-    let mut rows = vec![
-        Row {
-            quantity: "Cage frequency".into(),
-            ours: hertz(motion.cage_hz, 4),
-            expected: format!("{:.4} Hz", motion.expected_cage_hz),
-            paper: "",
-        },
-        Row {
-            quantity: "Ball pass frequency, outer raceway".into(),
-            ours: hertz(motion.bpfo_hz, 2),
-            expected: format!("{:.2} Hz", motion.expected_bpfo_hz),
-            paper: "90.91 Hz read, 90.07 Hz computed",
-        },
-    ];
-    let papers = ["≈ 5 ms", "16–17 ms", "≈ 28 ms"];
-    for (at, event) in summary.events.iter().enumerate().take(3) {
-        rows.push(Row {
-            quantity: format!("Roller {} is loaded again behind the defect", event.roller),
-            ours: event.exit_ms.map(|t| format!("{t:.2} ms")),
-            expected: format!("{:.2} ms", event.expected_exit_ms),
-            paper: papers[at],
-        });
-    }
-    rows
-}
-
-fn noise_rows(summary: &Summary, findings: &Findings) -> Vec<Row> {
-    let leading = summary.levels.sensor.as_deref().unwrap_or_default();
-    let centre = summary.notch.as_ref().map(|n| n.centre_hz);
-    let tone = summary
-        .tones
-        .iter()
-        .filter(|t| t.sensor == leading && t.harmonic == 1)
-        .find(|t| t.measured_hz == centre);
-    let first = findings.prediction.facet_lines.first().map_or(String::new(), |l| format!("{:.0} Hz", l.1));
-    let notch = summary.notch.as_ref();
-    let gravities = |g: Option<f64>| g.map(|g| format!("{g:.0} g"));
-    let decibels = |db: Option<f64>| db.map(|db| format!("{db:.1} dB"));
-    let row = |quantity: &str, ours: Option<String>, expected: String, paper| Row {
-        quantity: quantity.into(),
-        ours,
-        expected,
-        paper,
-    };
-    vec![
-        row("Facet tone", tone.and_then(|t| hertz(t.measured_hz, 1)), first, "4671 Hz"),
-        row(
-            "Facet tone above its surroundings",
-            decibels(tone.and_then(|t| t.prominence_db)),
-            String::new(),
-            "",
-        ),
-        row("Impulse at an exit, peak", gravities(summary.levels.impulse_g), String::new(), "± 180 g"),
-        row("Between impulses, peak", gravities(summary.levels.between_g), String::new(), "± 50 g"),
-        row(
-            "Between impulses, notched, peak",
-            gravities(summary.levels.between_filtered_g),
-            String::new(),
-            "± 20 g",
-        ),
-        row(
-            "Notch takes from the tone",
-            decibels(notch.and_then(|n| n.attenuation_db)),
-            String::new(),
-            "25 dB",
-        ),
-        row(
-            "Notch takes at 4545 Hz",
-            decibels(notch.and_then(|n| n.attenuation_4545_db)),
-            String::new(),
-            "4 dB",
-        ),
-    ]
-}
-
-fn sum_rows(summary: &Summary) -> Vec<Row> {
-    let load = &summary.load;
-    let kilo = |n: f64| format!("{:.2} kN", 1e-3 * n);
-    vec![
-        Row {
-            quantity: "Vertical force through the rollers, mean".into(),
-            ours: load.mean_n.map(kilo),
-            expected: kilo(load.expected_n),
-            paper: "50 kN load",
-        },
-        Row {
-            quantity: "Largest roller force, facet-period mean".into(),
-            ours: load.max_roller_n.map(kilo),
-            expected: load
-                .static_max_roller_defect_n
-                .map_or(String::new(), |n| format!("{} static", kilo(n))),
-            paper: "",
-        },
-        Row {
-            quantity: "Energy imbalance / peak strain energy".into(),
-            ours: Some(format!("{:.3} %", 100.0 * summary.energy.max_relative_error)),
-            expected: "0".into(),
-            paper: "",
-        },
-    ]
-}
 
 /// Measured events of every passage.
 pub(super) fn events(summary: &Summary) -> Markup {
@@ -192,9 +57,9 @@ pub(super) fn tones(summary: &Summary) -> Markup {
             table class="close" {
                 thead {
                     tr {
-                        th { "Sensor" } th { "Line" } th class="n" { "Predicted Hz" } th class="n" { "Measured Hz" }
+                        th { "Sensor" } th { "Line" } th class="n" { "No slip Hz" } th class="n" { "From motion Hz" } th class="n" { "Measured Hz" }
                         th class="n" { "Off by %" } th class="n" { "Amplitude g" } th class="n" { "Stands out dB" }
-                        th { "Not told apart from" }
+                        th { "Merged with" }
                     }
                 }
                 tbody {
@@ -204,22 +69,30 @@ pub(super) fn tones(summary: &Summary) -> Markup {
                             td { (tone.sensor) }
                             td { (spoken(&tone.name)) " ×" (tone.harmonic) }
                             td class="n" { (format!("{:.1}", tone.predicted_hz)) }
+                            (cell(tone.from_motion_hz.map(|hz| format!("{hz:.1}"))))
                             (cell(tone.measured_hz.map(|hz| format!("{hz:.1}"))))
                             (cell(off.map(|p| format!("{p:+.2}").replace('-', "−"))))
                             (cell(tone.level_g.map(|g| format!("{g:.2}"))))
                             (cell(tone.prominence_db.map(|db| format!("{db:.1}").replace('-', "−"))))
-                            td { (spoken(&tone.unresolved_from.join(", "))) }
+                            td { (short_names(&tone.unresolved_from)) }
                         }
                     }
                 }
             }
         }
         p class="hint" {
-            "Predicted from the facet counts of this mesh without slip. A line counts as found when the spectrum has a peak \
-             within 0.5 % of the prediction (or half a resolution) and 10 dB above its surroundings; where this record cannot \
-             tell lines apart, the peak goes to those within reach of it."
+            "Predicted from the facet counts of this mesh, without slip and from the recorded motion of cage and loaded rollers. \
+             A line counts as found when the spectrum has a peak within 0.5 % of either (or half a resolution) and 10 dB above \
+             its surroundings; where this record cannot tell lines apart, the peak goes to those within reach of it. Off by: \
+             from the value without slip."
         }
     }
+}
+
+/// Lines of the same harmonic by the first word of their names, which tells them apart.
+fn short_names(lines: &[String]) -> String {
+    let first = |line: &String| spoken(line).split(' ').next().unwrap_or_default().to_owned();
+    lines.iter().map(first).collect::<Vec<_>>().join(", ")
 }
 
 /// The notch in numbers.
@@ -405,12 +278,12 @@ pub(super) fn provenance(info: &RunInfo, summary: &Summary) -> Markup {
     html! { table { tbody { @for (name, value) in rows { tr { th { (name) } td { (value) } } } } } }
 }
 
-fn hertz(value: Option<f64>, digits: usize) -> Option<String> {
+pub(super) fn hertz(value: Option<f64>, digits: usize) -> Option<String> {
     value.map(|hz| format!("{hz:.digits$} Hz"))
 }
 
 /// A right-aligned cell; a dash when there is no value.
-fn cell(value: Option<String>) -> Markup {
+pub(super) fn cell(value: Option<String>) -> Markup {
     match value {
         Some(text) => html! { td class="n" { (text) } },
         None => html! { td class="n absent" { "–" } },

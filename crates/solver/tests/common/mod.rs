@@ -1,0 +1,173 @@
+//! Models and measurements that several test files share.
+#![allow(dead_code, reason = "each test file uses its own part of it")]
+
+use stribeck_mesh::{Mesh, Part, Rectangle};
+use stribeck_solver::{
+    Dynamics, Elastic, Force, Model,
+    statics::{Equilibrium, Statics},
+};
+
+/// Out-of-plane thickness of every model [m]; an odd one, so that a forgotten factor shows.
+pub(crate) const THICKNESS: f64 = 0.007;
+
+/// E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³.
+pub(crate) fn steel() -> Elastic {
+    Elastic::new(208e9, 0.3, 7800.0).expect("steel is a possible material")
+}
+
+/// A rectangle with its lower left corner in the origin.
+pub(crate) fn rectangle(width: f64, height: f64, columns: usize, rows: usize) -> Part {
+    Rectangle { x0: 0.0, y0: 0.0, width, height, columns, rows }.part().expect("a rectangle that can be made")
+}
+
+/// Nodes on the sides of a rectangle of so many cells.
+pub(crate) fn on_sides(columns: usize, rows: usize) -> impl Iterator<Item = usize> {
+    let inside = move |r: usize, c: usize| r > 0 && r < rows && c > 0 && c < columns;
+    (0..=rows)
+        .flat_map(move |r| (0..=columns).map(move |c| (r, c)))
+        .filter(move |&(r, c)| !inside(r, c))
+        .map(move |(r, c)| r * (columns + 1) + c)
+}
+
+/// Moves the inner nodes of a rectangle by up to `reach` [m] in each direction.
+pub(crate) fn distort(part: &mut Part, columns: usize, rows: usize, reach: f64) {
+    let mut noise = Noise(1);
+    let fixed: Vec<usize> = on_sides(columns, rows).collect();
+    for n in (0..part.x.len()).filter(|n| !fixed.contains(n)) {
+        part.x[n] += reach * noise.next();
+        part.y[n] += reach * noise.next();
+    }
+}
+
+/// Every quadrilateral as two triangles.
+pub(crate) fn split(mut part: Part) -> Part {
+    part.triangles = part.quads.drain(..).flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    part
+}
+
+/// A model of one body of steel.
+pub(crate) fn body(part: &Part) -> Model {
+    let mut mesh = Mesh::new();
+    mesh.add("body", part);
+    Model::new(mesh, steel(), THICKNESS).expect("a positive thickness")
+}
+
+/// Lays a model out for one thread; every node may be pushed.
+pub(crate) fn lay_out(model: &Model) -> Dynamics {
+    Dynamics::new(model, &vec![true; model.mesh.x.len()], 1).expect("a model that can run")
+}
+
+/// Lays a model out and sets the time step to `factor` of the critical one without forces.
+pub(crate) fn ready(model: &Model, factor: f64) -> Dynamics {
+    let mut d = lay_out(model);
+    let critical = d.critical_time_step(&[], 0.0).time_step;
+    d.set_time_step(factor * critical).expect("a positive time step");
+    d
+}
+
+/// Slots of mesh nodes.
+pub(crate) fn slots(d: &Dynamics, nodes: impl IntoIterator<Item = usize>) -> Vec<u32> {
+    nodes.into_iter().map(|n| d.layout().slot_of_node[n]).collect()
+}
+
+/// Slot of one mesh node.
+pub(crate) fn slot(d: &Dynamics, node: usize) -> usize {
+    d.layout().slot_of_node[node] as usize
+}
+
+/// Slots that carry mass: no ghosts, no padding.
+pub(crate) fn massive(d: &Dynamics) -> Vec<usize> {
+    (0..d.mass().len()).filter(|&s| d.mass()[s] > 0.0).collect()
+}
+
+/// Takes `n` steps.
+pub(crate) fn run(d: &mut Dynamics, forces: &mut [&mut dyn Force], n: usize) {
+    for _ in 0..n {
+        d.step(forces);
+    }
+}
+
+/// Linear momentum [kg m/s] and angular momentum about the origin [kg m²/s].
+pub(crate) fn momentum(d: &Dynamics) -> [f64; 3] {
+    let s = &d.state;
+    let mut sum = [0.0; 3];
+    for n in massive(d) {
+        let (px, py) = (d.mass()[n] * s.vx[n], d.mass()[n] * s.vy[n]);
+        sum[0] += px;
+        sum[1] += py;
+        sum[2] += s.x[n] * py - s.y[n] * px;
+    }
+    sum
+}
+
+/// Energies [J] at the positions before a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Balance {
+    pub(crate) kinetic: f64,
+    pub(crate) strain: f64,
+    pub(crate) hourglass: f64,
+    pub(crate) gravity_work: f64,
+    pub(crate) drive: f64,
+}
+
+impl Balance {
+    /// Kinetic and elastic energy [J].
+    pub(crate) fn mechanical(&self) -> f64 {
+        self.kinetic + self.strain + self.hourglass
+    }
+}
+
+/// Takes one step and says what the energies were at the positions before it.
+pub(crate) fn step_and_balance(d: &mut Dynamics, forces: &mut [&mut dyn Force]) -> Balance {
+    let (elastic, gravity_work) = (d.elastic_energy(), d.gravity_work());
+    let (vx, vy, rigid) = (d.state.vx.clone(), d.state.vy.clone(), d.rigid.clone());
+    d.step(forces);
+    Balance {
+        kinetic: d.kinetic_energy(&vx, &vy, &rigid),
+        strain: elastic.strain,
+        hourglass: elastic.hourglass,
+        gravity_work,
+        drive: d.drive.at_last_positions(),
+    }
+}
+
+/// Static equilibrium of one body whose nodes are `slots`; `tolerance` is the unbalanced force allowed [N].
+pub(crate) fn equilibrate(
+    d: &mut Dynamics,
+    forces: &mut [&mut dyn Force],
+    acceleration: Vec<[f64; 2]>,
+    tolerance: f64,
+) -> Result<Equilibrium, stribeck_solver::Error> {
+    let all = massive(d).into_iter().map(|s| s as u32).collect();
+    let statics = Statics {
+        bodies: vec![("body".to_owned(), all)],
+        undecided: Vec::new(),
+        acceleration,
+        longest_step: 1e-3,
+        tolerance,
+        iterations: 40,
+    };
+    d.equilibrate(forces, &statics)
+}
+
+/// Repeatable numbers between −1 and 1 (Knuth's linear congruential generator).
+pub(crate) struct Noise(pub(crate) u64);
+
+impl Noise {
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Fails unless `ours` is within `tolerance` (relative) of `theirs`.
+#[track_caller]
+pub(crate) fn assert_close(ours: f64, theirs: f64, tolerance: f64, what: &str) {
+    let error = (ours - theirs).abs() / theirs.abs();
+    assert!(error <= tolerance, "{what}: {ours:e}, expected {theirs:e}, off by {error:.2e} > {tolerance:.1e}");
+}
+
+/// Observed order of convergence from errors on meshes or steps that halve each time.
+pub(crate) fn orders(errors: &[f64]) -> Vec<f64> {
+    errors.windows(2).map(|w| (w[0] / w[1]).log2()).collect()
+}

@@ -1,0 +1,136 @@
+//! What the solver refuses, and what it says.
+
+mod common;
+
+use common::*;
+use stribeck_mesh::{Mesh, Part};
+use stribeck_solver::{Behaviour, Dynamics, Elastic, Error, Model, Motion, force::NodalLoad};
+
+#[track_caller]
+fn says<T>(result: Result<T, Error>, words: &[&str]) {
+    let Err(error) = result else { panic!("accepted") };
+    let text = error.to_string();
+    for word in words {
+        assert!(text.contains(word), "`{word}` is missing in: {text}");
+    }
+}
+
+#[test]
+fn invariant_materials_must_be_possible() {
+    says(Elastic::new(-1.0, 0.3, 7800.0), &["Young's modulus [Pa]", "-1", "positive"]);
+    says(Elastic::new(0.0, 0.3, 7800.0), &["Young's modulus [Pa]"]);
+    says(Elastic::new(f64::NAN, 0.3, 7800.0), &["Young's modulus [Pa]", "NaN"]);
+    says(Elastic::new(f64::INFINITY, 0.3, 7800.0), &["Young's modulus [Pa]", "inf"]);
+    says(Elastic::new(2e11, 0.5, 7800.0), &["Poisson's ratio", "0.5"]);
+    says(Elastic::new(2e11, -1.0, 7800.0), &["Poisson's ratio", "-1"]);
+    says(Elastic::new(2e11, 0.3, 0.0), &["density [kg/m³]"]);
+    assert!(Elastic::new(2e11, 0.0, 1.0).is_ok() && Elastic::new(2e11, -0.5, 1.0).is_ok());
+}
+
+#[test]
+fn analytic_moduli_of_steel() {
+    // E = 208 GPa, ν = 0.3: µ = E/2.6, λ = E·0.3/(1.3·0.4), E' = E/0.91.
+    let s = steel();
+    assert_close(s.shear(), 80e9, 1e-12, "µ");
+    assert_close(s.lame(), 120e9, 1e-12, "λ");
+    assert_close(s.plane_strain_modulus(), 208e9 / 0.91, 1e-12, "E'");
+    assert_close(s.dilatational_speed(), (280e9_f64 / 7800.0).sqrt(), 1e-12, "c");
+}
+
+/// Lays out the model of a unit rectangle after a change.
+fn after(change: impl FnOnce(&mut Model)) -> Result<Dynamics, Error> {
+    let mut model = body(&rectangle(1.0, 1.0, 2, 2));
+    change(&mut model);
+    Dynamics::new(&model, &vec![true; model.mesh.x.len()], 1)
+}
+
+#[test]
+fn invariant_models_must_be_possible() {
+    let mut mesh = Mesh::new();
+    mesh.add("plate", &rectangle(1.0, 1.0, 2, 2));
+    for thickness in [0.0, -0.01, f64::NAN] {
+        says(Model::new(mesh.clone(), steel(), thickness), &["thickness [m]", "positive"]);
+    }
+    says(after(|m| m.thickness = -1.0), &["thickness [m] = -1"]);
+    says(after(|m| m.hourglass_scale = -0.1), &["hourglass scale", "-0.1"]);
+    says(after(|m| m.gravity = [0.0, f64::NAN]), &["gravity y", "NaN"]);
+    says(after(|m| m.motion[0] = Motion::Rotating { centre: [0.0; 2], rate: f64::NAN }), &["rotation rate"]);
+    assert!(after(|_| ()).is_ok());
+}
+
+#[test]
+fn invariant_lists_must_fit_the_mesh() {
+    says(after(|m| m.motion.truncate(3)), &["number of motions = 3", "each node"]);
+    says(after(|m| m.materials.clear()), &["number of materials = 0", "each body"]);
+    says(after(|m| m.behaviour.push(Behaviour::Rigid)), &["number of behaviours = 2", "each body"]);
+    let model = body(&rectangle(1.0, 1.0, 2, 2));
+    says(Dynamics::new(&model, &[true; 4], 1), &["`loaded` = 4", "each node"]);
+}
+
+#[test]
+fn invariant_elements_must_have_area() {
+    let bad = ["element 2", "body `body`", "counter-clockwise"];
+    says(after(|m| m.mesh.quads[2].reverse()), &bad);
+    says(after(|m| m.mesh.quads[2] = [0, 1, 1, 0]), &bad);
+    says(after(|m| m.mesh.x[6] = f64::NAN), &bad);
+    let model = body(&split(rectangle(1.0, 1.0, 2, 2)));
+    let mut turned = model.clone();
+    turned.mesh.triangles[2].reverse();
+    says(Dynamics::new(&turned, &[true; 9], 1), &bad);
+}
+
+#[test]
+fn invariant_nodes_must_have_mass() {
+    let mut part: Part = rectangle(1.0, 1.0, 2, 2);
+    part.x.push(3.0);
+    part.y.push(3.0);
+    let model = body(&part);
+    says(Dynamics::new(&model, &[true; 10], 1), &["node 9", "body `body`", "no mass"]);
+    // A rigid body may have nodes that only carry contact, as the message says, but not nothing else.
+    let mut rigid = model.clone();
+    rigid.behaviour[0] = Behaviour::Rigid;
+    assert!(Dynamics::new(&rigid, &[true; 10], 1).is_ok());
+    part.quads.clear();
+    let mut empty = body(&part);
+    empty.behaviour[0] = Behaviour::Rigid;
+    says(Dynamics::new(&empty, &[true; 10], 1), &["no mass"]);
+}
+
+#[test]
+fn invariant_the_time_step_must_be_positive() {
+    let mut d = lay_out(&body(&rectangle(1.0, 1.0, 2, 2)));
+    for dt in [0.0, -1e-9, f64::NAN, f64::INFINITY] {
+        says(d.set_time_step(dt), &["time step [s]", "positive"]);
+    }
+}
+
+#[test]
+fn invariant_statics_needs_a_support() {
+    // A free plate under a load has no equilibrium; the error names body, place and advice.
+    let model = body(&rectangle(1.0, 1.0, 2, 2));
+    let mut d = lay_out(&model);
+    let mut load = NodalLoad::new(vec![(slot(&d, 4) as u32, 1000.0, 0.0)]);
+    let result = equilibrate(&mut d, &mut [&mut load], Vec::new(), 1e-6);
+    says(result, &["did not converge", "iterations", "body `body`", "check that the load can reach a support"]);
+}
+
+#[test]
+fn invariant_statics_refuses_what_is_not_a_number() {
+    let mut model = body(&rectangle(1.0, 1.0, 2, 2));
+    for n in 0..3 {
+        model.motion[n] = Motion::Held;
+    }
+    let mut d = lay_out(&model);
+    let mut load = NodalLoad::new(vec![(slot(&d, 4) as u32, f64::NAN, 0.0)]);
+    says(equilibrate(&mut d, &mut [&mut load], Vec::new(), 1e-6), &["NaN"]);
+}
+
+#[test]
+fn invariant_a_held_body_is_already_in_equilibrium() {
+    let mut model = body(&rectangle(1.0, 1.0, 2, 2));
+    model.motion.fill(Motion::Held);
+    let mut d = lay_out(&model);
+    let mut load = NodalLoad::new(vec![(slot(&d, 4) as u32, 1000.0, 0.0)]);
+    let found = equilibrate(&mut d, &mut [&mut load], Vec::new(), 1e-6).expect("nothing can move");
+    assert_eq!(found.iterations, 0);
+}
