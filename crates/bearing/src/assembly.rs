@@ -218,7 +218,8 @@ impl Assembly {
         let dynamics = Dynamics::new(model, &loaded, threads)?;
         let slot = |&n: &u32| dynamics.layout().slot_of_node[n as usize];
         let slots = |s: &stribeck_mesh::Surface| s.nodes.iter().map(slot).collect::<Vec<u32>>();
-        let body = |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
+        let body =
+            |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
         let (x, y) = (&dynamics.state.x, &dynamics.state.y);
         let names = ["outer raceway", "outer ring's back", "inner raceway", "adapter seat"];
         let surfaces = touching
@@ -285,7 +286,10 @@ impl Assembly {
             roller_pairs.push(RollerPairs {
                 outer: pair(0),
                 inner: pair(2),
-                cage: self.cage.as_ref().map(|_| [pair(first_piece + (i + n - 1) % n), pair(first_piece + i)]),
+                cage: self
+                    .cage
+                    .as_ref()
+                    .map(|_| [pair(first_piece + (i + n - 1) % n), pair(first_piece + i)]),
             });
         }
         // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.

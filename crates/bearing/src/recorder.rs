@@ -60,7 +60,8 @@ impl Recorder {
         }
         let with_cage = scene.cage.is_some();
         for i in 1..=scene.bearing.rollers {
-            for channel in ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"] {
+            for channel in ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"]
+            {
                 names.push(format!("roller.{i}.{channel}"));
             }
             if with_cage {

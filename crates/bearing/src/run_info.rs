@@ -81,8 +81,15 @@ pub struct MeshInfo {
 /// Energy verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnergyInfo {
-    /// Largest |imbalance| divided by the peak strain energy [-].
+    /// Largest |imbalance| divided by the peak strain energy [-]; infinite (`null` in the file) after an overflow.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub max_relative_error: f64,
-    /// Peak strain energy [J].
+    /// Peak strain energy [J]; infinite likewise.
+    #[serde(deserialize_with = "null_is_infinite")]
     pub peak_strain_j: f64,
+}
+
+/// JSON knows no infinity: it is written as `null`.
+fn null_is_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
 }

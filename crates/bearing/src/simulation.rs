@@ -87,7 +87,12 @@ struct Ledger {
 impl Ledger {
     /// What is in the model and what has left it, less what came in.
     fn balance(&self) -> f64 {
-        self.kinetic + self.strain + self.hourglass + self.contact + self.friction + self.damping
+        self.kinetic
+            + self.strain
+            + self.hourglass
+            + self.contact
+            + self.friction
+            + self.damping
             + self.contact_damping
             - self.external
             - self.drive
@@ -181,7 +186,7 @@ pub fn simulate(
         progress.step = info.steps;
         progress.time_s = run.machine.dynamics.state.time;
         progress.energy_error = error;
-        if error.is_nan() || error > WORST_IMBALANCE {
+        if error > WORST_IMBALANCE {
             info.status = Status::Diverged;
             info.stop_reason = Some(run.why_stopped(error, &assembly));
             break;
@@ -295,11 +300,10 @@ impl Run {
     fn account(&mut self, l: &Ledger, info: &mut RunInfo) -> Result<f64, Error> {
         let energy = &mut info.energy;
         energy.peak_strain_j = energy.peak_strain_j.max(l.strain);
-        let imbalance = l.balance() - self.baseline.unwrap_or(0.0);
-        let error = if energy.peak_strain_j > 0.0 { imbalance.abs() / energy.peak_strain_j } else { imbalance.abs() };
-        if error.is_nan() || error > energy.max_relative_error {
-            energy.max_relative_error = error;
-        }
+        let imbalance = (l.balance() - self.baseline.unwrap_or(0.0)).abs();
+        let scale = if energy.peak_strain_j > 0.0 { energy.peak_strain_j } else { 1.0 };
+        let error = if imbalance.is_finite() { imbalance / scale } else { f64::INFINITY };
+        energy.max_relative_error = energy.max_relative_error.max(error);
         let time = self.machine.dynamics.state.time - self.machine.dynamics.time_step();
         self.energy.push(&[
             time,
@@ -380,9 +384,8 @@ fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<()
         mesh.x[n] = machine.dynamics.state.x[slot as usize];
         mesh.y[n] = machine.dynamics.state.y[slot as usize];
     }
-    let moved: Vec<[f64; 3]> = (0..mesh.x.len())
-        .map(|n| [mesh.x[n] - reference.0[n], mesh.y[n] - reference.1[n], 0.0])
-        .collect();
+    let moved: Vec<[f64; 3]> =
+        (0..mesh.x.len()).map(|n| [mesh.x[n] - reference.0[n], mesh.y[n] - reference.1[n], 0.0]).collect();
     let path = dir.mesh();
     let io = |source| Error::Io {
         action: "write",

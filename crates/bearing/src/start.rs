@@ -42,10 +42,8 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
         let (cx, cy) = (state.x[c], state.y[c]);
         for &n in &roller.all {
             let n = n as usize;
-            acceleration[n] = [
-                -orbit * cx - spin * (state.x[n] - cx),
-                -orbit * cy - spin * (state.y[n] - cy),
-            ];
+            acceleration[n] =
+                [-orbit * cx - spin * (state.x[n] - cx), -orbit * cy - spin * (state.y[n] - cy)];
         }
     }
     acceleration

@@ -138,10 +138,17 @@ fn invariant_same_bits_with_1_2_and_3_threads() {
 #[test]
 fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     const TRAILING_EDGE_DEG: f64 = 90.0 - 2.8648;
-    let (_, caged) = run(&coarse(6.5), 1);
+    let mut scene = coarse(6.5);
+    // A 1 mm mesh: on 2 mm the polygon rolls over the first time.
+    scene.mesh.size_mm = 1.0;
+    scene.mesh.roller_facets = 112;
+    let (_, caged) = run(&scene, 1);
     let angle = last_angle_deg(&caged, 1);
-    assert!(angle < TRAILING_EDGE_DEG, "with its cage roller 1 should be out of the spall, it is at {angle}°");
-    let (_, free) = run(&Scene { cage: None, ..coarse(6.5) }, 1);
+    assert!(
+        angle < TRAILING_EDGE_DEG,
+        "with its cage roller 1 should be out of the spall, it is at {angle}°"
+    );
+    let (_, free) = run(&Scene { cage: None, ..scene }, 1);
     let angle = last_angle_deg(&free, 1);
     assert!(angle > TRAILING_EDGE_DEG, "without a cage roller 1 should stay in the spall, it is at {angle}°");
     assert!(free.trace.get("cage.angle_rad").is_none(), "a scene without a cage records none");

@@ -79,6 +79,10 @@ const SPEED_MARGIN: f64 = 2.0;
 /// Least speed allowed for between searches [m/s]: what an impact may give to a surface at rest.
 const LEAST_SPEED: f64 = 2.0;
 
+/// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much more than
+/// the mean; no other spacing gives more.
+const CLUSTERING: f64 = 1.125;
+
 impl Contacts {
     /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
     pub fn new(surfaces: Vec<Surface>, pairs: &[PairSpec], thickness: f64, x: &[f64], y: &[f64]) -> Self {
@@ -199,8 +203,7 @@ impl Contacts {
 
 /// Each of the two passes carries half of the stiffness.
 fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
-    let law =
-        if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
+    let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
     Weights { law, thickness: 0.5 * thickness, fastest, softness: preload.unwrap_or(0.0) }
 }
 
@@ -241,17 +244,22 @@ impl Force for Contacts {
     }
 
     fn stiffness_bound(&self, dt: f64, bound: &mut [f64]) {
-        // A contact spring pulls on the difference of two displacements: (a − b)² ≤ 2a² + 2b². Each pass has half
-        // the stiffness, and both act on a node. A surface touches one other at a time, so pairs do not add up.
+        // A contact spring pulls on the difference of two displacements, (a − b)² ≤ 2a² + 2b², in each of two passes of
+        // half the stiffness. A surface touches one other at a time, so pairs do not add up.
         let mut own = vec![0.0_f64; bound.len()];
         for pair in &self.pairs {
             let law = &pair.spec.law;
             let lagged = if dt > 0.0 { 2.0 * law.damping / dt } else { 0.0 };
-            for surface in [pair.spec.first, pair.spec.second] {
-                let surface = &self.surfaces[surface];
-                for (&slot, length) in surface.slots.iter().zip(surface.tributary()) {
-                    let k = 2.0 * (law.stiffness + lagged) * length * self.thickness;
-                    own[slot as usize] = own[slot as usize].max(k);
+            let k = (law.stiffness + lagged) * self.thickness;
+            let [first, second] = &pair.passes;
+            for (as_secondary, as_primary) in [(first, second), (second, first)] {
+                let surface = &self.surfaces[as_secondary.secondary];
+                let weights = as_secondary.points.on_nodes(surface);
+                let other = as_primary.points.largest_weight();
+                for ((&slot, weight), length) in surface.slots.iter().zip(weights).zip(surface.tributary()) {
+                    // Points of the other surface are dealt out over this one's nodes as they fall.
+                    let dealt = CLUSTERING * length.max(other);
+                    own[slot as usize] = own[slot as usize].max(k * (weight + dealt));
                 }
             }
         }

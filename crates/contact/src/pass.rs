@@ -15,7 +15,7 @@ use crate::{
 pub(crate) struct Pass {
     pub(crate) secondary: usize,
     pub(crate) primary: usize,
-    points: Points,
+    pub(crate) points: Points,
     /// Facet of the primary surface on which each point was last found.
     nearest: Vec<u32>,
     candidates: Vec<Candidate>,
@@ -210,10 +210,8 @@ impl Pass {
             if touched {
                 push.push((a as u32, force_a));
                 push.push((b as u32, force_b));
-                sum.force = [
-                    sum.force[0] + (force_a[0] + force_b[0]),
-                    sum.force[1] + (force_a[1] + force_b[1]),
-                ];
+                sum.force =
+                    [sum.force[0] + (force_a[0] + force_b[0]), sum.force[1] + (force_a[1] + force_b[1])];
             } else if nearest_gap > 0.0 && w.fastest > 0.0 {
                 // Points off both ends of an open surface report an infinite gap; the next search wakes them.
                 let steps = nearest_gap / (w.fastest * at.dt);
@@ -327,7 +325,8 @@ fn contact_force(
     history.slip = after;
     let stored = 0.5 * tangential * after * after;
     sum.stored += stored;
-    sum.friction += 0.5 * tangential * (before + after) * moved - (stored - 0.5 * tangential * before * before);
+    sum.friction +=
+        0.5 * tangential * (before + after) * moved - (stored - 0.5 * tangential * before * before);
     let shear = -tangential * after;
     [normal * nx + shear * tx, normal * ny + shear * ty]
 }

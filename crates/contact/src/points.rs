@@ -62,6 +62,24 @@ impl Points {
         self.place.len()
     }
 
+    /// Length of surface that the points deal out to each node [m].
+    pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
+        let mut share = vec![0.0; surface.slots.len()];
+        for f in 0..surface.facets() {
+            let next = if f + 1 == share.len() { 0 } else { f + 1 };
+            for i in self.of_facet(f) {
+                share[f] += (1.0 - self.place[i]) * self.weight[i];
+                share[next] += self.place[i] * self.weight[i];
+            }
+        }
+        share
+    }
+
+    /// Longest length of surface that one point stands for [m].
+    pub(crate) fn largest_weight(&self) -> f64 {
+        self.weight.iter().copied().fold(0.0, f64::max)
+    }
+
     pub(crate) fn of_facet(&self, facet: usize) -> std::ops::Range<usize> {
         self.first[facet] as usize..self.first[facet + 1] as usize
     }

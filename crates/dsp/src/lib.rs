@@ -57,7 +57,6 @@
 //! ```
 
 // Units stand in square brackets, which rustdoc takes for links.
-#![allow(rustdoc::broken_intra_doc_links)]
 
 mod error;
 mod window;

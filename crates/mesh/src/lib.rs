@@ -58,9 +58,6 @@
 //! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
 //! | How are bad cells made better? | `relax.rs` |
 
-// Units stand in brackets, as in "radius [m]", and are no links.
-#![allow(rustdoc::broken_intra_doc_links)]
-
 mod mesh;
 mod part;
 

@@ -132,7 +132,8 @@ impl Operator<'_> {
         normalise(&mut v);
         let (mut before, mut w) = (vec![0.0; n], vec![0.0; n]);
         let (mut alpha, mut beta) = (Vec::new(), Vec::new());
-        let mut critical = Critical { time_step: f64::NAN, frequency: f64::NAN, iterations: 0, residual: 1.0 };
+        let mut critical =
+            Critical { time_step: f64::NAN, frequency: f64::NAN, iterations: 0, residual: 1.0 };
         for k in 1..=ITERATIONS.min(n) {
             self.apply(&v, &mut w, &mut at, &mut force);
             let last_beta = beta.last().copied().unwrap_or(0.0);

@@ -21,17 +21,14 @@ impl MassDamping {
     pub fn apply(&mut self, dynamics: &mut Dynamics, span: f64) {
         let keep = (-self.rate * span).exp();
         for slots in &self.bodies {
-            let motion =
-                if self.relative { dynamics.rigid_motion(slots) } else { RigidMotion::default() };
+            let motion = if self.relative { dynamics.rigid_motion(slots) } else { RigidMotion::default() };
             let mut taken = 0.0;
             for &n in slots {
                 let n = n as usize;
                 let rigid = motion.velocity_at([dynamics.state.x[n], dynamics.state.y[n]]);
                 let before = [dynamics.state.vx[n], dynamics.state.vy[n]];
-                let after = [
-                    rigid[0] + keep * (before[0] - rigid[0]),
-                    rigid[1] + keep * (before[1] - rigid[1]),
-                ];
+                let after =
+                    [rigid[0] + keep * (before[0] - rigid[0]), rigid[1] + keep * (before[1] - rigid[1])];
                 let squares = before[0] * before[0] + before[1] * before[1]
                     - (after[0] * after[0] + after[1] * after[1]);
                 taken += 0.5 * dynamics.mass()[n] * squares;

@@ -218,15 +218,7 @@ impl Dynamics {
     /// The moment that forces see.
     pub fn moment(&self) -> Moment<'_> {
         let s = &self.state;
-        Moment {
-            step: s.step,
-            time: s.time,
-            dt: self.time_step,
-            x: &s.x,
-            y: &s.y,
-            vx: &s.vx,
-            vy: &s.vy,
-        }
+        Moment { step: s.step, time: s.time, dt: self.time_step, x: &s.x, y: &s.y, vx: &s.vx, vy: &s.vy }
     }
 
     /// One step: everything pushes, every tile sums its elements and moves its nodes (THEORY §2.3).

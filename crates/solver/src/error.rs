@@ -15,7 +15,9 @@ pub enum Error {
         allowed: &'static str,
     },
     /// An element has no or negative area.
-    #[error("element {element} of body `{body}` has area {area:e} m²: corners must run counter-clockwise around a positive area")]
+    #[error(
+        "element {element} of body `{body}` has area {area:e} m²: corners must run counter-clockwise around a positive area"
+    )]
     BadElement {
         /// Body name.
         body: String,
@@ -25,7 +27,9 @@ pub enum Error {
         area: f64,
     },
     /// A node carries no mass although it may move.
-    #[error("node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid (with at least one element)")]
+    #[error(
+        "node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid (with at least one element)"
+    )]
     MasslessNode {
         /// Body name.
         body: String,
@@ -33,7 +37,9 @@ pub enum Error {
         node: usize,
     },
     /// The static preload did not find equilibrium.
-    #[error("static preload did not converge: after {iterations} iterations the unbalanced force is {residual_n:.3e} N, allowed {allowed_n:.3e} N, largest at x = {x_mm:.3} mm, y = {y_mm:.3} mm of body `{body}`; {advice}")]
+    #[error(
+        "static preload did not converge: after {iterations} iterations the unbalanced force is {residual_n:.3e} N, allowed {allowed_n:.3e} N, largest at x = {x_mm:.3} mm, y = {y_mm:.3} mm of body `{body}`; {advice}"
+    )]
     NoEquilibrium {
         /// Newton iterations done.
         iterations: usize,
@@ -51,7 +57,9 @@ pub enum Error {
         advice: &'static str,
     },
     /// The static stiffness matrix could not be factorised.
-    #[error("static preload: the stiffness matrix could not be factorised ({0}); a body is probably held by nothing: check constraints and contacts")]
+    #[error(
+        "static preload: the stiffness matrix could not be factorised ({0}); a body is probably held by nothing: check constraints and contacts"
+    )]
     Factorisation(String),
 }
 

@@ -218,7 +218,11 @@ fn bisect(mesh: &Mesh, nodes: Range<usize>) -> Vec<usize> {
 }
 
 /// Elastic bodies grouped by equal shape, connectivity and material; every other body is alone.
-fn congruent_groups(model: &Model, quads: &[QuadReference], triangles: &[TriangleReference]) -> Vec<Vec<usize>> {
+fn congruent_groups(
+    model: &Model,
+    quads: &[QuadReference],
+    triangles: &[TriangleReference],
+) -> Vec<Vec<usize>> {
     let bodies = &model.mesh.bodies;
     let congruent = |a: usize, b: usize| {
         let (p, q) = (&bodies[a], &bodies[b]);

@@ -235,8 +235,12 @@ impl Undecided {
     /// Spreads the resultant along each mode over the mass: what is left does not move it.
     fn take_from_forces(&self, d: &Dynamics, fx: &mut [f64], fy: &mut [f64]) {
         for (mode, inertia) in self.modes(d) {
-            let resultant: f64 =
-                self.slots.iter().zip(&mode).map(|(&n, m)| fx[n as usize] * m[0] + fy[n as usize] * m[1]).sum();
+            let resultant: f64 = self
+                .slots
+                .iter()
+                .zip(&mode)
+                .map(|(&n, m)| fx[n as usize] * m[0] + fy[n as usize] * m[1])
+                .sum();
             let a = resultant / inertia;
             for (&n, m) in self.slots.iter().zip(&mode) {
                 fx[n as usize] -= d.mass()[n as usize] * a * m[0];
@@ -277,8 +281,12 @@ type Matrix = SparseColMat<usize, f64>;
 
 impl Unknowns {
     fn new(d: &Dynamics) -> Self {
-        let mut unknowns =
-            Self { slots: Vec::new(), index: vec![u32::MAX; d.state.x.len()], number: Vec::new(), equations: 0 };
+        let mut unknowns = Self {
+            slots: Vec::new(),
+            index: vec![u32::MAX; d.state.x.len()],
+            number: Vec::new(),
+            equations: 0,
+        };
         for slot in d.elastic_slots() {
             let free = d.free_components(slot);
             if free == [false; 2] {
@@ -298,13 +306,7 @@ impl Unknowns {
     }
 
     /// Pushes k · d dᵀ (lower triangle).
-    fn rank_one(
-        &self,
-        nodes: &[u32],
-        direction: &[f64],
-        k: f64,
-        out: &mut Vec<Triplet<usize, usize, f64>>,
-    ) {
+    fn rank_one(&self, nodes: &[u32], direction: &[f64], k: f64, out: &mut Vec<Triplet<usize, usize, f64>>) {
         let equation = |i: usize| {
             let index = self.index[nodes[i / 2] as usize];
             if index == u32::MAX { None } else { self.number[index as usize][i % 2] }
@@ -356,8 +358,7 @@ impl Unknowns {
         let b = [b1, b2, [-b1[0], -b1[1]], [-b2[0], -b2[1]]];
         self.strain_modes(nodes, &b, reference.volume, k, out);
         if k.hourglass > 0.0 {
-            let gamma =
-                [1.0 - reference.s1, -1.0 - reference.s2, 1.0 + reference.s1, -1.0 + reference.s2];
+            let gamma = [1.0 - reference.s1, -1.0 - reference.s2, 1.0 + reference.s1, -1.0 + reference.s2];
             for component in 0..2 {
                 let direction: [f64; 8] =
                     std::array::from_fn(|i| if i % 2 == component { gamma[i / 2] } else { 0.0 });

@@ -48,10 +48,7 @@ pub(crate) struct Drive {
 
 /// Computes the forces of one tile and takes its nodes one step on. Returns the work [J] that prescribed motion
 /// does from half a step before to half a step after the positions' time.
-#[multiversion(targets(
-    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx512cd+avx2+bmi2",
-    "x86_64+avx2+bmi2"
-))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx512cd+avx2+bmi2", "x86_64+avx2+bmi2"))]
 pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> f64 {
     let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
     let n = tile.slots.len();

@@ -59,7 +59,8 @@ fn analytic_bending_modes_of_a_free_ring() {
     // V2.03.109. Shear and rotary inertia, left out, lower it by about n² (h/R)²/3.
     // Square cells: their hourglass stiffness is exact in bending.
     let (inner, outer, facets, layers) = (0.098, 0.102, 314, 2);
-    let ring = Annulus { inner_radius: inner, outer_radius: outer, facets, layers, start_angle: 0.0, groove: None };
+    let ring =
+        Annulus { inner_radius: inner, outer_radius: outer, facets, layers, start_angle: 0.0, groove: None };
     let model = body(&ring.part().expect("a ring"));
     for n in [2, 3] {
         let mut d = ready(&model, 0.95);
@@ -68,7 +69,8 @@ fn analytic_bending_modes_of_a_free_ring() {
         for node in 0..model.mesh.x.len() {
             let (x, y, s) = (model.mesh.x[node], model.mesh.y[node], slot(&d, node));
             let (angle, r) = (y.atan2(x), x.hypot(y) / 0.1);
-            let (radial, hoop) = (0.01 * (k * angle).cos(), -0.01 / k * (k * angle).sin() * (1.0 + (1.0 - k * k) * (1.0 - r)));
+            let (radial, hoop) =
+                (0.01 * (k * angle).cos(), -0.01 / k * (k * angle).sin() * (1.0 + (1.0 - k * k) * (1.0 - r)));
             d.state.vx[s] = radial * angle.cos() - hoop * angle.sin();
             d.state.vy[s] = radial * angle.sin() + hoop * angle.cos();
         }
@@ -231,7 +233,8 @@ fn converges_time_step_second_order() {
 fn analytic_driven_ring_turns_as_one() {
     // A ring launched at the speed of its driven bore stays in rigid rotation: kinetic energy ½ I ω², no drive work.
     let (facets, layers, rate) = (60, 4, -80.0);
-    let ring = Annulus { inner_radius: 0.05, outer_radius: 0.07, facets, layers, start_angle: 0.0, groove: None };
+    let ring =
+        Annulus { inner_radius: 0.05, outer_radius: 0.07, facets, layers, start_angle: 0.0, groove: None };
     let centre = [0.02, -0.01];
     let mut model = body(&ring.part().expect("a ring").translated(centre[0], centre[1]));
     for n in 0..facets {

@@ -10,11 +10,7 @@ use std::f64::consts::TAU;
 
 use common::*;
 use stribeck_mesh::Disc;
-use stribeck_solver::{
-    Dynamics, Force, Model, Motion,
-    damping::MassDamping,
-    force::NodalLoad,
-};
+use stribeck_solver::{Dynamics, Force, Model, Motion, damping::MassDamping, force::NodalLoad};
 
 /// A disc of 36 mm in cells of about 5 mm: 60 nodes, quadrilaterals and triangles.
 fn disc() -> Model {
@@ -83,7 +79,9 @@ fn conserves_radius_energy_and_spin_of_a_spinning_disc() {
         let (x, y) = (c * d.state.x[n] - s * d.state.y[n], s * d.state.x[n] + c * d.state.y[n]);
         (d.state.vx[n], d.state.vy[n]) = (-spin * y, spin * x);
     }
-    let radius = |d: &Dynamics| (0..24).map(|n| d.state.x[slot(d, n)].hypot(d.state.y[slot(d, n)])).sum::<f64>() / 24.0;
+    let radius = |d: &Dynamics| {
+        (0..24).map(|n| d.state.x[slot(d, n)].hypot(d.state.y[slot(d, n)])).sum::<f64>() / 24.0
+    };
     let turns = 5.0;
     let steps = (turns * TAU / spin / d.time_step()) as usize;
     let r0 = radius(&d);

@@ -25,7 +25,11 @@ fn largest_eigenvalue(d: &Dynamics, extra: &[f64]) -> f64 {
     let n = 2 * free.len();
     let pushed = |i: usize, h: f64| {
         let (mut x, mut y) = (d.state.x.clone(), d.state.y.clone());
-        if i % 2 == 0 { x[free[i / 2]] += h } else { y[free[i / 2]] += h }
+        if i % 2 == 0 {
+            x[free[i / 2]] += h
+        } else {
+            y[free[i / 2]] += h
+        }
         let (mut fx, mut fy) = (vec![0.0; x.len()], vec![0.0; x.len()]);
         d.elastic_forces(&x, &y, &mut fx, &mut fy);
         (fx, fy)
@@ -80,7 +84,10 @@ fn invariant_lanczos_bound_is_above_the_dense_eigenvalue_and_close() {
         let exact = largest_eigenvalue(&d, &vec![0.0; d.state.x.len()]);
         let ratio = d.critical_time_step(&[], 0.0).frequency.powi(2) / exact;
         // The dense matrix holds the rounding of its differences.
-        assert!(ratio > 1.0 - 1e-5 && ratio < 1.0 + 2.0 * BOUND, "{name}: bound / eigenvalue of ω² = {ratio}");
+        assert!(
+            ratio > 1.0 - 1e-5 && ratio < 1.0 + 2.0 * BOUND,
+            "{name}: bound / eigenvalue of ω² = {ratio}"
+        );
     }
 }
 
@@ -171,10 +178,8 @@ fn invariant_rigid_bodies_on_springs_limit_the_step() {
     model.behaviour[0] = Behaviour::Rigid;
     let mut d = lay_out(&model);
     assert_eq!(d.critical_time_step(&[], 0.0).time_step, f64::INFINITY, "nothing has stiffness");
-    let mut ground = Ground {
-        stiffness: 1e9,
-        place: d.state.x.iter().zip(&d.state.y).map(|(x, y)| [*x, *y]).collect(),
-    };
+    let mut ground =
+        Ground { stiffness: 1e9, place: d.state.x.iter().zip(&d.state.y).map(|(x, y)| [*x, *y]).collect() };
     let mass: f64 = d.mass().iter().sum();
     let bound = d.critical_time_step(&[&ground], 0.0);
     let translation = (4.0 * ground.stiffness / mass).sqrt();
@@ -190,7 +195,14 @@ fn invariant_rigid_bodies_on_springs_limit_the_step() {
 fn invariant_a_ring_has_the_step_of_its_shortest_cells() {
     // Halving the cells halves the step.
     let step = |facets, layers| {
-        let ring = Annulus { inner_radius: 0.05, outer_radius: 0.06, facets, layers, start_angle: 0.0, groove: None };
+        let ring = Annulus {
+            inner_radius: 0.05,
+            outer_radius: 0.06,
+            facets,
+            layers,
+            start_angle: 0.0,
+            groove: None,
+        };
         lay_out(&body(&ring.part().expect("a ring"))).critical_time_step(&[], 0.0).time_step
     };
     assert_close(step(60, 2), 2.0 * step(120, 4), 0.05, "step of the coarser ring");

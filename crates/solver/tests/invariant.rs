@@ -5,10 +5,7 @@ mod common;
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
 use stribeck_solver::{
-    Behaviour, Dynamics, Force, Model, Motion,
-    dynamics::DriveWork,
-    force::NodalLoad,
-    rigid::RigidState,
+    Behaviour, Dynamics, Force, Model, Motion, dynamics::DriveWork, force::NodalLoad, rigid::RigidState,
     state::State,
 };
 
@@ -43,7 +40,8 @@ fn everything() -> Model {
 /// The scene, stirred, with a load on the rigid block.
 fn ready_to_run(threads: usize) -> (Dynamics, NodalLoad) {
     let model = everything();
-    let mut d = Dynamics::new(&model, &vec![true; model.mesh.x.len()], threads).expect("a model that can run");
+    let mut d =
+        Dynamics::new(&model, &vec![true; model.mesh.x.len()], threads).expect("a model that can run");
     d.set_time_step(1e-7).expect("a positive time step");
     let mut noise = Noise(5);
     for node in 0..model.mesh.x.len() {

@@ -189,7 +189,9 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 #[test]
 fn patch_every_path_gives_the_same_accelerations() {
     let mut noise = Noise(7);
-    for (name, part) in [("squares", square_cells()), ("quads", distorted()), ("triangles", split(distorted()))] {
+    for (name, part) in
+        [("squares", square_cells()), ("quads", distorted()), ("triangles", split(distorted()))]
+    {
         // One per cent of a cell at every node: strains of some per cent, hourglass modes included.
         let field: Vec<[f64; 2]> =
             part.x.iter().map(|_| [0.01 * CELL * noise.next(), 0.01 * CELL * noise.next()]).collect();
@@ -198,7 +200,11 @@ fn patch_every_path_gives_the_same_accelerations() {
         let scale = largest(reference);
         assert!(scale > 0.0);
         let gathered = &accelerations(&body(&without_strips(part.clone())), &alone, &field)[0];
-        assert!(difference(reference, gathered) < SUM_ROUNDING * scale, "{name}, gathered: {:e}", difference(reference, gathered) / scale);
+        assert!(
+            difference(reference, gathered) < SUM_ROUNDING * scale,
+            "{name}, gathered: {:e}",
+            difference(reference, gathered) / scale
+        );
         for n in [2, 8, 11] {
             let (model, places) = copies(&part, n);
             // Slots of one body's nodes lie eight apart: the bodies share a tile.

@@ -111,7 +111,10 @@ fn invariant_statics_needs_a_support() {
     let mut d = lay_out(&model);
     let mut load = NodalLoad::new(vec![(slot(&d, 4) as u32, 1000.0, 0.0)]);
     let result = equilibrate(&mut d, &mut [&mut load], Vec::new(), 1e-6);
-    says(result, &["did not converge", "iterations", "body `body`", "check that the load can reach a support"]);
+    says(
+        result,
+        &["did not converge", "iterations", "body `body`", "check that the load can reach a support"],
+    );
 }
 
 #[test]

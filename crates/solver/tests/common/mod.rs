@@ -164,7 +164,10 @@ impl Noise {
 #[track_caller]
 pub(crate) fn assert_close(ours: f64, theirs: f64, tolerance: f64, what: &str) {
     let error = (ours - theirs).abs() / theirs.abs();
-    assert!(error <= tolerance, "{what}: {ours:e}, expected {theirs:e}, off by {error:.2e} > {tolerance:.1e}");
+    assert!(
+        error <= tolerance,
+        "{what}: {ours:e}, expected {theirs:e}, off by {error:.2e} > {tolerance:.1e}"
+    );
 }
 
 /// Observed order of convergence from errors on meshes or steps that halve each time.

@@ -1,0 +1,103 @@
+//! Line contact of a curved block on a flat one, after Hertz.
+//!
+//! Johnson, *Contact Mechanics* (1985), §4.2: under the line load w the half-width is b = √(4 w R/(π E*)), the pressure
+//! p(x) = p₀ √(1 − x²/b²) with p₀ = 2 w/(π b); for like bodies E* = E/(2(1 − ν²)).
+
+mod common;
+
+use common::*;
+use stribeck_contact::{Law, Method};
+use stribeck_mesh::Part;
+use stribeck_solver::{Force, Motion, force::NodalLoad, state::NodeForces};
+
+/// Radius of the curved face [m]: strains are b/R = 0.6 %, small enough for linear elasticity to hold to as much.
+const RADIUS: f64 = 0.2;
+
+/// Half-width that the load is chosen for [m].
+const HALF_WIDTH: f64 = 1.2e-3;
+
+/// Height of each block [m]: 17 half-widths, so that both are half-planes to about (b/H)² = 0.4 %.
+const HEIGHT: f64 = 0.02;
+
+/// A block of `columns` × `columns`/2 cells, five times finer at the middle of its lower (or upper) side.
+fn graded(columns: usize, contact_below: bool) -> Part {
+    let mut part = rectangle([-1.0, 0.0], 2.0, 1.0, columns, columns / 2);
+    let grade = |s: f64| 0.2 * s + 0.8 * s * s * s;
+    for n in 0..part.x.len() {
+        let x = HEIGHT * grade(part.x[n]);
+        let depth = HEIGHT * grade(if contact_below { part.y[n] } else { 1.0 - part.y[n] });
+        let arc = x * x / (2.0 * RADIUS) * (1.0 - depth / HEIGHT);
+        (part.x[n], part.y[n]) = (x, if contact_below { depth + arc } else { -depth });
+    }
+    part
+}
+
+/// Half-width [m] from the second moment of the contact forces, ∫p x² dx = w b²/4, and peak pressure [Pa].
+fn pressed(columns: usize, method: Method) -> [f64; 2] {
+    let modulus = 0.5 * steel().plane_strain_modulus();
+    let line_load = std::f64::consts::PI * modulus * HALF_WIDTH * HALF_WIDTH / (4.0 * RADIUS);
+    let cell = 0.2 * 2.0 * HEIGHT / columns as f64;
+    // Far stiffer than the cells, whose own compliance is what matters.
+    let stiffness = 20.0 * modulus / cell;
+    let mut scene = Scene::default();
+    let lower = scene.add("flat block", &graded(columns, false), "top");
+    let upper = scene.add("curved block", &graded(columns, true), "bottom");
+    scene.pair(upper, lower, Law::penalty(stiffness).expect("a positive stiffness"), method);
+    let mut model = scene.model();
+    let row = columns + 1;
+    model.motion[..row].fill(Motion::Held);
+    let first = model.mesh.bodies[upper].nodes.start;
+    // The middle column may not move sideways, which holds the upper block upright.
+    for n in (first + columns / 2..model.mesh.x.len()).step_by(row) {
+        model.motion[n] = Motion::HeldX;
+    }
+    let (mut d, mut contacts) = scene.lay_out(&model);
+    let top = model.mesh.x.len() - row;
+    // A uniform pressure on the uneven top: half of each facet to each of its ends.
+    let mut loads = Vec::new();
+    for n in top..top + columns {
+        let push = -0.5 * line_load * THICKNESS * (model.mesh.x[n + 1] - model.mesh.x[n]) / (2.0 * HEIGHT);
+        loads.push((slot(&d, n) as u32, 0.0, push));
+        loads.push((slot(&d, n + 1) as u32, 0.0, push));
+    }
+    let mut load = NodalLoad::new(loads);
+    let names = ["flat block", "curved block"];
+    let bodies = [lower, upper].map(|b| (names[b].to_owned(), of_body(&d, &model, b)));
+    let softness = [1e-6, 1e-7, 1e-8, 1e-9, 0.0];
+    let tolerance = 1e-7 * line_load * THICKNESS;
+    preload(&mut d, &mut contacts, &mut load, bodies.to_vec(), &softness, tolerance);
+
+    let n = d.state.x.len();
+    let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+    contacts.accumulate(d.moment(), &mut force);
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for s in of_body(&d, &model, lower) {
+        let (f, x) = (force.fy[s as usize], d.state.x[s as usize]);
+        sum += f;
+        moment += f * x * x;
+    }
+    assert_close(-sum, line_load * THICKNESS, 1e-6, "the contact carries the load");
+    let deepest = contacts.resultants().next().expect("one pair").penetration;
+    [2.0 * (moment / sum).sqrt(), stiffness * deepest]
+}
+
+#[test]
+fn converges_hertz_half_width_and_pressure() {
+    let modulus = 0.5 * steel().plane_strain_modulus();
+    let exact = [HALF_WIDTH, modulus * HALF_WIDTH / (2.0 * RADIUS)];
+    // 3, 6 and 12 cells in a half-width.
+    let found = [20, 40, 80].map(|columns| pressed(columns, Method::Integrated { points: 4 }));
+    for (i, what, ceiling) in [(0, "half-width", 0.005), (1, "peak pressure", 0.01)] {
+        let errors = found.map(|f| (f[i] - exact[i]).abs() / exact[i]);
+        assert!(errors[2] < ceiling, "{what}: {errors:?}");
+        assert!(errors[2] < 0.5 * errors[0], "{what} converges: {errors:?}");
+    }
+}
+
+#[test]
+fn analytic_hertz_collocated() {
+    let modulus = 0.5 * steel().plane_strain_modulus();
+    let [half_width, pressure] = pressed(40, Method::Collocated);
+    assert_close(half_width, HALF_WIDTH, 0.02, "half-width");
+    assert_close(pressure, modulus * HALF_WIDTH / (2.0 * RADIUS), 0.05, "peak pressure");
+}

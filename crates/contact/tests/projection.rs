@@ -1,0 +1,160 @@
+//! Closest-point projection: against a search over all facets, at corners, beyond ends.
+
+use proptest::prelude::*;
+use stribeck_contact::{Projection, Surface, project};
+
+/// Rounding of coordinates of order one.
+const ROUNDING: f64 = 1e-12;
+
+/// A closed polygon, counter-clockwise: the solid is inside.
+fn polygon(x: &[f64], y: &[f64]) -> Surface {
+    let slots = (0..x.len() as u32).collect();
+    Surface::new("polygon", slots, true, x, y).expect("a polygon with sides")
+}
+
+/// Distance to the segment from `a` to `b`.
+fn to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let (t, r) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let along = ((r[0] * t[0] + r[1] * t[1]) / (t[0] * t[0] + t[1] * t[1])).clamp(0.0, 1.0);
+    (r[0] - along * t[0]).hypot(r[1] - along * t[1])
+}
+
+/// Nearest side and signed distance of a point to a closed polygon, inside by the crossing number.
+fn slowly(x: &[f64], y: &[f64], p: [f64; 2]) -> (usize, f64) {
+    let n = x.len();
+    let end = |i: usize| [x[i % n], y[i % n]];
+    let mut nearest = (0, f64::INFINITY);
+    let mut inside = false;
+    for i in 0..n {
+        let (a, b) = (end(i), end(i + 1));
+        let distance = to_segment(p, a, b);
+        if distance < nearest.1 {
+            nearest = (i, distance);
+        }
+        if (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) {
+            inside = !inside;
+        }
+    }
+    (nearest.0, if inside { -nearest.1 } else { nearest.1 })
+}
+
+/// Corners of a convex polygon: places on an ellipse, at least a twentieth of a turn apart.
+fn convex() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
+    (prop::collection::vec(0.05..1.0_f64, 3..14), 0.5..2.0_f64, 0.0..6.0_f64).prop_map(
+        |(shares, flat, turn)| {
+            let sum: f64 = shares.iter().sum();
+            let mut angle = turn;
+            let mut corners = (Vec::new(), Vec::new());
+            for share in shares {
+                corners.0.push(angle.cos());
+                corners.1.push(flat * angle.sin());
+                angle += std::f64::consts::TAU * share / sum;
+            }
+            corners
+        },
+    )
+}
+
+/// The projection is a foot: it lies on the polygon, at the distance of the gap, along the normal.
+fn is_foot(x: &[f64], y: &[f64], p: [f64; 2], to: &Projection) -> bool {
+    let next = (to.facet + 1) % x.len();
+    let foot =
+        [x[to.facet] + to.place * (x[next] - x[to.facet]), y[to.facet] + to.place * (y[next] - y[to.facet])];
+    let unit = (to.normal[0].hypot(to.normal[1]) - 1.0).abs() < ROUNDING;
+    unit && (0..2).all(|k| (foot[k] + to.gap * to.normal[k] - p[k]).abs() < ROUNDING)
+}
+
+proptest! {
+    #[test]
+    fn invariant_gap_is_the_signed_distance((x, y) in convex(), side in 0..14_usize, along in 0.0..1.0_f64, off in -0.3..0.5_f64) {
+        // A point near a side, in or out by less than a third of the side's length inwards.
+        let surface = polygon(&x, &y);
+        let (a, n) = (side % x.len(), x.len());
+        let b = (a + 1) % n;
+        let (tx, ty) = (x[b] - x[a], y[b] - y[a]);
+        let p = [x[a] + along * tx + off * ty, y[a] + along * ty - off * tx];
+        let (nearest, distance) = slowly(&x, &y, p);
+        // The search hands over the nearest side, and a point moves on by less than a side between two steps.
+        for start in [nearest, (nearest + 1) % n, (nearest + n - 1) % n] {
+            let found = project(&surface, &x, &y, p, start).expect("a closed surface has no ends");
+            prop_assert!((found.gap - distance).abs() < ROUNDING, "from {start}: {found:?}, distance {distance}");
+            prop_assert!(is_foot(&x, &y, p, &found), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn invariant_gap_moves_along_its_normal((x, y) in convex(), px in -2.0..2.0_f64, py in -2.0..2.0_f64) {
+        // The normal is the gradient of the gap, which is what makes the force of a penalty that of its energy.
+        let surface = polygon(&x, &y);
+        let (nearest, distance) = slowly(&x, &y, [px, py]);
+        prop_assume!(distance > 0.01);
+        let at = |dx: f64, dy: f64| project(&surface, &x, &y, [px + dx, py + dy], nearest).expect("closed").gap;
+        let normal = project(&surface, &x, &y, [px, py], nearest).expect("closed").normal;
+        let h = 1e-6;
+        let gradient = [(at(h, 0.0) - at(-h, 0.0)) / (2.0 * h), (at(0.0, h) - at(0.0, -h)) / (2.0 * h)];
+        // Second differences of a distance above 0.01 are below 100.
+        prop_assert!((gradient[0] - normal[0]).abs() < 1e-3 && (gradient[1] - normal[1]).abs() < 1e-3);
+    }
+}
+
+/// An L: unit square without its upper right quarter; the concave corner is at (0.5, 0.5), vertex 3.
+const L: ([f64; 6], [f64; 6]) = ([0.0, 1.0, 1.0, 0.5, 0.5, 0.0], [0.0, 0.0, 0.5, 0.5, 1.0, 1.0]);
+
+#[test]
+fn invariant_concave_corner() {
+    let (x, y) = L;
+    let surface = polygon(&x, &y);
+    // Outside, in the notch: the nearer of both walls, from whichever side the walk begins.
+    for (p, gap, facet) in [([0.8, 0.6], 0.1, 2), ([0.6, 0.8], 0.1, 3), ([0.52, 0.51], 0.01, 2)] {
+        for start in [2, 3] {
+            let found = project(&surface, &x, &y, p, start).expect("closed");
+            assert!(
+                (found.gap - gap).abs() < ROUNDING && found.facet == facet,
+                "{p:?} from {start}: {found:?}"
+            );
+        }
+    }
+    // Inside, diagonally behind the corner: the vertex itself, its normal away from the solid.
+    for start in [2, 3] {
+        let found = project(&surface, &x, &y, [0.4, 0.4], start).expect("closed");
+        let diagonal = 0.5_f64.sqrt();
+        assert!((found.gap + 0.1 * 2.0_f64.sqrt()).abs() < ROUNDING, "{found:?}");
+        assert!(
+            (found.normal[0] - diagonal).abs() < ROUNDING && (found.normal[1] - diagonal).abs() < ROUNDING
+        );
+    }
+}
+
+#[test]
+fn invariant_convex_corner() {
+    // Outside a corner the vertex is nearest, its normal points to the point.
+    let (x, y) = L;
+    let surface = polygon(&x, &y);
+    for start in [0, 1] {
+        let found = project(&surface, &x, &y, [1.3, -0.4], start).expect("closed");
+        assert!((found.gap - 0.5).abs() < ROUNDING, "{found:?}");
+        assert!((found.normal[0] - 0.6).abs() < ROUNDING && (found.normal[1] + 0.8).abs() < ROUNDING);
+    }
+    // At the vertex itself the gap is zero and the normal that of a side.
+    let found = project(&surface, &x, &y, [1.0, 0.0], 0).expect("closed");
+    assert!(found.gap == 0.0 && found.normal[0].hypot(found.normal[1]) == 1.0, "{found:?}");
+}
+
+#[test]
+fn invariant_open_surfaces_end() {
+    // A wall of three facets along x, solid below (walked to the left).
+    let (x, y) = ([3.0, 2.0, 1.0, 0.0], [0.0; 4]);
+    let wall = Surface::new("wall", vec![0, 1, 2, 3], false, &x, &y).expect("a wall");
+    let above = |px: f64, start: usize| project(&wall, &x, &y, [px, 0.2], start);
+    for start in 0..3 {
+        let found = above(1.4, start).expect("above the wall");
+        assert!(
+            (found.gap - 0.2).abs() < ROUNDING && found.facet == 1 && found.normal == [0.0, 1.0],
+            "{found:?}"
+        );
+        assert!(project(&wall, &x, &y, [1.4, -0.2], start).expect("below").gap < 0.0);
+        assert!(above(-0.1, start).is_none() && above(3.1, start).is_none(), "beyond the ends");
+    }
+    // The ends themselves belong to the wall.
+    assert!(above(0.0, 2).is_some() && above(3.0, 0).is_some());
+}

@@ -1,0 +1,47 @@
+//! What contact refuses, and what it says.
+
+use stribeck_contact::{Error, Law, Surface};
+
+#[track_caller]
+fn says<T>(result: Result<T, Error>, words: &[&str]) {
+    let Err(error) = result else { panic!("accepted") };
+    let text = error.to_string();
+    for word in words {
+        assert!(text.contains(word), "`{word}` is missing in: {text}");
+    }
+}
+
+#[test]
+fn invariant_laws_must_be_possible() {
+    for stiffness in [0.0, -1e14, f64::NAN, f64::INFINITY] {
+        says(Law::penalty(stiffness), &["penalty stiffness [Pa/m]", &stiffness.to_string(), "positive"]);
+    }
+    let law = Law::penalty(1e14).expect("a positive stiffness");
+    for ratio in [-0.1, 2.1, f64::NAN] {
+        says(law.with_damping(ratio, 1.0), &["contact damping ratio", "between 0 and 2"]);
+    }
+    says(law.with_damping(0.1, 0.0), &["surface mass [kg/m²] = 0", "positive"]);
+    for friction in [-0.1, 10.1, f64::NAN] {
+        says(law.with_friction(friction), &["friction coefficient", "between 0 and 10"]);
+    }
+    assert!(law.with_friction(0.0).and_then(|l| l.with_damping(0.0, 1.0)).is_ok());
+}
+
+#[test]
+fn analytic_damping_of_two_equal_layers() {
+    // Two masses m/A on one spring k/A have the reduced mass m/2: critical damping 2 √(k m/2) per area.
+    let law = Law::penalty(2e12).and_then(|l| l.with_damping(0.1, 4.0)).expect("a possible law");
+    assert!((law.damping - 0.2 * (2e12_f64 * 2.0).sqrt()).abs() < 1e-6 * law.damping);
+}
+
+#[test]
+fn invariant_surfaces_must_have_facets() {
+    let (x, y) = ([0.0, 1.0, 1.0, f64::NAN], [0.0, 0.0, 0.0, 0.0]);
+    let surface = |slots: &[u32], closed| Surface::new("rim", slots.to_vec(), closed, &x, &y);
+    says(surface(&[], false), &["`rim`", "at least one facet"]);
+    says(surface(&[0], false), &["`rim`", "at least one facet"]);
+    says(surface(&[0, 1], true), &["`rim`", "three when closed"]);
+    says(surface(&[0, 1, 2], false), &["`rim`", "no length"]);
+    says(surface(&[0, 3], false), &["`rim`", "no length"]);
+    assert_eq!(surface(&[0, 1], false).expect("one facet").facets(), 1);
+}

@@ -1,0 +1,328 @@
+//! What contact finds and does, against sums over everything: search, forces in pairs, bounds, bits, checkpoints.
+
+mod common;
+
+use std::f64::consts::TAU;
+
+use common::*;
+use proptest::prelude::*;
+use stribeck_contact::{ContactState, Contacts, Law, Method, PairSpec, Surface};
+use stribeck_solver::{
+    Dynamics, Force,
+    force::RankOne,
+    rigid::RigidState,
+    state::{Moment, NodeForces, State},
+};
+
+/// Penalty stiffness of shapes of order one [Pa/m].
+const STIFFNESS: f64 = 1e6;
+
+/// Rounding of a sum of some hundred forces, relative to the sum of their amounts.
+const ROUNDING: f64 = 1e-12;
+
+/// Two regular polygons as nodes without bodies: what contact sees.
+#[derive(Debug)]
+struct Shapes {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    vx: Vec<f64>,
+    vy: Vec<f64>,
+    corners: [usize; 2],
+}
+
+impl Shapes {
+    /// Polygon `i` has `corners[i]` corners on a circle of `radius[i]` about `centre[i]`.
+    fn new(corners: [usize; 2], radius: [f64; 2], centre: [[f64; 2]; 2], turn: [f64; 2]) -> Self {
+        let mut shapes = Self { x: Vec::new(), y: Vec::new(), vx: Vec::new(), vy: Vec::new(), corners };
+        for i in 0..2 {
+            for k in 0..corners[i] {
+                let (s, c) = (turn[i] + TAU * k as f64 / corners[i] as f64).sin_cos();
+                shapes.x.push(centre[i][0] + radius[i] * c);
+                shapes.y.push(centre[i][1] + radius[i] * s);
+            }
+        }
+        shapes.vx = vec![0.0; shapes.x.len()];
+        shapes.vy = vec![0.0; shapes.x.len()];
+        shapes
+    }
+
+    fn nodes(&self, i: usize) -> std::ops::Range<usize> {
+        if i == 0 { 0..self.corners[0] } else { self.corners[0]..self.x.len() }
+    }
+
+    fn contacts(&self, law: Law, method: Method) -> Contacts {
+        let surface = |i: usize| {
+            let slots = self.nodes(i).map(|n| n as u32).collect();
+            Surface::new(format!("polygon {i}"), slots, true, &self.x, &self.y).expect("a polygon")
+        };
+        let pair = PairSpec { first: 0, second: 1, law, method };
+        Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
+    }
+
+    fn moment(&self, step: u64, dt: f64) -> Moment<'_> {
+        Moment { step, time: step as f64 * dt, dt, x: &self.x, y: &self.y, vx: &self.vx, vy: &self.vy }
+    }
+
+    fn forces(&self, contacts: &mut Contacts, step: u64, dt: f64) -> NodeForces {
+        let n = self.x.len();
+        let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+        contacts.accumulate(self.moment(step, dt), &mut force);
+        force
+    }
+
+    /// Force on polygon 0 by definition: every corner of each against every side of the other, half the stiffness
+    /// each way; and the sum of the amounts.
+    fn slowly(&self) -> ([f64; 2], f64) {
+        let (mut force, mut amount) = ([0.0; 2], 0.0);
+        for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
+            let nodes = self.nodes(own);
+            for n in nodes.clone() {
+                let around = |shift: usize| nodes.start + (n - nodes.start + shift) % nodes.len();
+                let length = |a: usize, b: usize| (self.x[a] - self.x[b]).hypot(self.y[a] - self.y[b]);
+                let share = 0.5 * (length(n, around(1)) + length(n, around(nodes.len() - 1)));
+                let (gap, normal) = self.gap([self.x[n], self.y[n]], other);
+                if gap < 0.0 {
+                    let f = -0.5 * STIFFNESS * THICKNESS * share * gap;
+                    amount += f;
+                    force = [force[0] + sign * f * normal[0], force[1] + sign * f * normal[1]];
+                }
+            }
+        }
+        (force, amount)
+    }
+
+    /// Largest signed distance from the lines of a convex polygon, and that line's normal: inside, the distance to it.
+    fn gap(&self, p: [f64; 2], polygon: usize) -> (f64, [f64; 2]) {
+        let nodes = self.nodes(polygon);
+        let side = |k: usize| {
+            let (a, b) = (nodes.start + k, nodes.start + (k + 1) % nodes.len());
+            let (tx, ty) = (self.x[b] - self.x[a], self.y[b] - self.y[a]);
+            let length = tx.hypot(ty);
+            let normal = [ty / length, -tx / length];
+            ((p[0] - self.x[a]) * normal[0] + (p[1] - self.y[a]) * normal[1], normal)
+        };
+        (0..nodes.len()).map(side).fold((f64::NEG_INFINITY, [0.0; 2]), |a, b| if b.0 > a.0 { b } else { a })
+    }
+}
+
+/// Two discs in about half a facet of contact, anywhere around each other.
+fn touching() -> impl Strategy<Value = Shapes> {
+    let turn = 0.0..TAU;
+    (8..40_usize, 8..40_usize, 0.3..1.0_f64, turn.clone(), turn.clone(), turn, -0.2..0.3_f64).prop_map(
+        |(m, n, radius, around, a, b, depth)| {
+            let facet = (TAU / m as f64).min(TAU * radius / n as f64);
+            let distance = 1.0 + radius - depth * facet;
+            let (s, c) = around.sin_cos();
+            Shapes::new([m, n], [1.0, radius], [[0.0; 2], [distance * c, distance * s]], [a, b])
+        },
+    )
+}
+
+fn total(force: &NodeForces, nodes: impl Iterator<Item = usize> + Clone) -> [f64; 2] {
+    [nodes.clone().map(|n| force.fx[n]).sum(), nodes.map(|n| force.fy[n]).sum()]
+}
+
+proptest! {
+    #[test]
+    fn invariant_forces_come_in_pairs(mut shapes in touching(), seed in 0..1000_u64, integrated in any::<bool>()) {
+        let mut noise = Noise(seed);
+        for n in 0..shapes.x.len() {
+            (shapes.vx[n], shapes.vy[n]) = (noise.next(), noise.next());
+        }
+        let method = METHODS[usize::from(integrated)];
+        let plain = Law::penalty(STIFFNESS).expect("a law");
+        let full = plain.with_friction(0.3).and_then(|l| l.with_damping(0.2, 1.0)).expect("a law");
+        for law in [plain, full] {
+            let mut contacts = shapes.contacts(law, method);
+            let force = shapes.forces(&mut contacts, 0, 1e-4);
+            let amount: f64 = force.fx.iter().chain(&force.fy).map(|f| f.abs()).sum();
+            let (first, second) = (total(&force, shapes.nodes(0)), total(&force, shapes.nodes(1)));
+            let told = contacts.resultants().next().expect("one pair");
+            for k in 0..2 {
+                prop_assert!((first[k] + second[k]).abs() <= ROUNDING * amount);
+                prop_assert!((first[k] - told.force[k]).abs() <= ROUNDING * amount, "the resultant is that on the first");
+            }
+            prop_assert_eq!(amount > 0.0, told.penetration > 0.0);
+            if law.friction == 0.0 {
+                // The two forces of a pair lie on one line.
+                let torque: f64 = (0..shapes.x.len())
+                    .map(|n| shapes.x[n] * force.fy[n] - shapes.y[n] * force.fx[n])
+                    .sum();
+                prop_assert!(torque.abs() <= 10.0 * ROUNDING * amount);
+            }
+        }
+    }
+
+    #[test]
+    fn invariant_search_finds_what_brute_force_finds(shapes in touching()) {
+        let law = Law::penalty(STIFFNESS).expect("a law");
+        let mut contacts = shapes.contacts(law, Method::Collocated);
+        shapes.forces(&mut contacts, 0, 1e-4);
+        let found = contacts.resultants().next().expect("one pair").force;
+        let (expected, amount) = shapes.slowly();
+        for k in 0..2 {
+            prop_assert!((found[k] - expected[k]).abs() <= ROUNDING * amount, "{found:?}, by definition {expected:?}");
+        }
+    }
+
+    #[test]
+    fn invariant_bound_is_never_below_the_tangent(shapes in touching(), seed in 0..1000_u64, integrated in any::<bool>()) {
+        // Σ bound |u|² ≥ Σ k (d·u)² for any displacement, whatever the facets on either side.
+        let law = Law::penalty(STIFFNESS).expect("a law");
+        let mut contacts = shapes.contacts(law, METHODS[usize::from(integrated)]);
+        shapes.forces(&mut contacts, 0, 1e-4);
+        let mut bound = vec![0.0; shapes.x.len()];
+        contacts.stiffness_bound(0.0, &mut bound);
+        let mut pieces: Vec<RankOne> = Vec::new();
+        contacts.tangent(&shapes.x, &shapes.y, &mut |r| pieces.push(r));
+        let mut noise = Noise(seed);
+        let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.next(), noise.next()]).collect();
+        // Power iteration on bound⁻¹ K finds the worst displacement.
+        for _ in 0..60 {
+            let mut force = vec![[0.0; 2]; u.len()];
+            let mut twice = 0.0;
+            for r in &pieces {
+                let stretch: f64 = (0..8).map(|i| r.direction[i] * u[r.nodes[i / 2] as usize][i % 2]).sum();
+                twice += r.stiffness * stretch * stretch;
+                for i in 0..8 {
+                    force[r.nodes[i / 2] as usize][i % 2] += r.stiffness * stretch * r.direction[i];
+                }
+            }
+            let limit: f64 = u.iter().zip(&bound).map(|(u, b)| b * (u[0] * u[0] + u[1] * u[1])).sum();
+            prop_assert!(twice <= limit * (1.0 + 1e-9), "{} times the bound", twice / limit);
+            let size = force.as_flattened().iter().fold(f64::MIN_POSITIVE, |m: f64, f| m.max(f.abs()));
+            u = force.iter().zip(&bound).map(|(f, b)| [f[0] / (b * size), f[1] / (b * size)]).collect();
+            if pieces.is_empty() { break; }
+        }
+    }
+}
+
+#[test]
+fn invariant_search_keeps_up_with_motion() {
+    // A small polygon races past a large one, in and out of contact at 40 m/s while it spins; at every step the force
+    // is that of a search over everything.
+    let centre = |t: f64| [-1.5 + 40.0 * t, 1.27 + 3.0 * t * t];
+    let place = |t: f64| Shapes::new([60, 24], [1.0, 0.3], [[0.0; 2], centre(t)], [0.1, -120.0 * t]);
+    let law = Law::penalty(STIFFNESS).expect("a law");
+    let dt = 5e-6;
+    let mut contacts = place(0.0).contacts(law, Method::Collocated);
+    let mut touched = 0;
+    for step in 0..15_000 {
+        let (mut now, next) = (place(step as f64 * dt), place((step + 1) as f64 * dt));
+        for n in 0..now.x.len() {
+            now.vx[n] = (next.x[n] - now.x[n]) / dt;
+            now.vy[n] = (next.y[n] - now.y[n]) / dt;
+        }
+        now.forces(&mut contacts, step, dt);
+        let found = contacts.resultants().next().expect("one pair").force;
+        let (expected, amount) = now.slowly();
+        touched += usize::from(amount > 0.0);
+        for k in 0..2 {
+            assert!((found[k] - expected[k]).abs() <= ROUNDING * amount, "step {step}: {found:?}, {expected:?}");
+        }
+    }
+    assert!(touched > 1000 && touched < 14_000, "in contact in {touched} steps");
+}
+
+#[test]
+fn invariant_a_sharp_corner_is_felt() {
+    // A square on its corner is pushed by 0.002 into the flat side of an octagon: no node of that side is near.
+    let apothem = (TAU / 16.0).cos();
+    let centre = [0.05, apothem + 0.1 - 0.002];
+    let shapes = Shapes::new([4, 8], [0.1, 1.0], [centre, [0.0; 2]], [TAU / 4.0, TAU / 16.0]);
+    for method in METHODS {
+        let mut contacts = shapes.contacts(Law::penalty(STIFFNESS).expect("a law"), method);
+        shapes.forces(&mut contacts, 0, 1e-4);
+        let found = contacts.resultants().next().expect("one pair");
+        assert!((found.penetration - 0.002).abs() < ROUNDING, "{method:?}: {found:?}");
+        assert!(found.force[1] > 0.0 && found.force[0].abs() < 1e-9 * found.force[1], "{method:?}: {found:?}");
+    }
+}
+
+/// Three discs that fall into a box of friction and damping, in motion.
+fn tumbling() -> (Dynamics, Contacts) {
+    let law = Law::penalty(2e14)
+        .and_then(|l| l.with_friction(0.2))
+        .and_then(|l| l.with_damping(0.1, 4.0))
+        .expect("a possible law");
+    let mut scene = Scene::default();
+    let round = disc(5e-3, 32, 1e-3);
+    let discs: Vec<usize> = (0..3)
+        .map(|i| {
+            let at = round.rotated(0.3 * i as f64).translated(10.02e-3 * i as f64, 5.01e-3);
+            scene.add(&format!("disc {i}"), &at, "rim")
+        })
+        .collect();
+    let floor = scene.add("floor", &rectangle([-0.01, -2e-3], 0.04, 2e-3, 40, 2), "top");
+    for (i, &body) in discs.iter().enumerate() {
+        scene.pair(body, floor, law, METHODS[i % 2]);
+        if i > 0 {
+            scene.pair(discs[i - 1], body, law, METHODS[i % 2]);
+        }
+    }
+    let model = scene.model();
+    let (mut d, contacts) = scene.lay_out(&model);
+    set_step(&mut d, &contacts, 0.8);
+    for (i, &body) in discs.iter().enumerate() {
+        let slots = of_body(&d, &model, body);
+        launch(&mut d, &slots, [3.0 - 2.0 * i as f64, -4.0]);
+    }
+    (d, contacts)
+}
+
+/// All that a checkpoint holds, as text: floats are written so that they read back to the same bits.
+fn checkpoint(d: &Dynamics, contacts: &Contacts) -> String {
+    serde_json::to_string(&(&d.state, &d.rigid, contacts.state())).expect("numbers are finite")
+}
+
+fn run(d: &mut Dynamics, contacts: &mut Contacts, steps: usize) {
+    for _ in 0..steps {
+        d.step(&mut [contacts]);
+    }
+}
+
+#[test]
+fn invariant_parallel_pairs_give_the_same_bits() {
+    let (mut d, mut contacts) = tumbling();
+    run(&mut d, &mut contacts, 1500);
+    let energy = contacts.energy();
+    assert!(energy.friction > 0.0 && energy.damping > 0.0, "they have met: {energy:?}");
+    for threads in [2, 4] {
+        let (mut e, mut parallel) = tumbling();
+        parallel.set_parallel(true);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        pool.install(|| run(&mut e, &mut parallel, 1500));
+        assert!(checkpoint(&d, &contacts) == checkpoint(&e, &parallel), "{threads} threads");
+        assert_eq!(energy, parallel.energy());
+    }
+}
+
+#[test]
+fn invariant_a_resumed_run_has_the_same_bits() {
+    let (mut d, mut contacts) = tumbling();
+    // In the middle of the first contact, where points remember their stick and their damping.
+    run(&mut d, &mut contacts, 700);
+    assert!(contacts.resultants().any(|r| r.penetration > 0.0), "in contact");
+    let saved = checkpoint(&d, &contacts);
+    run(&mut d, &mut contacts, 800);
+
+    let (mut e, mut resumed) = tumbling();
+    let (state, rigid, memory): (State, Vec<RigidState>, ContactState) =
+        serde_json::from_str(&saved).expect("what was written can be read");
+    (e.state, e.rigid) = (state, rigid);
+    assert!(resumed.restore(&memory));
+    run(&mut e, &mut resumed, 800);
+    let ((state, rigid), (other_state, other_rigid)) = ((&d.state, &d.rigid), (&e.state, &e.rigid));
+    assert!(state == other_state && rigid == other_rigid);
+    assert_eq!(contacts.energy(), resumed.energy());
+}
+
+#[test]
+fn invariant_memory_of_other_contacts_is_refused() {
+    let (mut d, mut contacts) = tumbling();
+    run(&mut d, &mut contacts, 10);
+    let shapes = Shapes::new([12, 12], [1.0, 1.0], [[0.0; 2], [1.9, 0.0]], [0.0; 2]);
+    let law = Law::penalty(STIFFNESS).and_then(|l| l.with_friction(0.1)).expect("a law");
+    assert!(!shapes.contacts(law, Method::Collocated).restore(&contacts.state()));
+    assert!(!contacts.restore(&ContactState::default()));
+}
