@@ -1,8 +1,9 @@
-//! Command line of Stribeck: `cargo xtask simulate`, `report` and `ci`.
+//! Command line of Stribeck: `cargo xtask simulate`, `report`, `compare` and `ci`.
 //!
 //! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
 
 mod ci;
+mod compare;
 mod engine;
 mod host;
 mod progress;
@@ -28,6 +29,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Writes the report of a run again.
     Report(report::Options),
+    /// Solves the same problems with other programs, checks that they agree, and times them
+    Compare(compare::Options),
     /// Checks format, lints, tests and documents.
     Ci(ci::Options),
 }
@@ -37,6 +40,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Simulate(options) => simulate::run(&options),
         Command::Report(options) => report::run(&options),
+        Command::Compare(options) => compare::run(&options),
         Command::Ci(options) => ci::run(&options),
     };
     match done {

@@ -3,11 +3,12 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
-use stribeck_mesh::{Annulus, ArcBlock, Disc, Groove, Mesh, Part, Placed, SeatedBlock};
+use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
 
 use crate::{
     error::Error,
+    grading,
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
     scene::{ContactMethod, RollerCopies, Scene},
@@ -50,6 +51,8 @@ pub struct Machine {
     pub inner: Vec<u32>,
     /// Slots of the adapter.
     pub adapter: Vec<u32>,
+    /// Bodies that neither turn nor roll: outer ring and adapter, by their numbers in the mesh.
+    pub standing_bodies: [usize; 2],
     /// Slots of each roller.
     pub rollers: Vec<RollerSlots>,
     /// Number of the cage among the rigid bodies.
@@ -65,6 +68,8 @@ pub struct Machine {
 /// Slots of one roller.
 #[derive(Debug, Clone)]
 pub struct RollerSlots {
+    /// Number of the body in the mesh.
+    pub body: usize,
     /// All of them.
     pub all: Vec<u32>,
     /// The one in the centre.
@@ -100,15 +105,20 @@ impl Assembly {
         let mut mesh = Mesh::new();
         let outer_radius = 0.5e-3 * b.outer_race_diameter_mm;
         let inner_radius = 0.5e-3 * b.inner_race_diameter_mm;
-        let around = |radius: f64| ((TAU * radius / size).round() as usize).max(8);
-        let through = |thickness_mm: f64| ((1e-3 * thickness_mm / size).round() as usize).max(1);
+        let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
+            Some(grading) => ring.graded_part(grading),
+            None => ring.part(),
+        };
 
-        let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius));
+        let outer_grading = grading::ring(&scene.mesh, b.outer_ring_thickness_mm, Circle::Inner);
+        let around =
+            |radius, grading: &Option<Grading>| grading::facets(TAU * radius, size, grading.as_ref());
+        let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius, &outer_grading));
         let outer = Annulus {
             inner_radius: outer_radius,
             outer_radius: outer_radius + 1e-3 * b.outer_ring_thickness_mm,
             facets: outer_facets,
-            layers: through(b.outer_ring_thickness_mm),
+            layers: grading::layers(&scene.mesh, b.outer_ring_thickness_mm),
             start_angle: 0.0,
             groove: scene.defect.as_ref().map(|d| Groove {
                 centre_angle: d.angle_deg.to_radians(),
@@ -116,30 +126,28 @@ impl Assembly {
                 depth: 1e-3 * d.depth_mm,
             }),
         };
-        let outer = mesh.add("outer ring", &outer.part()?);
+        let outer = mesh.add("outer ring", &made(&outer, &outer_grading)?);
 
-        let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
+        let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
+        let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius, &inner_grading));
         let inner = Annulus {
             inner_radius: inner_radius - 1e-3 * b.inner_ring_thickness_mm,
             outer_radius: inner_radius,
             facets: inner_facets,
-            layers: through(b.inner_ring_thickness_mm),
+            layers: grading::layers(&scene.mesh, b.inner_ring_thickness_mm),
             start_angle: 0.0,
             groove: None,
         };
-        let inner = mesh.add("inner ring", &inner.part()?);
+        let inner = mesh.add("inner ring", &made(&inner, &inner_grading)?);
 
-        let adapter = SeatedBlock {
-            width: 1e-3 * scene.adapter.width_mm,
-            height: 1e-3 * scene.adapter.height_mm,
-            seat_radius: outer_radius + 1e-3 * b.outer_ring_thickness_mm,
-            columns: ((1e-3 * scene.adapter.width_mm / size).round() as usize).max(2),
-            rows: adapter_rows(scene, size),
-        };
-        let adapter = mesh.add("adapter", &adapter.part()?);
+        let adapter = adapter_part(scene, &mesh, surface(&outer, "outer"))?;
+        let adapter = mesh.add("adapter", &adapter);
 
         let roller_radius = 0.5e-3 * b.roller_diameter_mm;
-        let disc = Disc { radius: roller_radius, facets: scene.mesh.roller_facets, size, rotation: 0.0 };
+        let roller_facets = scene.mesh.roller_facets;
+        let facet_mm = PI * b.roller_diameter_mm / roller_facets as f64;
+        let core = 1e-3 * grading::roller_core_mm(&scene.mesh, facet_mm);
+        let disc = Disc { radius: roller_radius, facets: roller_facets, size: core, rotation: 0.0 };
         let disc = disc.part()?;
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
         let path = outer_radius - roller_radius;
@@ -240,6 +248,7 @@ impl Assembly {
             .rollers
             .iter()
             .map(|r| RollerSlots {
+                body: r.body,
                 all: body(r.body),
                 centre: slot(&r.mark("centre").expect("a disc marks its centre")),
                 rim: slot(&surface(r, "rim").nodes[0]),
@@ -248,6 +257,7 @@ impl Assembly {
         Ok(Machine {
             contacts,
             load: NodalLoad::on_edge(&slots(top), x, y, [0.0, -scene.operation.load_n]),
+            standing_bodies: [self.outer.body, self.adapter.body],
             outer: body(self.outer.body),
             inner: body(self.inner.body),
             adapter: body(self.adapter.body),
@@ -301,6 +311,23 @@ impl Assembly {
 
 fn surface<'a>(placed: &'a Placed, name: &str) -> &'a stribeck_mesh::Surface {
     placed.surface(name).expect("the generator of this body names this surface")
+}
+
+/// The adapter. In a graded mesh its columns continue those of the outer ring, whose back surface is given.
+fn adapter_part(scene: &Scene, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Result<Part, Error> {
+    let (b, size) = (&scene.bearing, 1e-3 * scene.mesh.size_mm);
+    let mut adapter = SeatedBlock {
+        width: 1e-3 * scene.adapter.width_mm,
+        height: 1e-3 * scene.adapter.height_mm,
+        seat_radius: 0.5e-3 * b.outer_race_diameter_mm + 1e-3 * b.outer_ring_thickness_mm,
+        columns: ((1e-3 * scene.adapter.width_mm / size).round() as usize).max(2),
+        rows: adapter_rows(scene, size),
+    };
+    let Some(grading) = &scene.mesh.grading else { return Ok(adapter.part()?) };
+    let lines = grading::seat_lines(back, &mesh.x, &mesh.y, 0.5 * adapter.width, size);
+    adapter.columns = lines.len() + 1;
+    adapter.rows = adapter_rows(scene, 1e-3 * grading.coarse_mm);
+    Ok(adapter.part_with_lines(&lines)?)
 }
 
 /// Rows of the adapter: cells of the wanted size on average between its crown and its sides.

@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod error;
+mod grading;
 pub mod kinematics;
 mod recorder;
 pub mod run_dir;

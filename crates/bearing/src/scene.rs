@@ -112,6 +112,22 @@ pub struct MeshScene {
     pub outer_facets: Option<usize>,
     /// Facets of the inner raceway; `None` takes the circumference divided by the size.
     pub inner_facets: Option<usize>,
+    /// Larger elements away from the raceways; `None` gives every body elements of the size above.
+    pub grading: Option<GradingScene>,
+}
+
+/// Larger elements away from the raceways and the rims of the rollers.
+///
+/// Facets that roll on each other keep their length, so a graded mesh has the same facet-passing tone. In the rings three
+/// facets become one, as often as `coarse_mm` and the thickness of the ring allow; counts of facets are rounded to a
+/// multiple of three for that. The adapter continues the columns of the outer ring, the rollers get a coarser core.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GradingScene {
+    /// Element edge that is not exceeded in the rings and the rollers, and the height of the adapter's elements [mm].
+    pub coarse_mm: f64,
+    /// Layers of full fineness along the raceways.
+    pub fine_layers: usize,
 }
 
 /// How the mesh of one roller is copied around the pitch circle.
@@ -170,7 +186,7 @@ pub enum ContactMethod {
 pub struct SolverScene {
     /// Simulated time [ms].
     pub duration_ms: f64,
-    /// Fraction of the critical time step that is used [-].
+    /// Fraction of the critical time step that is used [-]; above 1 a run diverges, and stops by itself.
     pub time_step_factor: f64,
     /// Hourglass stiffness as a multiple of the exact bending stiffness of a square [-].
     pub hourglass_scale: f64,
@@ -182,13 +198,15 @@ pub struct SolverScene {
     pub start: Start,
 }
 
-/// Velocity against which mass-proportional damping acts.
+/// Motion that mass-proportional damping leaves alone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingFrame {
-    /// Relative to the rigid motion of each body: rolling is not braked.
+    /// Rolling without slip: rattling of idle rollers is damped, as oil would, rolling is not braked.
+    Rolling,
+    /// The rigid motion of each body: only its vibration is damped.
     RigidMotion,
-    /// Absolute velocity (what LS-DYNA's global damping does): brakes rolling.
+    /// Rest (what LS-DYNA's global damping does): brakes rolling.
     Absolute,
 }
 
@@ -287,7 +305,14 @@ impl Default for MeshScene {
             roller_copies: RollerCopies::Translated,
             outer_facets: None,
             inner_facets: None,
+            grading: None,
         }
+    }
+}
+
+impl Default for GradingScene {
+    fn default() -> Self {
+        Self { coarse_mm: 2.0, fine_layers: 2 }
     }
 }
 
@@ -316,8 +341,8 @@ impl Default for SolverScene {
             duration_ms: 30.0,
             time_step_factor: 0.95,
             hourglass_scale: 1.0,
-            mass_damping_per_s: 150.0,
-            damping_frame: DampingFrame::RigidMotion,
+            mass_damping_per_s: 5000.0,
+            damping_frame: DampingFrame::Rolling,
             start: Start::Preloaded,
         }
     }

@@ -3,11 +3,15 @@
 use std::{fs::File, io::BufWriter, ops::ControlFlow};
 
 use stribeck_mesh::vtu;
-use stribeck_solver::{Force, damping::MassDamping};
+use stribeck_solver::{
+    Force,
+    damping::{Frame, MassDamping},
+};
 
 use crate::{
     assembly::{Assembly, Machine},
     error::Error,
+    kinematics::Kinematics,
     recorder::Recorder,
     run_dir::RunDir,
     run_info::{EnergyInfo, RunInfo, Status},
@@ -131,6 +135,9 @@ pub fn simulate(
     let dt = interval / steps_per_sample as f64;
     machine.dynamics.set_time_step(dt)?;
     launch(&mut machine, &assembly.kinematics);
+    if let Some(damping) = mass_damping(scene, &machine, &assembly.kinematics)? {
+        machine.dynamics.set_mass_damping(&damping);
+    }
 
     let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0) as usize;
     progress.steps = (samples * steps_per_sample) as u64;
@@ -164,7 +171,6 @@ pub fn simulate(
         recorder: Recorder::new(scene, &machine),
         trace: TraceWriter::create(dir.trace(), &Recorder::names(scene))?,
         energy: TraceWriter::create(dir.energy(), &ENERGY_COLUMNS)?,
-        damping: mass_damping(scene, &machine),
         machine,
         baseline: None,
         before: Before::default(),
@@ -224,7 +230,6 @@ struct Run {
     recorder: Recorder,
     trace: TraceWriter,
     energy: TraceWriter,
-    damping: Option<MassDamping>,
     baseline: Option<f64>,
     before: Before,
     external0: f64,
@@ -261,10 +266,6 @@ impl Run {
             }
             self.recorder.after_step(&self.machine);
         }
-        if let Some(damping) = &mut self.damping {
-            let span = steps as f64 * self.machine.dynamics.time_step();
-            damping.apply(&mut self.machine.dynamics, span);
-        }
         ledger
     }
 
@@ -289,7 +290,7 @@ impl Run {
             hourglass: elastic.hourglass,
             contact: contact.stored,
             friction: contact.friction,
-            damping: self.damping.as_ref().map_or(0.0, |d| d.dissipated),
+            damping: m.dynamics.heat.at_last_positions(),
             contact_damping: contact.damping,
             external: m.load.energy().supplied + (gravity - self.external0),
             drive: m.dynamics.drive.at_last_positions(),
@@ -359,20 +360,22 @@ fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
     scene.operation.load_n + scene.operation.gravity_m_s2 * (mass(&machine.outer) + mass(&machine.adapter))
 }
 
-fn mass_damping(scene: &Scene, machine: &Machine) -> Option<MassDamping> {
+fn mass_damping(scene: &Scene, machine: &Machine, k: &Kinematics) -> Result<Option<MassDamping>, Error> {
     let rate = scene.solver.mass_damping_per_s;
     if rate == 0.0 {
-        return None;
+        return Ok(None);
     }
+    let (standing, rolling) = match scene.solver.damping_frame {
+        DampingFrame::Rolling => {
+            (Frame::Rest, Frame::Orbit { orbit: k.cage_rad_s, spin: k.roller_rad_s })
+        }
+        DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
+        DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
+    };
     // The inner ring's bore is driven: what is damped there would only be fed in again.
-    let mut bodies = vec![machine.outer.clone(), machine.adapter.clone()];
-    bodies.extend(machine.rollers.iter().map(|r| r.all.clone()));
-    Some(MassDamping {
-        rate,
-        relative: scene.solver.damping_frame == DampingFrame::RigidMotion,
-        bodies,
-        dissipated: 0.0,
-    })
+    let mut frames: Vec<(usize, Frame)> = machine.standing_bodies.iter().map(|&b| (b, standing)).collect();
+    frames.extend(machine.rollers.iter().map(|r| (r.body, rolling)));
+    Ok(Some(MassDamping::new(rate, frames)?))
 }
 
 /// Writes the mesh at the start of the run, as the preload has left it.

@@ -180,6 +180,33 @@ fn conserves_the_ledger_of_a_collision() {
 }
 
 #[test]
+fn converges_the_ledger_of_a_collision() {
+    // What is missing falls with the square of the step: every term is counted over the same span as the others.
+    let lossy =
+        penalty(2e-3).with_friction(0.3).and_then(|l| l.with_damping(0.2, 7800.0 * 1e-3)).expect("a law");
+    for (name, law) in [("frictionless", penalty(2e-3)), ("friction and damping", lossy)] {
+        for method in METHODS {
+            let missing = |refined: usize| {
+                let (mut d, mut contacts, _) = oblique(law, method);
+                d.set_time_step(d.time_step() / refined as f64).expect("a positive time step");
+                let start = step_and_balance(&mut d, &mut contacts).mechanical;
+                let mut worst = 0.0_f64;
+                for _ in 0..3000 * refined {
+                    let now = step_and_balance(&mut d, &mut contacts);
+                    worst = worst.max((now.mechanical + now.heat[0] + now.heat[1] - start).abs());
+                }
+                worst / start
+            };
+            let (coarse, fine) = (missing(1), missing(8));
+            // Where within a step a point sets in is chance, so the order scatters about two.
+            let order = (coarse / fine).log2() / 3.0;
+            assert!(order > 1.4, "{name}, {method:?}: order {order}, {coarse:e} to {fine:e}");
+            assert!(fine < 4e-5, "{name}, {method:?}: {fine:e}");
+        }
+    }
+}
+
+#[test]
 fn conserves_energy_over_a_hundred_bounces() {
     // A disc shuttles between two fixed plates; without damping and friction nothing is lost.
     let (radius, gap) = (5e-3, 20e-6);

@@ -1,6 +1,6 @@
 //! Closest-point projection: against a search over all facets, at corners, beyond ends.
 
-use proptest::prelude::*;
+use proptest::{prelude::*, test_runner::RngSeed};
 use stribeck_contact::{Projection, Surface, project};
 
 /// Rounding of coordinates of order one.
@@ -64,14 +64,25 @@ fn is_foot(x: &[f64], y: &[f64], p: [f64; 2], to: &Projection) -> bool {
     unit && (0..2).all(|k| (foot[k] + to.gap * to.normal[k] - p[k]).abs() < ROUNDING)
 }
 
+/// The same cases every time, so that a failure is not a matter of luck; `PROPTEST_CASES` tries more of them.
+fn cases() -> ProptestConfig {
+    ProptestConfig { rng_seed: RngSeed::Fixed(1882), failure_persistence: None, ..ProptestConfig::default() }
+}
+
 proptest! {
+    #![proptest_config(cases())]
+
     #[test]
-    fn invariant_gap_is_the_signed_distance((x, y) in convex(), side in 0..14_usize, along in 0.0..1.0_f64, off in -0.3..0.5_f64) {
-        // A point near a side, in or out by less than a third of the side's length inwards.
+    fn invariant_gap_is_the_signed_distance((x, y) in convex(), side in 0..14_usize, along in 0.0..1.0_f64, off in -0.5..0.5_f64) {
+        // A point near a side: outside by up to half that side, inside by up to half the shortest of all. Deeper points
+        // may belong to the side after next, and are not what contact meets.
         let surface = polygon(&x, &y);
         let (a, n) = (side % x.len(), x.len());
         let b = (a + 1) % n;
         let (tx, ty) = (x[b] - x[a], y[b] - y[a]);
+        let length = |k: usize| (x[(k + 1) % n] - x[k]).hypot(y[(k + 1) % n] - y[k]);
+        let shortest = (0..n).map(length).fold(f64::INFINITY, f64::min);
+        let off = if off < 0.0 { off * shortest / length(a) } else { off };
         let p = [x[a] + along * tx + off * ty, y[a] + along * ty - off * tx];
         let (nearest, distance) = slowly(&x, &y, p);
         // The search hands over the nearest side, and a point moves on by less than a side between two steps.
@@ -87,7 +98,9 @@ proptest! {
         // The normal is the gradient of the gap, which is what makes the force of a penalty that of its energy.
         let surface = polygon(&x, &y);
         let (nearest, distance) = slowly(&x, &y, [px, py]);
-        prop_assume!(distance > 0.01);
+        if distance < 0.01 {
+            return Ok(());
+        }
         let at = |dx: f64, dy: f64| project(&surface, &x, &y, [px + dx, py + dy], nearest).expect("closed").gap;
         let normal = project(&surface, &x, &y, [px, py], nearest).expect("closed").normal;
         let h = 1e-6;

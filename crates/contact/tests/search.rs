@@ -5,7 +5,7 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::*;
-use proptest::prelude::*;
+use proptest::{prelude::*, test_runner::RngSeed};
 use stribeck_contact::{ContactState, Contacts, Law, Method, PairSpec, Surface};
 use stribeck_solver::{
     Dynamics, Force,
@@ -19,6 +19,9 @@ const STIFFNESS: f64 = 1e6;
 
 /// Rounding of a sum of some hundred forces, relative to the sum of their amounts.
 const ROUNDING: f64 = 1e-12;
+
+/// Force of a gap that is rounding of coordinates of order one, 1e-15, on facets of up to 0.8 [N].
+const GAP_ROUNDING: f64 = 1e-15 * STIFFNESS * THICKNESS;
 
 /// Two regular polygons as nodes without bodies: what contact sees.
 #[derive(Debug)]
@@ -122,7 +125,14 @@ fn total(force: &NodeForces, nodes: impl Iterator<Item = usize> + Clone) -> [f64
     [nodes.clone().map(|n| force.fx[n]).sum(), nodes.map(|n| force.fy[n]).sum()]
 }
 
+/// The same cases every time, so that a failure is not a matter of luck; `PROPTEST_CASES` tries more of them.
+fn cases() -> ProptestConfig {
+    ProptestConfig { rng_seed: RngSeed::Fixed(1882), failure_persistence: None, ..ProptestConfig::default() }
+}
+
 proptest! {
+    #![proptest_config(cases())]
+
     #[test]
     fn invariant_forces_come_in_pairs(mut shapes in touching(), seed in 0..1000_u64, integrated in any::<bool>()) {
         let mut noise = Noise(seed);
@@ -161,7 +171,8 @@ proptest! {
         let found = contacts.resultants().next().expect("one pair").force;
         let (expected, amount) = shapes.slowly();
         for k in 0..2 {
-            prop_assert!((found[k] - expected[k]).abs() <= ROUNDING * amount, "{found:?}, by definition {expected:?}");
+            let rounding = ROUNDING * amount + GAP_ROUNDING;
+            prop_assert!((found[k] - expected[k]).abs() <= rounding, "{found:?}, by definition {expected:?}");
         }
     }
 
@@ -218,7 +229,8 @@ fn invariant_search_keeps_up_with_motion() {
         let (expected, amount) = now.slowly();
         touched += usize::from(amount > 0.0);
         for k in 0..2 {
-            assert!((found[k] - expected[k]).abs() <= ROUNDING * amount, "step {step}: {found:?}, {expected:?}");
+            let rounding = ROUNDING * amount + GAP_ROUNDING;
+            assert!((found[k] - expected[k]).abs() <= rounding, "step {step}: {found:?}, {expected:?}");
         }
     }
     assert!(touched > 1000 && touched < 14_000, "in contact in {touched} steps");
@@ -235,7 +247,10 @@ fn invariant_a_sharp_corner_is_felt() {
         shapes.forces(&mut contacts, 0, 1e-4);
         let found = contacts.resultants().next().expect("one pair");
         assert!((found.penetration - 0.002).abs() < ROUNDING, "{method:?}: {found:?}");
-        assert!(found.force[1] > 0.0 && found.force[0].abs() < 1e-9 * found.force[1], "{method:?}: {found:?}");
+        assert!(
+            found.force[1] > 0.0 && found.force[0].abs() < 1e-9 * found.force[1],
+            "{method:?}: {found:?}"
+        );
     }
 }
 
@@ -301,8 +316,12 @@ fn invariant_parallel_pairs_give_the_same_bits() {
 fn invariant_a_resumed_run_has_the_same_bits() {
     let (mut d, mut contacts) = tumbling();
     // In the middle of the first contact, where points remember their stick and their damping.
-    run(&mut d, &mut contacts, 700);
-    assert!(contacts.resultants().any(|r| r.penetration > 0.0), "in contact");
+    while contacts.resultants().all(|r| r.penetration == 0.0) {
+        run(&mut d, &mut contacts, 1);
+        assert!(d.state.step < 2000, "they never meet");
+    }
+    run(&mut d, &mut contacts, 20);
+    assert!(contacts.energy().friction > 0.0 && contacts.resultants().any(|r| r.penetration > 0.0));
     let saved = checkpoint(&d, &contacts);
     run(&mut d, &mut contacts, 800);
 

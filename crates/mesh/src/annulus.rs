@@ -28,6 +28,15 @@ pub struct Annulus {
     pub groove: Option<Groove>,
 }
 
+/// Where a node lies in the unrolled annulus.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    /// Facets from the first column.
+    pub(crate) column: usize,
+    /// Layers from the inner surface.
+    pub(crate) row: f64,
+}
+
 impl Annulus {
     /// Makes the mesh.
     ///
@@ -38,35 +47,38 @@ impl Annulus {
         self.check()?;
         let (n, layers) = (self.facets, self.layers);
         let mut part = Part::default();
+        let mut places = Vec::with_capacity(n * (layers + 1));
         for row in 0..=layers {
-            let radius = self.row_radius(row);
+            let radius = self.row_radius(row as f64);
             for column in 0..n {
                 let (sin, cos) = self.column_angle(column).sin_cos();
                 part.push_node(radius * cos, radius * sin);
+                places.push(Place { column, row: row as f64 });
             }
         }
         part.quads = rows::quads(0, layers, n, true, NextRow::Outwards);
         part.push_surface("inner", (0..n as u32).rev().collect(), true);
         part.push_surface("outer", (0..n).map(|c| rows::node(layers, c, n)).collect(), true);
         if let Some(groove) = &self.groove {
-            groove::cut(self, groove, &mut part)?;
+            groove::cut(self, groove, &places, f64::INFINITY, &mut part)?;
         }
         Ok(part)
     }
 
-    pub(crate) fn row_radius(&self, row: usize) -> f64 {
+    /// Radius of a row [m]; rows between two layers have broken numbers.
+    pub(crate) fn row_radius(&self, row: f64) -> f64 {
         // The last row is written out, so that no rounding moves the outer surface.
-        if row == self.layers {
+        if row == self.layers as f64 {
             return self.outer_radius;
         }
-        self.inner_radius + (self.outer_radius - self.inner_radius) * row as f64 / self.layers as f64
+        self.inner_radius + (self.outer_radius - self.inner_radius) * row / self.layers as f64
     }
 
     pub(crate) fn column_angle(&self, column: usize) -> f64 {
         self.start_angle + TAU * column as f64 / self.facets as f64
     }
 
-    fn check(&self) -> Result<(), Error> {
+    pub(crate) fn check(&self) -> Result<(), Error> {
         const SHAPE: &str = "annulus";
         positive(SHAPE, "inner_radius", self.inner_radius)?;
         positive(SHAPE, "outer_radius", self.outer_radius)?;

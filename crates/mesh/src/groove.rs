@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::annulus::Annulus;
+use crate::annulus::{Annulus, Place};
 use crate::error::{MOST, finite, positive};
-use crate::relax::{inside_out, raise_critical_step};
-use crate::{Error, Part, rows};
+use crate::relax::{inside_out, raise_critical_step_to};
+use crate::{Error, Part};
 
 /// A rectangular groove: a floor on a larger radius between two radial walls.
 ///
@@ -29,7 +29,7 @@ pub struct Groove {
 }
 
 /// Poisson's ratio for which the cells under a groove are shaped; the best shape hardly depends on it.
-const POISSON: f64 = 0.3;
+pub(crate) const POISSON: f64 = 0.3;
 
 /// Passes of Gauss–Seidel that spread the displacement of the inner row, and passes of the pattern search
 /// for each layer that the groove is deep.
@@ -39,22 +39,27 @@ const SWEEPS: usize = 60;
 /// Columns on each side of a wall, and rows below it, that the pattern search may move.
 const REACH: usize = 8;
 
-/// Cuts the groove into an annulus of equal cells by moving its nodes.
-pub(crate) fn cut(annulus: &Annulus, groove: &Groove, part: &mut Part) -> Result<(), Error> {
+/// Cuts the groove into an annulus by moving its nodes. The first of them are those of the inner surface,
+/// `places` has one entry per node, and cells of the length `enough` [m] need not become larger.
+pub(crate) fn cut(
+    annulus: &Annulus,
+    groove: &Groove,
+    places: &[Place],
+    enough: f64,
+    part: &mut Part,
+) -> Result<(), Error> {
     let plan = Plan::new(annulus, groove)?;
     let (n, layers) = (annulus.facets, annulus.layers);
     let (angle, radius) = spread(&plan, n, layers);
-    for row in 0..layers {
-        for column in 0..n {
-            let at = row * n + column;
-            let (sin, cos) = (annulus.column_angle(column) + angle[at]).sin_cos();
-            let r = annulus.row_radius(row) + radius[at];
-            (part.x[at], part.y[at]) = (r * cos, r * sin);
-        }
+    for (at, place) in places.iter().enumerate().filter(|(_, p)| p.row < layers as f64) {
+        let (sin, cos) = (annulus.column_angle(place.column) + between_rows(&angle, n, *place)).sin_cos();
+        let r = annulus.row_radius(place.row) + between_rows(&radius, n, *place);
+        (part.x[at], part.y[at]) = (r * cos, r * sin);
     }
     plan.place_walls(annulus, groove, part);
     let deep = (groove.depth * layers as f64 / (annulus.outer_radius - annulus.inner_radius)) as usize;
-    raise_critical_step(part, &plan.movable(annulus, groove), POISSON, SWEEPS * (1 + deep));
+    let movable = plan.movable(annulus, groove, places);
+    raise_critical_step_to(enough, part, &movable, POISSON, SWEEPS * (1 + deep));
     match inside_out(part) {
         None => Ok(()),
         Some((element, area)) => {
@@ -125,25 +130,31 @@ impl Plan {
     }
 
     /// Interior nodes near the walls.
-    fn movable(&self, annulus: &Annulus, groove: &Groove) -> Vec<bool> {
+    fn movable(&self, annulus: &Annulus, groove: &Groove, places: &[Place]) -> Vec<bool> {
         let (n, layers) = (annulus.facets, annulus.layers);
-        let mut movable = vec![false; n * (layers + 1)];
         let cell = TAU * annulus.inner_radius / n as f64;
         let layer = (annulus.outer_radius - annulus.inner_radius) / layers as f64;
         // A groove of several layers disturbs as many columns as it is deep.
         let columns = REACH + (groove.depth / cell).ceil() as usize;
         let rows = REACH + (groove.depth / layer).ceil() as usize;
-        let window = 2 * columns + 2;
-        for wall in [self.first, self.first + 1 + self.floor] {
-            for step in 0..window.min(n) {
-                let column = (wall + n + step - columns.min(n)) % n;
-                for row in 1..layers.min(rows + 1) {
-                    movable[rows::node(row, column, n) as usize] = true;
-                }
-            }
-        }
-        movable
+        let near_wall = |column: usize, wall: usize| {
+            let right = (column + 2 * n - wall % n) % n;
+            right < columns + 2 || n - right <= columns
+        };
+        let walls = [self.first, self.first + 1 + self.floor];
+        let movable = |p: &Place| {
+            let inside = p.row > 0.0 && p.row < layers as f64 && p.row <= rows as f64;
+            inside && walls.iter().any(|wall| near_wall(p.column, *wall))
+        };
+        places.iter().map(movable).collect()
     }
+}
+
+/// A field of whole rows at a place that may lie between two of them.
+fn between_rows(field: &[f64], n: usize, place: Place) -> f64 {
+    let row = place.row as usize;
+    let (part, here) = (place.row - row as f64, row * n + place.column);
+    if part == 0.0 { field[here] } else { (1.0 - part) * field[here] + part * field[here + n] }
 }
 
 /// Displacement of all nodes (angle [rad], radius [m]): given on the inner row, zero on the outer one,

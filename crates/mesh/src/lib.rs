@@ -54,7 +54,7 @@
 //! | Question | File |
 //! |---|---|
 //! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
-//! | How is a shape divided? | `annulus.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
+//! | How is a shape divided? | `annulus.rs`, `grading.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
 //! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
 //! | How are bad cells made better? | `relax.rs` |
 
@@ -62,6 +62,7 @@ mod mesh;
 mod part;
 
 mod annulus;
+mod grading;
 mod groove;
 mod rows;
 
@@ -88,6 +89,7 @@ pub use arc_block::ArcBlock;
 pub use characteristic::characteristic_length;
 pub use disc::Disc;
 pub use error::Error;
+pub use grading::{Circle, Grading};
 pub use groove::Groove;
 pub use mesh::{Body, Mesh, Placed};
 pub use part::{Part, Surface};

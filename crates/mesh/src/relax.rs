@@ -36,7 +36,21 @@ const DIRECTIONS: [[f64; 2]; 8] =
 /// equal output. Each power gets at most `sweeps` passes and ends when no step is left. `poisson` as in
 /// [`characteristic_length`].
 pub fn raise_critical_step(part: &mut Part, movable: &[bool], poisson: f64, sweeps: usize) {
+    raise_critical_step_to(f64::INFINITY, part, movable, poisson, sweeps);
+}
+
+/// The same, but cells of the score `enough` [m] or more are left alone: among cells of different sizes the
+/// small ones would otherwise grow at the cost of large ones, and the mesh would no longer be fine where it
+/// should be.
+pub(crate) fn raise_critical_step_to(
+    enough: f64,
+    part: &mut Part,
+    movable: &[bool],
+    poisson: f64,
+    sweeps: usize,
+) {
     let Some(mut search) = Search::new(part, movable, poisson) else { return };
+    search.enough = enough;
     for power in POWERS {
         search.start(power);
         for _ in 0..sweeps {
@@ -49,6 +63,8 @@ pub fn raise_critical_step(part: &mut Part, movable: &[bool], poisson: f64, swee
 
 struct Search {
     poisson: f64,
+    /// Score beyond which an element costs no less [m].
+    enough: f64,
     power: i32,
     /// Length that makes the costs plain numbers [m].
     scale: f64,
@@ -99,7 +115,14 @@ impl Search {
             mover.step = mover.first_step;
             scale = scale.max(longest);
         }
-        (!nodes.is_empty()).then_some(Search { poisson, power: POWERS[0], scale, nodes, mover_of })
+        (!nodes.is_empty()).then_some(Search {
+            poisson,
+            enough: f64::INFINITY,
+            power: POWERS[0],
+            scale,
+            nodes,
+            mover_of,
+        })
     }
 
     /// Gives every node its first step again, for a new power.
@@ -163,7 +186,7 @@ impl Search {
     }
 
     fn element(&self, corners: &[[f64; 2]]) -> f64 {
-        let score = score(corners, self.poisson) / self.scale;
+        let score = score(corners, self.poisson).min(self.enough) / self.scale;
         if score > FLOOR {
             return score.powi(-self.power);
         }

@@ -146,3 +146,31 @@ fn invariant_refusals_name_field_and_limit() {
         assert!(parts.iter().all(|p| message.contains(p)), "{message}");
     }
 }
+
+/// Columns of different widths: each is a trapezium under the top edge, and the seat passes through the lines.
+#[test]
+fn analytic_seated_block_with_given_lines() {
+    let lines = [-0.05, -0.01, 0.0, 0.03, 0.06];
+    let block = SeatedBlock { columns: 6, rows: 10, ..BLOCK };
+    let part = block.part_with_lines(&lines).expect("a block");
+    assert_is_a_grid(&part, 10, 6);
+    assert_boundary_is(&part, &["seat", "right", "top", "left"]);
+    let all = [-0.08, -0.05, -0.01, 0.0, 0.03, 0.06, 0.08];
+    let seat_at = |x: f64| (0.11_f64 * 0.11 - x * x).sqrt();
+    for (node, x) in surface(&part, "seat").nodes.iter().zip(all) {
+        assert_eq!(point(&part, *node), [x, seat_at(x)]);
+    }
+    let height = |x: f64| 0.15 - seat_at(x);
+    let area: f64 = all.windows(2).map(|w| 0.5 * (w[1] - w[0]) * (height(w[0]) + height(w[1]))).sum();
+    assert_close(part.area(), area, 1e-12, "area");
+    let wrong = block.part_with_lines(&lines[1..]).expect_err("one line is missing").to_string();
+    assert!(wrong.contains("columns"), "{wrong}");
+    for bad in [
+        [-0.05, -0.01, -0.02, 0.03, 0.06],
+        [-0.05, -0.01, 0.0, 0.03, 0.09],
+        [-0.05, f64::NAN, 0.0, 0.03, 0.06],
+    ] {
+        let wrong = block.part_with_lines(&bad).expect_err("lines out of order").to_string();
+        assert!(wrong.contains("inner"), "{wrong}");
+    }
+}

@@ -1,41 +1,106 @@
-//! Mass-proportional damping, relative to the rigid motion of each body or to rest (THEORY §2.6).
+//! Mass-proportional damping relative to a motion that is not to be braked (THEORY §2.6).
 
-use crate::{dynamics::Dynamics, rigid::RigidMotion};
+use crate::{error::Error, error::check, layout::LANES, rigid::RigidMotion};
 
-/// Mass-proportional damping, applied now and then as the exact decay over the time that has passed: between two
-/// applications it costs nothing.
-#[derive(Debug, Clone)]
-pub struct MassDamping {
-    /// Rate α [1/s]; 2·ζ·ω gives the damping ratio ζ at the angular frequency ω.
-    pub rate: f64,
-    /// Relative to the rigid motion of each body (rolling is not braked) or to rest.
-    pub relative: bool,
-    /// Slots of each damped body.
-    pub bodies: Vec<Vec<u32>>,
-    /// Energy turned into heat so far [J].
-    pub dissipated: f64,
+/// The motion that damping leaves alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Frame {
+    /// Rest: damping brakes everything.
+    Rest,
+    /// The rigid part of the body's own motion: only its vibration is damped, its momentum stays.
+    OwnMotion,
+    /// A centre that runs on a circle about the origin at `orbit` [rad/s] while the body turns at `spin` [rad/s],
+    /// both counter-clockwise: vibration and every departure from this motion are damped.
+    Orbit {
+        /// Angular velocity of the centre [rad/s].
+        orbit: f64,
+        /// Angular velocity of the body [rad/s].
+        spin: f64,
+    },
 }
 
+/// Mass-proportional damping of some bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MassDamping {
+    /// Rate α [1/s]; 2·ζ·ω gives the damping ratio ζ at the angular frequency ω.
+    rate: f64,
+    /// Frame of each damped body, by its number in the mesh.
+    frames: Vec<(usize, Frame)>,
+}
+
+/// Frames are placed anew every so many steps; in between their centres move on a straight line.
+pub(crate) const PLACE_EVERY: u64 = 64;
+
 impl MassDamping {
-    /// Lets the velocities decay over `span` [s].
-    pub fn apply(&mut self, dynamics: &mut Dynamics, span: f64) {
-        let keep = (-self.rate * span).exp();
-        for slots in &self.bodies {
-            let motion = if self.relative { dynamics.rigid_motion(slots) } else { RigidMotion::default() };
-            let mut taken = 0.0;
-            for &n in slots {
-                let n = n as usize;
-                let rigid = motion.velocity_at([dynamics.state.x[n], dynamics.state.y[n]]);
-                let before = [dynamics.state.vx[n], dynamics.state.vy[n]];
-                let after =
-                    [rigid[0] + keep * (before[0] - rigid[0]), rigid[1] + keep * (before[1] - rigid[1])];
-                let squares = before[0] * before[0] + before[1] * before[1]
-                    - (after[0] * after[0] + after[1] * after[1]);
-                taken += 0.5 * dynamics.mass()[n] * squares;
-                dynamics.state.vx[n] = after[0];
-                dynamics.state.vy[n] = after[1];
+    /// Damping at `rate` [1/s] of the bodies named by their numbers in the mesh, each relative to its frame.
+    ///
+    /// # Errors
+    /// When the rate is negative or not finite.
+    pub fn new(rate: f64, frames: Vec<(usize, Frame)>) -> Result<Self, Error> {
+        check("mass damping rate [1/s]", rate, rate >= 0.0, "zero or positive")?;
+        Ok(Self { rate, frames })
+    }
+
+    /// Frame of a body; `None` leaves it undamped.
+    pub(crate) fn frame(&self, body: usize) -> Option<Frame> {
+        self.frames.iter().find(|(b, _)| *b == body).map(|(_, frame)| *frame)
+    }
+
+    /// Rate α [1/s].
+    pub(crate) fn rate(&self) -> f64 {
+        self.rate
+    }
+}
+
+/// Where the frames of a tile's bodies are: one a lane, all alike in a tile of one body.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LaneFrames {
+    frames: [Frame; LANES],
+    centre: [[f64; 2]; LANES],
+    velocity: [[f64; 2]; LANES],
+    /// Velocity at the origin and angular velocity of each lane, for the step at hand.
+    pub(crate) origin_x: [f64; LANES],
+    pub(crate) origin_y: [f64; LANES],
+    pub(crate) spin: [f64; LANES],
+}
+
+impl LaneFrames {
+    pub(crate) fn new(frames: [Frame; LANES]) -> Self {
+        Self {
+            frames,
+            centre: [[0.0; 2]; LANES],
+            velocity: [[0.0; 2]; LANES],
+            origin_x: [0.0; LANES],
+            origin_y: [0.0; LANES],
+            spin: [0.0; LANES],
+        }
+    }
+
+    /// Places the frame of a lane by the present motion of its body.
+    pub(crate) fn place(&mut self, lane: usize, own: impl FnOnce() -> RigidMotion) {
+        let (centre, velocity, spin) = match self.frames[lane] {
+            Frame::Rest => ([0.0; 2], [0.0; 2], 0.0),
+            Frame::OwnMotion => {
+                let own = own();
+                (own.centre, own.velocity, own.spin)
             }
-            self.dissipated += taken;
+            Frame::Orbit { orbit, spin } => {
+                let [x, y] = own().centre;
+                ([x, y], [-orbit * y, orbit * x], spin)
+            }
+        };
+        self.centre[lane] = centre;
+        self.velocity[lane] = velocity;
+        self.spin[lane] = spin;
+    }
+
+    /// Moves the frames on by `span` [s] since they were placed.
+    pub(crate) fn advance(&mut self, span: f64) {
+        for l in 0..LANES {
+            let (v, w) = (self.velocity[l], self.spin[l]);
+            let c = [self.centre[l][0] + span * v[0], self.centre[l][1] + span * v[1]];
+            self.origin_x[l] = v[0] + w * c[1];
+            self.origin_y[l] = v[1] - w * c[0];
         }
     }
 }

@@ -5,15 +5,16 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
     error::{Error, check, check_count},
     force::Force,
-    layout::{Layout, lay_out},
+    layout::{LANES, Layout, lay_out},
     model::{Behaviour, Model, Motion},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
-    sweep::{Drive, Scratch, TileFields, sweep},
-    tile::Tile,
+    sweep::{Counted, Drive, Scratch, TileFields, sweep},
+    tile::{Tile, TileDamping},
 };
 
 /// A model in motion.
@@ -24,31 +25,44 @@ pub struct Dynamics {
     /// Place and motion of each rigid body, in the order of the mesh.
     pub rigid: Vec<RigidState>,
     /// Work of prescribed motions since the start [J].
-    pub drive: DriveWork,
+    pub drive: Accumulated,
+    /// Heat of mass damping since the start [J].
+    pub heat: Accumulated,
     layout: Layout,
     tiles: Vec<Tile>,
     rigid_bodies: Vec<RigidBody>,
     mass: Vec<f64>,
     motion: Vec<Motion>,
+    body_nodes: Vec<std::ops::Range<usize>>,
     elements: Elements,
     forces: NodeForces,
     scratch: Vec<Mutex<Scratch>>,
     time_step: f64,
     gravity: [f64; 2],
     parallel: bool,
+    damped: Option<Vec<DampedBody>>,
+    /// Step at which the damping frames were last placed.
+    frames_placed: Option<u64>,
 }
 
-/// Work of prescribed motions [J].
+/// One body of the mass damping: the tile and lane that its frame serves, and its slots.
+#[derive(Debug, Clone)]
+struct DampedBody {
+    places: Vec<(usize, usize)>,
+    slots: Vec<u32>,
+}
+
+/// Energy counted step by step [J].
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct DriveWork {
+pub struct Accumulated {
     /// Up to half a step after the positions' time.
     total: f64,
     /// Of the last step, half of which lies after the positions' time.
     last: f64,
 }
 
-impl DriveWork {
-    /// Work up to the time of the positions before the last step [J].
+impl Accumulated {
+    /// Up to the time of the positions before the last step [J].
     pub fn at_last_positions(&self) -> f64 {
         self.total - 0.5 * self.last
     }
@@ -139,11 +153,15 @@ impl Dynamics {
         Ok(Self {
             state,
             rigid,
-            drive: DriveWork::default(),
+            drive: Accumulated::default(),
+            heat: Accumulated::default(),
+            damped: None,
+            frames_placed: None,
             tiles,
             rigid_bodies,
             mass,
             motion,
+            body_nodes: model.mesh.bodies.iter().map(|b| b.nodes.clone()).collect(),
             elements,
             forces: NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] },
             scratch: (0..threads.max(1)).map(|_| Mutex::new(Scratch::new(largest))).collect(),
@@ -230,6 +248,7 @@ impl Dynamics {
             force.accumulate(self.moment(), &mut pushed);
         }
         self.forces = pushed;
+        self.place_damping_frames();
         for &(ghost, owner) in &self.layout.ghosts {
             self.state.x[ghost as usize] = self.state.x[owner as usize];
             self.state.y[ghost as usize] = self.state.y[owner as usize];
@@ -240,6 +259,65 @@ impl Dynamics {
         }
         self.state.step += 1;
         self.state.time = self.state.step as f64 * self.time_step;
+    }
+
+    /// Sets the mass-proportional damping of elastic bodies; replaces an earlier one.
+    ///
+    /// Frames are placed at the next step and then at every 64th step, counted from the first of the run, and are no part
+    /// of the state: a run resumed at such a step has the same bits.
+    pub fn set_mass_damping(&mut self, damping: &MassDamping) {
+        let mut bodies: Vec<(usize, DampedBody)> = Vec::new();
+        for (t, (tile, layout)) in self.tiles.iter_mut().zip(&self.layout.tiles).enumerate() {
+            let frame = |lane: usize| {
+                let body = layout.bodies.get(lane).or(layout.bodies.first());
+                body.and_then(|b| damping.frame(*b))
+            };
+            tile.damping = None;
+            // Bodies of one tile are damped together or not at all.
+            if tile.finish.is_empty() || layout.bodies.iter().any(|b| damping.frame(*b).is_none()) {
+                continue;
+            }
+            let mass = self.mass[tile.slots.clone()].to_vec();
+            let frames = LaneFrames::new(std::array::from_fn(|l| frame(l).unwrap_or(Frame::Rest)));
+            tile.damping = Some(TileDamping { rate: damping.rate(), frames, mass });
+            for lane in 0..LANES {
+                let Some(&b) = layout.bodies.get(if layout.congruent { lane } else { 0 }) else { continue };
+                let at = bodies.iter().position(|(body, _)| *body == b).unwrap_or_else(|| {
+                    let nodes = self.body_nodes[b].clone();
+                    let slots = nodes.map(|n| self.layout.slot_of_node[n]).collect();
+                    bodies.push((b, DampedBody { places: Vec::new(), slots }));
+                    bodies.len() - 1
+                });
+                bodies[at].1.places.push((t, lane));
+            }
+        }
+        self.frames_placed = None;
+        self.damped = (!bodies.is_empty()).then(|| bodies.into_iter().map(|(_, body)| body).collect());
+    }
+
+    /// Places the damping frames now and then, and moves them on in between.
+    fn place_damping_frames(&mut self) {
+        let Some(damped) = &self.damped else { return };
+        let step = self.state.step;
+        let due = |placed: u64| step < placed || step - placed >= PLACE_EVERY;
+        let place = step.is_multiple_of(PLACE_EVERY) || self.frames_placed.is_none_or(due);
+        let placed = if place { step } else { self.frames_placed.unwrap_or(step) };
+        self.frames_placed = Some(placed);
+        let mut tiles = std::mem::take(&mut self.tiles);
+        if place {
+            for body in damped {
+                let own = std::cell::LazyCell::new(|| self.rigid_motion(&body.slots));
+                for &(tile, lane) in &body.places {
+                    if let Some(d) = &mut tiles[tile].damping {
+                        d.frames.place(lane, || *own);
+                    }
+                }
+            }
+        }
+        for d in tiles.iter_mut().filter_map(|t| t.damping.as_mut()) {
+            d.frames.advance((step - placed) as f64 * self.time_step);
+        }
+        self.tiles = tiles;
     }
 
     fn sweep_tiles(&mut self) {
@@ -253,9 +331,11 @@ impl Dynamics {
         };
         let drive = Drive { dt: self.time_step, gravity: self.gravity };
         let scratch = if self.parallel { self.scratch.as_slice() } else { &self.scratch[..1] };
-        let work = sweep_all(&self.tiles, fields, scratch, drive);
+        let Counted { work, heat } = sweep_all(&self.tiles, fields, scratch, drive);
         self.drive.total += work;
         self.drive.last = work;
+        self.heat.total += heat;
+        self.heat.last = heat;
     }
 
     /// Strain and hourglass energy of the present positions [J].
@@ -336,9 +416,9 @@ fn pad(layout: &Layout, state: &mut State) {
 }
 
 /// Sweeps tiles, halving the list while there are threads to share it; the sum of works has the order of the tree.
-fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>], drive: Drive) -> f64 {
+fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>], drive: Drive) -> Counted {
     match tiles {
-        [] => 0.0,
+        [] => Counted::default(),
         [tile] => {
             let worker = rayon::current_thread_index().unwrap_or(0) % scratch.len();
             let mut scratch = scratch[worker].lock().unwrap_or_else(|e| e.into_inner());

@@ -48,6 +48,8 @@ pub(crate) struct TileLayout {
     pub(crate) own: usize,
     /// The body of the (first) elements; all elements of a tile share one material.
     pub(crate) body: usize,
+    /// Its bodies: one, or up to [`LANES`] congruent ones.
+    pub(crate) bodies: Vec<usize>,
     /// Quadrilaterals, local corners, and their number in the mesh. In a tile of congruent bodies those of the
     /// first body, whose corners are multiples of [`LANES`].
     pub(crate) quads: Vec<([u32; 4], usize)>,
@@ -104,6 +106,7 @@ impl Layout {
             slots: start..self.len(),
             own: self.len() - start,
             body: bodies[0],
+            bodies: bodies.to_vec(),
             quads: first.quads.clone().map(|e| (mesh.quads[e].map(local), e)).collect(),
             triangles: first.triangles.clone().map(|e| (mesh.triangles[e].map(local), e)).collect(),
             congruent: true,
@@ -161,6 +164,7 @@ impl Layout {
                 slots: start..self.len(),
                 own: own[t].len(),
                 body: b,
+                bodies: vec![b],
                 quads: quads[t].iter().map(|&e| (mesh.quads[e].map(at), e)).collect(),
                 triangles: triangles[t].iter().map(|&e| (mesh.triangles[e].map(at), e)).collect(),
                 congruent: false,

@@ -1,4 +1,91 @@
-//! Explicit plane-strain finite element dynamics.
+//! Explicit dynamics of plane-strain finite elements, and the static equilibrium to start from.
+//!
+//! The crate knows bodies, not machines: a [`Model`] is a mesh, what its bodies are made of and how their nodes may
+//! move. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on nodes (loads, contact) is a
+//! [`Force`], given to each step as a list. A model pays only for the forces in its list.
+//!
+//! # Conventions
+//!
+//! SI units: m, kg, s, N, J, Pa, rad. Angles and spins are counter-clockwise positive. Forces and masses are those of
+//! the whole thickness. Strains and stresses are of plane strain, tension positive.
+//!
+//! Time is leapfrog: positions at `time`, velocities half a step earlier. Energies that balance exactly belong to the
+//! positions before the last step ([`Dynamics::kinetic_energy`]).
+//!
+//! Meshes number *nodes*; fields of the state are arrays over *slots*, places in memory
+//! ([`layout::Layout::slot_of_node`]). Forces push on slots.
+//!
+//! # Example: a bar struck at one end
+//!
+//! A steel bar of half a metre is hit at its left end for ten microseconds. The stress wave arrives at the other, free
+//! end after L/c and doubles the particle velocity there.
+//!
+//! ```
+//! use stribeck_mesh::{Mesh, Rectangle};
+//! use stribeck_solver::{Dynamics, Elastic, Force, Model, Motion, force::NodalLoad};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let length = 0.5;
+//! let bar = Rectangle { x0: 0.0, y0: 0.0, width: length, height: 0.01, columns: 250, rows: 5 }.part()?;
+//! let mut mesh = Mesh::new();
+//! let placed = mesh.add("bar", &bar);
+//! let steel = Elastic::new(208e9, 0.3, 7800.0)?;
+//! let mut model = Model::new(mesh, steel, 0.02)?;
+//! // Its sides are held, so that the wave runs at the speed √((λ + 2µ)/ρ) of a confined bar.
+//! model.motion.fill(Motion::HeldY);
+//!
+//! let struck = &placed.surface("left").ok_or("no left side")?.nodes;
+//! let mut loaded = vec![false; model.mesh.x.len()];
+//! struck.iter().for_each(|&n| loaded[n as usize] = true);
+//! let mut dynamics = Dynamics::new(&model, &loaded, 1)?;
+//! let critical = dynamics.critical_time_step(&[], 0.0);
+//! dynamics.set_time_step(0.9 * critical.time_step)?;
+//!
+//! // 2 kN over the end, a half at each of its corners.
+//! let slot = |n: u32| dynamics.layout().slot_of_node[n as usize];
+//! let share = |i: usize| if i == 0 || i + 1 == struck.len() { 0.5 } else { 1.0 };
+//! let push = |(i, &n): (usize, &u32)| (slot(n), 2000.0 * share(i) / 5.0, 0.0);
+//! let mut blow = NodalLoad::new(struck.iter().enumerate().map(push).collect());
+//!
+//! let far_end = slot(placed.surface("right").ok_or("no right side")?.nodes[0]) as usize;
+//! let mut arrival = None;
+//! let mut fastest = 0.0_f64;
+//! while dynamics.state.time < 1.5 * length / steel.dilatational_speed() {
+//!     if dynamics.state.time < 10e-6 {
+//!         dynamics.step(&mut [&mut blow as &mut dyn Force]);
+//!     } else {
+//!         dynamics.step(&mut []);
+//!     }
+//!     let speed = dynamics.state.vx[far_end];
+//!     fastest = fastest.max(speed);
+//!     // v = F/(ρ c A) in the wave; its front passes the middle of its rise when the doubled end has reached v.
+//!     let wave = 2000.0 / (steel.density() * steel.dilatational_speed() * 0.01 * 0.02);
+//!     if arrival.is_none() && speed > wave {
+//!         arrival = Some(dynamics.state.time);
+//!     }
+//! }
+//! let expected = length / steel.dilatational_speed();
+//! let arrival = arrival.ok_or("the wave never arrived")?;
+//! assert!((arrival / expected - 1.0).abs() < 0.01, "{arrival} s, expected {expected} s");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Where to look
+//!
+//! | Question | File |
+//! |---|---|
+//! | What does a user give? | `model.rs`, `material.rs` |
+//! | What changes in time, what pushes? | `state.rs`, `force.rs` |
+//! | What is one step? | `dynamics.rs` |
+//! | What force does an element make? | `element.rs` |
+//! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
+//! | How long may a step be? | `critical.rs` |
+//! | How is equilibrium found? | `statics.rs` |
+//! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs`, `sweep.rs` |
+
+// Units stand in brackets, as in "position [m]", and are no links.
+#![allow(rustdoc::broken_intra_doc_links)]
 
 pub mod critical;
 pub mod damping;

@@ -279,6 +279,9 @@ struct Unknowns {
 
 type Matrix = SparseColMat<usize, f64>;
 
+/// Strain of one mode [1/m] that a unit displacement of a node gives, from its shape gradient and the component.
+type StrainOf = fn([f64; 2], usize) -> f64;
+
 impl Unknowns {
     fn new(d: &Dynamics) -> Self {
         let mut unknowns = Self {
@@ -394,7 +397,7 @@ impl Unknowns {
     ) {
         // λ tr² + 2µ (exx² + eyy² + 2 exy²) = (λ + µ)(exx + eyy)² + µ (exx − eyy)² + µ (2 exy)².
         let shear = 0.5 * k.two_shear;
-        let modes: [(fn([f64; 2], usize) -> f64, f64); 3] = [
+        let modes: [(StrainOf, f64); 3] = [
             (|b, c| b[c], k.lame + shear),
             (|b, c| if c == 0 { b[0] } else { -b[1] }, shear),
             (|b, c| b[1 - c], shear),

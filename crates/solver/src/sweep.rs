@@ -1,13 +1,16 @@
 //! One pass over a tile: element forces, then each finished row of nodes moves while it is still in cache
 //! (THEORY §2.3; cost in PERFORMANCE.md).
 
+use std::ops::Range;
+
 use multiversion::multiversion;
 
 use crate::{
+    damping::LaneFrames,
     element::{QuadReference, Stiffness, quad_forces, triangle_forces},
     layout::LANES,
     model::Motion,
-    tile::{Strip, StripReferences, Tile, VaryingReferences},
+    tile::{Strip, StripReferences, Tile, TileDamping, VaryingReferences},
 };
 
 /// Elements of a strip between two additions to the nodes: the buffers stay in the first-level cache.
@@ -46,10 +49,25 @@ pub(crate) struct Drive {
     pub(crate) gravity: [f64; 2],
 }
 
-/// Computes the forces of one tile and takes its nodes one step on. Returns the work [J] that prescribed motion
-/// does from half a step before to half a step after the positions' time.
+/// What a sweep counts [J], each from half a step before to half a step after the positions' time.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Counted {
+    /// Work of prescribed motion.
+    pub(crate) work: f64,
+    /// Heat of mass damping.
+    pub(crate) heat: f64,
+}
+
+impl std::ops::Add for Counted {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { work: self.work + other.work, heat: self.heat + other.heat }
+    }
+}
+
+/// Computes the forces of one tile and takes its nodes one step on.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx512cd+avx2+bmi2", "x86_64+avx2+bmi2"))]
-pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> f64 {
+pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> Counted {
     let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
     let n = tile.slots.len();
     let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
@@ -67,11 +85,12 @@ pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, 
         single_elements(tile, x, y, fx, fy);
     }
     let mut finish = tile.finish.iter().peekable();
-    let mut work = 0.0;
+    let mut counted = Counted::default();
     for done in 0..=tile.strips.len() {
         while let Some(f) = finish.next_if(|f| f.after == done) {
             let r = f.nodes.clone();
             let step_over_mass = &tile.step_over_mass[r.clone()];
+            let damping = tile.damping.as_ref().map(|d| Damping::new(d, r.clone(), tile.congruent, drive.dt));
             let nodes = Nodes {
                 x: &mut x[r.clone()],
                 y: &mut y[r.clone()],
@@ -80,7 +99,7 @@ pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, 
                 fx: &mut fx[r.clone()],
                 fy: &mut fy[r],
             };
-            work += advance(nodes, step_over_mass, f.motion, drive);
+            counted = counted + advance(nodes, step_over_mass, f.motion, drive, damping);
         }
         if let Some(strip) = tile.strips.get(done) {
             strip_forces(strip, &tile.varying, &tile.stiffness, x, y, fx, fy, &mut scratch.corner);
@@ -88,7 +107,7 @@ pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, 
     }
     fx[tile.own..].fill(0.0);
     fy[tile.own..].fill(0.0);
-    work
+    counted
 }
 
 /// Fields of consecutive nodes that move alike.
@@ -103,36 +122,50 @@ struct Nodes<'a> {
 
 /// Central difference: v += Δt·a, x += Δt·v; leaves the forces at zero for the next use of the scratch.
 #[inline(always)]
-fn advance(nodes: Nodes<'_>, step_over_mass: &[f64], motion: Motion, drive: Drive) -> f64 {
-    match motion {
-        Motion::Free => {
-            advance_component(nodes.x, nodes.vx, nodes.fx, step_over_mass, drive.dt, drive.gravity[0]);
-            advance_component(nodes.y, nodes.vy, nodes.fy, step_over_mass, drive.dt, drive.gravity[1]);
+fn advance(
+    nodes: Nodes<'_>,
+    step_over_mass: &[f64],
+    motion: Motion,
+    drive: Drive,
+    damping: Option<Damping<'_>>,
+) -> Counted {
+    let (free_x, free_y) = match motion {
+        Motion::Free => (true, true),
+        Motion::HeldX => (false, true),
+        Motion::HeldY => (true, false),
+        Motion::Held => (false, false),
+        Motion::Rotating { centre, rate } => {
+            return Counted { work: rotate(nodes, step_over_mass, centre, rate, drive), heat: 0.0 };
+        }
+    };
+    let [gx, gy] = drive.gravity;
+    let heat = match damping {
+        None => {
+            advance_component(free_x, nodes.x, nodes.vx, nodes.fx, step_over_mass, drive.dt, gx);
+            advance_component(free_y, nodes.y, nodes.vy, nodes.fy, step_over_mass, drive.dt, gy);
             0.0
         }
-        Motion::HeldX => {
-            nodes.fx.fill(0.0);
-            advance_component(nodes.y, nodes.vy, nodes.fy, step_over_mass, drive.dt, drive.gravity[1]);
-            0.0
-        }
-        Motion::HeldY => {
-            nodes.fy.fill(0.0);
-            advance_component(nodes.x, nodes.vx, nodes.fx, step_over_mass, drive.dt, drive.gravity[0]);
-            0.0
-        }
-        Motion::Held => {
-            nodes.fx.fill(0.0);
-            nodes.fy.fill(0.0);
-            0.0
-        }
-        Motion::Rotating { centre, rate } => rotate(nodes, step_over_mass, centre, rate, drive),
-    }
+        Some(damping) => advance_damped(nodes, step_over_mass, [free_x, free_y], drive, damping),
+    };
+    Counted { work: 0.0, heat }
 }
 
 #[inline(always)]
-fn advance_component(x: &mut [f64], v: &mut [f64], f: &mut [f64], step_over_mass: &[f64], dt: f64, g: f64) {
+fn advance_component(
+    free: bool,
+    x: &mut [f64],
+    v: &mut [f64],
+    f: &mut [f64],
+    step_over_mass: &[f64],
+    dt: f64,
+    g: f64,
+) {
     let n = x.len();
     let (v, f, m) = (&mut v[..n], &mut f[..n], &step_over_mass[..n]);
+    if !free {
+        f.fill(0.0);
+        return;
+    }
     let dt_g = dt * g;
     for i in 0..n {
         let vi = v[i] + (f[i] * m[i] + dt_g);
@@ -140,6 +173,116 @@ fn advance_component(x: &mut [f64], v: &mut [f64], f: &mut [f64], step_over_mass
         x[i] += dt * vi;
         f[i] = 0.0;
     }
+}
+
+/// Damping of consecutive nodes.
+#[derive(Clone, Copy)]
+struct Damping<'a> {
+    /// (1 − αΔt/2)/(1 + αΔt/2): what is left of the relative velocity after a step.
+    keep: f64,
+    /// 1/(1 + αΔt/2): the share of a force that becomes velocity.
+    gain: f64,
+    /// αΔt: heat over mass and squared velocity.
+    loss: f64,
+    frames: &'a LaneFrames,
+    mass: &'a [f64],
+    /// Lane of the first node.
+    lane: usize,
+}
+
+impl<'a> Damping<'a> {
+    #[inline(always)]
+    fn new(d: &'a TileDamping, nodes: Range<usize>, congruent: bool, dt: f64) -> Self {
+        let half = 0.5 * d.rate * dt;
+        let gain = 1.0 / (1.0 + half);
+        Self {
+            keep: (1.0 - half) * gain,
+            gain,
+            loss: 2.0 * half,
+            frames: &d.frames,
+            // In a tile of one body all lanes are alike.
+            lane: if congruent { nodes.start % LANES } else { 0 },
+            mass: &d.mass[nodes],
+        }
+    }
+
+    /// Velocity half a step after, from that half a step before, the frame's velocity and the push Δt·a.
+    #[inline(always)]
+    fn velocity(&self, before: f64, frame: f64, push: f64) -> f64 {
+        frame + (self.keep * (before - frame) + self.gain * push)
+    }
+}
+
+/// Central difference with damping relative to a rigid motion; returns its heat [J].
+#[inline(always)]
+fn advance_damped(
+    nodes: Nodes<'_>,
+    step_over_mass: &[f64],
+    free: [bool; 2],
+    drive: Drive,
+    damping: Damping<'_>,
+) -> f64 {
+    let n = nodes.x.len();
+    let whole = if damping.lane == 0 { n - n % LANES } else { 0 };
+    let mut heat = [0.0; LANES];
+    for i in (0..whole).step_by(LANES) {
+        let group = [*lanes(nodes.x, i), *lanes(nodes.y, i), *lanes(nodes.vx, i), *lanes(nodes.vy, i)];
+        let force = [*lanes(nodes.fx, i), *lanes(nodes.fy, i)];
+        let mass = [*lanes(step_over_mass, i), *lanes(damping.mass, i)];
+        let [x, y, vx, vy] = damped_lanes(group, force, mass, free, drive, &damping, &mut heat);
+        *lanes_mut(nodes.x, i) = x;
+        *lanes_mut(nodes.y, i) = y;
+        *lanes_mut(nodes.vx, i) = vx;
+        *lanes_mut(nodes.vy, i) = vy;
+    }
+    for i in whole..n {
+        // What is left over goes through the same kernel, alone in its lane.
+        let l = (damping.lane + i) % LANES;
+        let alone = |v: f64| {
+            let mut lane = [0.0; LANES];
+            lane[l] = v;
+            lane
+        };
+        let group = [&nodes.x, &nodes.y, &nodes.vx, &nodes.vy].map(|v| alone(v[i]));
+        let force = [&nodes.fx, &nodes.fy].map(|v| alone(v[i]));
+        let mass = [alone(step_over_mass[i]), alone(damping.mass[i])];
+        let [x, y, vx, vy] = damped_lanes(group, force, mass, free, drive, &damping, &mut heat);
+        [nodes.x[i], nodes.y[i], nodes.vx[i], nodes.vy[i]] = [x[l], y[l], vx[l], vy[l]];
+    }
+    nodes.fx.fill(0.0);
+    nodes.fy.fill(0.0);
+    damping.loss * heat.iter().sum::<f64>()
+}
+
+/// [`advance_damped`] for one node in each lane: from (x, y, vx, vy) and forces to the next (x, y, vx, vy); adds the
+/// heat over αΔt.
+#[inline(always)]
+fn damped_lanes(
+    [mut x, mut y, mut vx, mut vy]: [Lanes; 4],
+    [fx, fy]: [Lanes; 2],
+    [step_over_mass, mass]: [Lanes; 2],
+    [free_x, free_y]: [bool; 2],
+    drive: Drive,
+    damping: &Damping<'_>,
+    heat: &mut Lanes,
+) -> [Lanes; 4] {
+    let frames = damping.frames;
+    let (dt, [gx, gy]) = (drive.dt, drive.gravity);
+    let (go_x, go_y) = (f64::from(u8::from(free_x)), f64::from(u8::from(free_y)));
+    for l in 0..LANES {
+        let ux = frames.origin_x[l] - frames.spin[l] * y[l];
+        let uy = frames.origin_y[l] + frames.spin[l] * x[l];
+        let qx = go_x * damping.velocity(vx[l], ux, fx[l] * step_over_mass[l] + dt * gx);
+        let qy = go_y * damping.velocity(vy[l], uy, fy[l] * step_over_mass[l] + dt * gy);
+        // Damping acts on, and works with, the velocity between the two half steps.
+        let (sx, sy) = (0.5 * (vx[l] + qx), 0.5 * (vy[l] + qy));
+        heat[l] += mass[l] * ((sx - ux) * sx + (sy - uy) * sy);
+        vx[l] = qx;
+        vy[l] = qy;
+        x[l] += dt * qx;
+        y[l] += dt * qy;
+    }
+    [x, y, vx, vy]
 }
 
 /// Turns nodes about a centre by the exact angle of one step; the reaction is what mass and forces leave over.
@@ -330,8 +473,13 @@ fn lanes(v: &[f64], at: usize) -> &Lanes {
 }
 
 #[inline(always)]
+fn lanes_mut(v: &mut [f64], at: usize) -> &mut Lanes {
+    (&mut v[at..at + LANES]).try_into().expect("a slice of LANES values")
+}
+
+#[inline(always)]
 fn add_lanes(v: &mut [f64], at: usize, f: &Lanes) {
-    let v: &mut Lanes = (&mut v[at..at + LANES]).try_into().expect("a slice of LANES values");
+    let v = lanes_mut(v, at);
     for l in 0..LANES {
         v[l] += f[l];
     }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use stribeck_mesh::strips::find_strips;
 
 use crate::{
+    damping::LaneFrames,
     element::{QuadReference, Stiffness, TriangleReference},
     layout::TileLayout,
     model::Motion,
@@ -33,6 +34,18 @@ pub(crate) struct Tile {
     pub(crate) loaded: Vec<u32>,
     /// Time step over mass [s/kg]; zero for nodes without mass.
     pub(crate) step_over_mass: Vec<f64>,
+    /// Damping of this tile's bodies, if any.
+    pub(crate) damping: Option<TileDamping>,
+}
+
+/// Mass-proportional damping of one tile.
+#[derive(Debug, Clone)]
+pub(crate) struct TileDamping {
+    /// Rate [1/s].
+    pub(crate) rate: f64,
+    pub(crate) frames: LaneFrames,
+    /// Mass of each slot [kg], for the heat.
+    pub(crate) mass: Vec<f64>,
 }
 
 /// A run of quadrilaterals whose corners all advance by one.
@@ -107,6 +120,7 @@ impl Tile {
             finish: Vec::new(),
             loaded: (0..layout.own as u32).filter(|&n| loaded[n as usize]).collect(),
             step_over_mass: Vec::new(),
+            damping: None,
         };
         if layout.congruent {
             tile.quads = layout.quads.iter().map(|&(c, e)| (c, quads[e])).collect();

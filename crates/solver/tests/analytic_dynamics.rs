@@ -1,4 +1,4 @@
-//! Motion against closed forms: waves, vibration, free fall, rotation, damping; and the order of the time step.
+//! Motion against closed forms: waves, vibration, free fall, rotation; and the order of the time step.
 
 mod common;
 
@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
-use stribeck_solver::{Behaviour, Dynamics, Model, Motion, damping::MassDamping, force::NodalLoad};
+use stribeck_solver::{Behaviour, Dynamics, Model, Motion, force::NodalLoad};
 
 #[test]
 fn analytic_speed_of_a_pressure_wave() {
@@ -151,56 +151,6 @@ fn couple_work(d: &mut Dynamics, load: &mut NodalLoad) -> f64 {
     use stribeck_solver::Force;
     let now = step_and_balance(d, &mut [load]);
     load.energy().supplied / now.kinetic
-}
-
-#[test]
-fn analytic_mass_damping_brakes_a_flight() {
-    // v = v₀ exp(−α t), exactly, whatever the step; applied every tenth step here.
-    let mut d = ready(&body(&rectangle(0.01, 0.01, 4, 4)), 0.9);
-    let all: Vec<u32> = massive(&d).into_iter().map(|s| s as u32).collect();
-    d.state.vx.fill(2.0);
-    let rate = 3e4;
-    let mut damping = MassDamping { rate, relative: false, bodies: vec![all.clone()], dissipated: 0.0 };
-    let span = 10.0 * d.time_step();
-    for _ in 0..200 {
-        run(&mut d, &mut [], 10);
-        damping.apply(&mut d, span);
-    }
-    let expected = 2.0 * (-rate * d.state.time).exp();
-    let body = d.rigid_motion(&all);
-    assert_close(body.velocity[0], expected, 1e-10, "speed");
-    let lost = 0.5 * body.mass * (4.0 - expected * expected);
-    assert_close(damping.dissipated, lost, 1e-10, "heat of damping");
-}
-
-#[test]
-fn analytic_mass_damping_decays_a_vibration() {
-    // A mode of a lightly damped oscillator falls as exp(−α t/2), whatever its frequency. The bar vibrates in its
-    // first longitudinal mode cos(π x/L), sides held.
-    let (columns, length) = (40, 0.04);
-    let mut model = body(&rectangle(length, 1e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
-    let mut d = ready(&model, 0.9);
-    for s in massive(&d) {
-        d.state.vx[s] = 0.01 * (PI * d.state.x[s] / length).cos();
-    }
-    let all: Vec<u32> = massive(&d).into_iter().map(|s| s as u32).collect();
-    let start = step_and_balance(&mut d, &mut []).mechanical();
-    // One per cent of critical: decay over 30 periods.
-    let omega = PI * steel().dilatational_speed() / length;
-    let rate = 0.02 * omega;
-    let mut damping = MassDamping { rate, relative: true, bodies: vec![all], dissipated: 0.0 };
-    let from = d.state.time;
-    let steps = (30.0 * TAU / omega / d.time_step()) as usize;
-    for _ in 0..steps {
-        d.step(&mut []);
-        let span = d.time_step();
-        damping.apply(&mut d, span);
-    }
-    let span = d.state.time - from;
-    let left = step_and_balance(&mut d, &mut []).mechanical();
-    // Damping takes kinetic energy only, so within a period the energy falls in steps of 2 % about the mean.
-    assert_close((left / start).ln(), -rate * span, 0.02, "logarithm of the energy left");
 }
 
 #[test]

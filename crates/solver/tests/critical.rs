@@ -25,7 +25,7 @@ fn largest_eigenvalue(d: &Dynamics, extra: &[f64]) -> f64 {
     let n = 2 * free.len();
     let pushed = |i: usize, h: f64| {
         let (mut x, mut y) = (d.state.x.clone(), d.state.y.clone());
-        if i % 2 == 0 {
+        if i.is_multiple_of(2) {
             x[free[i / 2]] += h
         } else {
             y[free[i / 2]] += h

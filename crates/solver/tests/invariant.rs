@@ -5,7 +5,7 @@ mod common;
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
 use stribeck_solver::{
-    Behaviour, Dynamics, Force, Model, Motion, dynamics::DriveWork, force::NodalLoad, rigid::RigidState,
+    Behaviour, Dynamics, Force, Model, Motion, dynamics::Accumulated, force::NodalLoad, rigid::RigidState,
     state::State,
 };
 
@@ -86,7 +86,7 @@ fn invariant_a_resumed_run_has_the_same_bits() {
     let saved = checkpoint(&first);
 
     let (mut second, mut load) = ready_to_run(1);
-    let (state, rigid, drive): (State, Vec<RigidState>, DriveWork) =
+    let (state, rigid, drive): (State, Vec<RigidState>, Accumulated) =
         serde_json::from_str(&saved).expect("what was written can be read");
     (second.state, second.rigid, second.drive) = (state, rigid, drive);
     run(&mut second, &mut [&mut load], 35);
@@ -125,6 +125,22 @@ fn invariant_held_components_stay() {
     assert!(moved(1)[0] == 0.0 && moved(1)[1] != 0.0);
     assert!(moved(2)[1] == 0.0 && moved(2)[0] != 0.0);
     assert!(moved(24)[0] != 0.0 && moved(24)[1] != 0.0);
+}
+
+#[test]
+fn invariant_one_of_two_like_bodies_is_held() {
+    // Bodies of one shape share a tile, but not when their nodes move by different rules.
+    let part = rectangle(0.01, 0.01, 4, 4);
+    let mut mesh = Mesh::new();
+    mesh.add("free", &part);
+    mesh.add("held", &part.translated(0.02, 0.0));
+    let mut model = Model::new(mesh, steel(), THICKNESS).expect("a positive thickness");
+    model.gravity = [0.0, -9.81];
+    model.motion[25..].fill(Motion::Held);
+    let mut d = ready(&model, 0.9);
+    run(&mut d, &mut [], 100);
+    assert!((0..25).all(|n| d.state.y[slot(&d, n)] < model.mesh.y[n]), "one falls");
+    assert!((25..50).all(|n| d.state.y[slot(&d, n)] == model.mesh.y[n]), "the other stays");
 }
 
 #[test]

@@ -241,3 +241,17 @@ fn patch_tiles_of_one_body_agree_with_the_plain_sum() {
         assert!((m * d.state.vy[n] - fy[n]).abs() < SUM_ROUNDING * scale, "slot {n}");
     }
 }
+
+#[test]
+fn issue_small_cells_far_from_the_origin_are_still_alike() {
+    // Areas from products of absolute coordinates lost four digits here, so that copies of one body no longer counted
+    // as congruent and rows of equal cells not as uniform.
+    let part = rectangle(0.3e-3, 0.2e-3, 6, 4);
+    let mut mesh = Mesh::new();
+    for i in 0..8 {
+        mesh.add(format!("copy {i}"), &part.rotated(0.8 * i as f64).translated(0.2, 0.01 * i as f64 - 0.1));
+    }
+    let model = Model::new(mesh, steel(), THICKNESS).expect("a positive thickness");
+    let slots = lay_out(&model).layout().slot_of_node.clone();
+    assert_eq!(slots[1] - slots[0], 8, "eight congruent bodies lie side by side");
+}

@@ -3,8 +3,12 @@
 
 use std::f64::consts::PI;
 
+use stribeck_mesh::Circle;
+
+use super::graded;
 use super::limits::number;
 use super::origin::Finding;
+use crate::grading;
 use crate::scene::Scene;
 
 /// A wider gap than this part of a roller is a mistake in a diameter, not a clearance.
@@ -22,7 +26,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     groups.iter().flat_map(|group| group(scene)).collect()
 }
 
-fn finding(fields: &[&str], message: String, allowed: String, suggestion: String) -> Finding {
+pub(super) fn finding(fields: &[&str], message: String, allowed: String, suggestion: String) -> Finding {
     Finding { fields: fields.iter().map(|field| (*field).to_owned()).collect(), message, allowed, suggestion }
 }
 
@@ -234,6 +238,7 @@ fn mesh(scene: &Scene) -> Vec<Finding> {
         let allowed = format!("at most {thickness} mm, one layer");
         found.push(finding(&["mesh.size_mm", body], message, allowed, suggestion));
     }
+    found.extend(graded::findings(scene));
     found.extend(too_many_elements(scene));
     found
 }
@@ -265,17 +270,32 @@ fn too_many_elements(scene: &Scene) -> Option<Finding> {
 fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
     let (b, mesh) = (&scene.bearing, &scene.mesh);
     let layers = |thickness: f64| (thickness / mesh.size_mm).max(1.0);
-    let ring = |field, facets: Option<usize>, diameter: f64, thickness: f64| match facets {
-        Some(facets) => (field, facets as f64 * layers(thickness)),
-        None => ("mesh.size_mm", PI * diameter / mesh.size_mm * layers(thickness)),
+    let adapter = match &mesh.grading {
+        None => layers(scene.adapter.width_mm) * layers(scene.adapter.height_mm),
+        Some(g) => scene.adapter.width_mm * scene.adapter.height_mm / (g.coarse_mm * g.coarse_mm),
     };
-    // A disc of N facets on its rim, filled with squares of the facets' length.
-    let rollers = b.rollers as f64 * (mesh.roller_facets as f64).powi(2) / (4.0 * PI);
+    // The transition and the coarse rows of a graded ring cost as much as three fine layers.
+    let layers_of_ring = |thickness: f64| {
+        grading::ring(mesh, thickness, Circle::Inner)
+            .map_or(layers(thickness), |g| g.fine_layers as f64 + 3.0)
+    };
+    let ring = |field, facets: Option<usize>, diameter: f64, thickness: f64| match facets {
+        Some(facets) => (field, facets as f64 * layers_of_ring(thickness)),
+        None => ("mesh.size_mm", PI * diameter / mesh.size_mm * layers_of_ring(thickness)),
+    };
+    // A disc of N facets on its rim, filled with squares of the facets' length or of that of the core.
+    let facets = mesh.roller_facets as f64;
+    let facet_mm = PI * b.roller_diameter_mm / facets;
+    let core = match &mesh.grading {
+        None => 1.0,
+        Some(_) => grading::roller_core_mm(mesh, facet_mm) / facet_mm,
+    };
+    let rollers = b.rollers as f64 * facets * facets / (4.0 * PI * core * core);
     [
         ring("mesh.outer_facets", mesh.outer_facets, b.outer_race_diameter_mm, b.outer_ring_thickness_mm),
         ring("mesh.inner_facets", mesh.inner_facets, b.inner_race_diameter_mm, b.inner_ring_thickness_mm),
         ("mesh.roller_facets", rollers),
-        ("mesh.size_mm", layers(scene.adapter.width_mm) * layers(scene.adapter.height_mm)),
+        ("mesh.size_mm", adapter),
     ]
 }
 

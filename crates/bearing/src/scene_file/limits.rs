@@ -126,6 +126,10 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     if let Some(facets) = mesh.inner_facets {
         add("mesh.inner_facets", facets as f64, within(16.0, 1e6), "");
     }
+    if let Some(grading) = &mesh.grading {
+        add("mesh.grading.coarse_mm", grading.coarse_mm, positive(1_000.0), "mm");
+        add("mesh.grading.fine_layers", grading.fine_layers as f64, within(1.0, 1_000.0), "");
+    }
     add("operation.load_n", operation.load_n, positive(1e9), "N");
     add("operation.speed_rpm", operation.speed_rpm, within(0.0, 100_000.0), "rpm");
     add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
@@ -135,7 +139,8 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("contact.friction", contact.friction, within(0.0, 2.0), "");
     add("contact.seat_friction", contact.seat_friction, within(0.0, 2.0), "");
     add("solver.duration_ms", solver.duration_ms, positive(60_000.0), "ms");
-    add("solver.time_step_factor", solver.time_step_factor, positive(1.0), "");
+    // Above 1 a run diverges and says so: wanted by studies of stability.
+    add("solver.time_step_factor", solver.time_step_factor, positive(1.5), "");
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
     add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");
     add("output.interval_us", output.interval_us, within(0.01, 1e6), "µs");
@@ -215,6 +220,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.outer_facets = Some(1257);
         scene.mesh.inner_facets = Some(1030);
+        scene.mesh.grading = Some(crate::scene::GradingScene::default());
         let text = scene.to_ron();
         let outline = super::super::outline::Outline::of(&text);
         let listed: Vec<String> = numbers(&scene).into_iter().map(|number| number.path).collect();

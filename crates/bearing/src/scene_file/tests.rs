@@ -107,7 +107,7 @@ fn analytic_the_message_draws_the_line_and_the_mark() {
 
 #[test]
 fn analytic_numbers_outside_their_range_are_all_reported() {
-    let text = "(solver: (time_step_factor: 1.2, duration_ms: 0), material: (poissons_ratio: 0.5), \
+    let text = "(solver: (time_step_factor: 1.7, duration_ms: 0), material: (poissons_ratio: 0.5), \
                 contact: (friction: NaN), operation: (load_n: inf), mesh: (roller_facets: 7))";
     let error = parse(text).expect_err("five errors");
     let fields: Vec<&str> = error.problems().iter().map(|p| p.field.as_str()).collect();

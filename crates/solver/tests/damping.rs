@@ -1,0 +1,203 @@
+//! Mass-proportional damping: rates of decay, what it leaves alone, its heat.
+
+mod common;
+
+use std::f64::consts::{PI, TAU};
+
+use common::*;
+use stribeck_mesh::Disc;
+use stribeck_solver::{
+    Dynamics, Model, Motion,
+    damping::{Frame, MassDamping},
+    dynamics::Accumulated,
+    state::State,
+};
+
+/// A disc of 20 mm about a place.
+fn disc_at(x: f64, y: f64) -> Model {
+    let part = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
+    body(&part.translated(x, y))
+}
+
+/// Damps the first body of a model.
+fn damp(d: &mut Dynamics, rate: f64, frame: Frame) {
+    d.set_mass_damping(&MassDamping::new(rate, vec![(0, frame)]).expect("a possible rate"));
+}
+
+fn all(d: &Dynamics) -> Vec<u32> {
+    massive(d).into_iter().map(|s| s as u32).collect()
+}
+
+/// Mechanical energy and heat of damping [J] at the positions before a step, which it takes.
+fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
+    let now = step_and_balance(d, &mut []);
+    [now.mechanical(), d.heat.at_last_positions()]
+}
+
+#[test]
+fn analytic_mass_damping_brakes_a_flight() {
+    // v = v₀ exp(−α t), relative to rest.
+    let mut d = ready(&body(&rectangle(0.01, 0.01, 4, 4)), 0.9);
+    let rate = 3e4;
+    damp(&mut d, rate, Frame::Rest);
+    d.state.vx.fill(2.0);
+    run(&mut d, &mut [], 1000);
+    let expected = 2.0 * (-rate * d.state.time).exp();
+    // The step takes (1 − αΔt/2)/(1 + αΔt/2) for exp(−αΔt): off by (αΔt)²/12 of the exponent.
+    let share = (rate * d.time_step()).powi(2) / 12.0 * rate * d.state.time;
+    assert_close(d.rigid_motion(&all(&d)).velocity[0], expected, 1.1 * share, "speed");
+}
+
+#[test]
+fn analytic_mass_damping_decays_a_vibration() {
+    // A mode of a lightly damped oscillator falls as exp(−α t/2), its energy as exp(−α t), whatever its frequency. The bar
+    // vibrates in its first longitudinal mode cos(π x/L), sides held.
+    let (columns, length) = (40, 0.04);
+    let mut model = body(&rectangle(length, 1e-3, columns, 1));
+    model.motion.fill(Motion::HeldY);
+    let mut d = ready(&model, 0.9);
+    // One per cent of critical, over 30 periods.
+    let omega = PI * steel().dilatational_speed() / length;
+    let rate = 0.02 * omega;
+    damp(&mut d, rate, Frame::OwnMotion);
+    for s in massive(&d) {
+        d.state.vx[s] = 0.01 * (PI * d.state.x[s] / length).cos();
+    }
+    let [start, _] = step_and_count(&mut d);
+    let steps = (30.0 * TAU / omega / d.time_step()) as usize;
+    run(&mut d, &mut [], steps);
+    let [left, _] = step_and_count(&mut d);
+    let span = (steps + 1) as f64 * d.time_step();
+    // Damping takes kinetic energy only, so within a period the energy falls by fits of 2 % about the mean.
+    assert_close((left / start).ln(), -rate * span, 0.02, "logarithm of the energy left");
+}
+
+#[test]
+fn conserves_the_ledger_of_mass_damping() {
+    // What vibrates becomes heat, at every step and at every frequency that the mesh has.
+    let mut d = ready(&disc_at(0.0, 0.0), 0.9);
+    damp(&mut d, 2e4, Frame::OwnMotion);
+    let mut noise = Noise(6);
+    for n in massive(&d) {
+        (d.state.vx[n], d.state.vy[n]) = (1e-3 * noise.next(), 1e-3 * noise.next());
+    }
+    let [start, none] = step_and_count(&mut d);
+    let mut heat = none;
+    let mut worst = 0.0_f64;
+    for _ in 0..3000 {
+        let [mechanical, so_far] = step_and_count(&mut d);
+        heat = so_far;
+        worst = worst.max((mechanical + heat - start - none).abs());
+    }
+    assert!(heat > 0.8 * start, "{heat} J of {start} J");
+    // Heat is counted from the mean of two half steps, which is right on average over a period, not at each instant.
+    assert!(worst < 5e-3 * start, "{:e} of the energy is missing", worst / start);
+}
+
+#[test]
+fn conserves_rigid_motion_under_relative_damping() {
+    // Damping relative to the rigid motion calms a ringing disc and leaves its flight and spin alone.
+    let mut d = ready(&disc_at(0.0, 0.0), 0.9);
+    let rate = 2e4;
+    damp(&mut d, rate, Frame::OwnMotion);
+    // It stretches along x, spins and flies.
+    for n in massive(&d) {
+        d.state.vx[n] = 3.0 + 100.0 * d.state.x[n] - 60.0 * d.state.y[n];
+        d.state.vy[n] = -50.0 * d.state.y[n] + 60.0 * d.state.x[n];
+    }
+    let before = momentum(&d);
+    let [start, _] = step_and_count(&mut d);
+    let steps = (20.0 / (rate * d.time_step())) as usize;
+    run(&mut d, &mut [], steps);
+    let (after, rigid) = (momentum(&d), d.rigid_motion(&all(&d)));
+    let flight = before[0].abs();
+    assert!((after[0] - before[0]).abs() < 1e-10 * flight, "{after:?} from {before:?}");
+    assert!((after[1] - before[1]).abs() < 1e-10 * flight, "{after:?} from {before:?}");
+    // The frame is placed anew every 64 steps, while the moment of inertia breathes by 2e-5.
+    assert!((after[2] - before[2]).abs() < 1e-4 * before[2].abs(), "{after:?} from {before:?}");
+    let carried = 0.5 * rigid.mass * (rigid.velocity[0].powi(2) + rigid.velocity[1].powi(2))
+        + 0.5 * rigid.inertia * rigid.spin.powi(2);
+    let vibration = start - carried;
+    // Amplitudes fall as exp(−α t/2), here by exp(−10): what is left is the rigid motion and its static stretch.
+    let [left, heat] = step_and_count(&mut d);
+    assert!(left - carried < 1e-6 * vibration + 1e-5 * carried, "{left} J against {carried} J");
+    // The heat is that of the mean velocity of two half steps; the start lies within the first of them.
+    assert_close(heat, vibration, 0.01, "heat of damping");
+}
+
+#[test]
+fn analytic_mass_damping_keeps_an_orbit() {
+    // A disc half a metre from the origin runs on a circle and spins: that motion stays, and what departs from it falls
+    // by (1 − αΔt/2)/(1 + αΔt/2) in a step in which nothing else pushes.
+    let mut d = ready(&disc_at(0.3, 0.4), 0.9);
+    let (orbit, spin, rate) = (20.0, -150.0, 1e6);
+    damp(&mut d, rate, Frame::Orbit { orbit, spin });
+    // The centre of mass; that of a mesh of cells of all shapes is not quite that of the circle.
+    let [cx, cy] = d.rigid_motion(&all(&d)).centre;
+    let half = 0.5 * rate * d.time_step();
+    let keep = (1.0 - half) / (1.0 + half);
+    let mut noise = Noise(4);
+    let mut expected = Vec::new();
+    for n in massive(&d) {
+        let (x, y) = (d.state.x[n], d.state.y[n]);
+        let u = [-orbit * cy - spin * (y - cy), orbit * cx + spin * (x - cx)];
+        let off = [0.5 * noise.next(), 0.5 * noise.next()];
+        (d.state.vx[n], d.state.vy[n]) = (u[0] + off[0], u[1] + off[1]);
+        expected.push([u[0] + keep * off[0], u[1] + keep * off[1]]);
+    }
+    d.step(&mut []);
+    for (n, v) in massive(&d).into_iter().zip(expected) {
+        // Rounding of positions strains the cells by 1e-14, whose force is worth this speed in a step.
+        let off = (d.state.vx[n] - v[0]).hypot(d.state.vy[n] - v[1]);
+        assert!(off < 1e-9, "slot {n}: {off:e} m/s");
+    }
+}
+
+#[test]
+fn invariant_damping_set_in_the_middle_of_a_run_acts_at_once() {
+    // Whatever the number of the step: a body in flight must not be braked against a frame that was never placed.
+    for late in [0, 10, 63] {
+        let mut d = ready(&disc_at(0.0, 0.0), 0.9);
+        for n in massive(&d) {
+            d.state.vx[n] = 3.0;
+        }
+        run(&mut d, &mut [], late);
+        damp(&mut d, 1e5, Frame::OwnMotion);
+        run(&mut d, &mut [], 30);
+        let speed = d.rigid_motion(&all(&d)).velocity[0];
+        assert!((speed - 3.0).abs() < 1e-9, "set after {late} steps: {speed} m/s");
+    }
+}
+
+#[test]
+fn invariant_a_damped_run_resumes_with_the_same_bits() {
+    let start = || {
+        let mut d = ready(&disc_at(0.0, 0.0), 0.9);
+        damp(&mut d, 1e4, Frame::OwnMotion);
+        for n in massive(&d) {
+            d.state.vx[n] = 3.0 + 100.0 * d.state.x[n] - 60.0 * d.state.y[n];
+            d.state.vy[n] = 60.0 * d.state.x[n];
+        }
+        d
+    };
+    // Frames are placed at every 64th step: 128 is one.
+    let mut whole = start();
+    run(&mut whole, &mut [], 200);
+    let mut first = start();
+    run(&mut first, &mut [], 128);
+    let saved = serde_json::to_string(&(&first.state, &first.heat)).expect("numbers are finite");
+    let mut second = start();
+    let (state, heat): (State, Accumulated) =
+        serde_json::from_str(&saved).expect("what was written can be read");
+    (second.state, second.heat) = (state, heat);
+    run(&mut second, &mut [], 72);
+    assert!(whole.state == second.state && whole.heat == second.heat);
+}
+
+#[test]
+fn invariant_rates_must_be_possible() {
+    for rate in [-1.0, f64::NAN, f64::INFINITY] {
+        let text = MassDamping::new(rate, Vec::new()).expect_err("refused").to_string();
+        assert!(text.contains("mass damping rate [1/s]") && text.contains("zero or positive"), "{text}");
+    }
+}

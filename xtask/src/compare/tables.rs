@@ -1,0 +1,160 @@
+//! What `compare` writes: a page to read and every run as a table.
+
+use std::fmt::Write as _;
+
+use super::measure::{Absent, Entry, Measured, Pace};
+
+/// Where and when it was measured.
+#[derive(Debug)]
+pub(super) struct Setting {
+    pub(super) machine: String,
+    pub(super) commit: String,
+    /// Load averages over one minute, before and after.
+    pub(super) loads: [Option<f64>; 2],
+    pub(super) rounds: usize,
+}
+
+/// Least and median.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Spread {
+    least: f64,
+    median: f64,
+}
+
+impl Spread {
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let mut values: Vec<f64> = values.collect();
+        values.sort_by(f64::total_cmp);
+        let n = values.len();
+        let at = |i: usize| values.get(i).copied().unwrap_or(f64::NAN);
+        Self { least: at(0), median: 0.5 * (at(n.saturating_sub(1) / 2) + at(n / 2)) }
+    }
+}
+
+/// The page. Writing to a string cannot fail, so results of `write!` are dropped.
+pub(super) fn page(setting: &Setting, measured: &[Measured], absent: &[Absent]) -> String {
+    let mut page = String::new();
+    let load = |l: Option<f64>| l.map_or_else(|| "unknown".to_owned(), |l| format!("{l:.2}"));
+    let _ = writeln!(
+        page,
+        "# The same work in other programs\n\n\
+         Written by `cargo xtask compare`, raw runs in [compare.csv](compare.csv). Commit {}. {}. \
+         Load average {} before, {} after. Every program on one thread, double precision.\n\n\
+         Timed is the step loop alone: forces, masses, motion; no output. Times are processor time in ns per element \
+         and step, least and median of {} runs. Ours was run again directly before each run of another program; the \
+         ratio is the median over these pairs. E 200 GPa, ν 0.3, ρ 7850 kg/m³.",
+        setting.commit,
+        setting.machine,
+        load(setting.loads[0]),
+        load(setting.loads[1]),
+        setting.rounds
+    );
+    measured.iter().for_each(|m| table(&mut page, m));
+    if !absent.is_empty() {
+        let _ = writeln!(page, "\n## Left out\n");
+        for a in absent {
+            let _ = writeln!(page, "- {}: {}", a.label, a.reason);
+        }
+    }
+    page
+}
+
+fn table(page: &mut String, measured: &Measured) {
+    let all = measured.entries.iter().flat_map(|e| &e.rounds);
+    let ours = Spread::of(all.map(|r| r.ours.cpu));
+    let _ = writeln!(
+        page,
+        "\n## {}\n\n{}\n\n\
+         | program | element | least | median | times ours | displacements differ by |\n\
+         |---|---|---|---|---|---|\n\
+         | **{}** | {} | **{}** | **{}** | 1 | |",
+        measured.title,
+        measured.text,
+        measured.ours.program,
+        measured.ours.element,
+        digits(ours.least),
+        digits(ours.median)
+    );
+    measured.entries.iter().for_each(|e| row(page, e));
+}
+
+fn row(page: &mut String, entry: &Entry) {
+    let theirs = Spread::of(entry.rounds.iter().map(|r| r.theirs.cpu));
+    let ratio = Spread::of(entry.rounds.iter().map(|r| r.theirs.cpu / r.ours.cpu));
+    let differences: Vec<String> = entry
+        .differences
+        .iter()
+        .map(|d| {
+            let mark = if d.found <= d.limit { "" } else { " **too much**" };
+            format!(
+                "{:.1e} from {} after {} steps (limit {:.0e}, {}){mark}",
+                d.found, d.from, d.steps, d.limit, d.reason
+            )
+        })
+        .collect();
+    let _ = writeln!(
+        page,
+        "| {} {} | {} | {} | {} | {} | {} |",
+        entry.about.program,
+        entry.about.version,
+        entry.about.element,
+        digits(theirs.least),
+        digits(theirs.median),
+        digits(ratio.median),
+        differences.join("; ")
+    );
+}
+
+/// Three digits.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        v if v < 10.0 => format!("{value:.2}"),
+        v if v < 100.0 => format!("{value:.1}"),
+        _ => format!("{value:.0}"),
+    }
+}
+
+/// Every run.
+pub(super) fn csv(measured: &[Measured]) -> String {
+    let mut text = String::from(
+        "problem,elements,program,version,element,round,ours_cpu_ns,ours_wall_ns,theirs_cpu_ns,theirs_wall_ns\n",
+    );
+    let pace = |p: Pace| format!("{:.4},{:.4}", p.cpu, p.wall);
+    for m in measured {
+        for e in &m.entries {
+            for (i, r) in e.rounds.iter().enumerate() {
+                let a = &e.about;
+                let _ = writeln!(
+                    text,
+                    "\"{}\",{},\"{}\",\"{}\",\"{}\",{},{},{}",
+                    m.title,
+                    m.elements,
+                    a.program,
+                    a.version,
+                    a.element,
+                    i + 1,
+                    pace(r.ours),
+                    pace(r.theirs)
+                );
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Spread, digits};
+
+    #[test]
+    fn analytic_least_and_median() {
+        assert_eq!(Spread::of([3.0, 1.0, 2.0].into_iter()), Spread { least: 1.0, median: 2.0 });
+        assert_eq!(Spread::of([4.0, 1.0].into_iter()), Spread { least: 1.0, median: 2.5 });
+        assert!(Spread::of(std::iter::empty()).median.is_nan(), "of nothing there is none");
+    }
+
+    #[test]
+    fn invariant_numbers_have_three_digits() {
+        assert_eq!([digits(1.234), digits(12.34), digits(1234.5)], ["1.23", "12.3", "1234"]);
+    }
+}
