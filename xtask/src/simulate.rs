@@ -23,7 +23,7 @@ const EXIT_INTERRUPTED: u8 = 130;
 pub(crate) struct Options {
     /// Scene file [default: fixtures/scenes/singh2014.ron]
     scene: Option<PathBuf>,
-    /// Folder of the run [default: runs/<name of the scene>]
+    /// Folder of the run [default: runs/NAME, the name of the scene]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Worker threads [default: all cores]; the results do not depend on it

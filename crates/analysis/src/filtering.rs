@@ -135,7 +135,7 @@ fn at_centre(sample_rate_hz: f64, centre_hz: f64, window: Window, signal: &[f64]
 mod tests {
     use super::*;
 
-    /// Theory of the paper's filter: 311 Hz wide, 3.96 dB at 4545 Hz, time constant 1.02 ms (THEORY, notch).
+    /// Theory of the paper's filter: 311 Hz wide, 3.96 dB at 4545 Hz, time constant 1.02 ms (THEORY §7.2).
     #[test]
     fn analytic_paper_notch_numbers() {
         let tone: Vec<f64> =

@@ -69,7 +69,10 @@ fn step(criterion: &mut Criterion) {
     scenes.extend(Scene::read(&lean).ok().map(|scene| ("lean", scene)));
     for (name, scene) in &scenes {
         let mut group = criterion.benchmark_group(format!("step of the {name} scene"));
-        group.sample_size(20).warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(2));
+        group
+            .sample_size(20)
+            .warm_up_time(Duration::from_millis(500))
+            .measurement_time(Duration::from_secs(2));
         for threads in [1, 2] {
             let pool = (threads > 1).then(|| {
                 rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")

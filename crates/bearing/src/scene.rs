@@ -202,7 +202,8 @@ pub struct SolverScene {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingFrame {
-    /// Rolling without slip: rattling of idle rollers is damped, as oil would, rolling is not braked.
+    /// A roller's motion along its track and its spin: what drives and brakes rolling stays friction alone, while
+    /// rattling across the clearance is damped, as oil would. Outer ring and adapter: rest.
     Rolling,
     /// The rigid motion of each body: only its vibration is damped.
     RigidMotion,

@@ -11,7 +11,6 @@ use stribeck_solver::{
 use crate::{
     assembly::{Assembly, Machine},
     error::Error,
-    kinematics::Kinematics,
     recorder::Recorder,
     run_dir::RunDir,
     run_info::{EnergyInfo, RunInfo, Status},
@@ -135,7 +134,7 @@ pub fn simulate(
     let dt = interval / steps_per_sample as f64;
     machine.dynamics.set_time_step(dt)?;
     launch(&mut machine, &assembly.kinematics);
-    if let Some(damping) = mass_damping(scene, &machine, &assembly.kinematics)? {
+    if let Some(damping) = mass_damping(scene, &machine)? {
         machine.dynamics.set_mass_damping(&damping);
     }
 
@@ -360,15 +359,13 @@ fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
     scene.operation.load_n + scene.operation.gravity_m_s2 * (mass(&machine.outer) + mass(&machine.adapter))
 }
 
-fn mass_damping(scene: &Scene, machine: &Machine, k: &Kinematics) -> Result<Option<MassDamping>, Error> {
+fn mass_damping(scene: &Scene, machine: &Machine) -> Result<Option<MassDamping>, Error> {
     let rate = scene.solver.mass_damping_per_s;
     if rate == 0.0 {
         return Ok(None);
     }
     let (standing, rolling) = match scene.solver.damping_frame {
-        DampingFrame::Rolling => {
-            (Frame::Rest, Frame::Orbit { orbit: k.cage_rad_s, spin: k.roller_rad_s })
-        }
+        DampingFrame::Rolling => (Frame::Rest, Frame::Track),
         DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
     };

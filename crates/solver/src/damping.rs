@@ -9,14 +9,9 @@ pub enum Frame {
     Rest,
     /// The rigid part of the body's own motion: only its vibration is damped, its momentum stays.
     OwnMotion,
-    /// A centre that runs on a circle about the origin at `orbit` [rad/s] while the body turns at `spin` [rad/s],
-    /// both counter-clockwise: vibration and every departure from this motion are damped.
-    Orbit {
-        /// Angular velocity of the centre [rad/s].
-        orbit: f64,
-        /// Angular velocity of the body [rad/s].
-        spin: f64,
-    },
+    /// The body's own motion without the part that carries its centre towards or away from the origin: running around
+    /// the origin and turning stay, rattling across a track is damped.
+    Track,
 }
 
 /// Mass-proportional damping of some bodies.
@@ -84,9 +79,12 @@ impl LaneFrames {
                 let own = own();
                 (own.centre, own.velocity, own.spin)
             }
-            Frame::Orbit { orbit, spin } => {
-                let [x, y] = own().centre;
-                ([x, y], [-orbit * y, orbit * x], spin)
+            Frame::Track => {
+                let own = own();
+                let [x, y] = own.centre;
+                let square = (x * x + y * y).max(f64::MIN_POSITIVE);
+                let outwards = (own.velocity[0] * x + own.velocity[1] * y) / square;
+                (own.centre, [own.velocity[0] - outwards * x, own.velocity[1] - outwards * y], own.spin)
             }
         };
         self.centre[lane] = centre;

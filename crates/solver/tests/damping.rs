@@ -126,30 +126,32 @@ fn conserves_rigid_motion_under_relative_damping() {
 }
 
 #[test]
-fn analytic_mass_damping_keeps_an_orbit() {
-    // A disc half a metre from the origin runs on a circle and spins: that motion stays, and what departs from it falls
-    // by (1 − αΔt/2)/(1 + αΔt/2) in a step in which nothing else pushes.
+fn analytic_mass_damping_on_a_track_takes_the_velocity_across_it() {
+    // A disc half a metre from the origin runs around it, spins and drifts outwards. Running and spin stay; the drift,
+    // and what departs from a rigid motion, fall by (1 − αΔt/2)/(1 + αΔt/2) in a step in which nothing else pushes.
     let mut d = ready(&disc_at(0.3, 0.4), 0.9);
-    let (orbit, spin, rate) = (20.0, -150.0, 1e6);
-    damp(&mut d, rate, Frame::Orbit { orbit, spin });
+    let (orbit, spin, drift, rate) = (20.0, -150.0, 3.0, 1e6);
+    damp(&mut d, rate, Frame::Track);
     // The centre of mass; that of a mesh of cells of all shapes is not quite that of the circle.
     let [cx, cy] = d.rigid_motion(&all(&d)).centre;
+    let radius = cx.hypot(cy);
     let half = 0.5 * rate * d.time_step();
     let keep = (1.0 - half) / (1.0 + half);
-    let mut noise = Noise(4);
     let mut expected = Vec::new();
     for n in massive(&d) {
         let (x, y) = (d.state.x[n], d.state.y[n]);
         let u = [-orbit * cy - spin * (y - cy), orbit * cx + spin * (x - cx)];
-        let off = [0.5 * noise.next(), 0.5 * noise.next()];
+        // The drift and a stretch, which carries neither momentum nor angular momentum.
+        let off = [drift * cx / radius + 40.0 * (x - cx), drift * cy / radius - 40.0 * (y - cy)];
         (d.state.vx[n], d.state.vy[n]) = (u[0] + off[0], u[1] + off[1]);
         expected.push([u[0] + keep * off[0], u[1] + keep * off[1]]);
     }
     d.step(&mut []);
     for (n, v) in massive(&d).into_iter().zip(expected) {
-        // Rounding of positions strains the cells by 1e-14, whose force is worth this speed in a step.
+        // Its unsymmetric mesh gives the stretch a shade of angular momentum, which the frame takes for spin: 5e-6 m/s at
+        // the rim, where 40/s of stretch are 0.4 m/s.
         let off = (d.state.vx[n] - v[0]).hypot(d.state.vy[n] - v[1]);
-        assert!(off < 1e-9, "slot {n}: {off:e} m/s");
+        assert!(off < 2e-5, "slot {n}: {off:e} m/s");
     }
 }
 

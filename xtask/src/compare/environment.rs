@@ -24,8 +24,9 @@ impl Environment {
                 .with_context(|| format!("cannot make `{}`", environment.folder.display()))?;
             let venv = environment.folder.join("venv");
             let status = Command::new(interpreter).args(["-m", "venv"]).arg(&venv).status();
-            let made = status
-                .with_context(|| format!("cannot start `{interpreter}`: install Python 3, or name it with --python"))?;
+            let made = status.with_context(|| {
+                format!("cannot start `{interpreter}`: install Python 3, or name it with --python")
+            })?;
             ensure!(made.success(), "`{interpreter} -m venv` failed: install Python's venv module");
         }
         Ok(environment)

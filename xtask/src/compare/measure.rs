@@ -89,10 +89,13 @@ struct Runner {
     steps: usize,
 }
 
-/// Displacements of one program, at its checks.
+/// Number of steps, and displacements [m] after them.
+type Solution = (usize, Vec<f64>);
+
+/// What one program found, at its checks.
 struct Solved {
     label: String,
-    displacements: Vec<(usize, Vec<f64>)>,
+    solutions: Vec<Solution>,
 }
 
 /// Name under which our solution is referred to.
@@ -109,7 +112,7 @@ pub(super) fn measure(
     let Problem { title, text, elements, file, checks, mut ours, also } = problem;
     let (found, pace) = solutions(&mut *ours, &checks, elements)?;
     let our_steps = steps_for(OUR_RUN_S, pace, elements);
-    let mut solved = vec![Solved { label: OURS.to_owned(), displacements: found }];
+    let mut solved = vec![Solved { label: OURS.to_owned(), solutions: found }];
     let mut runners = Vec::new();
 
     for (mut program, limit) in also {
@@ -131,7 +134,7 @@ pub(super) fn measure(
                 let twin = peer.twin.map(|(label, limit)| (label.to_owned(), limit, "same element"));
                 let references = [(OURS.to_owned(), peer.tolerance, peer.reason)].into_iter().chain(twin);
                 let entry = entry(&script, &found, &solved, &references.collect::<Vec<_>>());
-                solved.push(Solved { label: peer.label(), displacements: found });
+                solved.push(Solved { label: peer.label(), solutions: found });
                 let steps = steps_for(THEIR_RUN_S, pace, elements);
                 runners.push(Runner { program: Box::new(script), entry, steps });
             }
@@ -156,11 +159,7 @@ pub(super) fn measure(
 }
 
 /// Displacements after each check, and the pace on the way to the last.
-fn solutions(
-    program: &mut dyn Program,
-    checks: &[usize],
-    elements: usize,
-) -> Result<(Vec<(usize, Vec<f64>)>, Pace)> {
+fn solutions(program: &mut dyn Program, checks: &[usize], elements: usize) -> Result<(Vec<Solution>, Pace)> {
     let mut found = Vec::new();
     let (mut done, mut pace) = (0, Pace { cpu: f64::NAN, wall: f64::NAN });
     for &steps in checks {
@@ -184,7 +183,7 @@ fn steps_for(seconds: f64, pace: Pace, elements: usize) -> usize {
 /// Differences at the last check from each of the references (label, limit, reason) that is there.
 fn entry(
     program: &dyn Program,
-    found: &[(usize, Vec<f64>)],
+    found: &[Solution],
     solved: &[Solved],
     references: &[(String, f64, &'static str)],
 ) -> Entry {
@@ -192,7 +191,7 @@ fn entry(
     for (label, limit, reason) in references {
         let Some(reference) = solved.iter().find(|s| s.label == *label) else { continue };
         let Some((steps, u)) = found.last() else { continue };
-        let Some((_, v)) = reference.displacements.iter().find(|(n, _)| n == steps) else { continue };
+        let Some((_, v)) = reference.solutions.iter().find(|(n, _)| n == steps) else { continue };
         let (steps, from, limit) = (*steps, label.clone(), *limit);
         differences.push(Difference { steps, from, found: distance(u, v), limit, reason });
     }

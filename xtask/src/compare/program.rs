@@ -64,8 +64,13 @@ pub(super) fn write_json(file: &Path, problem: &impl Serialize) -> Result<()> {
 const MARK: char = '@';
 
 /// Most libraries read one of these.
-const THREADS: [&str; 5] =
-    ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "NUMEXPR_NUM_THREADS"];
+const THREADS: [&str; 5] = [
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "NUMBA_NUM_THREADS",
+    "NUMEXPR_NUM_THREADS",
+];
 
 /// A script in a process of its own, with one thread.
 #[derive(Debug)]
@@ -80,7 +85,12 @@ pub(super) struct Script {
 
 impl Script {
     /// Starts a script on a problem file and waits until it is ready to run.
-    pub(super) fn start(environment: &Environment, script: &str, problem: &Path, variant: &str) -> Result<Self> {
+    pub(super) fn start(
+        environment: &Environment,
+        script: &str,
+        problem: &Path,
+        variant: &str,
+    ) -> Result<Self> {
         let log = environment.folder.join(format!("{script}-{variant}.log"));
         let errors = File::create(&log).with_context(|| format!("cannot write `{}`", log.display()))?;
         let mut command = Command::new(environment.python());

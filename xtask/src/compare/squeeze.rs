@@ -82,7 +82,8 @@ pub(super) fn problem(folder: &Path) -> Result<Problem> {
     let facets = 4 * (std::f64::consts::TAU * RADIUS / SIZE / 4.0).floor() as usize;
     let disc = mesh.add("disc", &Disc { radius: RADIUS, facets, size: SIZE, rotation: 0.0 }.part()?);
     let (columns, rows) = ((WIDTH / SIZE).round() as usize, (HEIGHT / SIZE).round() as usize);
-    let block = Rectangle { x0: -0.5 * WIDTH, y0: 0.0, width: WIDTH, height: HEIGHT, columns, rows }.part()?;
+    let block =
+        Rectangle { x0: -0.5 * WIDTH, y0: 0.0, width: WIDTH, height: HEIGHT, columns, rows }.part()?;
     let lower = mesh.add("lower block", &block.translated(0.0, -RADIUS - GAP - HEIGHT));
     let upper = mesh.add("upper block", &block.translated(0.0, RADIUS + GAP));
     let touching = [facing(&disc, "rim")?, facing(&lower, "top")?, facing(&upper, "bottom")?];
@@ -100,8 +101,7 @@ pub(super) fn problem(folder: &Path) -> Result<Problem> {
     let time_step = FACTOR * dynamics.critical_time_step(&forces, 0.0).time_step;
     dynamics.set_time_step(time_step)?;
     let falling = model.mesh.bodies[upper.body].nodes.clone();
-    let vy: Vec<f64> =
-        (0..slots.len()).map(|n| if falling.contains(&n) { -SPEED } else { 0.0 }).collect();
+    let vy: Vec<f64> = (0..slots.len()).map(|n| if falling.contains(&n) { -SPEED } else { 0.0 }).collect();
     slots.iter().zip(&vy).for_each(|(&slot, &v)| dynamics.state.vy[slot] = v);
     // Contact is looked for from the first step on.
     contacts.set_preload(None);
