@@ -61,8 +61,11 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         let problem = block::problem(&Block::new(columns, rows), &environment.folder)?;
         measured.push(measure(problem, &chosen(&ON_BLOCKS), &environment, rounds, &mut absent)?);
     }
-    let problem = squeeze::problem(&environment.folder)?;
-    measured.push(measure(problem, &chosen(&ON_DISC), &environment, rounds, &mut absent)?);
+    let on_disc = chosen(&ON_DISC);
+    if !on_disc.is_empty() {
+        let problem = squeeze::problem(&environment.folder)?;
+        measured.push(measure(problem, &on_disc, &environment, rounds, &mut absent)?);
+    }
 
     let (machine, commit) = host::with(1, |host| (host.machine.clone(), host.commit.clone()));
     let setting = tables::Setting { machine, commit, loads: [load_before, load_average()], rounds };

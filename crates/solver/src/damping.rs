@@ -1,6 +1,6 @@
 //! Mass-proportional damping relative to a motion that is not to be braked (THEORY §2.6).
 
-use crate::{error::Error, error::check, layout::LANES, rigid::RigidMotion};
+use crate::{error::Error, error::check, lanes::LANES, rigid::RigidMotion};
 
 /// The motion that damping leaves alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,15 +60,18 @@ pub(crate) struct LaneFrames {
 }
 
 impl LaneFrames {
+    /// All at rest.
+    pub(crate) const REST: Self = Self {
+        frames: [Frame::Rest; LANES],
+        centre: [[0.0; 2]; LANES],
+        velocity: [[0.0; 2]; LANES],
+        origin_x: [0.0; LANES],
+        origin_y: [0.0; LANES],
+        spin: [0.0; LANES],
+    };
+
     pub(crate) fn new(frames: [Frame; LANES]) -> Self {
-        Self {
-            frames,
-            centre: [[0.0; 2]; LANES],
-            velocity: [[0.0; 2]; LANES],
-            origin_x: [0.0; LANES],
-            origin_y: [0.0; LANES],
-            spin: [0.0; LANES],
-        }
+        Self { frames, ..Self::REST }
     }
 
     /// Places the frame of a lane by the present motion of its body.

@@ -9,7 +9,8 @@ use crate::{
     element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
     error::{Error, check, check_count},
     force::Force,
-    layout::{LANES, Layout, lay_out},
+    lanes::LANES,
+    layout::{Layout, lay_out},
     model::{Behaviour, Model, Motion},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
@@ -142,6 +143,7 @@ impl Dynamics {
             let (moves, pushed) = (&motion[t.slots.clone()], &is_loaded[t.slots.clone()]);
             let mut tile = Tile::new(t, &quads, &triangles, stiffness, moves, pushed);
             if model.behaviour[t.body] == Behaviour::Rigid {
+                tile.elastic = false;
                 tile.finish.clear();
                 tile.loaded.clear();
             }
@@ -189,7 +191,7 @@ impl Dynamics {
 
     /// Own slots of elastic bodies: what moves by mass and force.
     pub(crate) fn elastic_slots(&self) -> Vec<usize> {
-        let tiles = self.tiles.iter().filter(|t| !t.finish.is_empty());
+        let tiles = self.tiles.iter().filter(|t| t.elastic);
         tiles.flat_map(|t| t.slots.start..t.slots.start + t.own).filter(|&n| self.mass[n] > 0.0).collect()
     }
 
@@ -274,7 +276,7 @@ impl Dynamics {
             };
             tile.damping = None;
             // Bodies of one tile are damped together or not at all.
-            if tile.finish.is_empty() || layout.bodies.iter().any(|b| damping.frame(*b).is_none()) {
+            if !tile.elastic || layout.bodies.iter().any(|b| damping.frame(*b).is_none()) {
                 continue;
             }
             let mass = self.mass[tile.slots.clone()].to_vec();
@@ -363,7 +365,7 @@ impl Dynamics {
     pub fn kinetic_energy(&self, vx: &[f64], vy: &[f64], rigid: &[RigidState]) -> f64 {
         let s = &self.state;
         let mut sum = 0.0;
-        for tile in self.tiles.iter().filter(|t| !t.finish.is_empty()) {
+        for tile in self.tiles.iter().filter(|t| t.elastic) {
             for n in tile.slots.clone() {
                 sum += 0.5 * self.mass[n] * (vx[n] * s.vx[n] + vy[n] * s.vy[n]);
             }

@@ -185,6 +185,66 @@ pub fn quad_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -
     [[t1[0] - wx, t1[1] - wy], [t2[0] + wx, t2[1] + wy], [-t1[0] - wx, -t1[1] - wy], [wx - t2[0], wy - t2[1]]]
 }
 
+/// A quadrilateral's reference and material in terms of the inner products of its diagonals: the fewest operations
+/// where the numbers need not be loaded for every element (THEORY §2.1).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct QuadMetric {
+    /// Inner products of the reference diagonals p·p, r·r and 2 p·r [m²].
+    rest: [f64; 3],
+    /// Minus the stiffness from changes of those to the tensions along p·p, r·r and p·r, symmetric: 11, 12, 13, 22, 23,
+    /// 33 [N/m³].
+    stiffness: [f64; 6],
+    /// See [`QuadReference::s1`].
+    s1: f64,
+    /// See [`QuadReference::s1`].
+    s2: f64,
+    /// Hourglass stiffness [N/m].
+    hourglass: f64,
+}
+
+impl QuadMetric {
+    /// The same element in other terms.
+    pub fn new(q: &QuadReference, k: &Stiffness) -> Self {
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let (b11, b12, b22) = (dot(q.b1, q.b1), dot(q.b1, q.b2), dot(q.b2, q.b2));
+        // The diagonals are dual to the gradients, so their inner products are the inverse of those of the gradients.
+        let determinant = b11 * b22 - b12 * b12;
+        let rest = [b22 / determinant, b11 / determinant, -2.0 * b12 / determinant];
+        let (half_lame, shear, v) = (0.5 * k.lame, 0.5 * k.two_shear, q.volume);
+        let direct = half_lame + shear;
+        let stiffness = [
+            -v * direct * b11 * b11,
+            -v * (half_lame * b11 * b22 + shear * b12 * b12),
+            -v * direct * b11 * b12,
+            -v * direct * b22 * b22,
+            -v * direct * b22 * b12,
+            -v * (half_lame * b12 * b12 + 0.5 * shear * (b11 * b22 + b12 * b12)),
+        ];
+        Self { rest, stiffness, s1: q.s1, s2: q.s2, hourglass: k.hourglass }
+    }
+
+    /// Forces [N] on the four corners at positions `x`, `y` [m]; equal to [`quad_forces`] but for rounding.
+    #[inline(always)]
+    pub fn forces(&self, x: [f64; 4], y: [f64; 4]) -> [[f64; 2]; 4] {
+        let [k11, k12, k13, k22, k23, k33] = self.stiffness;
+        let (px, py, rx, ry) = (x[0] - x[2], y[0] - y[2], x[1] - x[3], y[1] - y[3]);
+        let pr = px * rx + py * ry;
+        let e1 = (px * px + py * py) - self.rest[0];
+        let e2 = (rx * rx + ry * ry) - self.rest[1];
+        let e3 = (pr + pr) - self.rest[2];
+        let t11 = (k11 * e1 + k12 * e2) + k13 * e3;
+        let t22 = (k12 * e1 + k22 * e2) + k23 * e3;
+        let t12 = (k13 * e1 + k23 * e2) + k33 * e3;
+        let wx = self.hourglass * (((x[0] + x[2]) - (x[1] + x[3])) - (self.s1 * px + self.s2 * rx));
+        let wy = self.hourglass * (((y[0] + y[2]) - (y[1] + y[3])) - (self.s1 * py + self.s2 * ry));
+        let t1x = (t11 * px + t12 * rx) + self.s1 * wx;
+        let t1y = (t11 * py + t12 * ry) + self.s1 * wy;
+        let t2x = (t12 * px + t22 * rx) + self.s2 * wx;
+        let t2y = (t12 * py + t22 * ry) + self.s2 * wy;
+        [[t1x - wx, t1y - wy], [t2x + wx, t2y + wy], [-(t1x + wx), -(t1y + wy)], [wx - t2x, wy - t2y]]
+    }
+}
+
 /// Forces [N] on corners 1 and 2 of one triangle; that on corner 3 is the negative of their sum.
 #[inline(always)]
 pub fn triangle_forces(x: [f64; 3], y: [f64; 3], t: &TriangleReference, k: &Stiffness) -> [[f64; 2]; 2] {

@@ -14,11 +14,9 @@ use stribeck_mesh::Mesh;
 
 use crate::{
     element::{QuadReference, TriangleReference},
+    lanes::LANES,
     model::{Behaviour, Model, Motion},
 };
-
-/// Congruent bodies that share a tile.
-pub(crate) const LANES: usize = 8;
 
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
 const TILE_NODES: usize = 8000;

@@ -82,23 +82,25 @@
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
 //! | How long may a step be? | `critical.rs` |
 //! | How is equilibrium found? | `statics.rs` |
-//! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs`, `sweep.rs` |
+//! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
+//! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
-// Units stand in brackets, as in "position [m]", and are no links.
-#![allow(rustdoc::broken_intra_doc_links)]
-
+mod advance;
 pub mod critical;
 pub mod damping;
 pub mod dynamics;
 pub mod element;
 mod error;
 pub mod force;
+mod gather;
+mod lanes;
 pub mod layout;
 pub mod material;
 pub mod model;
 pub mod rigid;
 pub mod state;
 pub mod statics;
+mod strip;
 mod sweep;
 mod tile;
 

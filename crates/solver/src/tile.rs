@@ -6,7 +6,8 @@ use stribeck_mesh::strips::find_strips;
 
 use crate::{
     damping::LaneFrames,
-    element::{QuadReference, Stiffness, TriangleReference},
+    element::{QuadMetric, QuadReference, Stiffness, TriangleReference},
+    lanes::LANES,
     layout::TileLayout,
     model::Motion,
 };
@@ -25,9 +26,11 @@ pub(crate) struct Tile {
     /// References of strips whose elements differ, one array a component.
     pub(crate) varying: VaryingReferences,
     /// Elements outside strips; in a tile of congruent bodies all elements of the first body.
-    pub(crate) quads: Vec<([u32; 4], QuadReference)>,
+    pub(crate) quads: Vec<([u32; 4], QuadMetric)>,
     pub(crate) triangles: Vec<([u32; 3], TriangleReference)>,
     pub(crate) congruent: bool,
+    /// False for a rigid body, whose nodes this tile does not move.
+    pub(crate) elastic: bool,
     /// Nodes that are complete after a strip, in strip order.
     pub(crate) finish: Vec<Finish>,
     /// Own nodes that other forces may push.
@@ -54,13 +57,17 @@ pub(crate) struct Strip {
     pub(crate) corners: [u32; 4],
     pub(crate) len: usize,
     pub(crate) references: StripReferences,
+    /// The whole row of corners 1 and 2 (or 4 and 3) is free and complete after this strip: it moves with it.
+    pub(crate) completes: bool,
+    /// It is the row of corners 4 and 3.
+    pub(crate) completes_upper: bool,
 }
 
 /// References of a strip's elements.
 #[derive(Debug, Clone)]
 pub(crate) enum StripReferences {
     /// All alike: a ring's row, a square grid.
-    Uniform(QuadReference),
+    Uniform(QuadMetric),
     /// From this position of the tile's [`VaryingReferences`].
     Varying(usize),
 }
@@ -77,7 +84,7 @@ pub(crate) struct VaryingReferences {
     pub(crate) volume: Vec<f64>,
 }
 
-/// Consecutive own nodes that move alike and are complete once strip `after` is done.
+/// Consecutive own nodes that move alike and are complete once strip `after` is done, and do not move with it.
 #[derive(Debug, Clone)]
 pub(crate) struct Finish {
     /// Number of strips that must be done.
@@ -95,6 +102,17 @@ impl VaryingReferences {
         self.s1.push(q.s1);
         self.s2.push(q.s2);
         self.volume.push(q.volume);
+    }
+}
+
+impl VaryingReferences {
+    /// Repeats the last element, so that every strip ends with a whole group of lanes.
+    fn pad(&mut self) {
+        let Self { b1x, b1y, b2x, b2y, s1, s2, volume } = self;
+        for v in [b1x, b1y, b2x, b2y, s1, s2, volume] {
+            let last = v.last().copied().unwrap_or(0.0);
+            v.resize(v.len() + LANES, last);
+        }
     }
 }
 
@@ -117,15 +135,18 @@ impl Tile {
             quads: Vec::new(),
             triangles: layout.triangles.iter().map(|&(c, e)| (c, triangles[e])).collect(),
             congruent: layout.congruent,
+            elastic: true,
             finish: Vec::new(),
             loaded: (0..layout.own as u32).filter(|&n| loaded[n as usize]).collect(),
             step_over_mass: Vec::new(),
             damping: None,
         };
         if layout.congruent {
-            tile.quads = layout.quads.iter().map(|&(c, e)| (c, quads[e])).collect();
+            tile.quads =
+                layout.quads.iter().map(|&(c, e)| (c, QuadMetric::new(&quads[e], &stiffness))).collect();
         } else {
             tile.add_strips(layout, quads);
+            tile.varying.pad();
         }
         tile.schedule(motion);
         tile
@@ -139,18 +160,20 @@ impl Tile {
             let rows_apart = run.corners[0].abs_diff(run.corners[3]) as usize > run.len;
             let pairs = run.corners[1] == run.corners[0] + 1 && run.corners[2] == run.corners[3] + 1;
             if run.len < SHORTEST_STRIP || !rows_apart || !pairs {
-                self.quads.extend(elements.iter().map(|&(c, e)| (c, quads[e])));
+                let metric = |&(c, e): &([u32; 4], usize)| (c, QuadMetric::new(&quads[e], &self.stiffness));
+                self.quads.extend(elements.iter().map(metric));
                 continue;
             }
             let first = quads[elements[0].1];
             let references = if elements.iter().all(|&(_, e)| quads[e].is_congruent(&first)) {
-                StripReferences::Uniform(first)
+                StripReferences::Uniform(QuadMetric::new(&first, &self.stiffness))
             } else {
                 let start = self.varying.b1x.len();
                 elements.iter().for_each(|&(_, e)| self.varying.push(&quads[e]));
                 StripReferences::Varying(start)
             };
-            self.strips.push(Strip { corners: run.corners, len: run.len, references });
+            let (completes, completes_upper) = (false, false);
+            self.strips.push(Strip { corners: run.corners, len: run.len, references, completes, completes_upper });
         }
     }
 
@@ -166,10 +189,28 @@ impl Tile {
                 }
             }
         }
+        let mut with_strip = vec![false; self.own];
+        for (s, strip) in self.strips.iter_mut().enumerate() {
+            for upper in [false, true] {
+                let first = strip.corners[if upper { 3 } else { 0 }] as usize;
+                let row = first..first + strip.len + 1;
+                if row.end <= self.own && row.clone().all(|n| after[n] == s + 1 && motion[n] == Motion::Free) {
+                    (strip.completes, strip.completes_upper) = (true, upper);
+                    with_strip[row].fill(true);
+                    break;
+                }
+            }
+        }
         let mut start = 0;
+        let alike = |a: usize, b: usize| {
+            after[a] == after[b] && motion[a] == motion[b] && with_strip[a] == with_strip[b]
+        };
         for n in 1..=self.own {
-            if n == self.own || after[n] != after[start] || motion[n] != motion[start] {
-                self.finish.push(Finish { after: after[start], nodes: start..n, motion: motion[start] });
+            if n == self.own || !alike(n, start) {
+                if !with_strip[start] {
+                    let nodes = start..n;
+                    self.finish.push(Finish { after: after[start], nodes, motion: motion[start] });
+                }
                 start = n;
             }
         }
