@@ -2,7 +2,7 @@
 
 use stribeck_solver::{
     Force,
-    statics::{Equilibrium, Statics, Undecided},
+    statics::{Equilibrator, Equilibrium, Statics, Undecided},
 };
 
 use crate::{
@@ -73,13 +73,14 @@ pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> R
         iterations: ITERATIONS,
     };
     // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between them.
+    let mut solver = Equilibrator::new(&machine.dynamics)?;
     let mut found = None;
     for softness in SOFTNESS {
         machine.contacts.set_preload(Some(softness));
         let tolerance = if softness > 0.0 { ROUGH * statics.tolerance } else { statics.tolerance };
         let statics = Statics { tolerance, ..statics.clone() };
         let forces: &mut [&mut dyn Force] = &mut [&mut machine.load, &mut machine.contacts];
-        found = Some(machine.dynamics.equilibrate(forces, &statics)?);
+        found = Some(solver.equilibrate(&mut machine.dynamics, forces, &statics)?);
     }
     machine.contacts.set_preload(None);
     Ok(found.expect("there is a last stage"))

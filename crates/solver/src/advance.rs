@@ -106,8 +106,7 @@ fn each_group<const DAMPED: bool>(
         for l in 0..LANES {
             let frame = [frames.origin_x[l], frames.origin_y[l], frames.spin[l]];
             let (place, speed) = ([x[l], y[l]], [vx[l], vy[l]]);
-            let moved =
-                node::<DAMPED>(place, speed, [fx[l], fy[l]], m[l], mass[l], step, damping, frame);
+            let moved = node::<DAMPED>(place, speed, [fx[l], fy[l]], m[l], mass[l], step, damping, frame);
             [px[l], py[l], ux[l], uy[l]] = [moved[0], moved[1], moved[2], moved[3]];
             heat[l] += moved[4];
         }

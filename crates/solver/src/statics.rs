@@ -70,8 +70,72 @@ pub struct Equilibrium {
 /// Least mass-proportional stiffness [1/s²]: keeps the matrix definite where nothing else does.
 const LEAST_HOLD: f64 = 1e5;
 
+/// Finds static equilibria of one model; the elastic stiffness is assembled once for all of them.
+pub struct Equilibrator {
+    unknowns: Unknowns,
+    elastic: Matrix,
+    factor: Option<Factor>,
+}
+
+impl std::fmt::Debug for Equilibrator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Equilibrator").field("equations", &self.unknowns.equations).finish_non_exhaustive()
+    }
+}
+
+/// A factorisation serves until an iteration leaves more than this share of the unbalanced force.
+const GOOD_ENOUGH: f64 = 0.6;
+
+impl Equilibrator {
+    /// Assembles the elastic stiffness at the present positions.
+    ///
+    /// # Errors
+    /// When memory runs out.
+    pub fn new(dynamics: &Dynamics) -> Result<Self, Error> {
+        let unknowns = Unknowns::new(dynamics);
+        let elastic = unknowns.elastic(dynamics)?;
+        Ok(Self { unknowns, elastic, factor: None })
+    }
+
+    /// Moves the nodes of `dynamics`, the model of [`Equilibrator::new`], to static equilibrium. The step and time
+    /// stay; velocities are not used.
+    ///
+    /// # Errors
+    /// When the iteration does not converge or the matrix cannot be factorised.
+    pub fn equilibrate(
+        &mut self,
+        dynamics: &mut Dynamics,
+        forces: &mut [&mut dyn Force],
+        statics: &Statics,
+    ) -> Result<Equilibrium, Error> {
+        let mut residual = Residual::new(dynamics);
+        residual.evaluate(dynamics, forces, statics);
+        let mut iterations = 0;
+        let mut before = 0.0;
+        loop {
+            let (worst, at) = residual.worst(&self.unknowns);
+            if worst <= statics.tolerance {
+                return Ok(Equilibrium { iterations, residual: worst });
+            }
+            if iterations == statics.iterations || !worst.is_finite() {
+                return Err(no_equilibrium(dynamics, statics, iterations, worst, at));
+            }
+            if self.factor.is_none() || iterations == 0 || worst > GOOD_ENOUGH * before {
+                self.factor = None;
+                self.factor =
+                    Some(self.unknowns.factorise(dynamics, forces, statics, &residual, &self.elastic)?);
+            }
+            let Some(factor) = &self.factor else { continue };
+            let step = self.unknowns.step(dynamics, statics, &residual, factor);
+            dynamics.search_along(forces, statics, &mut residual, &self.unknowns, &step);
+            before = worst;
+            iterations += 1;
+        }
+    }
+}
+
 impl Dynamics {
-    /// Moves the nodes to static equilibrium. The step and time stay; velocities are not used.
+    /// Moves the nodes to static equilibrium, see [`Equilibrator::equilibrate`].
     ///
     /// # Errors
     /// When the iteration does not converge or the matrix cannot be factorised.
@@ -80,23 +144,7 @@ impl Dynamics {
         forces: &mut [&mut dyn Force],
         statics: &Statics,
     ) -> Result<Equilibrium, Error> {
-        let unknowns = Unknowns::new(self);
-        let elastic = unknowns.elastic(self)?;
-        let mut residual = Residual::new(self);
-        residual.evaluate(self, forces, statics);
-        let mut iterations = 0;
-        loop {
-            let (worst, at) = residual.worst(&unknowns);
-            if worst <= statics.tolerance {
-                return Ok(Equilibrium { iterations, residual: worst });
-            }
-            if iterations == statics.iterations || !worst.is_finite() {
-                return Err(no_equilibrium(self, statics, iterations, worst, at));
-            }
-            let step = unknowns.solve(self, forces, statics, &residual, &elastic)?;
-            self.search_along(forces, statics, &mut residual, &unknowns, &step);
-            iterations += 1;
-        }
+        Equilibrator::new(self)?.equilibrate(self, forces, statics)
     }
 
     /// Goes along `step` to where the residual no longer points along it.
@@ -278,6 +326,7 @@ struct Unknowns {
 }
 
 type Matrix = SparseColMat<usize, f64>;
+type Factor = Llt<usize, f64>;
 
 /// Strain of one mode [1/m] that a unit displacement of a node gives, from its shape gradient and the component.
 type StrainOf = fn([f64; 2], usize) -> f64;
@@ -411,15 +460,15 @@ impl Unknowns {
         }
     }
 
-    /// One Newton step for the present residual.
-    fn solve(
+    /// Factorises the tangent stiffness at the present positions.
+    fn factorise(
         &self,
         d: &Dynamics,
         forces: &[&mut dyn Force],
         statics: &Statics,
         residual: &Residual,
         elastic: &Matrix,
-    ) -> Result<Vec<[f64; 2]>, Error> {
+    ) -> Result<Factor, Error> {
         let mut triplets = Vec::new();
         for f in forces {
             f.tangent(&d.state.x, &d.state.y, &mut |r| {
@@ -461,8 +510,11 @@ impl Unknowns {
         // One thread: the factorisation's bits then do not depend on how many there are.
         faer::set_global_parallelism(Par::Seq);
         let symbolic = SymbolicLlt::try_new(matrix.symbolic(), Side::Lower).map_err(|e| failed(&e))?;
-        let factor =
-            Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower).map_err(|e| failed(&e))?;
+        Llt::try_new_with_symbolic(symbolic, matrix.as_ref(), Side::Lower).map_err(|e| failed(&e))
+    }
+
+    /// One Newton step for the present residual.
+    fn step(&self, d: &Dynamics, statics: &Statics, residual: &Residual, factor: &Factor) -> Vec<[f64; 2]> {
         let mut rhs = Mat::<f64>::zeros(self.equations, 1);
         for (&s, number) in self.slots.iter().zip(&self.number) {
             let f = [residual.force.fx[s as usize], residual.force.fy[s as usize]];
@@ -478,7 +530,7 @@ impl Unknowns {
         for motion in &statics.undecided {
             motion.take_from_step(d, &mut step, &self.index);
         }
-        Ok(step)
+        step
     }
 }
 

@@ -116,7 +116,8 @@ impl Forces for Completed<'_> {
     #[inline(always)]
     fn take(&mut self, at: usize) -> (Lanes, Lanes) {
         let [[lx, ly], [rx, ry]] = self.corners;
-        let (mut fx, mut fy) = (std::mem::take(lanes_mut(self.fx, at)), std::mem::take(lanes_mut(self.fy, at)));
+        let (mut fx, mut fy) =
+            (std::mem::take(lanes_mut(self.fx, at)), std::mem::take(lanes_mut(self.fy, at)));
         let (lx, ly, rx, ry) = (lanes(lx, at), lanes(ly, at), lanes(rx, at), lanes(ry, at));
         for k in 0..LANES {
             fx[k] += lx[k] + rx[k];

@@ -61,10 +61,7 @@ impl std::ops::Add for Counted {
 }
 
 /// Computes the forces of one tile and takes its nodes one step on.
-#[multiversion(targets(
-    "x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx512cd+avx2+bmi2",
-    "x86_64+avx2+bmi2"
-))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx512cd+avx2+bmi2", "x86_64+avx2+bmi2"))]
 pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> Counted {
     let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
     let n = tile.slots.len();
@@ -111,8 +108,7 @@ pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, 
             counted.heat += advance(row, forces, &Step { free, ..step });
         }
         if let Some(s) = tile.strips.get(done) {
-            counted.heat +=
-                strip(s, &tile.varying, &tile.stiffness, &mut nodes, &mut scratch.corners, &step);
+            counted.heat += strip(s, &tile.varying, &tile.stiffness, &mut nodes, &mut scratch.corners, &step);
         }
     }
     fx[tile.own..].fill(0.0);

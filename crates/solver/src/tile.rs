@@ -173,7 +173,13 @@ impl Tile {
                 StripReferences::Varying(start)
             };
             let (completes, completes_upper) = (false, false);
-            self.strips.push(Strip { corners: run.corners, len: run.len, references, completes, completes_upper });
+            self.strips.push(Strip {
+                corners: run.corners,
+                len: run.len,
+                references,
+                completes,
+                completes_upper,
+            });
         }
     }
 
@@ -194,7 +200,8 @@ impl Tile {
             for upper in [false, true] {
                 let first = strip.corners[if upper { 3 } else { 0 }] as usize;
                 let row = first..first + strip.len + 1;
-                if row.end <= self.own && row.clone().all(|n| after[n] == s + 1 && motion[n] == Motion::Free) {
+                if row.end <= self.own && row.clone().all(|n| after[n] == s + 1 && motion[n] == Motion::Free)
+                {
                     (strip.completes, strip.completes_upper) = (true, upper);
                     with_strip[row].fill(true);
                     break;
