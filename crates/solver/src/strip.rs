@@ -134,12 +134,20 @@ impl Forces for Completed<'_> {
     }
 }
 
+/// Adds left and right corner forces to a row of nodes.
 #[inline(always)]
 fn add(f: &mut [f64], left: &[f64], right: &[f64]) {
     let n = f.len();
-    let (left, right) = (&left[..n], &right[..n]);
-    for i in 0..n {
-        f[i] += left[i] + right[i];
+    let (groups, rest) = f.as_chunks_mut::<LANES>();
+    let (l, r) = (chunks(left, 0, groups.len()), chunks(right, 0, groups.len()));
+    for g in 0..groups.len() {
+        for k in 0..LANES {
+            groups[g][k] += l[g][k] + r[g][k];
+        }
+    }
+    let done = n - rest.len();
+    for (k, f) in rest.iter_mut().enumerate() {
+        *f += left[done + k] + right[done + k];
     }
 }
 
