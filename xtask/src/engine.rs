@@ -1,4 +1,4 @@
-//! The two calls into the crates that do the work.
+//! The calls into the crates that do the work.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -22,6 +22,15 @@ pub(crate) fn simulate(
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<RunInfo> {
     Ok(host::with(threads, |host| simulation::simulate(scene, dir, host, watch))?)
+}
+
+/// Continues the run in `dir` from its checkpoint; `watch` may end it again.
+pub(crate) fn resume(
+    dir: &RunDir,
+    threads: usize,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<RunInfo> {
+    Ok(host::with(threads, |host| simulation::resume(dir, host, watch))?)
 }
 
 /// Writes report, summary and figures of the run in `dir`.

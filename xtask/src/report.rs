@@ -17,10 +17,7 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let folder = match &options.run {
-        Some(run) => {
-            let by_name = workspace::runs().join(run);
-            if !run.exists() && by_name.exists() { by_name } else { workspace::locate(run) }
-        }
+        Some(run) => workspace::locate_run(run),
         None => workspace::newest_run(&workspace::runs())?,
     };
     let dir = RunDir::open(&folder)?;

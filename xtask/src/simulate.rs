@@ -1,4 +1,4 @@
-//! `cargo xtask simulate`: scene file → run folder → report.
+//! `cargo xtask simulate`: scene file → run folder → report. Or the rest of a run that ended early.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use stribeck_bearing::run_dir::RunDir;
 use stribeck_bearing::run_info::{RunInfo, Status};
 use stribeck_bearing::scene::Scene;
 
-use crate::engine;
+use crate::engine::{self, Progress};
 use crate::progress::{Meter, clock};
 use crate::workspace;
 
@@ -32,17 +32,28 @@ pub(crate) struct Options {
     /// Overrides a field of the scene, for example --set mesh.size_mm=1.0; may be repeated
     #[arg(long, value_name = "FIELD=VALUE")]
     set: Vec<String>,
+    /// Continues the run in this folder, or in the one of this name below runs/, from its checkpoint
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "out", "set"])]
+    resume: Option<PathBuf>,
     /// Writes no report at the end
     #[arg(long)]
     no_report: bool,
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
-    let file = options.scene.as_deref().map_or_else(workspace::default_scene, workspace::locate);
-    let scene = Scene::read_with(&file, &options.set)?;
-    let folder = options.out.clone().unwrap_or_else(|| workspace::runs().join(&scene.name));
     let threads = options.threads.map_or_else(available_threads, usize::from);
-    let dir = RunDir::create(&folder)?;
+    let (scene, dir) = match &options.resume {
+        Some(run) => {
+            let dir = RunDir::reopen(workspace::locate_run(run))?;
+            (Scene::read(dir.scene())?, dir)
+        }
+        None => {
+            let file = options.scene.as_deref().map_or_else(workspace::default_scene, workspace::locate);
+            let scene = Scene::read_with(&file, &options.set)?;
+            let folder = options.out.clone().unwrap_or_else(|| workspace::runs().join(&scene.name));
+            (scene, RunDir::create(&folder)?)
+        }
+    };
     eprintln!(
         "{}: {} ms, {} threads → {}",
         scene.name,
@@ -53,14 +64,21 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
 
     let interrupted = listen_for_interrupt()?;
     let mut meter = Meter::new(scene.solver.duration_ms);
-    let finished = engine::simulate(&scene, &dir, threads, &mut |progress| {
+    let mut watch = |progress: &Progress| {
         meter.show(progress);
         if interrupted.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
+    };
+    let finished = match options.resume {
+        Some(_) => engine::resume(&dir, threads, &mut watch),
+        None => engine::simulate(&scene, &dir, threads, &mut watch),
+    };
     meter.finish();
 
     if let Ok(info) = &finished {
         announce(info);
+        if info.status == Status::Interrupted {
+            eprintln!("continue it: cargo xtask simulate --resume {}", workspace::shown(dir.path()));
+        }
     }
     // A run that broke off has a report too: what was computed until then is what shows why.
     if dir.has_started() && !options.no_report {

@@ -29,6 +29,12 @@ pub(crate) fn locate(path: &Path) -> PathBuf {
     if !path.exists() && below_root.exists() { below_root } else { path.to_owned() }
 }
 
+/// The folder of a run, given as a path or by its name below `runs/`.
+pub(crate) fn locate_run(run: &Path) -> PathBuf {
+    let by_name = runs().join(run);
+    if !run.exists() && by_name.exists() { by_name } else { locate(run) }
+}
+
 /// The run in `folder` whose `run.json` was written last.
 pub(crate) fn newest_run(folder: &Path) -> Result<PathBuf> {
     let advice = "start one with `cargo xtask simulate`, or name a run's folder";

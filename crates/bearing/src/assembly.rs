@@ -105,15 +105,14 @@ impl Assembly {
         let mut mesh = Mesh::new();
         let outer_radius = 0.5e-3 * b.outer_race_diameter_mm;
         let inner_radius = 0.5e-3 * b.inner_race_diameter_mm;
+        let around = |radius: f64| ((TAU * radius / size).round() as usize).max(8);
         let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
             Some(grading) => ring.graded_part(grading),
             None => ring.part(),
         };
 
         let outer_grading = grading::ring(&scene.mesh, b.outer_ring_thickness_mm, Circle::Inner);
-        let around =
-            |radius, grading: &Option<Grading>| grading::facets(TAU * radius, size, grading.as_ref());
-        let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius, &outer_grading));
+        let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius));
         let outer = Annulus {
             inner_radius: outer_radius,
             outer_radius: outer_radius + 1e-3 * b.outer_ring_thickness_mm,
@@ -129,7 +128,7 @@ impl Assembly {
         let outer = mesh.add("outer ring", &made(&outer, &outer_grading)?);
 
         let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
-        let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius, &inner_grading));
+        let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
         let inner = Annulus {
             inner_radius: inner_radius - 1e-3 * b.inner_ring_thickness_mm,
             outer_radius: inner_radius,
@@ -148,7 +147,10 @@ impl Assembly {
         let facet_mm = PI * b.roller_diameter_mm / roller_facets as f64;
         let core = 1e-3 * grading::roller_core_mm(&scene.mesh, facet_mm);
         let disc = Disc { radius: roller_radius, facets: roller_facets, size: core, rotation: 0.0 };
-        let disc = disc.part()?;
+        let disc = match &scene.mesh.grading {
+            None => disc.part()?,
+            Some(scene) => disc.part_with_layers(grading::roller_layers(scene).min(disc.most_layers()))?,
+        };
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
         let path = outer_radius - roller_radius;
         let rollers = (0..b.rollers)
@@ -313,7 +315,7 @@ fn surface<'a>(placed: &'a Placed, name: &str) -> &'a stribeck_mesh::Surface {
     placed.surface(name).expect("the generator of this body names this surface")
 }
 
-/// The adapter. In a graded mesh its columns continue those of the outer ring, whose back surface is given.
+/// The adapter. In a graded mesh its seat is the polygon of the outer ring, whose back surface is given.
 fn adapter_part(scene: &Scene, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Result<Part, Error> {
     let (b, size) = (&scene.bearing, 1e-3 * scene.mesh.size_mm);
     let mut adapter = SeatedBlock {
@@ -324,10 +326,10 @@ fn adapter_part(scene: &Scene, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Re
         rows: adapter_rows(scene, size),
     };
     let Some(grading) = &scene.mesh.grading else { return Ok(adapter.part()?) };
-    let lines = grading::seat_lines(back, &mesh.x, &mesh.y, 0.5 * adapter.width, size);
-    adapter.columns = lines.len() + 1;
+    let seat = grading::seat(back, &mesh.x, &mesh.y, 0.5 * adapter.width, size);
+    adapter.columns = seat.len() - 1;
     adapter.rows = adapter_rows(scene, 1e-3 * grading.coarse_mm);
-    Ok(adapter.part_with_lines(&lines)?)
+    Ok(adapter.part_on(&seat)?)
 }
 
 /// Rows of the adapter: cells of the wanted size on average between its crown and its sides.

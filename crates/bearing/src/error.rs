@@ -95,6 +95,15 @@ pub enum Error {
         found: String,
     },
 
+    /// A run cannot be continued.
+    #[error("the run in `{}` cannot be continued: {reason}", path.display())]
+    Resume {
+        /// The folder of the run.
+        path: PathBuf,
+        /// Why, and what to try.
+        reason: String,
+    },
+
     /// Another process is writing this run.
     #[error("`{}` is being written by another run (process {owner}). Wait for it, or choose another folder with --out", path.display())]
     FolderInUse {

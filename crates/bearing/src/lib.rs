@@ -1,9 +1,11 @@
 //! Rolling element bearings: dimensions, kinematics, defects, scenes and runs.
 
 pub mod assembly;
+mod checkpoint;
 pub mod error;
 mod grading;
 pub mod kinematics;
+mod ledger;
 mod recorder;
 pub mod run_dir;
 pub mod run_info;
@@ -12,4 +14,5 @@ pub mod scene_file;
 pub mod simulation;
 mod start;
 pub mod static_load;
+mod time_loop;
 pub mod trace;

@@ -1,5 +1,6 @@
 //! What is sampled: sensors, contact forces, places. Column names are a contract with the report.
 
+use serde::{Deserialize, Serialize};
 use stribeck_contact::Resultant;
 
 use crate::{assembly::Machine, scene::Scene};
@@ -7,16 +8,25 @@ use crate::{assembly::Machine, scene::Scene};
 /// Sums between samples and the channels made of them.
 #[derive(Debug)]
 pub(crate) struct Recorder {
-    sensors: Vec<u32>,
-    /// Velocity of each sensor at the last sample, and before the last step.
-    at_sample: Vec<[f64; 2]>,
+    memory: Memory,
+    /// Velocity of each sensor before the last step.
     before_step: Vec<[f64; 2]>,
     /// Resultant of each pair, summed over the steps since the last sample.
     force: Vec<[f64; 2]>,
     steps: usize,
+    row: Vec<f64>,
+}
+
+/// What the recorder carries from sample to sample.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub(crate) struct Memory {
+    /// Slot of each sensor, chosen at the start.
+    sensors: Vec<u32>,
+    /// Velocity of each sensor at the last sample.
+    at_sample: Vec<[f64; 2]>,
+    /// Angle of each roller's rim then, and by how much it has turned since the start [rad].
     rim_angle: Vec<f64>,
     spin: Vec<f64>,
-    row: Vec<f64>,
 }
 
 impl Recorder {
@@ -33,21 +43,38 @@ impl Recorder {
                 *machine.housing.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
             })
             .collect();
-        let mut recorder = Self {
-            at_sample: vec![[0.0; 2]; sensors.len()],
-            before_step: vec![[0.0; 2]; sensors.len()],
+        let rollers = machine.rollers.len();
+        let memory = Memory {
+            at_sample: sensors.iter().map(|&n| velocity(machine, n)).collect(),
             sensors,
+            rim_angle: (0..rollers).map(|i| rim_angle(machine, i)).collect(),
+            spin: vec![0.0; rollers],
+        };
+        Self::with(memory, machine)
+    }
+
+    /// A recorder that goes on; `None` when the memory is that of another machine.
+    pub(crate) fn resume(machine: &Machine, memory: Memory) -> Option<Self> {
+        let slots = machine.dynamics.state.x.len();
+        let fits = memory.sensors.iter().all(|&n| (n as usize) < slots)
+            && memory.at_sample.len() == memory.sensors.len()
+            && [&memory.rim_angle, &memory.spin].iter().all(|v| v.len() == machine.rollers.len());
+        fits.then(|| Self::with(memory, machine))
+    }
+
+    fn with(memory: Memory, machine: &Machine) -> Self {
+        Self {
+            before_step: vec![[0.0; 2]; memory.sensors.len()],
+            memory,
             force: vec![[0.0; 2]; machine.contacts.resultants().count()],
             steps: 0,
-            rim_angle: vec![0.0; machine.rollers.len()],
-            spin: vec![0.0; machine.rollers.len()],
             row: Vec::new(),
-        };
-        recorder.at_sample = recorder.velocities(machine).collect();
-        for i in 0..machine.rollers.len() {
-            recorder.rim_angle[i] = rim_angle(machine, i);
         }
-        recorder
+    }
+
+    /// What it takes to go on after a sample.
+    pub(crate) fn memory(&self) -> &Memory {
+        &self.memory
     }
 
     /// Names of the columns.
@@ -76,16 +103,10 @@ impl Recorder {
         names
     }
 
-    fn velocities(&self, machine: &Machine) -> impl Iterator<Item = [f64; 2]> {
-        let s = &machine.dynamics.state;
-        self.sensors.iter().map(|&n| [s.vx[n as usize], s.vy[n as usize]])
-    }
-
     /// Before every step.
     pub(crate) fn before_step(&mut self, machine: &Machine) {
-        for (i, &n) in self.sensors.iter().enumerate() {
-            let s = &machine.dynamics.state;
-            self.before_step[i] = [s.vx[n as usize], s.vy[n as usize]];
+        for (before, &n) in self.before_step.iter_mut().zip(&self.memory.sensors) {
+            *before = velocity(machine, n);
         }
     }
 
@@ -105,13 +126,14 @@ impl Recorder {
         let interval = dt * self.steps as f64;
         self.row.clear();
         self.row.push(state.time);
-        for (i, &n) in self.sensors.iter().enumerate() {
-            let now = [state.vx[n as usize], state.vy[n as usize]];
-            for (before, span) in [(self.at_sample[i], interval), (self.before_step[i], dt)] {
+        let Memory { sensors, at_sample, rim_angle: last_angle, spin } = &mut self.memory;
+        for (i, &n) in sensors.iter().enumerate() {
+            let now = velocity(machine, n);
+            for (before, span) in [(at_sample[i], interval), (self.before_step[i], dt)] {
                 self.row.push((now[0] - before[0]) / span);
                 self.row.push((now[1] - before[1]) / span);
             }
-            self.at_sample[i] = now;
+            at_sample[i] = now;
         }
         let mean = |pairs: &[usize]| -> [f64; 2] {
             let sum = |c: usize| pairs.iter().map(|&p| self.force[p][c]).sum::<f64>();
@@ -120,11 +142,11 @@ impl Recorder {
         for (i, roller) in machine.rollers.iter().enumerate() {
             let c = roller.centre as usize;
             let angle = rim_angle(machine, i);
-            let turned = angle - self.rim_angle[i];
+            let turned = angle - last_angle[i];
             // Less than half a turn lies between two samples.
-            self.spin[i] += turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
-            self.rim_angle[i] = angle;
-            self.row.extend([state.x[c], state.y[c], self.spin[i]]);
+            spin[i] += turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
+            last_angle[i] = angle;
+            self.row.extend([state.x[c], state.y[c], spin[i]]);
             let pairs = &machine.roller_pairs[i];
             self.row.extend(mean(&[pairs.outer]));
             self.row.extend(mean(&[pairs.inner]));
@@ -142,6 +164,12 @@ impl Recorder {
         self.steps = 0;
         &self.row
     }
+}
+
+/// Velocity of a slot [m/s].
+fn velocity(machine: &Machine, slot: u32) -> [f64; 2] {
+    let s = &machine.dynamics.state;
+    [s.vx[slot as usize], s.vy[slot as usize]]
 }
 
 /// Angle of the line from a roller's centre to its first rim node [rad].

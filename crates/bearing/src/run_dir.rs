@@ -5,6 +5,9 @@
 //!          report.html  summary.json  figures/                                   written by the report
 //!          .lock                                                                 held while the run writes
 //! ```
+//!
+//! The checkpoint is there from the first step of a run to its end. Whatever kills the run in between, the folder can be
+//! read, and continued from the last checkpoint: traces never hold fewer samples than it counts.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -86,6 +89,19 @@ impl RunDir {
         Ok(())
     }
 
+    /// Writes `run.json` of a run that goes on.
+    ///
+    /// Call it when the state of the checkpoint is restored and the time loop is about to begin.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the disk refuses.
+    pub(crate) fn go_on(&self, info: &RunInfo) -> Result<(), Error> {
+        self.write_info(info)?;
+        self.started.set(true);
+        Ok(())
+    }
+
     /// Replaces `run.json`, whole or not at all.
     ///
     /// # Errors
@@ -97,6 +113,34 @@ impl RunDir {
             .map_err(|source| Error::RunInfo { path: path.clone(), source })?;
         text.push(b'\n');
         write_atomic(&path, &text)
+    }
+
+    /// Reserves the folder of a run that ended early, to continue it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing; [`Error::FolderInUse`] when the run is still going;
+    /// [`Error::Io`] when the folder cannot be written.
+    pub fn reopen(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let mut dir = Self::open(path)?;
+        dir.lock = Some(lock(&dir.path)?);
+        dir.started.set(false);
+        Ok(dir)
+    }
+
+    /// Reads `run.json`.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when it cannot be read; [`Error::RunInfo`] when it cannot be understood.
+    pub fn read_info(&self) -> Result<RunInfo, Error> {
+        read_info(&self.info())
+    }
+
+    /// Removes the checkpoint of a run that has come to its end. One that stays does no harm: such a run is not
+    /// continued.
+    pub(crate) fn remove_checkpoint(&self) {
+        std::fs::remove_file(self.checkpoint()).ok();
     }
 
     /// Opens the folder of an existing run for reading. It may still be running.
@@ -114,7 +158,7 @@ impl RunDir {
         Ok(Self { path, lock: None, made_folder: false, started: true.into() })
     }
 
-    /// True once [`RunDir::start`] has succeeded: the files in the folder are those of this run.
+    /// True once the time loop has begun, anew or again: the files in the folder are those of this run.
     pub fn has_started(&self) -> bool {
         self.started.get()
     }
@@ -203,7 +247,7 @@ impl Run {
         let dir = RunDir::open(path)?;
         Ok(Self {
             scene: Scene::read(dir.scene())?,
-            info: read_info(&dir.info())?,
+            info: dir.read_info()?,
             trace: Trace::read(dir.trace())?,
             energy: Trace::read(dir.energy())?,
         })
@@ -355,6 +399,7 @@ mod tests {
             setup_s: 0.5,
             energy: EnergyInfo { max_relative_error: 1e-3, peak_strain_j: 2.0 },
             expected_support_n: 50_100.0,
+            resumed_at_s: vec![1e-5],
             warnings: vec!["one".into()],
         }
     }

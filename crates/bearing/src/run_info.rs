@@ -39,6 +39,10 @@ pub struct RunInfo {
     pub cpu_s: f64,
     /// Wall-clock time from start to the first step (mesh, preload) [s].
     pub setup_s: f64,
+    /// Simulated times from which the run was continued [s]; none for a run in one piece. Clocks count all pieces;
+    /// version, machine and threads are those of the last one.
+    #[serde(default)]
+    pub resumed_at_s: Vec<f64>,
     /// Energy verdict.
     pub energy: EnergyInfo,
     /// Vertical force that the rollers must carry: load plus the weight of adapter and outer ring [N].
@@ -89,7 +93,10 @@ pub struct EnergyInfo {
     pub peak_strain_j: f64,
 }
 
-/// JSON knows no infinity: it is written as `null`.
+/// JSON knows no infinity: it is written as `null`. The binary checkpoint knows it.
 fn null_is_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    if !from.is_human_readable() {
+        return f64::deserialize(from);
+    }
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
 }

@@ -119,14 +119,14 @@ pub struct MeshScene {
 /// Larger elements away from the raceways and the rims of the rollers.
 ///
 /// Facets that roll on each other keep their length, so a graded mesh has the same facet-passing tone. In the rings three
-/// facets become one, as often as `coarse_mm` and the thickness of the ring allow; counts of facets are rounded to a
-/// multiple of three for that. The adapter continues the columns of the outer ring, the rollers get a coarser core.
+/// facets become one, as often as `coarse_mm` and the thickness of the ring allow. The adapter continues the columns of
+/// the outer ring, the rollers get a coarser core.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GradingScene {
     /// Element edge that is not exceeded in the rings and the rollers, and the height of the adapter's elements [mm].
     pub coarse_mm: f64,
-    /// Layers of full fineness along the raceways.
+    /// Layers of full fineness along the raceways; rollers get one more.
     pub fine_layers: usize,
 }
 

@@ -5,7 +5,6 @@
 //! [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
 mod geometry;
-mod graded;
 mod limits;
 mod origin;
 mod outline;

@@ -10,13 +10,13 @@ use stribeck_solver::{
 
 use crate::{
     assembly::{Assembly, Machine},
+    checkpoint::Checkpoint,
     error::Error,
-    recorder::Recorder,
     run_dir::RunDir,
     run_info::{EnergyInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
     start::{launch, preload},
-    trace::TraceWriter,
+    time_loop::Run,
 };
 
 /// What a library may not know by itself.
@@ -52,63 +52,20 @@ pub struct Progress {
     pub elements: usize,
 }
 
-/// Columns of `energy.npy`.
-const ENERGY_COLUMNS: [&str; 11] = [
-    "time_s",
-    "kinetic_j",
-    "strain_j",
-    "hourglass_j",
-    "contact_j",
-    "friction_j",
-    "damping_j",
-    "contact_damping_j",
-    "external_j",
-    "drive_j",
-    "relative_error",
-];
-
-/// A run stops when the imbalance of energy passes this share of the peak strain energy.
-const WORST_IMBALANCE: f64 = 0.25;
-
-/// `run.json` is rewritten this often, in samples.
-const INFO_EVERY: usize = 100;
-
-/// Energies at one moment [J].
-#[derive(Debug, Clone, Copy, Default)]
-struct Ledger {
-    kinetic: f64,
-    strain: f64,
-    hourglass: f64,
-    contact: f64,
-    friction: f64,
-    damping: f64,
-    contact_damping: f64,
-    external: f64,
-    drive: f64,
-}
-
-impl Ledger {
-    /// What is in the model and what has left it, less what came in.
-    fn balance(&self) -> f64 {
-        self.kinetic
-            + self.strain
-            + self.hourglass
-            + self.contact
-            + self.friction
-            + self.damping
-            + self.contact_damping
-            - self.external
-            - self.drive
+impl Progress {
+    fn begin() -> Self {
+        Self { phase: "mesh", step: 0, steps: 0, time_s: 0.0, energy_error: 0.0, elements: 0 }
     }
 }
 
 /// Runs a scene and leaves its results in `dir`.
 ///
-/// `watch` is told about every sample and may break off the run, which then ends as [`Status::Interrupted`].
+/// `watch` is told about every sample and may break off the run, which then ends as [`Status::Interrupted`]. A checkpoint
+/// is written at the start, now and then, and at an interruption; [`resume`] continues from it.
 ///
 /// # Errors
-/// When the scene cannot be meshed or preloaded, or a file cannot be written. A run that diverges is not an error:
-/// its status and reason are in the returned [`RunInfo`].
+/// When the scene cannot be meshed or preloaded, or the traces cannot be written. A run that diverges is not an error:
+/// its status and reason are in the returned [`RunInfo`]. A checkpoint that cannot be written is a warning there.
 pub fn simulate(
     scene: &Scene,
     dir: &RunDir,
@@ -116,8 +73,7 @@ pub fn simulate(
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<RunInfo, Error> {
     let started = (host.wall_s)();
-    let mut progress =
-        Progress { phase: "mesh", step: 0, steps: 0, time_s: 0.0, energy_error: 0.0, elements: 0 };
+    let mut progress = Progress::begin();
     let _ = watch(&progress);
     let assembly = Assembly::new(scene)?;
     let mut machine = assembly.machine(scene, host.threads)?;
@@ -134,14 +90,10 @@ pub fn simulate(
     let dt = interval / steps_per_sample as f64;
     machine.dynamics.set_time_step(dt)?;
     launch(&mut machine, &assembly.kinematics);
-    if let Some(damping) = mass_damping(scene, &machine)? {
-        machine.dynamics.set_mass_damping(&damping);
-    }
+    damp(scene, &mut machine)?;
 
     let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0) as usize;
-    progress.steps = (samples * steps_per_sample) as u64;
-    progress.phase = "run";
-    let mut info = RunInfo {
+    let info = RunInfo {
         version: host.version.clone(),
         commit: host.commit.clone(),
         scene_hash: scene.hash(),
@@ -152,199 +104,79 @@ pub fn simulate(
         time_step_s: dt,
         critical_time_step_s: critical,
         steps: 0,
-        steps_planned: progress.steps,
+        steps_planned: (samples * steps_per_sample) as u64,
         interval_s: interval,
         samples: 0,
         mesh,
         wall_s: 0.0,
         cpu_s: 0.0,
         setup_s: (host.wall_s)() - started,
+        resumed_at_s: Vec::new(),
         energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0 },
         expected_support_n: expected_support(scene, &machine),
         warnings: Vec::new(),
     };
     dir.start(scene, &info)?;
     write_mesh(&assembly, &machine, dir)?;
+    Run::start(scene, &assembly, machine, info, dir)?.finish(dir, host, progress, watch)
+}
 
-    let mut run = Run {
-        recorder: Recorder::new(scene, &machine),
-        trace: TraceWriter::create(dir.trace(), &Recorder::names(scene))?,
-        energy: TraceWriter::create(dir.energy(), &ENERGY_COLUMNS)?,
-        machine,
-        baseline: None,
-        before: Before::default(),
-        external0: 0.0,
+/// Continues the run in `dir` from its checkpoint. Its files become those of an unbroken run, byte for byte, whatever
+/// the number of threads; the mesh is made again, the preload is not.
+///
+/// `watch` as for [`simulate`].
+///
+/// # Errors
+/// [`Error::Resume`] when there is nothing to continue or nothing to continue from; otherwise as [`simulate`].
+pub fn resume(
+    dir: &RunDir,
+    host: &Host<'_>,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<RunInfo, Error> {
+    let started = (host.wall_s)();
+    let scene = Scene::read(dir.scene())?;
+    may_go_on(dir)?;
+    let mut saved = Checkpoint::read(&dir.checkpoint(), &scene.hash())?;
+    let mut progress = Progress::begin();
+    let _ = watch(&progress);
+    let assembly = Assembly::new(&scene)?;
+    let mut machine = assembly.machine(&scene, host.threads)?;
+    let mesh = assembly.mesh_info();
+    progress.elements = mesh.quads + mesh.triangles;
+    machine.dynamics.set_time_step(saved.info.time_step_s)?;
+    damp(&scene, &mut machine)?;
+
+    let info = &mut saved.info;
+    if (&info.version, &info.commit) != (&host.version, &host.commit) {
+        info.warnings.push(format!(
+            "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those of an \
+             unbroken run",
+            info.version, info.commit, host.version, host.commit
+        ));
+    }
+    info.version.clone_from(&host.version);
+    info.commit.clone_from(&host.commit);
+    info.machine.clone_from(&host.machine);
+    info.threads = host.threads;
+    info.status = Status::Running;
+    info.stop_reason = None;
+    info.resumed_at_s.push(info.samples as f64 * info.interval_s);
+    let mut run = Run::resume(&scene, &assembly, machine, saved, dir)?;
+    run.info.setup_s += (host.wall_s)() - started;
+    dir.go_on(&run.info)?;
+    run.finish(dir, host, progress, watch)
+}
+
+/// Whether the run in `dir` ended before its time, but not by itself.
+fn may_go_on(dir: &RunDir) -> Result<(), Error> {
+    let reason = match dir.read_info()?.status {
+        Status::Running | Status::Interrupted => return Ok(()),
+        Status::Complete => "it is complete. For a longer one, change `solver.duration_ms` and start anew",
+        Status::Diverged => {
+            "it diverged, and the same steps would diverge again. `run.json` says why and what to change"
+        }
     };
-    let pool = workers(host.threads)?;
-    let loop_started = (host.wall_s)();
-    for sample in 1..=samples {
-        // The steps of an interval run inside the pool: a fork from outside costs much more than one within.
-        let ledger = match &pool {
-            Some(pool) => pool.install(|| run.interval(steps_per_sample)),
-            None => run.interval(steps_per_sample),
-        };
-        let error = run.account(&ledger, &mut info)?;
-        info.steps = run.machine.dynamics.state.step;
-        info.samples = sample;
-        info.wall_s = (host.wall_s)() - loop_started;
-        info.cpu_s = (host.cpu_s)();
-        progress.step = info.steps;
-        progress.time_s = run.machine.dynamics.state.time;
-        progress.energy_error = error;
-        if error > WORST_IMBALANCE {
-            info.status = Status::Diverged;
-            info.stop_reason = Some(run.why_stopped(error, &assembly));
-            break;
-        }
-        if watch(&progress).is_break() {
-            info.status = Status::Interrupted;
-            info.stop_reason = Some(format!("interrupted at {:.4} ms", 1e3 * progress.time_s));
-            break;
-        }
-        if sample % INFO_EVERY == 0 {
-            dir.write_info(&info)?;
-        }
-    }
-    if info.status == Status::Running {
-        info.status = Status::Complete;
-    }
-    run.trace.finish()?;
-    run.energy.finish()?;
-    dir.write_info(&info)?;
-    Ok(info)
-}
-
-/// A pool for the time loop; none for one thread.
-fn workers(threads: usize) -> Result<Option<rayon::ThreadPool>, Error> {
-    if threads < 2 {
-        return Ok(None);
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map(Some).map_err(|e| Error::Threads { threads, source: e })
-}
-
-/// A run in its time loop.
-struct Run {
-    machine: Machine,
-    recorder: Recorder,
-    trace: TraceWriter,
-    energy: TraceWriter,
-    baseline: Option<f64>,
-    before: Before,
-    external0: f64,
-}
-
-/// Velocities before a step, for the kinetic energy at its start.
-#[derive(Default)]
-struct Before {
-    vx: Vec<f64>,
-    vy: Vec<f64>,
-    rigid: Vec<stribeck_solver::rigid::RigidState>,
-}
-
-impl Run {
-    /// Takes the steps of one sampling interval; the last one is accounted for.
-    fn interval(&mut self, steps: usize) -> Ledger {
-        if self.baseline.is_none() {
-            self.external0 = self.machine.dynamics.gravity_work();
-        }
-        let mut ledger = Ledger::default();
-        for s in 0..steps {
-            let last = s + 1 == steps;
-            let first = self.baseline.is_none();
-            if last {
-                self.recorder.before_step(&self.machine);
-            }
-            if last || first {
-                ledger = self.step_with_ledger();
-                if first {
-                    self.baseline = Some(ledger.balance());
-                }
-            } else {
-                self.step();
-            }
-            self.recorder.after_step(&self.machine);
-        }
-        ledger
-    }
-
-    fn step(&mut self) {
-        let m = &mut self.machine;
-        m.dynamics.step(&mut [&mut m.load, &mut m.contacts]);
-    }
-
-    fn step_with_ledger(&mut self) -> Ledger {
-        let d = &self.machine.dynamics;
-        self.before.vx.clone_from(&d.state.vx);
-        self.before.vy.clone_from(&d.state.vy);
-        self.before.rigid.clone_from(&d.rigid);
-        let elastic = d.elastic_energy();
-        let gravity = d.gravity_work();
-        self.step();
-        let m = &self.machine;
-        let contact = m.contacts.energy();
-        Ledger {
-            kinetic: m.dynamics.kinetic_energy(&self.before.vx, &self.before.vy, &self.before.rigid),
-            strain: elastic.strain,
-            hourglass: elastic.hourglass,
-            contact: contact.stored,
-            friction: contact.friction,
-            damping: m.dynamics.heat.at_last_positions(),
-            contact_damping: contact.damping,
-            external: m.load.energy().supplied + (gravity - self.external0),
-            drive: m.dynamics.drive.at_last_positions(),
-        }
-    }
-
-    /// Writes one sample; returns the relative imbalance.
-    fn account(&mut self, l: &Ledger, info: &mut RunInfo) -> Result<f64, Error> {
-        let energy = &mut info.energy;
-        energy.peak_strain_j = energy.peak_strain_j.max(l.strain);
-        let imbalance = (l.balance() - self.baseline.unwrap_or(0.0)).abs();
-        let scale = if energy.peak_strain_j > 0.0 { energy.peak_strain_j } else { 1.0 };
-        let error = if imbalance.is_finite() { imbalance / scale } else { f64::INFINITY };
-        energy.max_relative_error = energy.max_relative_error.max(error);
-        let time = self.machine.dynamics.state.time - self.machine.dynamics.time_step();
-        self.energy.push(&[
-            time,
-            l.kinetic,
-            l.strain,
-            l.hourglass,
-            l.contact,
-            l.friction,
-            l.damping,
-            l.contact_damping,
-            l.external,
-            l.drive,
-            error,
-        ])?;
-        let row = self.recorder.sample(&self.machine);
-        self.trace.push(row)?;
-        Ok(error)
-    }
-
-    fn why_stopped(&self, error: f64, assembly: &Assembly) -> String {
-        let d = &self.machine.dynamics;
-        let s = &d.state;
-        let speed = |n: usize| s.vx[n].hypot(s.vy[n]);
-        let worse = |a: usize, b: usize| if speed(a) >= speed(b) || speed(a).is_nan() { a } else { b };
-        let worst = (0..s.x.len()).filter(|&n| d.mass()[n] > 0.0).reduce(worse).unwrap_or(0);
-        let node = d.layout().node_of_slot[worst].unwrap_or(0) as usize;
-        let mesh = &assembly.model.mesh;
-        let body = mesh.bodies.iter().find(|b| b.nodes.contains(&node)).map_or("", |b| b.name.as_str());
-        format!(
-            "energy is out of balance by {:.1} % of the peak strain energy (limit {:.0} %) at step {}, t = {:.5} ms; the \
-             fastest node is in the {body} at x = {:.3} mm, y = {:.3} mm with {:.3e} m/s. Try a smaller \
-             `solver.time_step_factor`, a smaller `contact.penalty_scale`, or look for bodies that overlap",
-            100.0 * error,
-            100.0 * WORST_IMBALANCE,
-            s.step,
-            1e3 * s.time,
-            1e3 * s.x[worst],
-            1e3 * s.y[worst],
-            speed(worst),
-        )
-    }
+    Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
 }
 
 /// Critical time step with contact; its damping acts half a step late and counts with the step it is used at.
@@ -359,10 +191,11 @@ fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
     scene.operation.load_n + scene.operation.gravity_m_s2 * (mass(&machine.outer) + mass(&machine.adapter))
 }
 
-fn mass_damping(scene: &Scene, machine: &Machine) -> Result<Option<MassDamping>, Error> {
+/// Sets the mass damping of the scene, if it has one.
+fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
     let rate = scene.solver.mass_damping_per_s;
     if rate == 0.0 {
-        return Ok(None);
+        return Ok(());
     }
     let (standing, rolling) = match scene.solver.damping_frame {
         DampingFrame::Rolling => (Frame::Rest, Frame::Track),
@@ -372,7 +205,8 @@ fn mass_damping(scene: &Scene, machine: &Machine) -> Result<Option<MassDamping>,
     // The inner ring's bore is driven: what is damped there would only be fed in again.
     let mut frames: Vec<(usize, Frame)> = machine.standing_bodies.iter().map(|&b| (b, standing)).collect();
     frames.extend(machine.rollers.iter().map(|r| (r.body, rolling)));
-    Ok(Some(MassDamping::new(rate, frames)?))
+    machine.dynamics.set_mass_damping(&MassDamping::new(rate, frames)?);
+    Ok(())
 }
 
 /// Writes the mesh at the start of the run, as the preload has left it.

@@ -1,6 +1,7 @@
 //! All contacts of a model: one more force on nodes.
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 use stribeck_solver::{
     Force,
     force::RankOne,
@@ -9,7 +10,7 @@ use stribeck_solver::{
 
 use crate::{
     law::Law,
-    pass::{History, Pass, Sum, Weights},
+    pass::{Memory, Pass, Sum, Weights},
     points::{Method, Points},
     search::Tree,
     surface::Surface,
@@ -37,13 +38,23 @@ pub struct Resultant {
     pub penetration: f64,
 }
 
-/// What contact remembers from step to step, for checkpoints.
-#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+/// What contact remembers from step to step, for checkpoints: continued from it, contact gives the same bits.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
-    history: Vec<History>,
+    /// Of each pass of each pair.
+    passes: Vec<Memory>,
+    search: Schedule,
+    /// Heat since the start [J].
     friction: f64,
     damping: f64,
-    next_search: u64,
+}
+
+/// When to search again, and the speed that this counts on.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Schedule {
+    next: u64,
+    /// Fastest approach of two points [m/s].
+    fastest: f64,
 }
 
 /// All contacts of a model.
@@ -54,8 +65,7 @@ pub struct Contacts {
     pairs: Vec<Pair>,
     thickness: f64,
     skin: f64,
-    next_search: u64,
-    fastest: f64,
+    search: Schedule,
     preload: Option<f64>,
     parallel: bool,
     energy: Energy,
@@ -113,8 +123,7 @@ impl Contacts {
             pairs,
             thickness,
             skin,
-            next_search: 0,
-            fastest: 0.0,
+            search: Schedule::default(),
             preload: None,
             parallel: false,
             energy: Energy::default(),
@@ -131,7 +140,7 @@ impl Contacts {
     /// takes everything in again.
     pub fn set_preload(&mut self, softness: Option<f64>) {
         self.preload = softness;
-        self.next_search = 0;
+        self.search.next = 0;
     }
 
     /// What each pair does, in the order given.
@@ -153,25 +162,30 @@ impl Contacts {
     /// What contact remembers.
     pub fn state(&self) -> ContactState {
         ContactState {
-            history: self.pairs.iter().flat_map(|p| &p.passes).flat_map(|p| &p.history).copied().collect(),
+            passes: self.passes().map(|pass| pass.memory.clone()).collect(),
+            search: self.search,
             friction: self.energy.friction,
             damping: self.energy.damping,
-            next_search: self.next_search,
         }
     }
 
-    /// Resumes from what contact remembered; false when it belongs to other contacts.
-    pub fn restore(&mut self, state: &ContactState) -> bool {
-        let mut rest = state.history.as_slice();
-        for pass in self.pairs.iter_mut().flat_map(|p| &mut p.passes) {
-            let Some((own, others)) = rest.split_at_checked(pass.history.len()) else { return false };
-            pass.history.copy_from_slice(own);
-            rest = others;
+    /// Resumes from what contact remembered; false when it belongs to other contacts, and nothing is changed then.
+    pub fn restore(&mut self, state: ContactState) -> bool {
+        let fits = |(pass, memory): (&Pass, &Memory)| pass.can_remember(memory, &self.surfaces);
+        if self.passes().count() != state.passes.len() || !self.passes().zip(&state.passes).all(fits) {
+            return false;
         }
+        for (pass, memory) in self.pairs.iter_mut().flat_map(|p| &mut p.passes).zip(state.passes) {
+            pass.memory = memory;
+        }
+        self.search = state.search;
         self.energy.friction = state.friction;
         self.energy.damping = state.damping;
-        self.next_search = 0;
-        rest.is_empty()
+        true
+    }
+
+    fn passes(&self) -> impl Iterator<Item = &Pass> {
+        self.pairs.iter().flat_map(|p| &p.passes)
     }
 
     fn search(&mut self, at: &Moment<'_>) {
@@ -191,13 +205,13 @@ impl Contacts {
         let speed = |&n: &u32| at.vx[n as usize].hypot(at.vy[n as usize]);
         let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(speed).fold(0.0, f64::max);
         // Two points may approach each other, each at the highest speed.
-        self.fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
-        let rest = if at.dt > 0.0 { self.skin / (self.fastest * at.dt) } else { 0.0 };
-        self.next_search = at.step + rest.clamp(1.0, LONGEST_REST) as u64;
+        let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
+        let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
+        self.search = Schedule { next: at.step + rest.clamp(1.0, LONGEST_REST) as u64, fastest };
     }
 
     fn weights(&self, spec: &PairSpec) -> Weights {
-        weights(spec, self.thickness, self.fastest, self.preload)
+        weights(spec, self.thickness, self.search.fastest, self.preload)
     }
 }
 
@@ -209,12 +223,12 @@ fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) 
 
 impl Force for Contacts {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
-        if at.step >= self.next_search || self.preload.is_some() {
+        if at.step >= self.search.next || self.preload.is_some() {
             self.search(&at);
         }
-        let Self { surfaces, pairs, thickness, fastest, preload, .. } = self;
+        let Self { surfaces, pairs, thickness, search, preload, .. } = self;
         let evaluate = |pair: &mut Pair| {
-            let w = weights(&pair.spec, *thickness, *fastest, *preload);
+            let w = weights(&pair.spec, *thickness, search.fastest, *preload);
             pair.push.clear();
             for (pass, sum) in pair.passes.iter_mut().zip(&mut pair.sum) {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);

@@ -16,17 +16,23 @@ pub(crate) struct Pass {
     pub(crate) secondary: usize,
     pub(crate) primary: usize,
     pub(crate) points: Points,
-    /// Facet of the primary surface on which each point was last found.
-    nearest: Vec<u32>,
-    candidates: Vec<Candidate>,
-    /// What points in contact remember; empty without damping and friction.
-    pub(crate) history: Vec<History>,
+    pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
     deepest: f64,
 }
 
+/// What a pass remembers from step to step.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Memory {
+    /// Facet of the primary surface on which each point was last found.
+    nearest: Vec<u32>,
+    candidates: Vec<Candidate>,
+    /// What points in contact remember; empty without damping and friction.
+    history: Vec<History>,
+}
+
 /// A facet that may touch.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Candidate {
     facet: u32,
     /// Not before this step.
@@ -35,7 +41,7 @@ struct Candidate {
 
 /// What a point in contact remembers of the step before.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct History {
+struct History {
     /// Elastic part of the tangential displacement [m].
     slip: f64,
     /// Damping force [N].
@@ -103,12 +109,23 @@ impl Pass {
         Self {
             secondary,
             primary,
-            nearest: vec![0; n],
-            candidates: Vec::new(),
-            history: vec![History::default(); if remembers { n } else { 0 }],
+            memory: Memory {
+                nearest: vec![0; n],
+                candidates: Vec::new(),
+                history: vec![History::default(); if remembers { n } else { 0 }],
+            },
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
         }
+    }
+
+    /// Whether `memory` can be that of this pass: equal counts, and facets that exist.
+    pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
+        let (own, secondary, primary) = (&self.memory, &surfaces[self.secondary], &surfaces[self.primary]);
+        memory.nearest.len() == own.nearest.len()
+            && memory.history.len() == own.history.len()
+            && memory.nearest.iter().all(|&facet| (facet as usize) < primary.facets())
+            && memory.candidates.iter().all(|c| (c.facet as usize) < secondary.facets())
     }
 
     /// Takes new candidates from pairs (secondary facet, primary facet), ascending.
@@ -120,13 +137,14 @@ impl Pass {
         y: &[f64],
     ) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        self.candidates.clear();
+        let Memory { nearest, candidates, .. } = &mut self.memory;
+        candidates.clear();
         let mut best: [f64; 64] = [f64::INFINITY; 64];
         let mut last = None;
         for (f, g) in pairs {
             let range = self.points.of_facet(f as usize);
             if last != Some(f) {
-                self.candidates.push(Candidate { facet: f, wake: 0 });
+                candidates.push(Candidate { facet: f, wake: 0 });
                 best = [f64::INFINITY; 64];
                 last = Some(f);
             }
@@ -136,7 +154,7 @@ impl Pass {
                 let best = &mut best[k.min(63)];
                 if d < *best {
                     *best = d;
-                    self.nearest[i] = g;
+                    nearest[i] = g;
                 }
             }
         }
@@ -153,7 +171,8 @@ impl Pass {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let mut sum = Sum::default();
         let reach = w.reach();
-        for candidate in &mut self.candidates {
+        let Memory { nearest, candidates, history } = &mut self.memory;
+        for candidate in candidates {
             if at.step < candidate.wake {
                 continue;
             }
@@ -166,13 +185,13 @@ impl Pass {
             for i in self.points.of_facet(facet) {
                 let place = self.points.place[i];
                 let p = between(at.x, at.y, a, b, place);
-                let found = project(primary, at.x, at.y, p, self.nearest[i] as usize);
+                let found = project(primary, at.x, at.y, p, nearest[i] as usize);
                 if let Some(found) = &found {
-                    self.nearest[i] = found.facet as u32;
+                    nearest[i] = found.facet as u32;
                 }
                 let contact = found.filter(|f| f.gap < reach && f.gap > -self.deepest);
                 let mut none = History::default();
-                let history = self.history.get_mut(i).unwrap_or(&mut none);
+                let history = history.get_mut(i).unwrap_or(&mut none);
                 let Some(projection) = contact else {
                     nearest_gap = nearest_gap.min(found.map_or(f64::INFINITY, |f| f.gap.abs()));
                     if *history != History::default() {
@@ -231,13 +250,13 @@ impl Pass {
         visit: &mut dyn FnMut(RankOne),
     ) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        for candidate in &self.candidates {
+        for candidate in &self.memory.candidates {
             let facet = candidate.facet as usize;
             let (a, b) = secondary.ends(facet);
             for i in self.points.of_facet(facet) {
                 let place = self.points.place[i];
                 let p = between(x, y, a, b, place);
-                let Some(f) = project(primary, x, y, p, self.nearest[i] as usize) else { continue };
+                let Some(f) = project(primary, x, y, p, self.memory.nearest[i] as usize) else { continue };
                 if f.gap >= w.reach() || f.gap <= -self.deepest {
                     continue;
                 }

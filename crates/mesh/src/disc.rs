@@ -59,10 +59,55 @@ impl Disc {
     /// sizes so far from the length of a facet that triangles between them turn inside out.
     pub fn part(&self) -> Result<Part, Error> {
         self.check()?;
-        let mut part = self.rim();
+        let layers = match self.radius / self.facet() {
+            ratio if ratio >= 8.0 => 2,
+            ratio if ratio >= 3.0 => 1,
+            _ => 0,
+        };
+        self.filled(layers, 1)
+    }
+
+    /// Makes a mesh with a given number of polar layers, for a fine rim around a core of larger squares.
+    ///
+    /// All layers but the last are as thick as the facets are long; [`Disc::part`] lets them grow where that makes the
+    /// smallest cells larger.
+    ///
+    /// # Errors
+    /// Those of [`Disc::part`], and more layers than [`Disc::most_layers`].
+    pub fn part_with_layers(&self, layers: usize) -> Result<Part, Error> {
+        self.check()?;
+        let most = self.most_layers();
+        if layers > most {
+            let advice = "leave half of the radius to the core";
+            return Err(Error::Count {
+                shape: SHAPE,
+                field: "layers",
+                value: layers,
+                least: 0,
+                most,
+                advice,
+            });
+        }
+        self.filled(layers, layers.max(1))
+    }
+
+    /// Most polar layers: those that leave half of the radius to the core.
+    pub fn most_layers(&self) -> usize {
+        // A disc that is none has no facets to count in; the cast makes zero of that.
+        (0.5 * self.radius / self.facet()) as usize
+    }
+
+    /// Length of a facet [m].
+    fn facet(&self) -> f64 {
+        2.0 * self.radius * (0.5 * TAU / self.facets as f64).sin()
+    }
+
+    /// Rim, core and the triangles between them; the first `fixed` rows of nodes, at least one, stay where they are.
+    fn filled(&self, layers: usize, fixed: usize) -> Result<Part, Error> {
+        let mut part = self.rim(layers);
         let ring = part.x.len() - self.facets;
         let (grid, gap) = self.best_core(&part, ring)?;
-        let mut movable = vec![false; self.facets];
+        let mut movable = vec![false; fixed * self.facets];
         movable.resize(part.x.len(), true);
         let core = push_core(&mut part, &grid, &mut movable);
         let inner: Vec<u32> = grid.outline().into_iter().map(core).collect();
@@ -84,14 +129,8 @@ impl Disc {
     }
 
     /// Polar layers, not yet turned.
-    fn rim(&self) -> Part {
-        let n = self.facets;
-        let facet = 2.0 * self.radius * (0.5 * TAU / n as f64).sin();
-        let layers = match self.radius / facet {
-            ratio if ratio >= 8.0 => 2,
-            ratio if ratio >= 3.0 => 1,
-            _ => 0,
-        };
+    fn rim(&self, layers: usize) -> Part {
+        let (n, facet) = (self.facets, self.facet());
         let mut part = Part::default();
         for row in 0..=layers {
             let radius = self.radius - row as f64 * facet;

@@ -62,20 +62,6 @@ pub enum Error {
         /// What to try.
         advice: &'static str,
     },
-    /// A count cannot be divided as the shape needs it.
-    #[error("{shape}: `{field}` is {value}, but it must be a multiple of {of}; try {nearest}")]
-    NotMultiple {
-        /// The shape that was asked for.
-        shape: &'static str,
-        /// The field that is wrong.
-        field: &'static str,
-        /// What the field holds.
-        value: usize,
-        /// What must divide it.
-        of: usize,
-        /// The multiple nearest to the value.
-        nearest: usize,
-    },
     /// Two fields that exclude each other.
     #[error("{shape}: `{field}` does not go together with `{other}`; {advice}")]
     Conflict {

@@ -3,9 +3,9 @@
 use std::f64::consts::TAU;
 
 use crate::annulus::{Annulus, Place};
-use crate::characteristic_length;
 use crate::error::{count, elements};
 use crate::groove;
+use crate::relax::enough;
 use crate::{Error, Part};
 
 /// One of the two circles of an annulus.
@@ -30,9 +30,12 @@ pub enum Circle {
 /// b ─ b ────── b ─ b     three facets before it
 /// ```
 ///
-/// No cell of a transition has a smaller characteristic length than a fine square, so the critical time step
-/// is that of the fine mesh. There are no triangles. The nodes t, i, i, t, i, i, … are numbered one after the
-/// other: the cells below that zigzag are a strip, and only those above it and the first coarse row are not.
+/// Where three do not divide the facets, one or two such groups have two facets, and a triangle instead of the
+/// upper cell; these are the only triangles. The nodes t, i, i, t, i, i, … are numbered one after the other: the
+/// cells below that zigzag are a strip, and only those above it and the first coarse row are not.
+///
+/// In a transition no quadrilateral has a smaller characteristic length than a fine square, so the critical time
+/// step is that of the fine mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grading {
     /// The circle that stays fine.
@@ -92,19 +95,8 @@ impl Grading {
                 "use a finer coarse mesh",
             );
         }
-        let (ratio, facets) = (self.ratio(), annulus.facets);
-        if !facets.is_multiple_of(ratio) {
-            let (shape, field, value) = (SHAPE, "facets", facets);
-            return Err(Error::NotMultiple {
-                shape,
-                field,
-                value,
-                of: ratio,
-                nearest: nearest_multiple(facets, ratio),
-            });
-        }
         let advice = "use fewer `transitions` or more facets";
-        count(SHAPE, "facets", facets, 8 * ratio, advice)?;
+        count(SHAPE, "facets", annulus.facets, 8 * self.ratio(), advice)?;
         let advice = "use fewer `fine_layers` or `transitions`, or finer layers";
         count(SHAPE, "layers", annulus.layers, self.layers_needed(), advice)?;
         if self.fine == Circle::Outer && annulus.groove.is_some() {
@@ -112,13 +104,8 @@ impl Grading {
             let advice = "a groove lies in the inner circle, so that one must be the fine one";
             return Err(Error::Conflict { shape: SHAPE, field, other, advice });
         }
-        elements(SHAPE, "layers", annulus.layers, facets)
+        elements(SHAPE, "layers", annulus.layers, annulus.facets)
     }
-}
-
-/// The positive multiple of `of` that is nearest to `value`.
-fn nearest_multiple(value: usize, of: usize) -> usize {
-    ((value + of / 2) / of).max(1) * of
 }
 
 impl Annulus {
@@ -126,11 +113,11 @@ impl Annulus {
     ///
     /// `layers` is what the annulus would have if all cells were fine; it sets the thickness of the fine layers.
     /// Nodes are numbered in rows from the fine circle to the coarse one. Surfaces are those of
-    /// [`Annulus::part`]; the coarse one has `facets` divided by [`Grading::ratio`].
+    /// [`Annulus::part`]; the coarse one has a third of the facets after each transition, rounded up.
     ///
     /// # Errors
-    /// Those of [`Annulus::part`]; facets that are no multiple of the ratio or leave fewer than 8 coarse ones,
-    /// fewer layers than [`Grading::layers_needed`], and a groove in the coarse circle.
+    /// Those of [`Annulus::part`]; fewer than 8 coarse facets, fewer layers than [`Grading::layers_needed`], and a
+    /// groove in the coarse circle.
     pub fn graded_part(&self, grading: &Grading) -> Result<Part, Error> {
         self.check()?;
         grading.check(self)?;
@@ -141,46 +128,34 @@ impl Annulus {
             let (sin, cos) = self.column_angle(*column).sin_cos();
             part.push_node(radius * cos, radius * sin);
         }
-        part.quads = lattice.quads;
-        let circle = |row: Row| (0..row.columns).map(move |c| row.node(c));
-        let (front, back) = (lattice.front, lattice.back);
-        let (inner, outer) = match grading.fine {
-            Circle::Inner => (front, back),
-            Circle::Outer => (back, front),
+        (part.quads, part.triangles) = (lattice.quads, lattice.triangles);
+        let front: Vec<u32> = (0..self.facets as u32).collect();
+        let (mut inner, outer) = match grading.fine {
+            Circle::Inner => (front, lattice.back.nodes),
+            Circle::Outer => (lattice.back.nodes, front),
         };
-        part.push_surface("inner", circle(inner).rev().collect(), true);
-        part.push_surface("outer", circle(outer).collect(), true);
+        inner.reverse();
+        part.push_surface("inner", inner, true);
+        part.push_surface("outer", outer, true);
         if let Some(groove) = &self.groove {
-            groove::cut(self, groove, &lattice.places, enough(self), &mut part)?;
+            let facet = TAU * self.inner_radius / self.facets as f64;
+            let layer = (self.outer_radius - self.inner_radius) / self.layers as f64;
+            groove::cut(self, groove, &lattice.places, enough(facet.min(layer)), &mut part)?;
         }
         Ok(part)
     }
 }
 
-/// Length at which the cells around a groove stop growing, relative to a fine square: a little more, so that the
-/// worst of them, which falls short of it, is no smaller than in a mesh of fine cells only.
-const ENOUGH: f64 = 1.05;
-
-/// Characteristic length that the cells around a groove should reach [m].
-fn enough(annulus: &Annulus) -> f64 {
-    let facet = TAU * annulus.inner_radius / annulus.facets as f64;
-    let side = facet.min((annulus.outer_radius - annulus.inner_radius) / annulus.layers as f64);
-    let square = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
-    ENOUGH * characteristic_length(&square, groove::POISSON)
-}
-
 /// A closed row of nodes.
-#[derive(Clone, Copy)]
 struct Row {
-    first: u32,
-    columns: usize,
-    /// Step of the node numbers from column to column.
-    stride: usize,
+    nodes: Vec<u32>,
+    /// Place of each node, in fine facets.
+    columns: Vec<usize>,
 }
 
 impl Row {
-    fn node(&self, column: usize) -> u32 {
-        self.first + (self.stride * (column % self.columns)) as u32
+    fn node(&self, i: usize) -> u32 {
+        self.nodes[i % self.nodes.len()]
     }
 }
 
@@ -188,72 +163,86 @@ impl Row {
 struct Lattice {
     places: Vec<Place>,
     quads: Vec<[u32; 4]>,
+    triangles: Vec<[u32; 3]>,
     fine: Circle,
     /// Layers of the annulus.
     layers: f64,
-    front: Row,
+    /// The coarse circle.
     back: Row,
 }
 
 impl Lattice {
     fn new(annulus: &Annulus, grading: &Grading) -> Self {
-        let front = Row { first: 0, columns: annulus.facets, stride: 1 };
-        let (fine, layers) = (grading.fine, annulus.layers as f64);
-        let mut lattice = Self { places: Vec::new(), quads: Vec::new(), fine, layers, front, back: front };
-        lattice.push_row(front.columns, |_| 0.0);
-        let (mut row, mut depth, mut cell) = (front, 0, 1);
+        let mut lattice = Self {
+            places: Vec::new(),
+            quads: Vec::new(),
+            triangles: Vec::new(),
+            fine: grading.fine,
+            layers: annulus.layers as f64,
+            back: Row { nodes: Vec::new(), columns: Vec::new() },
+        };
+        let mut row = lattice.push_row((0..annulus.facets).collect(), |_| 0.0);
+        let (mut depth, mut cell) = (0, 1);
         for level in 0..grading.transitions {
             for _ in 0..grading.straight_rows(level) {
                 depth += cell;
-                row = lattice.add_row(row, |_| depth as f64);
+                row = lattice.add_row(&row, |_| depth as f64);
             }
-            row = lattice.add_transition(row, depth, cell);
+            row = lattice.add_transition(&row, depth, cell);
             depth += 2 * cell;
             cell *= RATIO;
         }
-        let rows = coarse_rows(annulus, grading, depth, row.columns);
+        let rows = coarse_rows(annulus, grading, depth, row.nodes.len());
         let rest = (annulus.layers - depth) as f64;
         for i in 1..=rows {
             // The last depth is exact, so that no rounding moves the coarse circle.
             let below = if i == rows { rest } else { rest * i as f64 / rows as f64 };
-            row = lattice.add_row(row, |_| depth as f64 + below);
+            row = lattice.add_row(&row, |_| depth as f64 + below);
         }
         lattice.back = row;
         lattice
     }
 
     /// A row of nodes, no cells yet. Depths are layers below the fine circle.
-    fn push_row(&mut self, columns: usize, depth: impl Fn(usize) -> f64) -> Row {
+    fn push_row(&mut self, columns: Vec<usize>, depth: impl Fn(usize) -> f64) -> Row {
         let first = self.places.len() as u32;
-        let spacing = self.front.columns / columns;
-        for c in 0..columns {
+        for (i, &column) in columns.iter().enumerate() {
             let row = match self.fine {
-                Circle::Inner => depth(c),
-                Circle::Outer => self.layers - depth(c),
+                Circle::Inner => depth(i),
+                Circle::Outer => self.layers - depth(i),
             };
-            self.places.push(Place { column: spacing * c, row });
+            self.places.push(Place { column, row });
         }
-        Row { first, columns, stride: 1 }
+        Row { nodes: (first..self.places.len() as u32).collect(), columns }
     }
 
     /// A row of nodes and the cells between it and the one before.
-    fn add_row(&mut self, near: Row, depth: impl Fn(usize) -> f64) -> Row {
-        let far = self.push_row(near.columns, depth);
-        for c in 0..near.columns {
-            self.add_quad([near.node(c), near.node(c + 1)], [far.node(c), far.node(c + 1)]);
+    fn add_row(&mut self, near: &Row, depth: impl Fn(usize) -> f64) -> Row {
+        let far = self.push_row(near.columns.clone(), depth);
+        for i in 0..near.nodes.len() {
+            self.add_quad([near.node(i), near.node(i + 1)], [far.node(i), far.node(i + 1)]);
         }
         far
     }
 
     /// The zigzag and the cells on both of its sides; gives the coarse row that its peaks are.
-    fn add_transition(&mut self, near: Row, depth: usize, cell: usize) -> Row {
-        let height = |c: usize| if c.is_multiple_of(RATIO) { 2 * cell } else { cell };
-        let zigzag = self.add_row(near, |c| (depth + height(c)) as f64);
-        for c in (0..near.columns).step_by(RATIO) {
-            let [peak, valley, other_valley, other_peak] = [0, 1, 2, 3].map(|i| zigzag.node(c + i));
-            self.add_quad([valley, other_valley], [peak, other_peak]);
+    fn add_transition(&mut self, near: &Row, depth: usize, cell: usize) -> Row {
+        let groups = groups(near.nodes.len());
+        let mut is_peak = vec![false; near.nodes.len()];
+        groups.iter().for_each(|(first, _)| is_peak[*first] = true);
+        let height = |i: usize| if is_peak[i] { 2 * cell } else { cell };
+        let zigzag = self.add_row(near, |i| (depth + height(i)) as f64);
+        let mut peaks = Row { nodes: Vec::new(), columns: Vec::new() };
+        for (first, len) in groups {
+            let corners = [zigzag.node(first), zigzag.node(first + len)];
+            match len {
+                RATIO => self.add_quad([zigzag.node(first + 1), zigzag.node(first + 2)], corners),
+                _ => self.add_triangle(zigzag.node(first + 1), corners),
+            }
+            peaks.nodes.push(zigzag.nodes[first]);
+            peaks.columns.push(zigzag.columns[first]);
         }
-        Row { first: zigzag.first, columns: near.columns / RATIO, stride: RATIO }
+        peaks
     }
 
     /// A cell between two neighbouring nodes and the two beyond them, counter-clockwise.
@@ -263,6 +252,22 @@ impl Lattice {
             Circle::Outer => [near[0], near[1], far[1], far[0]],
         });
     }
+
+    /// A cell between a node and the two beyond it, counter-clockwise.
+    fn add_triangle(&mut self, near: u32, far: [u32; 2]) {
+        self.triangles.push(match self.fine {
+            Circle::Inner => [far[0], far[1], near],
+            Circle::Outer => [near, far[1], far[0]],
+        });
+    }
+}
+
+/// First facet and length of the groups that become one facet each: threes, and one or two twos at the end.
+fn groups(facets: usize) -> Vec<(usize, usize)> {
+    let pairs = (RATIO - facets % RATIO) % RATIO;
+    let threes = (facets - 2 * pairs) / RATIO;
+    let from_pairs = (0..pairs).map(|i| (RATIO * threes + 2 * i, 2));
+    (0..threes).map(|i| (RATIO * i, RATIO)).chain(from_pairs).collect()
 }
 
 /// Rows of nearly square cells between `depth` and the coarse circle.

@@ -29,7 +29,7 @@ pub struct Groove {
 }
 
 /// Poisson's ratio for which the cells under a groove are shaped; the best shape hardly depends on it.
-pub(crate) const POISSON: f64 = 0.3;
+const POISSON: f64 = 0.3;
 
 /// Passes of Gauss–Seidel that spread the displacement of the inner row, and passes of the pattern search
 /// for each layer that the groove is deep.

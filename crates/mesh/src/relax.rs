@@ -25,6 +25,18 @@ const LAST_STEP: f64 = 1.0 / 512.0;
 const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
 
+/// Score at which cells of a graded mesh need not grow, relative to a fine square: a little more than one, so that
+/// the worst cell, which falls short of it, is no smaller than in a mesh of fine cells only.
+const ENOUGH: f64 = 1.1;
+
+/// Poisson's ratio for which that square is measured; only the ratio of lengths matters, and hardly depends on it.
+const POISSON: f64 = 0.3;
+
+/// Score [m] that cells need not exceed in a mesh whose finest cells are squares of this side [m].
+pub(crate) fn enough(side: f64) -> f64 {
+    ENOUGH * score(&[[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]], POISSON)
+}
+
 /// Moves nodes by pattern search so that the smallest characteristic length grows.
 ///
 /// Each movable node in turn tries eight directions and keeps the first move that lowers Σ (1/s)^p over its

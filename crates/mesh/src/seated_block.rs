@@ -35,54 +35,61 @@ impl SeatedBlock {
     /// (its corners would become needles).
     pub fn part(&self) -> Result<Part, Error> {
         self.check()?;
+        let seat_at = |x: f64| [x, (self.seat_radius * self.seat_radius - x * x).sqrt()];
         let abscissa = |column: usize| self.width * (column as f64 / self.columns as f64 - 0.5);
-        Ok(self.divided((0..=self.columns).map(abscissa)))
+        let seat: Vec<[f64; 2]> = (0..=self.columns).map(|column| seat_at(abscissa(column))).collect();
+        Ok(self.over(&seat))
     }
 
-    /// Makes a mesh whose columns end where the caller wants, for example at the nodes of the body in the seat.
+    /// Makes a mesh whose seat is a given polyline, for example through the nodes of the body that sits in it.
     ///
-    /// `inner` are the abscissae [m] of the lines between the columns, ascending, one fewer than `columns`.
+    /// `seat` are its nodes [m] from left to right, one more than `columns`, from x = −`width`/2 to `width`/2. Columns
+    /// stand on them, as wide as they are apart; `seat_radius` gives the height of the top edge only.
     ///
     /// # Errors
-    /// Those of [`SeatedBlock::part`]; lines that are not `columns` − 1 or do not ascend between the sides.
-    pub fn part_with_lines(&self, inner: &[f64]) -> Result<Part, Error> {
+    /// Those of [`SeatedBlock::part`]; a number of nodes that does not fit the columns, nodes that do not go from
+    /// side to side, and nodes above the top edge.
+    pub fn part_on(&self, seat: &[[f64; 2]]) -> Result<Part, Error> {
         self.check()?;
-        if inner.len() + 1 != self.columns {
-            let (field, value) = ("columns", self.columns);
-            let (least, most) = (inner.len() + 1, inner.len() + 1);
-            let advice = "a line stands between two columns";
-            return Err(Error::Count { shape: SHAPE, field, value, least, most, advice });
+        if seat.len() != self.columns + 1 {
+            let (field, value, most) = ("columns", self.columns, seat.len().saturating_sub(1));
+            let advice = "one column stands between two nodes of the seat";
+            return Err(Error::Count { shape: SHAPE, field, value, least: most, most, advice });
         }
+        let refuse = |value, relation, limit, advice| {
+            Err(Error::OutOfRange { shape: SHAPE, field: "seat", value, relation, limit, advice })
+        };
         let half = 0.5 * self.width;
-        let lines: Vec<f64> = [-half].into_iter().chain(inner.iter().copied()).chain([half]).collect();
-        for pair in lines.windows(2) {
-            // Written so that NaN is refused too.
-            let ascending = pair[1] > pair[0];
-            if !ascending {
-                let (field, value, limit) = ("inner", pair[1], pair[0]);
-                let advice = "sort the lines and keep them between the sides";
-                return Err(Error::OutOfRange {
-                    shape: SHAPE,
-                    field,
-                    value,
-                    relation: "above",
-                    limit,
-                    advice,
-                });
+        for (end, side) in [(seat[0], -half), (seat[self.columns], half)] {
+            if end[0] != side {
+                return refuse(end[0], "at", side, "the seat goes from one side of the block to the other");
             }
         }
-        Ok(self.divided(lines.into_iter()))
+        for [[left, _], [right, _]] in seat.windows(2).map(|pair| [pair[0], pair[1]]) {
+            // Written so that NaN is refused too.
+            let ascending = right > left;
+            if !ascending {
+                return refuse(right, "above", left, "sort the nodes of the seat from left to right");
+            }
+        }
+        let top = self.seat_radius + self.height;
+        for [_, y] in seat {
+            let below = *y < top;
+            if !below {
+                return refuse(*y, "below", top, "the seat lies under the top edge");
+            }
+        }
+        Ok(self.over(seat))
     }
 
-    /// Rows of nodes over the given abscissae.
-    fn divided(&self, abscissae: impl Iterator<Item = f64> + Clone) -> Part {
+    /// Rows of nodes between a seat and the top edge.
+    fn over(&self, seat: &[[f64; 2]]) -> Part {
         let mut part = Part::default();
         let top = self.seat_radius + self.height;
         for row in 0..=self.rows {
             let up = row as f64 / self.rows as f64;
-            for x in abscissae.clone() {
-                let seat = (self.seat_radius * self.seat_radius - x * x).sqrt();
-                part.push_node(x, seat + (top - seat) * up);
+            for [x, y] in seat {
+                part.push_node(*x, y + (top - y) * up);
             }
         }
         part.quads = rows::quads(0, self.rows, self.columns + 1, false, NextRow::Above);

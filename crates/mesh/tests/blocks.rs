@@ -147,30 +147,35 @@ fn invariant_refusals_name_field_and_limit() {
     }
 }
 
-/// Columns of different widths: each is a trapezium under the top edge, and the seat passes through the lines.
+/// A polyline as the seat: columns of different widths, each a trapezium under the top edge.
 #[test]
-fn analytic_seated_block_with_given_lines() {
-    let lines = [-0.05, -0.01, 0.0, 0.03, 0.06];
-    let block = SeatedBlock { columns: 6, rows: 10, ..BLOCK };
-    let part = block.part_with_lines(&lines).expect("a block");
-    assert_is_a_grid(&part, 10, 6);
+fn analytic_seated_block_on_a_polyline() {
+    let seat = [[-0.08, 0.07], [-0.05, 0.1], [-0.01, 0.109], [0.0, 0.11], [0.03, 0.105], [0.08, 0.075]];
+    let block = SeatedBlock { columns: 5, rows: 10, ..BLOCK };
+    let part = block.part_on(&seat).expect("a block");
+    assert_is_a_grid(&part, 10, 5);
     assert_boundary_is(&part, &["seat", "right", "top", "left"]);
-    let all = [-0.08, -0.05, -0.01, 0.0, 0.03, 0.06, 0.08];
-    let seat_at = |x: f64| (0.11_f64 * 0.11 - x * x).sqrt();
-    for (node, x) in surface(&part, "seat").nodes.iter().zip(all) {
-        assert_eq!(point(&part, *node), [x, seat_at(x)]);
-    }
-    let height = |x: f64| 0.15 - seat_at(x);
-    let area: f64 = all.windows(2).map(|w| 0.5 * (w[1] - w[0]) * (height(w[0]) + height(w[1]))).sum();
-    assert_close(part.area(), area, 1e-12, "area");
-    let wrong = block.part_with_lines(&lines[1..]).expect_err("one line is missing").to_string();
-    assert!(wrong.contains("columns"), "{wrong}");
-    for bad in [
-        [-0.05, -0.01, -0.02, 0.03, 0.06],
-        [-0.05, -0.01, 0.0, 0.03, 0.09],
-        [-0.05, f64::NAN, 0.0, 0.03, 0.06],
+    let nodes = &surface(&part, "seat").nodes;
+    assert!(nodes.iter().zip(seat).all(|(n, p)| point(&part, *n) == p), "the seat is the polyline");
+    let under = |w: &[[f64; 2]]| (w[1][0] - w[0][0]) * (0.15 - 0.5 * (w[0][1] + w[1][1]));
+    assert_close(part.area(), seat.windows(2).map(under).sum(), 1e-12, "area");
+
+    let refused =
+        |block: SeatedBlock, seat: &[[f64; 2]]| block.part_on(seat).expect_err("no seat").to_string();
+    let with = |i: usize, p: [f64; 2]| {
+        let mut other = seat;
+        other[i] = p;
+        other
+    };
+    for (message, part) in [
+        (refused(block, &seat[1..]), "columns"),
+        (refused(block, &[]), "columns"),
+        (refused(block, &with(0, [-0.07, 0.07])), "at -0.08"),
+        (refused(block, &with(2, [-0.06, 0.1])), "left to right"),
+        (refused(block, &with(3, [f64::NAN, 0.11])), "left to right"),
+        (refused(block, &with(3, [0.0, 0.15])), "below 0.15"),
+        (refused(block, &with(3, [0.0, f64::NAN])), "below 0.15"),
     ] {
-        let wrong = block.part_with_lines(&bad).expect_err("lines out of order").to_string();
-        assert!(wrong.contains("inner"), "{wrong}");
+        assert!(message.contains("seat") && message.contains(part), "{message}");
     }
 }

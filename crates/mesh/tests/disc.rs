@@ -139,3 +139,25 @@ proptest! {
         assert_is_a_disc(disc, &made(disc));
     }
 }
+
+/// A fine rim around a core of three times larger squares: each layer is a row of quadrilaterals, no cell is smaller
+/// than in a disc of fine cells, and far fewer cells are needed.
+#[test]
+fn invariant_layers_around_a_coarse_core() {
+    let coarse = Disc { size: 1.5e-3, ..DISC };
+    let fine = made(DISC);
+    for layers in 0..=coarse.most_layers() {
+        let part = coarse.part_with_layers(layers).expect("a disc");
+        assert_is_a_disc(coarse, &part);
+        let rows = find_strips(&part.quads).iter().filter(|s| s.len == 111).count();
+        assert_eq!(rows, layers, "a row is one strip and the cell that closes it");
+        if layers == 3 {
+            assert!(relative_length(&part, 0.5e-3) >= relative_length(&fine, 0.5e-3));
+            let count = |p: &Part| p.quads.len() + p.triangles.len();
+            assert!(count(&part) < 6 * count(&fine) / 10, "{} cells", count(&part));
+        }
+    }
+    assert_eq!(coarse.most_layers(), 8);
+    let message = coarse.part_with_layers(9).expect_err("no core is left").to_string();
+    assert!(message.contains("layers") && message.contains("and 8"), "{message}");
+}

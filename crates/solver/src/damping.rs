@@ -1,5 +1,7 @@
 //! Mass-proportional damping relative to a motion that is not to be braked (THEORY §2.6).
 
+use serde::{Deserialize, Serialize};
+
 use crate::{error::Error, error::check, lanes::LANES, rigid::RigidMotion};
 
 /// The motion that damping leaves alone.
@@ -21,6 +23,17 @@ pub struct MassDamping {
     rate: f64,
     /// Frame of each damped body, by its number in the mesh.
     frames: Vec<(usize, Frame)>,
+}
+
+/// Where a frame was last placed. Part of what changes in time, because frames are placed now and then only.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PlacedFrame {
+    /// A point of the frame [m].
+    pub centre: [f64; 2],
+    /// Its velocity [m/s].
+    pub velocity: [f64; 2],
+    /// Angular velocity of the frame [rad/s], counter-clockwise positive.
+    pub spin: f64,
 }
 
 /// Frames are placed anew every so many steps; in between their centres move on a straight line.
@@ -76,23 +89,34 @@ impl LaneFrames {
 
     /// Places the frame of a lane by the present motion of its body.
     pub(crate) fn place(&mut self, lane: usize, own: impl FnOnce() -> RigidMotion) {
-        let (centre, velocity, spin) = match self.frames[lane] {
-            Frame::Rest => ([0.0; 2], [0.0; 2], 0.0),
+        let frame = match self.frames[lane] {
+            Frame::Rest => PlacedFrame::default(),
             Frame::OwnMotion => {
                 let own = own();
-                (own.centre, own.velocity, own.spin)
+                PlacedFrame { centre: own.centre, velocity: own.velocity, spin: own.spin }
             }
             Frame::Track => {
                 let own = own();
                 let [x, y] = own.centre;
                 let square = (x * x + y * y).max(f64::MIN_POSITIVE);
                 let outwards = (own.velocity[0] * x + own.velocity[1] * y) / square;
-                (own.centre, [own.velocity[0] - outwards * x, own.velocity[1] - outwards * y], own.spin)
+                let velocity = [own.velocity[0] - outwards * x, own.velocity[1] - outwards * y];
+                PlacedFrame { centre: own.centre, velocity, spin: own.spin }
             }
         };
-        self.centre[lane] = centre;
-        self.velocity[lane] = velocity;
-        self.spin[lane] = spin;
+        self.put(lane, frame);
+    }
+
+    /// Puts the frame of a lane where it was placed earlier.
+    pub(crate) fn put(&mut self, lane: usize, frame: PlacedFrame) {
+        self.centre[lane] = frame.centre;
+        self.velocity[lane] = frame.velocity;
+        self.spin[lane] = frame.spin;
+    }
+
+    /// Where the frame of a lane was last placed.
+    pub(crate) fn placed(&self, lane: usize) -> PlacedFrame {
+        PlacedFrame { centre: self.centre[lane], velocity: self.velocity[lane], spin: self.spin[lane] }
     }
 
     /// Moves the frames on by `span` [s] since they were placed.

@@ -30,7 +30,7 @@ pub struct Dynamics {
     /// Heat of mass damping since the start [J].
     pub heat: Accumulated,
     layout: Layout,
-    tiles: Vec<Tile>,
+    pub(crate) tiles: Vec<Tile>,
     rigid_bodies: Vec<RigidBody>,
     mass: Vec<f64>,
     motion: Vec<Motion>,
@@ -41,15 +41,15 @@ pub struct Dynamics {
     time_step: f64,
     gravity: [f64; 2],
     parallel: bool,
-    damped: Option<Vec<DampedBody>>,
+    pub(crate) damped: Option<Vec<DampedBody>>,
     /// Step at which the damping frames were last placed.
-    frames_placed: Option<u64>,
+    pub(crate) frames_placed: Option<u64>,
 }
 
 /// One body of the mass damping: the tile and lane that its frame serves, and its slots.
 #[derive(Debug, Clone)]
-struct DampedBody {
-    places: Vec<(usize, usize)>,
+pub(crate) struct DampedBody {
+    pub(crate) places: Vec<(usize, usize)>,
     slots: Vec<u32>,
 }
 
@@ -265,8 +265,8 @@ impl Dynamics {
 
     /// Sets the mass-proportional damping of elastic bodies; replaces an earlier one.
     ///
-    /// Frames are placed at the next step and then at every 64th step, counted from the first of the run, and are no part
-    /// of the state: a run resumed at such a step has the same bits.
+    /// Frames are placed at the next step and then at every 64th step, counted from the first of the run; a
+    /// [`Snapshot`](crate::snapshot::Snapshot) holds them.
     pub fn set_mass_damping(&mut self, damping: &MassDamping) {
         let mut bodies: Vec<(usize, DampedBody)> = Vec::new();
         for (t, (tile, layout)) in self.tiles.iter_mut().zip(&self.layout.tiles).enumerate() {

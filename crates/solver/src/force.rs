@@ -35,7 +35,8 @@ pub trait Force {
 #[derive(Debug, Clone, Default)]
 pub struct NodalLoad {
     loads: Vec<(u32, f64, f64)>,
-    supplied: f64,
+    /// Work done since the start [J]: all that a constant load remembers.
+    pub supplied: f64,
 }
 
 impl NodalLoad {

@@ -78,6 +78,7 @@
 //! | What does a user give? | `model.rs`, `material.rs` |
 //! | What changes in time, what pushes? | `state.rs`, `force.rs` |
 //! | What is one step? | `dynamics.rs` |
+//! | What does it take to continue a run? | `snapshot.rs` |
 //! | What force does an element make? | `element.rs` |
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
 //! | How long may a step be? | `critical.rs` |
@@ -98,6 +99,7 @@ pub mod layout;
 pub mod material;
 pub mod model;
 pub mod rigid;
+pub mod snapshot;
 pub mod state;
 pub mod statics;
 mod strip;

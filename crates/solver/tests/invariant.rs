@@ -4,10 +4,7 @@ mod common;
 
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
-use stribeck_solver::{
-    Behaviour, Dynamics, Force, Model, Motion, dynamics::Accumulated, force::NodalLoad, rigid::RigidState,
-    state::State,
-};
+use stribeck_solver::{Behaviour, Dynamics, Force, Model, Motion, force::NodalLoad};
 
 /// A scene with every kind of tile: a plate of several tiles, congruent discs, a driven ring, a rigid block.
 fn everything() -> Model {
@@ -57,7 +54,7 @@ fn ready_to_run(threads: usize) -> (Dynamics, NodalLoad) {
 
 /// All that a checkpoint holds, as text: floats are written so that they read back to the same bits.
 fn checkpoint(d: &Dynamics) -> String {
-    serde_json::to_string(&(&d.state, &d.rigid, &d.drive)).expect("numbers are finite")
+    serde_json::to_string(&d.snapshot()).expect("numbers are finite")
 }
 
 fn run_on(threads: usize, steps: usize) -> String {
@@ -86,11 +83,21 @@ fn invariant_a_resumed_run_has_the_same_bits() {
     let saved = checkpoint(&first);
 
     let (mut second, mut load) = ready_to_run(1);
-    let (state, rigid, drive): (State, Vec<RigidState>, Accumulated) =
-        serde_json::from_str(&saved).expect("what was written can be read");
-    (second.state, second.rigid, second.drive) = (state, rigid, drive);
+    second
+        .restore(serde_json::from_str(&saved).expect("what was written can be read"))
+        .expect("the same model");
     run(&mut second, &mut [&mut load], 35);
     assert!(checkpoint(&whole) == checkpoint(&second));
+}
+
+#[test]
+fn invariant_a_snapshot_of_another_model_is_refused() {
+    let (mut d, _) = ready_to_run(1);
+    let before = checkpoint(&d);
+    let other = Dynamics::new(&body(&rectangle(0.01, 0.01, 4, 4)), &[true; 25], 1).expect("a sound model");
+    let error = d.restore(other.snapshot()).expect_err("other slots").to_string();
+    assert!(error.contains("slots of the snapshot") && error.contains("those of the model"), "{error}");
+    assert!(before == checkpoint(&d), "a refused snapshot changed something");
 }
 
 #[test]

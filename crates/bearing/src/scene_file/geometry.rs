@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 
 use stribeck_mesh::Circle;
 
-use super::graded;
 use super::limits::number;
 use super::origin::Finding;
 use crate::grading;
@@ -26,7 +25,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     groups.iter().flat_map(|group| group(scene)).collect()
 }
 
-pub(super) fn finding(fields: &[&str], message: String, allowed: String, suggestion: String) -> Finding {
+fn finding(fields: &[&str], message: String, allowed: String, suggestion: String) -> Finding {
     Finding { fields: fields.iter().map(|field| (*field).to_owned()).collect(), message, allowed, suggestion }
 }
 
@@ -238,7 +237,12 @@ fn mesh(scene: &Scene) -> Vec<Finding> {
         let allowed = format!("at most {thickness} mm, one layer");
         found.push(finding(&["mesh.size_mm", body], message, allowed, suggestion));
     }
-    found.extend(graded::findings(scene));
+    if let Some(coarse) = scene.mesh.grading.as_ref().map(|g| g.coarse_mm).filter(|coarse| *coarse < size) {
+        let message = format!("`mesh.grading.coarse_mm` is {coarse}, finer than `mesh.size_mm` ({size} mm)");
+        let suggestion = format!("{} makes one facet of three", number(3.0 * size));
+        let fields = ["mesh.grading.coarse_mm", "mesh.size_mm"];
+        found.push(finding(&fields, message, format!("{size} mm or more"), suggestion));
+    }
     found.extend(too_many_elements(scene));
     found
 }

@@ -5,7 +5,7 @@ use ron::error::SpannedError;
 use super::outline::Outline;
 use super::problem::{Place, Problem, SceneError, offset, place_in_file};
 use super::{dialect, suggest};
-use crate::scene::Scene;
+use crate::scene::{GradingScene, Scene};
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -15,7 +15,10 @@ pub(crate) struct Schema {
 
 impl Schema {
     pub(crate) fn new() -> Self {
-        let text = Scene::default().to_ron();
+        let mut scene = Scene::default();
+        // Absent by default, but its fields must be known.
+        scene.mesh.grading = Some(GradingScene::default());
+        let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }
     }

@@ -82,6 +82,42 @@ fn invariant_a_killed_run_loses_at_most_a_hundred_rows() {
 }
 
 #[test]
+fn invariant_a_continued_file_is_that_of_one_writer() {
+    let file = Scratch::new();
+    let names = ["time_s", "x"];
+    let whole = file.write(&names, &rows(7));
+    for kept in 0..=7 {
+        // Rows beyond those kept, and a torn one, as a killed run leaves them.
+        std::fs::write(&file.0, [whole.as_slice(), &[1; 9]].concat()).expect("writable");
+        let mut writer = TraceWriter::resume(&file.0, &names, kept).expect("it holds as many");
+        assert_eq!(writer.rows(), kept);
+        for row in &rows(7)[kept as usize..] {
+            writer.push(row).expect("writable");
+        }
+        writer.sync().expect("writable");
+        assert!(std::fs::read(&file.0).expect("readable") == whole, "continued after {kept} rows");
+    }
+}
+
+#[test]
+fn invariant_a_file_that_cannot_be_continued_is_left_alone() {
+    let file = Scratch::new();
+    let whole = file.write(&["time_s", "x"], &rows(3));
+    let refuse = |bytes: &[u8], names: &[&str], rows, words: &str| {
+        std::fs::write(&file.0, bytes).expect("writable");
+        let error = TraceWriter::resume(&file.0, names, rows).map(|_| ()).expect_err("foreign").to_string();
+        assert!(error.contains(words), "{error}");
+        assert!(std::fs::read(&file.0).expect("readable") == bytes, "changed although {error}");
+    };
+    refuse(&whole, &["time_s", "x"], 4, "holds 3 samples and the checkpoint counts 4");
+    refuse(&whole, &["time_s", "y"], 3, "other channels");
+    refuse(&whole, &["time_s"], 3, "other channels");
+    for cut in 0..whole.len() - 3 * 16 {
+        refuse(&whole[..cut], &["time_s", "x"], 0, "readable trace");
+    }
+}
+
+#[test]
 fn invariant_a_file_cut_at_any_byte_is_read_or_refused() {
     let file = Scratch::new();
     let bytes = file.write(&["time_s", "x"], &rows(4));

@@ -1,7 +1,7 @@
 //! Writing a trace so that it is readable at every moment.
 
 use std::fs::File;
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::header;
@@ -74,6 +74,57 @@ impl TraceWriter {
         })
     }
 
+    /// Opens the file of an earlier writer, to go on after its first `rows` rows; what follows them is cut off.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Trace`] when the file has other channels or fewer rows, and it is then left alone; [`Error::Io`] when it
+    /// cannot be read or written.
+    pub fn resume<S: AsRef<str>>(path: impl AsRef<Path>, names: &[S], rows: u64) -> Result<Self, Error> {
+        let path = path.as_ref().to_owned();
+        let bad = |message| Error::Trace { path: path.clone(), message };
+        let io = |source| Error::Io {
+            action: "continue",
+            path: path.clone(),
+            kept: "What it holds stays readable; check the file and the free space".to_owned(),
+            source,
+        };
+        let header = header::encode(names, rows).map_err(bad)?;
+        let mut file = File::options().read(true).write(true).open(&path).map_err(io)?;
+        // Its own number of rows may be any: a killed run leaves a stale one.
+        let mut start = Vec::with_capacity(header.len());
+        Read::by_ref(&mut file).take(header.len() as u64).read_to_end(&mut start).map_err(io)?;
+        let channels = |bytes: &[u8]| {
+            let (prefix, length) = header::extent(bytes)?;
+            header::decode(bytes.get(prefix..prefix + length).unwrap_or_default())
+        };
+        let found = channels(&start).map_err(bad)?;
+        if start.len() < header.len() || !found.iter().map(String::as_str).eq(names.iter().map(AsRef::as_ref))
+        {
+            return Err(bad("it has other channels than the run to continue. Start the run anew".to_owned()));
+        }
+        let record = 8 * names.len() as u64;
+        let held = file.metadata().map_err(io)?.len().saturating_sub(header.len() as u64) / record;
+        if held < rows {
+            return Err(bad(format!(
+                "it holds {held} samples and the checkpoint counts {rows}: it was cut off. Restore it, or start the run anew"
+            )));
+        }
+        file.set_len(header.len() as u64 + rows * record).map_err(io)?;
+        file.seek(SeekFrom::Start(0)).map_err(io)?;
+        file.write_all(&header).map_err(io)?;
+        Ok(Self {
+            file,
+            names: found,
+            pending: Vec::with_capacity((record * ROWS_PER_FLUSH) as usize),
+            rows,
+            rows_on_disk: rows,
+            header_length: header.len() as u64,
+            failed: false,
+            path,
+        })
+    }
+
     /// Rows pushed so far.
     pub fn rows(&self) -> u64 {
         self.rows
@@ -108,16 +159,32 @@ impl TraceWriter {
     /// [`Error::Io`] when the disk refuses, with the number of rows that are safe. After a failure nothing more is written.
     pub fn flush(&mut self) -> Result<(), Error> {
         let written = self.write_pending();
-        self.failed |= written.is_err();
-        written.map_err(|source| Error::Io {
+        self.told(written)
+    }
+
+    /// After a failure nothing more is written; says what is safe.
+    fn told(&mut self, done: std::io::Result<()>) -> Result<(), Error> {
+        self.failed |= done.is_err();
+        done.map_err(|source| Error::Io {
             action: "write",
             path: self.path.clone(),
             kept: format!(
-                "The first {} rows stay readable; free some space and repeat the run",
+                "The first {} rows stay readable; free some space, then continue the run from its checkpoint or repeat it",
                 self.rows_on_disk
             ),
             source,
         })
+    }
+
+    /// Flushes, and waits until the disk has it: a power cut then loses no row that was pushed before.
+    ///
+    /// # Errors
+    ///
+    /// As [`TraceWriter::flush`].
+    pub fn sync(&mut self) -> Result<(), Error> {
+        self.flush()?;
+        let synced = self.file.sync_data();
+        self.told(synced)
     }
 
     /// Flushes and closes the file.

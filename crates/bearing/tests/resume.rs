@@ -1,0 +1,280 @@
+//! Runs that end early and go on: the same bytes as an unbroken run, and clear words when that is impossible.
+
+use std::{
+    fs,
+    ops::ControlFlow,
+    path::{Path, PathBuf},
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use stribeck_bearing::{
+    error::Error,
+    run_dir::RunDir,
+    run_info::{RunInfo, Status},
+    scene::{Scene, Start},
+    simulation::{Host, Progress, resume, simulate},
+};
+
+/// Bytes before the content of a checkpoint: name, version, scene hash, length, checksum.
+const HEADER: usize = 20 + 4 + 16 + 8 + 4;
+
+/// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.
+fn coarse(duration_ms: f64) -> Scene {
+    let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
+    scene.mesh.size_mm = 2.0;
+    scene.mesh.roller_facets = 88;
+    scene.solver.duration_ms = duration_ms;
+    scene
+}
+
+/// The same, short and without a preload.
+fn sudden() -> Scene {
+    let mut scene = coarse(0.1);
+    scene.solver.start = Start::Sudden;
+    scene
+}
+
+/// A folder of its own for every run, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        let n = NEXT.fetch_add(1, Ordering::Relaxed);
+        Self(std::env::temp_dir().join(format!("stribeck-resume-{}-{n}", std::process::id())))
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
+    fn bytes(&self, name: &str) -> Vec<u8> {
+        fs::read(self.file(name)).expect("readable")
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+fn host(threads: usize) -> Host<'static> {
+    Host {
+        threads,
+        version: "test".into(),
+        commit: "test".into(),
+        machine: "test".into(),
+        wall_s: &|| 0.0,
+        cpu_s: &|| 0.0,
+    }
+}
+
+/// Breaks a run off after so many samples of its own, counting the steps of the coarse scene.
+fn until(samples: usize) -> impl FnMut(&Progress) -> ControlFlow<()> {
+    let mut seen = 0;
+    move |progress| {
+        seen += usize::from(progress.phase == "run");
+        if seen == samples { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+fn start(
+    scene: &Scene,
+    threads: usize,
+    folder: &Folder,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> RunInfo {
+    let dir = RunDir::create(&folder.0).expect("the folder is new");
+    simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
+}
+
+fn go_on(
+    folder: &Path,
+    threads: usize,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<RunInfo, Error> {
+    resume(&RunDir::reopen(folder)?, &host(threads), watch)
+}
+
+/// What it says when it refuses to go on.
+fn refusal(folder: &Folder) -> String {
+    go_on(&folder.0, 1, &mut |_| ControlFlow::Continue(())).expect_err("it cannot go on").to_string()
+}
+
+/// A run that was broken off after two samples.
+fn broken_off() -> Folder {
+    let folder = Folder::new();
+    let info = start(&sudden(), 1, &folder, &mut until(2));
+    assert_eq!((info.status, info.samples), (Status::Interrupted, 2));
+    folder
+}
+
+fn assert_same_files(whole: &Folder, pieces: &Folder, how: &str) {
+    for name in ["trace.npy", "energy.npy"] {
+        assert!(whole.bytes(name) == pieces.bytes(name), "{how}: another {name}");
+    }
+}
+
+/// A run in pieces, on one thread and two by turns, writes the same files as one in one piece. Damping frames are placed
+/// at every 64th step; the breaks lie elsewhere.
+#[test]
+fn invariant_a_run_in_pieces_writes_the_same_bytes() {
+    let scene = coarse(0.5);
+    let whole = Folder::new();
+    let unbroken = start(&scene, 1, &whole, &mut until(0));
+    assert_eq!(unbroken.status, Status::Complete);
+    assert!(!whole.file("checkpoint").exists(), "a complete run needs no checkpoint");
+    let steps_per_sample = unbroken.steps_planned / 50;
+
+    let pieces = Folder::new();
+    let info = start(&scene, 1, &pieces, &mut until(1));
+    assert_eq!((info.status, info.steps), (Status::Interrupted, steps_per_sample));
+    let mut breaks = vec![info.samples];
+    for (threads, samples) in [(2, 6), (1, 14), (2, 8)] {
+        let info = go_on(&pieces.0, threads, &mut until(samples)).expect("it goes on");
+        assert_eq!((info.status, info.threads), (Status::Interrupted, threads));
+        breaks.push(info.samples);
+    }
+    assert_eq!(breaks, [1, 7, 21, 29]);
+    let between = breaks.iter().filter(|&&n| !(n as u64 * steps_per_sample).is_multiple_of(64)).count();
+    assert!(between >= 3, "{steps_per_sample} steps a sample");
+    let info = go_on(&pieces.0, 1, &mut until(0)).expect("it goes on");
+    assert_same_files(&whole, &pieces, "in pieces");
+    assert_eq!(info.resumed_at_s.len(), 4);
+    assert_eq!((info.steps, info.status, info.stop_reason), (unbroken.steps, Status::Complete, None));
+    assert_eq!(info.energy, unbroken.energy);
+    assert!(info.warnings.is_empty(), "{:?}", info.warnings);
+}
+
+/// What `kill -9` leaves is what lies in the folder at that moment: the run goes on from the last checkpoint, of the start
+/// or of the hundredth sample, and forgets what was written after it.
+#[test]
+fn invariant_a_killed_run_goes_on_from_its_last_checkpoint() {
+    let scene = coarse(1.25);
+    let whole = Folder::new();
+    let killed = [(3, Folder::new()), (104, Folder::new())];
+    let mut seen = 0;
+    start(&scene, 2, &whole, &mut |progress| {
+        seen += usize::from(progress.phase == "run");
+        for (_, left) in killed.iter().filter(|(sample, _)| *sample == seen) {
+            fs::create_dir_all(&left.0).expect("writable");
+            for file in
+                fs::read_dir(&whole.0).expect("readable").flatten().filter(|f| f.file_name() != ".lock")
+            {
+                fs::copy(file.path(), left.0.join(file.file_name())).expect("writable");
+            }
+        }
+        ControlFlow::Continue(())
+    });
+    for ((_, left), from) in killed.iter().zip([0.0, 100.0]) {
+        // As if more had reached the disk before the end.
+        for name in ["trace.npy", "energy.npy"] {
+            fs::write(left.file(name), [left.bytes(name), vec![7; 5000]].concat()).expect("writable");
+        }
+        let info = go_on(&left.0, 1, &mut until(0)).expect("it goes on");
+        assert_eq!(info.resumed_at_s, [from * info.interval_s]);
+        assert_same_files(&whole, left, &format!("from sample {from}"));
+    }
+}
+
+/// A checkpoint that was cut off, at any length, is refused with advice and the traces are left alone.
+#[test]
+fn invariant_a_checkpoint_cut_anywhere_is_refused_and_never_panics() {
+    let folder = broken_off();
+    let (whole, trace) = (folder.bytes("checkpoint"), folder.bytes("trace.npy"));
+    let steps = (whole.len() - HEADER) / 60;
+    for length in (0..HEADER + 5).chain((HEADER..whole.len()).step_by(steps)).chain([whole.len() - 1]) {
+        fs::write(folder.file("checkpoint"), &whole[..length]).expect("writable");
+        let words = refusal(&folder);
+        assert!(words.contains("checkpoint") && words.contains("start it anew"), "cut at {length}: {words}");
+    }
+    assert!(trace == folder.bytes("trace.npy"), "a refused run lost samples");
+    fs::write(folder.file("checkpoint"), &whole).expect("writable");
+    assert_eq!(go_on(&folder.0, 1, &mut until(0)).expect("whole again").status, Status::Complete);
+}
+
+/// One wrong byte anywhere is noticed.
+#[test]
+fn invariant_a_damaged_checkpoint_is_refused_and_never_panics() {
+    let folder = broken_off();
+    let whole = folder.bytes("checkpoint");
+    let steps = (whole.len() - HEADER) / 60;
+    for at in (0..HEADER).chain((HEADER..whole.len()).step_by(steps)) {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x41;
+        fs::write(folder.file("checkpoint"), &damaged).expect("writable");
+        let words = refusal(&folder);
+        assert!(words.contains("checkpoint") && words.contains("start it anew"), "byte {at}: {words}");
+    }
+}
+
+/// Every reason has its own words, and says what to do.
+#[test]
+fn analytic_what_cannot_go_on_says_why() {
+    let folder = broken_off();
+    let checkpoint = folder.bytes("checkpoint");
+    let with = |name: &str, bytes: &[u8]| {
+        let before = folder.bytes(name);
+        fs::write(folder.file(name), bytes).expect("writable");
+        let words = refusal(&folder);
+        fs::write(folder.file(name), before).expect("writable");
+        words
+    };
+    let says = |words: String, expected: &[&str]| {
+        for e in expected {
+            assert!(words.contains(e), "`{e}` is missing in: {words}");
+        }
+    };
+
+    let mut newer = checkpoint.clone();
+    newer[20..24].copy_from_slice(&9_u32.to_le_bytes());
+    says(with("checkpoint", &newer), &["version 9", "program that began it", "run.json"]);
+
+    let other = coarse(0.2);
+    says(
+        with("scene.ron", other.to_ron().as_bytes()),
+        &[&other.hash(), &sudden().hash(), "scene.ron", "new run"],
+    );
+
+    let text = String::from_utf8(folder.bytes("run.json")).expect("text");
+    says(
+        with("run.json", text.replace("interrupted", "complete").as_bytes()),
+        &["it is complete", "duration_ms"],
+    );
+    says(
+        with("run.json", text.replace("interrupted", "diverged").as_bytes()),
+        &["diverge again", "run.json"],
+    );
+    says(with("run.json", b"{"), &["run.json", "cannot be understood"]);
+
+    let trace = folder.bytes("trace.npy");
+    says(with("trace.npy", &trace[..trace.len() - 8]), &["trace.npy", "holds 1 samples", "counts 2", "anew"]);
+    says(with("trace.npy", &folder.bytes("energy.npy")), &["trace.npy", "other channels"]);
+
+    let held = RunDir::reopen(&folder.0).expect("free");
+    says(refusal(&folder), &["another run", &std::process::id().to_string()]);
+    drop(held);
+
+    fs::remove_file(folder.file("checkpoint")).expect("it was there");
+    says(refusal(&folder), &["no checkpoint", "before its first step", "scene.ron"]);
+    let nothing = Folder::new();
+    says(refusal(&nothing), &["is not a run", "scene.ron"]);
+    assert!(!nothing.0.exists(), "a refused resume made a folder");
+}
+
+/// Where no checkpoint can be written the run goes on and says so, once.
+#[test]
+fn invariant_a_checkpoint_that_cannot_be_written_costs_a_warning() {
+    let folder = Folder::new();
+    // A folder in the place of the new file stands for a disk that refuses it.
+    fs::create_dir_all(folder.file("checkpoint.part")).expect("writable");
+    let info = start(&sudden(), 1, &folder, &mut until(3));
+    assert_eq!((info.status, info.samples), (Status::Interrupted, 3));
+    let [warning] = info.warnings.as_slice() else { panic!("{:?}", info.warnings) };
+    assert!(warning.contains("no checkpoint at 0.000 ms") && warning.contains("went on"), "{warning}");
+    assert!(
+        RunDir::open(&folder.0).and_then(|dir| dir.read_info()).expect("readable").warnings == info.warnings
+    );
+    assert!(refusal(&folder).contains("no checkpoint"));
+}

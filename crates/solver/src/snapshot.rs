@@ -1,0 +1,81 @@
+//! All that changes in time, in one piece: what it takes to continue a model in motion to the same bits.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    damping::PlacedFrame,
+    dynamics::{Accumulated, Dynamics},
+    error::{Error, check_count},
+    rigid::RigidState,
+    state::State,
+};
+
+/// Everything about a model in motion that changes in time. The model, its time step and its damping are no part of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    state: State,
+    rigid: Vec<RigidState>,
+    drive: Accumulated,
+    heat: Accumulated,
+    /// Step at which the damping frames were last placed, and where, one for each damped body.
+    frames: Option<(u64, Vec<PlacedFrame>)>,
+}
+
+impl Snapshot {
+    /// Steps taken until then.
+    pub fn step(&self) -> u64 {
+        self.state.step
+    }
+}
+
+impl Dynamics {
+    /// What has changed since the start.
+    pub fn snapshot(&self) -> Snapshot {
+        let placed = |&(tile, lane): &(usize, usize)| {
+            let damping = self.tiles[tile].damping.as_ref();
+            damping.map_or_else(PlacedFrame::default, |d| d.frames.placed(lane))
+        };
+        // The places of one body share its frame.
+        let bodies = self.damped.iter().flatten();
+        let frames =
+            bodies.map(|body| body.places.first().map_or_else(PlacedFrame::default, placed)).collect();
+        Snapshot {
+            state: self.state.clone(),
+            rigid: self.rigid.clone(),
+            drive: self.drive,
+            heat: self.heat,
+            frames: self.frames_placed.map(|step| (step, frames)),
+        }
+    }
+
+    /// Continues from a snapshot of the same model. Set the time step and the mass damping before.
+    ///
+    /// # Errors
+    /// When the snapshot has other numbers of slots, rigid bodies or damped bodies; nothing is changed then.
+    pub fn restore(&mut self, from: Snapshot) -> Result<(), Error> {
+        let (slots, s) = (self.state.x.len(), &from.state);
+        for field in [&s.x, &s.y, &s.vx, &s.vy] {
+            check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
+        }
+        let (found, bodies) = (from.rigid.len(), self.rigid.len());
+        check_count("rigid bodies of the snapshot", found, bodies, "those of the model")?;
+        let damped = self.damped.as_deref().unwrap_or_default();
+        if let Some((_, frames)) = &from.frames {
+            let (found, bodies) = (frames.len(), damped.len());
+            check_count("damping frames of the snapshot", found, bodies, "one for each damped body")?;
+            for (body, frame) in damped.iter().zip(frames) {
+                for &(tile, lane) in &body.places {
+                    if let Some(d) = &mut self.tiles[tile].damping {
+                        d.frames.put(lane, *frame);
+                    }
+                }
+            }
+        }
+        self.frames_placed = from.frames.map(|(step, _)| step);
+        self.state = from.state;
+        self.rigid = from.rigid;
+        self.drive = from.drive;
+        self.heat = from.heat;
+        Ok(())
+    }
+}
