@@ -10,7 +10,7 @@ use stribeck_bearing::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
-    scene::Scene,
+    scene::{DampingFrame, Scene},
     simulation::{Host, Progress, simulate},
 };
 
@@ -89,10 +89,13 @@ fn last_angle_deg(run: &Run, roller: usize) -> f64 {
 /// The preloaded bearing rolls: the cage turns at f_s·D_i/(D_i + D_o), the rollers carry load and weight, the energy
 /// ledger closes.
 #[test]
-fn analytic_coarse_bearing_rolls_and_carries_its_load() {
-    // Cage, load and ledger within 1 % each: what the project asks of the full scene too.
+fn analytic_bearing_rolls_and_carries_its_load() {
+    // Cage, load and ledger within 1 % each: what the project asks of the full scene too. On a 2 mm mesh the cage runs
+    // 1.1 % ahead after 4 ms.
     const TOLERANCE: f64 = 0.01;
-    let scene = coarse(4.0);
+    let mut scene = coarse(6.0);
+    scene.mesh.size_mm = 1.0;
+    scene.mesh.roller_facets = 112;
     let (info, run) = run(&scene, 1);
     assert_eq!(info.status, Status::Complete);
     assert!(info.energy.max_relative_error < TOLERANCE, "energy: {}", info.energy.max_relative_error);
@@ -142,6 +145,9 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     // A 1 mm mesh: on 2 mm the polygon rolls over the first time.
     scene.mesh.size_mm = 1.0;
     scene.mesh.roller_facets = 112;
+    // As it was seen: damping across the track takes the rebound from the roller, which then climbs out by itself.
+    scene.solver.damping_frame = DampingFrame::RigidMotion;
+    scene.solver.mass_damping_per_s = 150.0;
     let (_, caged) = run(&scene, 1);
     let angle = last_angle_deg(&caged, 1);
     assert!(
