@@ -10,7 +10,7 @@ use stribeck_bearing::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
-    scene::{DampingFrame, Scene},
+    scene::{DampingFrame, Scene, Start},
     simulation::{Host, Progress, simulate},
 };
 
@@ -187,4 +187,47 @@ fn invariant_interrupted_run_keeps_its_samples() {
     });
     assert_eq!(info.status, Status::Interrupted);
     assert_eq!(Run::read(&folder.0).expect("readable").trace.len(), 10);
+}
+
+/// A coarse bearing's first 0.3 ms against our own blessed history (`fixtures/golden/coarse.csv`): a change of the
+/// physics shows here, a change of rounding does not. `STRIBECK_BLESS=1 cargo test …` writes the file anew.
+#[test]
+fn golden_coarse_bearing() {
+    // The system's sine and cosine may round differently on another machine; nothing else does, because this run starts
+    // without the preload, whose factorisation does. A change of the physics shows in the first digits.
+    const TOLERANCE: f64 = 1e-6;
+    const CHANNELS: [&str; 6] = [
+        "sensor.side.ay_m_s2",
+        "sensor.bottom.ax_m_s2",
+        "roller.1.outer_fy_n",
+        "roller.13.inner_fx_n",
+        "cage.angle_rad",
+        "seat.fy_n",
+    ];
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/coarse.csv");
+    let mut scene = coarse(0.3);
+    scene.solver.start = Start::Sudden;
+    let (_, run) = run(&scene, 1);
+    if std::env::var_os("STRIBECK_BLESS").is_some() {
+        let mut text = CHANNELS.join(",") + "\n";
+        for sample in 0..run.trace.len() {
+            let row = CHANNELS.map(|c| format!("{:.12e}", column(&run, c)[sample]));
+            text += &(row.join(",") + "\n");
+        }
+        std::fs::write(path, text).expect("the golden file can be written");
+    }
+    let text = std::fs::read_to_string(path).expect("the golden file is in the repository");
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some(CHANNELS.join(",").as_str()));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|l| l.split(',').map(|v| v.parse().expect("a number")).collect()).collect();
+    assert_eq!(rows.len(), run.trace.len());
+    for (c, channel) in CHANNELS.into_iter().enumerate() {
+        let largest = rows.iter().map(|r| r[c].abs()).fold(0.0, f64::max);
+        assert!(largest > 0.0, "{channel} is silent");
+        for (sample, (row, now)) in rows.iter().zip(column(&run, channel)).enumerate() {
+            let off = (row[c] - now).abs() / largest;
+            assert!(off < TOLERANCE, "{channel}, sample {sample}: {now}, blessed {} ({off:.1e} off)", row[c]);
+        }
+    }
 }
