@@ -10,10 +10,11 @@ use stribeck_solver::{
 
 use crate::{
     law::Law,
-    pass::{Memory, Pass, Sum, Weights},
+    pass::{Memory, Pass, Push, Weights},
     points::{Method, Points},
     search::Tree,
     surface::Surface,
+    touch::Sum,
 };
 
 /// Two surfaces that may touch.
@@ -75,7 +76,7 @@ pub struct Contacts {
 struct Pair {
     spec: PairSpec,
     passes: [Pass; 2],
-    push: Vec<(u32, [f64; 2])>,
+    push: Vec<Push>,
     found: Vec<(u32, u32)>,
     sum: [Sum; 2],
 }
@@ -93,6 +94,10 @@ const LEAST_SPEED: f64 = 2.0;
 /// the mean; no other spacing gives more.
 const CLUSTERING: f64 = 1.125;
 
+/// The square of the gap's gradient exceeds one by at most this times the square of a curve's slope: once for the normal,
+/// half for the turn of the curve that the foot lies on, as much for that of the point.
+const STEEPER: f64 = 2.0;
+
 impl Contacts {
     /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
     pub fn new(surfaces: Vec<Surface>, pairs: &[PairSpec], thickness: f64, x: &[f64], y: &[f64]) -> Self {
@@ -100,7 +105,7 @@ impl Contacts {
             surfaces.iter().flat_map(|s| &s.length).copied().fold(f64::INFINITY, f64::min).min(1.0);
         let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
         let skin = 0.4 * mean.max(shortest);
-        let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin)).collect();
+        let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin + s.largest_sag())).collect();
         let pairs = pairs
             .iter()
             .map(|spec| {
@@ -176,7 +181,7 @@ impl Contacts {
             return false;
         }
         for (pass, memory) in self.pairs.iter_mut().flat_map(|p| &mut p.passes).zip(state.passes) {
-            pass.memory = memory;
+            pass.remember(memory);
         }
         self.search = state.search;
         self.energy.friction = state.friction;
@@ -191,7 +196,7 @@ impl Contacts {
     fn search(&mut self, at: &Moment<'_>) {
         let grow = 0.5 * self.skin;
         for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
-            tree.update(surface, at.x, at.y, grow);
+            tree.update(surface, at.x, at.y, grow + surface.largest_sag());
         }
         let Self { trees, surfaces, pairs, .. } = self;
         for pair in pairs.iter_mut() {
@@ -201,6 +206,8 @@ impl Contacts {
             pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
             pair.found.sort_unstable();
             second.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+            pair.push.clear();
+            pair.push.reserve(first.most_pushes() + second.most_pushes());
         }
         let speed = |&n: &u32| at.vx[n as usize].hypot(at.vy[n as usize]);
         let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(speed).fold(0.0, f64::max);
@@ -265,6 +272,9 @@ impl Force for Contacts {
             let law = &pair.spec.law;
             let lagged = if dt > 0.0 { 2.0 * law.damping / dt } else { 0.0 };
             let k = (law.stiffness + lagged) * self.thickness;
+            // The gap's gradient is a little longer than one where a curve leaves its chord (THEORY §4.4).
+            let steepest = [pair.spec.first, pair.spec.second].map(|s| self.surfaces[s].steepest());
+            let k = k * (1.0 + STEEPER * (steepest[0] * steepest[0] + steepest[1] * steepest[1]));
             let [first, second] = &pair.passes;
             for (as_secondary, as_primary) in [(first, second), (second, first)] {
                 let surface = &self.surfaces[as_secondary.secondary];

@@ -79,8 +79,9 @@
 //! |---|---|
 //! | What is a surface, what acts between two? | `surface.rs`, `law.rs` |
 //! | What is the gap, at corners and ends too? | `projection.rs` |
+//! | Which curve does a polyline stand for? | `smooth.rs` |
 //! | Where does the law act? | `points.rs` |
-//! | What does one pass do, in contact and out of it? | `pass.rs` |
+//! | What does one pass do, in contact and out of it? | `pass.rs`, `touch.rs` |
 //! | Who is near whom? | `search.rs` |
 //! | How does it all become one force? | `contacts.rs` |
 
@@ -94,11 +95,14 @@ mod pass;
 mod points;
 mod projection;
 mod search;
+mod smooth;
 mod surface;
+mod touch;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant};
 pub use error::Error;
 pub use law::Law;
 pub use points::Method;
 pub use projection::{Projection, project};
+pub use smooth::Smoothing;
 pub use surface::Surface;

@@ -6,8 +6,9 @@ use stribeck_solver::{force::RankOne, state::Moment};
 use crate::{
     law::Law,
     points::Points,
-    projection::{Projection, distance, project},
+    projection::{Frame, Projection, distance, project, project_from},
     surface::Surface,
+    touch::{History, Slide, Sum, touch},
 };
 
 /// One pass of a pair.
@@ -19,6 +20,8 @@ pub(crate) struct Pass {
     pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
     deepest: f64,
+    /// No candidate wakes before this step.
+    asleep: u64,
 }
 
 /// What a pass remembers from step to step.
@@ -39,30 +42,6 @@ struct Candidate {
     wake: u64,
 }
 
-/// What a point in contact remembers of the step before.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct History {
-    /// Elastic part of the tangential displacement [m].
-    slip: f64,
-    /// Damping force [N].
-    damping: f64,
-}
-
-/// Sums over one pass.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Sum {
-    /// Force on the secondary body [N].
-    pub(crate) force: [f64; 2],
-    /// Elastic energy [J].
-    pub(crate) stored: f64,
-    /// Heat of friction in the last step [J].
-    pub(crate) friction: f64,
-    /// Heat of damping in the last step [J].
-    pub(crate) damping: f64,
-    /// Deepest penetration [m].
-    pub(crate) penetration: f64,
-}
-
 /// Which laws act: the static preload takes the penalty alone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Weights {
@@ -75,6 +54,9 @@ pub(crate) struct Weights {
     /// Rounds the corner of the penalty law over about this gap [m]; zero for the law itself.
     pub(crate) softness: f64,
 }
+
+/// A force on a node: slot, x [N], y [N].
+pub(crate) type Push = (u32, [f64; 2]);
 
 impl Weights {
     /// Larger gaps than this carry nothing [m].
@@ -94,6 +76,85 @@ impl Weights {
         let depth = if t > 30.0 { -gap } else { e * t.exp().ln_1p() };
         [depth, 1.0 / (1.0 + (-t).exp())]
     }
+}
+
+/// A facet in motion, and the forces on it.
+#[derive(Debug, Clone, Copy)]
+struct Side {
+    frame: Frame,
+    /// Velocity of its first node [m/s].
+    v: [f64; 2],
+    /// Velocity of the second node relative to the first [m/s].
+    dv: [f64; 2],
+    /// Sum of the forces at its points, and of those forces times their places [N].
+    force: [f64; 2],
+    moment: [f64; 2],
+    /// Couple along the chord's normal: what the second node gets and the first loses [N].
+    couple: f64,
+    used: bool,
+}
+
+impl Side {
+    #[inline(always)]
+    fn new(frame: Frame, at: &Moment<'_>) -> Self {
+        let (a, b) = frame.ends;
+        let v = [at.vx[a], at.vy[a]];
+        let dv = [at.vx[b] - v[0], at.vy[b] - v[1]];
+        Self { frame, v, dv, force: [0.0; 2], moment: [0.0; 2], couple: 0.0, used: false }
+    }
+
+    /// How fast the chord's normal swings towards its tangent, backwards: n·dv [m/s].
+    #[inline(always)]
+    fn swing(&self) -> f64 {
+        self.frame.normal[0] * self.dv[0] + self.frame.normal[1] * self.dv[1]
+    }
+
+    /// Velocity of a point of the curve, at a height given in lengths of the facet [m/s].
+    #[inline(always)]
+    fn velocity(&self, place: f64, height: f64) -> [f64; 2] {
+        let back = height * self.swing() * self.frame.inverse;
+        let t = self.frame.along;
+        [self.v[0] + place * self.dv[0] - back * t[0], self.v[1] + place * self.dv[1] - back * t[1]]
+    }
+
+    /// Cosine of a force with the chord's direction, times its amount [N].
+    #[inline(always)]
+    fn along(&self, f: [f64; 2]) -> f64 {
+        (f[0] * self.frame.along[0] + f[1] * self.frame.along[1]) * self.frame.inverse
+    }
+
+    #[inline(always)]
+    fn add(&mut self, f: [f64; 2], place: f64, couple: f64) {
+        self.force = [self.force[0] + f[0], self.force[1] + f[1]];
+        self.moment = [self.moment[0] + place * f[0], self.moment[1] + place * f[1]];
+        self.couple += couple;
+        self.used = true;
+    }
+
+    /// Hands the forces over to the two nodes.
+    #[inline(always)]
+    fn flush(&self, push: &mut Vec<Push>) {
+        if self.used {
+            let [nx, ny] = self.frame.normal;
+            let second = [self.moment[0] + self.couple * nx, self.moment[1] + self.couple * ny];
+            push.push((self.frame.ends.0 as u32, [self.force[0] - second[0], self.force[1] - second[1]]));
+            push.push((self.frame.ends.1 as u32, second));
+        }
+    }
+}
+
+/// How the point at `place` of `own` moves against its foot.
+#[inline(always)]
+fn slide(own: &Side, place: f64, height: f64, other: &Side, to: &Projection) -> Slide {
+    let v = own.velocity(place, height);
+    let u = [other.v[0] + to.place * other.dv[0], other.v[1] + to.place * other.dv[1]];
+    let swing = other.swing();
+    let [nx, ny] = to.normal;
+    let rel = [v[0] - u[0], v[1] - u[1]];
+    // The foot stands on the curve, which turns with its chord.
+    let back = to.height * swing * other.frame.inverse;
+    let foot = [rel[0] + back * other.frame.along[0], rel[1] + back * other.frame.along[1]];
+    Slide { opening: nx * rel[0] + ny * rel[1] - to.turn * swing, along: nx * foot[1] - ny * foot[0] }
 }
 
 impl Pass {
@@ -116,6 +177,7 @@ impl Pass {
             },
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
+            asleep: 0,
         }
     }
 
@@ -126,6 +188,11 @@ impl Pass {
             && memory.history.len() == own.history.len()
             && memory.nearest.iter().all(|&facet| (facet as usize) < primary.facets())
             && memory.candidates.iter().all(|c| (c.facet as usize) < secondary.facets())
+    }
+
+    /// Goes on from a memory.
+    pub(crate) fn remember(&mut self, memory: Memory) {
+        (self.memory, self.asleep) = (memory, 0);
     }
 
     /// Takes new candidates from pairs (secondary facet, primary facet), ascending.
@@ -139,6 +206,7 @@ impl Pass {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let Memory { nearest, candidates, .. } = &mut self.memory;
         candidates.clear();
+        self.asleep = 0;
         let mut best: [f64; 64] = [f64::INFINITY; 64];
         let mut last = None;
         for (f, g) in pairs {
@@ -148,9 +216,10 @@ impl Pass {
                 best = [f64::INFINITY; 64];
                 last = Some(f);
             }
-            let (a, b) = secondary.ends(f as usize);
+            let own = Frame::new(secondary, x, y, f as usize);
             for (k, i) in range.enumerate() {
-                let d = distance(primary, x, y, between(x, y, a, b, self.points.place[i]), g as usize);
+                let p = own.point(self.points.place[i], self.points.height[i]);
+                let d = distance(primary, x, y, p, g as usize);
                 let best = &mut best[k.min(63)];
                 if d < *best {
                     *best = d;
@@ -160,87 +229,117 @@ impl Pass {
         }
     }
 
-    /// Evaluates the pass: pushes (slot, force x, force y) and sums.
+    /// Pushes that one evaluation makes at most, until the next candidates are taken.
+    pub(crate) fn most_pushes(&self) -> usize {
+        let points = |c: &Candidate| self.points.of_facet(c.facet as usize).len();
+        self.memory.candidates.iter().map(|c| 2 + 2 * points(c)).sum()
+    }
+
+    /// Evaluates the pass: pushes forces and sums.
     pub(crate) fn evaluate(
         &mut self,
         surfaces: &[Surface],
         at: &Moment<'_>,
         w: &Weights,
-        push: &mut Vec<(u32, [f64; 2])>,
+        push: &mut Vec<Push>,
     ) -> Sum {
-        let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let mut sum = Sum::default();
+        if at.step < self.asleep {
+            return sum;
+        }
+        let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let reach = w.reach();
+        let mut first_awake = u64::MAX;
         let Memory { nearest, candidates, history } = &mut self.memory;
+        // Consecutive points mostly share a primary facet: its forces wait until another one comes.
+        let mut other: Option<Side> = None;
         for candidate in candidates {
             if at.step < candidate.wake {
+                first_awake = first_awake.min(candidate.wake);
                 continue;
             }
             let facet = candidate.facet as usize;
-            let (a, b) = secondary.ends(facet);
-            let mut force_a = [0.0; 2];
-            let mut force_b = [0.0; 2];
+            let mut own = Side::new(Frame::new(secondary, at.x, at.y, facet), at);
             let mut nearest_gap = f64::INFINITY;
             let mut touched = false;
             for i in self.points.of_facet(facet) {
-                let place = self.points.place[i];
-                let p = between(at.x, at.y, a, b, place);
-                let found = project(primary, at.x, at.y, p, nearest[i] as usize);
-                if let Some(found) = &found {
-                    nearest[i] = found.facet as u32;
-                }
-                let contact = found.filter(|f| f.gap < reach && f.gap > -self.deepest);
-                let mut none = History::default();
-                let history = history.get_mut(i).unwrap_or(&mut none);
-                let Some(projection) = contact else {
-                    nearest_gap = nearest_gap.min(found.map_or(f64::INFINITY, |f| f.gap.abs()));
-                    if *history != History::default() {
+                let (place, height) = (self.points.place[i], self.points.height[i]);
+                let p = own.frame.point(place, height);
+                let start = nearest[i] as usize;
+                let mut frame = match &other {
+                    Some(side) if side.frame.facet == start => side.frame,
+                    _ => Frame::new(primary, at.x, at.y, start),
+                };
+                let found = project_from(primary, at.x, at.y, p, &mut frame);
+                nearest[i] = frame.facet as u32;
+                let gap = found.map_or(f64::INFINITY, |f| f.gap);
+                let contact = gap < reach && gap > -self.deepest;
+                if !contact {
+                    nearest_gap = nearest_gap.min(gap.abs());
+                    if let Some(history) = history.get_mut(i).filter(|h| !h.is_empty()) {
                         touched = true;
-                        let relative = found
-                            .map(|f| relative_velocity(secondary, primary, at, facet, place, &f))
-                            .unwrap_or_default();
-                        let normal = found.map_or([0.0, 0.0], |f| f.normal);
-                        let stiffness = w.law.stiffness * self.points.weight[i] * w.thickness;
-                        release(history, relative, normal, stiffness, &w.law, at.dt, &mut sum);
+                        let side = Side::new(frame, at);
+                        let slide = found
+                            .map_or(Slide::default(), |f| slide(&own, place, height * own.frame.inverse, &side, &f));
+                        history.release(self.points.weight[i] * w.thickness, &w.law, at.dt, slide, &mut sum);
                     }
                     continue;
-                };
+                }
+                let Some(to) = found else { continue };
                 touched = true;
+                let other = match &mut other {
+                    Some(side) if side.frame.facet == to.facet => side,
+                    last => {
+                        if let Some(side) = last {
+                            side.flush(push);
+                        }
+                        last.insert(Side::new(frame, at))
+                    }
+                };
                 let area = self.points.weight[i] * w.thickness;
-                let f = contact_force(
-                    secondary,
-                    primary,
-                    at,
-                    facet,
-                    place,
-                    &projection,
-                    w,
-                    area,
-                    history,
-                    &mut sum,
-                );
-                let (c, d) = primary.ends(projection.facet);
-                force_a = [force_a[0] + (1.0 - place) * f[0], force_a[1] + (1.0 - place) * f[1]];
-                force_b = [force_b[0] + place * f[0], force_b[1] + place * f[1]];
-                let s = projection.place;
-                push.push((c as u32, [-(1.0 - s) * f[0], -(1.0 - s) * f[1]]));
-                push.push((d as u32, [-s * f[0], -s * f[1]]));
+                let height = height * own.frame.inverse;
+                let [pressure, shear] = if w.softness > 0.0 {
+                    [w.law.stiffness * area * w.rounded(gap)[0], 0.0]
+                } else {
+                    sum.stored += 0.5 * w.law.stiffness * area * gap * gap;
+                    sum.penetration = sum.penetration.max(-gap);
+                    match history.get_mut(i) {
+                        Some(history) => {
+                            let slide = slide(&own, place, height, other, &to);
+                            touch(gap, area, &w.law, at.dt, slide, history, &mut sum)
+                        }
+                        None => [-w.law.stiffness * area * gap, 0.0],
+                    }
+                };
+                let [nx, ny] = to.normal;
+                let f = [pressure * nx - shear * ny, pressure * ny + shear * nx];
+                own.add(f, place, -height * own.along(f));
+                let back = [-f[0], -f[1]];
+                let shear_along = other.along([-shear * ny, shear * nx]);
+                other.add(back, to.place, to.height * shear_along - to.turn * pressure);
             }
             if touched {
-                push.push((a as u32, force_a));
-                push.push((b as u32, force_b));
-                sum.force =
-                    [sum.force[0] + (force_a[0] + force_b[0]), sum.force[1] + (force_a[1] + force_b[1])];
+                own.flush(push);
+                sum.force = [sum.force[0] + own.force[0], sum.force[1] + own.force[1]];
+                first_awake = 0;
             } else if nearest_gap > 0.0 && w.fastest > 0.0 {
                 // Points off both ends of an open surface report an infinite gap; the next search wakes them.
                 let steps = nearest_gap / (w.fastest * at.dt);
                 candidate.wake = at.step.saturating_add(steps as u64);
+                first_awake = first_awake.min(candidate.wake);
+            } else {
+                first_awake = 0;
             }
         }
+        if let Some(side) = &other {
+            side.flush(push);
+        }
+        self.asleep = first_awake;
         sum
     }
 
-    /// Visits the tangent of the points that penetrate at positions `x`, `y`.
+    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; what the
+    /// gradient itself changes by is left out.
     pub(crate) fn tangent(
         &self,
         surfaces: &[Surface],
@@ -252,21 +351,32 @@ impl Pass {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         for candidate in &self.memory.candidates {
             let facet = candidate.facet as usize;
-            let (a, b) = secondary.ends(facet);
+            let own = Frame::new(secondary, x, y, facet);
             for i in self.points.of_facet(facet) {
-                let place = self.points.place[i];
-                let p = between(x, y, a, b, place);
+                let (place, height) = (self.points.place[i], self.points.height[i]);
+                let p = own.point(place, height);
                 let Some(f) = project(primary, x, y, p, self.memory.nearest[i] as usize) else { continue };
                 if f.gap >= w.reach() || f.gap <= -self.deepest {
                     continue;
                 }
                 let [_, slope] = w.rounded(f.gap);
-                let (c, d) = primary.ends(f.facet);
+                let other = Frame::new(primary, x, y, f.facet);
                 let [nx, ny] = f.normal;
+                let along = (nx * own.along[0] + ny * own.along[1]) * own.inverse;
+                let lever = height * own.inverse * along;
                 let n = [1.0 - place, place, -(1.0 - f.place), -f.place];
+                let turns = [
+                    lever * own.normal[0],
+                    lever * own.normal[1],
+                    f.turn * other.normal[0],
+                    f.turn * other.normal[1],
+                ];
+                let sign = [1.0, -1.0, 1.0, -1.0];
                 visit(RankOne {
-                    nodes: [a as u32, b as u32, c as u32, d as u32],
-                    direction: std::array::from_fn(|k| n[k / 2] * if k % 2 == 0 { nx } else { ny }),
+                    nodes: [own.ends.0 as u32, own.ends.1 as u32, other.ends.0 as u32, other.ends.1 as u32],
+                    direction: std::array::from_fn(|k| {
+                        n[k / 2] * to_xy(nx, ny, k) + sign[k / 2] * turns[2 * (k / 4) + k % 2]
+                    }),
                     stiffness: slope * w.law.stiffness * self.points.weight[i] * w.thickness,
                 });
             }
@@ -275,95 +385,6 @@ impl Pass {
 }
 
 #[inline(always)]
-fn between(v: &[f64], w: &[f64], a: usize, b: usize, place: f64) -> [f64; 2] {
-    [v[a] + place * (v[b] - v[a]), w[a] + place * (w[b] - w[a])]
-}
-
-/// Velocity of the secondary point relative to its foot on the primary surface [m/s].
-#[inline(always)]
-fn relative_velocity(
-    secondary: &Surface,
-    primary: &Surface,
-    at: &Moment<'_>,
-    facet: usize,
-    place: f64,
-    to: &Projection,
-) -> [f64; 2] {
-    let (a, b) = secondary.ends(facet);
-    let (c, d) = primary.ends(to.facet);
-    let u = between(at.vx, at.vy, a, b, place);
-    let v = between(at.vx, at.vy, c, d, to.place);
-    [u[0] - v[0], u[1] - v[1]]
-}
-
-/// Force on the secondary point [N]; updates its history.
-#[inline(always)]
-#[allow(clippy::too_many_arguments)] // one point's whole situation
-fn contact_force(
-    secondary: &Surface,
-    primary: &Surface,
-    at: &Moment<'_>,
-    facet: usize,
-    place: f64,
-    to: &Projection,
-    w: &Weights,
-    area: f64,
-    history: &mut History,
-    sum: &mut Sum,
-) -> [f64; 2] {
-    let [nx, ny] = to.normal;
-    let law = &w.law;
-    let stiffness = law.stiffness * area;
-    if w.softness > 0.0 {
-        let [depth, _] = w.rounded(to.gap);
-        return [stiffness * depth * nx, stiffness * depth * ny];
-    }
-    let elastic = -stiffness * to.gap;
-    sum.stored -= 0.5 * elastic * to.gap;
-    sum.penetration = sum.penetration.max(-to.gap);
-    if law.damping == 0.0 && law.friction == 0.0 {
-        return [elastic * nx, elastic * ny];
-    }
-    let v = relative_velocity(secondary, primary, at, facet, place, to);
-    let approach = v[0] * nx + v[1] * ny;
-    // Damping never pulls: the sum of both stays a pressure.
-    let damping = (-law.damping * area * approach).max(-elastic);
-    // Work of a force over a step is the mean of its two ends times the displacement (THEORY §2.5).
-    sum.damping -= 0.5 * (history.damping + damping) * approach * at.dt;
-    history.damping = damping;
-    let normal = elastic + damping;
-    if law.friction == 0.0 {
-        return [normal * nx, normal * ny];
-    }
-    let (tx, ty) = (-ny, nx);
-    let moved = (v[0] * tx + v[1] * ty) * at.dt;
-    let tangential = law.tangential * stiffness;
-    let limit = law.friction * elastic / tangential;
-    let before = history.slip;
-    let after = (before + moved).clamp(-limit, limit);
-    history.slip = after;
-    let stored = 0.5 * tangential * after * after;
-    sum.stored += stored;
-    sum.friction +=
-        0.5 * tangential * (before + after) * moved - (stored - 0.5 * tangential * before * before);
-    let shear = -tangential * after;
-    [normal * nx + shear * tx, normal * ny + shear * ty]
-}
-
-/// A point lost contact: settles the last half step of its history and forgets it.
-fn release(
-    history: &mut History,
-    v: [f64; 2],
-    normal: [f64; 2],
-    stiffness: f64,
-    law: &Law,
-    dt: f64,
-    sum: &mut Sum,
-) {
-    let approach = v[0] * normal[0] + v[1] * normal[1];
-    let moved = (v[1] * normal[0] - v[0] * normal[1]) * dt;
-    let tangential = law.tangential * stiffness;
-    sum.damping -= 0.5 * history.damping * approach * dt;
-    sum.friction += 0.5 * tangential * history.slip * (moved + history.slip);
-    *history = History::default();
+fn to_xy(x: f64, y: f64, k: usize) -> f64 {
+    if k % 2 == 0 { x } else { y }
 }

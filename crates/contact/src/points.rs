@@ -1,6 +1,6 @@
 //! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
 
-use crate::surface::Surface;
+use crate::{smooth::height, surface::Surface};
 
 /// Where the penalty acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +19,8 @@ pub enum Method {
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
     pub(crate) place: Vec<f64>,
+    /// Height of the curve above the chord there [m].
+    pub(crate) height: Vec<f64>,
     /// Length of surface that the point stands for [m].
     pub(crate) weight: Vec<f64>,
     /// First point of each facet; one more entry than facets.
@@ -27,7 +29,7 @@ pub(crate) struct Points {
 
 impl Points {
     pub(crate) fn new(surface: &Surface, method: Method) -> Self {
-        let mut points = Self { place: Vec::new(), weight: Vec::new(), first: vec![0] };
+        let mut points = Self { place: Vec::new(), height: Vec::new(), weight: Vec::new(), first: vec![0] };
         let tributary = surface.tributary();
         for f in 0..surface.facets() {
             match method {
@@ -48,6 +50,8 @@ impl Points {
                 };
                 points.push(1.0, weight);
             }
+            let new = points.height.len()..points.place.len();
+            points.height.extend(points.place[new].iter().map(|&s| height(surface.rise[f], s)));
             points.first.push(points.place.len() as u32);
         }
         points
@@ -66,7 +70,7 @@ impl Points {
     pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
         let mut share = vec![0.0; surface.slots.len()];
         for f in 0..surface.facets() {
-            let next = if f + 1 == share.len() { 0 } else { f + 1 };
+            let next = surface.second(f);
             for i in self.of_facet(f) {
                 share[f] += (1.0 - self.place[i]) * self.weight[i];
                 share[next] += self.place[i] * self.weight[i];

@@ -1,18 +1,27 @@
-//! Closest-point projection of a point onto a polyline, and the signed gap (THEORY §4.1).
+//! Projection of a point onto a surface, and the signed gap (THEORY §4.1, §4.4).
 
-use crate::surface::Surface;
+use crate::{
+    smooth::{Rise, height, slope},
+    surface::Surface,
+};
 
 /// Where a point projects.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
-    /// Gap [m]. Positive when apart, negative when penetrating: the signed distance to the polyline.
+    /// Gap [m]. Positive when apart, negative when penetrating: the signed distance to a polyline, or the height above
+    /// the curve of a smooth surface.
     pub gap: f64,
-    /// Gradient of the gap with respect to the point: the outward unit normal of the primary surface.
+    /// Gradient of the gap with respect to the point: the outward normal of the primary surface.
     pub normal: [f64; 2],
     /// Facet of the primary surface.
     pub facet: usize,
     /// Place on the facet, 0 at its first node, 1 at its second.
     pub place: f64,
+    /// How much more of the gap's gradient falls on the facet's second node than on its first, because the curve turns
+    /// with its chord [-].
+    pub(crate) turn: f64,
+    /// Height of the foot above its chord, in lengths of the facet [-].
+    pub(crate) height: f64,
 }
 
 /// A projection whose place lies this close to an end is compared with the neighbouring facet.
@@ -21,88 +30,194 @@ const NEAR_END: f64 = 0.1;
 /// Walks at most this many facets from the starting one.
 const LONGEST_WALK: usize = 8;
 
+/// A facet in present positions.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Frame {
+    pub(crate) facet: usize,
+    /// Slots of its ends.
+    pub(crate) ends: (usize, usize),
+    /// Its first node [m].
+    pub(crate) origin: [f64; 2],
+    /// From its first node to its second [m].
+    pub(crate) along: [f64; 2],
+    /// One over its length [1/m].
+    pub(crate) inverse: f64,
+    /// Unit normal of the chord, outwards.
+    pub(crate) normal: [f64; 2],
+    rise: Rise,
+}
+
+impl Frame {
+    #[inline(always)]
+    pub(crate) fn new(surface: &Surface, x: &[f64], y: &[f64], facet: usize) -> Self {
+        let (a, b) = surface.ends(facet);
+        let along = [x[b] - x[a], y[b] - y[a]];
+        let inverse = 1.0 / (along[0] * along[0] + along[1] * along[1]).sqrt();
+        Self {
+            facet,
+            ends: (a, b),
+            origin: [x[a], y[a]],
+            along,
+            inverse,
+            normal: [along[1] * inverse, -along[0] * inverse],
+            rise: surface.rise[facet],
+        }
+    }
+
+    /// Point of the curve at a place whose height is known [m].
+    #[inline(always)]
+    pub(crate) fn point(&self, place: f64, height: f64) -> [f64; 2] {
+        let Self { origin: [ax, ay], along: [tx, ty], normal: [nx, ny], .. } = *self;
+        [ax + place * tx + height * nx, ay + place * ty + height * ny]
+    }
+
+    /// Place on the chord below `p`.
+    #[inline(always)]
+    fn place(&self, p: [f64; 2]) -> f64 {
+        let r = [p[0] - self.origin[0], p[1] - self.origin[1]];
+        (r[0] * self.along[0] + r[1] * self.along[1]) * (self.inverse * self.inverse)
+    }
+
+    /// Projection of `p` on the facet's curve, which goes on beyond its ends.
+    #[inline(always)]
+    fn above(&self, p: [f64; 2], place: f64) -> Projection {
+        let Self { facet, origin, along: [tx, ty], inverse, normal: [nx, ny], rise, .. } = *self;
+        let off = (p[0] - origin[0]) * nx + (p[1] - origin[1]) * ny;
+        let (h, dh) = (height(rise, place), slope(rise, place));
+        let square = inverse * inverse;
+        // The chord's tangent falls with the curve's slope.
+        let fall = dh * square;
+        let normal = [nx - fall * tx, ny - fall * ty];
+        Projection { gap: off - h, normal, facet, place, turn: dh * off * square, height: h * inverse }
+    }
+
+    #[inline(always)]
+    fn foot(&self, p: [f64; 2]) -> Foot {
+        let place = self.place(p);
+        let to = self.above(p, place);
+        if (0.0..=1.0).contains(&place) {
+            return Foot { to, distance: to.gap.abs(), inside: true };
+        }
+        let end = if place < 0.0 { 0.0 } else { 1.0 };
+        let dx = p[0] - self.origin[0] - end * self.along[0];
+        let dy = p[1] - self.origin[1] - end * self.along[1];
+        Foot { to, distance: (dx * dx + dy * dy).sqrt(), inside: false }
+    }
+}
+
 /// Projects `p` onto `surface`, starting the walk at `facet`. `None` beyond the ends of an open surface.
-#[inline]
 pub fn project(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], facet: usize) -> Option<Projection> {
-    let mut best = on_facet(surface, x, y, p, facet);
-    for _ in 0..LONGEST_WALK {
-        let at = best.facet;
-        if best.inside && best.place > NEAR_END && best.place < 1.0 - NEAR_END && !surface.meets_corner(at) {
-            break;
-        }
-        for forward in [false, true] {
-            if let Some(next) = surface.neighbour(at, forward) {
-                let other = on_facet(surface, x, y, p, next);
-                // A foot inside a facet wins a tie against the vertex that both share.
-                if other.distance < best.distance
-                    || (other.distance == best.distance && other.inside && !best.inside)
-                {
-                    best = other;
-                }
-            }
-        }
-        if best.facet == at {
-            break;
-        }
+    let mut frame = Frame::new(surface, x, y, facet);
+    project_from(surface, x, y, p, &mut frame)
+}
+
+/// The same from a facet's frame, which becomes that of the facet found.
+#[inline(always)]
+pub(crate) fn project_from(
+    surface: &Surface,
+    x: &[f64],
+    y: &[f64],
+    p: [f64; 2],
+    frame: &mut Frame,
+) -> Option<Projection> {
+    let place = frame.place(p);
+    if place > NEAR_END && place < 1.0 - NEAR_END && !surface.meets_corner(frame.facet) {
+        return Some(frame.above(p, place));
     }
-    if best.inside {
-        let Foot { distance: _, gap, normal, facet, place, .. } = best;
-        return Some(Projection { gap, normal, facet, place });
-    }
-    at_vertex(surface, x, y, p, &best)
+    walk(surface, x, y, p, frame)
 }
 
 /// The nearest point of one facet.
 #[derive(Debug, Clone, Copy)]
 struct Foot {
-    facet: usize,
-    place: f64,
+    to: Projection,
     /// Unsigned distance [m].
     distance: f64,
-    /// Signed distance from the facet's line [m].
-    gap: f64,
-    normal: [f64; 2],
     /// False when the nearest point is an end.
     inside: bool,
 }
 
-#[inline(always)]
-fn on_facet(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], facet: usize) -> Foot {
-    let (a, b) = surface.ends(facet);
-    let (tx, ty) = (x[b] - x[a], y[b] - y[a]);
-    let (rx, ry) = (p[0] - x[a], p[1] - y[a]);
-    let squared = tx * tx + ty * ty;
-    let place = (rx * tx + ry * ty) / squared;
-    let inverse = 1.0 / squared.sqrt();
-    let normal = [ty * inverse, -tx * inverse];
-    let gap = rx * normal[0] + ry * normal[1];
-    if (0.0..=1.0).contains(&place) {
-        return Foot { facet, place, distance: gap.abs(), gap, normal, inside: true };
+#[inline(never)]
+fn walk(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], frame: &mut Frame) -> Option<Projection> {
+    let mut best = frame.foot(p);
+    for _ in 0..LONGEST_WALK {
+        let at = frame.facet;
+        let place = best.to.place;
+        if place > NEAR_END && place < 1.0 - NEAR_END && !surface.meets_corner(at) {
+            break;
+        }
+        let mut nearer = *frame;
+        for forward in [false, true] {
+            let Some(next) = surface.neighbour(at, forward) else { continue };
+            let smooth = surface.smooth[if forward { surface.second(at) } else { at }];
+            let off_end = if forward { best.to.place - 1.0 } else { -best.to.place };
+            if smooth && (best.to.facet != at || off_end < -NEAR_END) {
+                continue;
+            }
+            let other = Frame::new(surface, x, y, next);
+            let foot = other.foot(p);
+            let better = if smooth {
+                past_joint(frame, &other, forward, p)
+            } else {
+                // A foot inside a facet wins a tie against the vertex that both share.
+                foot.distance < best.distance
+                    || (foot.distance == best.distance && foot.inside && !best.inside)
+            };
+            if better {
+                (best, nearer) = (foot, other);
+            }
+        }
+        if nearer.facet == at {
+            break;
+        }
+        *frame = nearer;
     }
-    let place = if place < 0.0 { 0.0 } else { 1.0 };
-    let (dx, dy) = (rx - place * tx, ry - place * ty);
-    Foot { facet, place, distance: (dx * dx + dy * dy).sqrt(), gap, normal, inside: false }
+    if best.inside {
+        return Some(best.to);
+    }
+    let forward = best.to.place > 1.0;
+    let vertex = if forward { surface.second(frame.facet) } else { frame.facet };
+    if surface.smooth[vertex] {
+        // Curves that join without a kink leave no wedge: either goes on a little beyond its end.
+        return Some(best.to);
+    }
+    at_vertex(surface, x, y, p, frame, forward)
+}
+
+/// Whether `p` lies beyond the line through a joint that halves the angle between two facets.
+fn past_joint(from: &Frame, to: &Frame, forward: bool, p: [f64; 2]) -> bool {
+    let vertex = if forward { to.origin } else { from.origin };
+    let t = [0, 1].map(|k| from.along[k] * from.inverse + to.along[k] * to.inverse);
+    let along = (p[0] - vertex[0]) * t[0] + (p[1] - vertex[1]) * t[1];
+    if forward { along > 0.0 } else { along < 0.0 }
 }
 
 /// The nearest point is a vertex: the gap is the distance to it, its sign that of the normals around it.
-fn at_vertex(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], foot: &Foot) -> Option<Projection> {
-    let forward = foot.place == 1.0;
-    let other = surface.neighbour(foot.facet, forward)?;
-    let second = on_facet(surface, x, y, p, other);
-    let (a, b) = surface.ends(foot.facet);
-    let vertex = if forward { b } else { a };
+fn at_vertex(
+    surface: &Surface,
+    x: &[f64],
+    y: &[f64],
+    p: [f64; 2],
+    frame: &Frame,
+    forward: bool,
+) -> Option<Projection> {
+    let other = surface.neighbour(frame.facet, forward)?;
+    let second = Frame::new(surface, x, y, other);
+    let vertex = if forward { frame.ends.1 } else { frame.ends.0 };
     let r = [p[0] - x[vertex], p[1] - y[vertex]];
-    let mean = [foot.normal[0] + second.normal[0], foot.normal[1] + second.normal[1]];
+    let distance = (r[0] * r[0] + r[1] * r[1]).sqrt();
+    let mean = [frame.normal[0] + second.normal[0], frame.normal[1] + second.normal[1]];
     let sign = if r[0] * mean[0] + r[1] * mean[1] < 0.0 { -1.0 } else { 1.0 };
-    let normal = if foot.distance > 0.0 {
-        [sign * r[0] / foot.distance, sign * r[1] / foot.distance]
-    } else {
-        foot.normal
-    };
-    Some(Projection { gap: sign * foot.distance, normal, facet: foot.facet, place: foot.place })
+    let normal =
+        if distance > 0.0 { [sign * r[0] / distance, sign * r[1] / distance] } else { frame.normal };
+    let place = if forward { 1.0 } else { 0.0 };
+    Some(Projection { gap: sign * distance, normal, facet: frame.facet, place, turn: 0.0, height: 0.0 })
 }
 
-/// Distance from a point to one facet [m].
+/// Distance from a point to one chord [m].
 pub(crate) fn distance(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], facet: usize) -> f64 {
-    on_facet(surface, x, y, p, facet).distance
+    let frame = Frame::new(surface, x, y, facet);
+    let end = frame.place(p).clamp(0.0, 1.0);
+    let foot = frame.point(end, 0.0);
+    (p[0] - foot[0]).hypot(p[1] - foot[1])
 }
