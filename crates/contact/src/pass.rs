@@ -253,6 +253,7 @@ impl Pass {
         let Memory { nearest, candidates, history } = &mut self.memory;
         // Consecutive points mostly share a primary facet: its forces wait until another one comes.
         let mut other: Option<Side> = None;
+        let mut frame = Frame::new(primary, at.x, at.y, 0);
         for candidate in candidates {
             if at.step < candidate.wake {
                 first_awake = first_awake.min(candidate.wake);
@@ -266,10 +267,9 @@ impl Pass {
                 let (place, height) = (self.points.place[i], self.points.height[i]);
                 let p = own.frame.point(place, height);
                 let start = nearest[i] as usize;
-                let mut frame = match &other {
-                    Some(side) if side.frame.facet == start => side.frame,
-                    _ => Frame::new(primary, at.x, at.y, start),
-                };
+                if frame.facet != start {
+                    frame = Frame::new(primary, at.x, at.y, start);
+                }
                 let found = project_from(primary, at.x, at.y, p, &mut frame);
                 nearest[i] = frame.facet as u32;
                 let gap = found.map_or(f64::INFINITY, |f| f.gap);

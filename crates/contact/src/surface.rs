@@ -21,6 +21,8 @@ pub struct Surface {
     pub(crate) length: Vec<f64>,
     /// True for a vertex where the surface turns by a corner in the reference positions.
     pub(crate) corner: Vec<bool>,
+    /// True for a facet with a corner at either end.
+    pub(crate) beside_corner: Vec<bool>,
     /// How each facet's curve stands off its chord [m].
     pub(crate) rise: Vec<Rise>,
     /// True for a vertex where two smoothed facets join without a kink.
@@ -102,14 +104,17 @@ impl Surface {
         if !length.iter().all(|&l| l > 0.0 && l.is_finite()) {
             return Err(Error::BadSurface { name, reason: "has a facet of no length" });
         }
-        let corner = turns(&at, |f| [along(f); 2]).iter().map(|turn| turn.abs() > CORNER_ANGLE).collect();
+        let corner: Vec<bool> =
+            turns(&at, |f| [along(f); 2]).iter().map(|turn| turn.abs() > CORNER_ANGLE).collect();
         let facets = at.facets();
+        let beside_corner = (0..facets).map(|f| at.vertices(f)).map(|(a, b)| corner[a] || corner[b]).collect();
         Ok(Self {
             name,
             slots,
             closed,
             length,
             corner,
+            beside_corner,
             rise: vec![[0.0; 2]; facets],
             smooth: vec![false; n],
         })
@@ -190,12 +195,6 @@ impl Surface {
     #[inline(always)]
     pub(crate) fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
         neighbour(self.facets(), self.closed, facet, forward)
-    }
-
-    /// True when either end of the facet is a corner.
-    #[inline(always)]
-    pub(crate) fn meets_corner(&self, facet: usize) -> bool {
-        self.corner[facet] || self.corner[self.second(facet)]
     }
 
     /// Length that belongs to each vertex [m]: half of each facet that meets there.
