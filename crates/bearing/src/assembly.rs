@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Smoothing, Surface};
 use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
 
@@ -11,7 +11,7 @@ use crate::{
     grading,
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
-    scene::{ContactMethod, RollerCopies, Scene},
+    scene::{ContactMethod, ContactSurface, RollerCopies, Scene},
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
@@ -231,13 +231,25 @@ impl Assembly {
         let body =
             |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
         let (x, y) = (&dynamics.state.x, &dynamics.state.y);
+        let centres: Vec<[f64; 2]> = self
+            .rollers
+            .iter()
+            .map(|r| slot(&r.mark("centre").expect("a disc marks its centre")) as usize)
+            .map(|n| [x[n], y[n]])
+            .collect();
         let names = ["outer raceway", "outer ring's back", "inner raceway", "adapter seat"];
         let surfaces = touching
             .iter()
             .enumerate()
             .map(|(i, s)| {
                 let name = names.get(i).map_or_else(|| format!("surface {i}"), |n| (*n).to_owned());
-                Surface::new(name, slots(s), s.closed, x, y)
+                let surface = Surface::new(name, slots(s), s.closed, x, y)?;
+                let centre = match i.checked_sub(names.len()) {
+                    None => Some([0.0; 2]),
+                    Some(roller) if roller < centres.len() => Some(centres[roller]),
+                    _ => None,
+                };
+                surface.smoothed(smoothing(scene.contact.surface, centre), x, y)
             })
             .collect::<Result<Vec<_>, _>>()?;
 
@@ -308,6 +320,15 @@ impl Assembly {
         let points = SEAT_POINTS;
         pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points } });
         Ok((pairs, roller_pairs))
+    }
+}
+
+/// What the polyline of a body about `centre` stands for; bodies without one, the pieces of the cage, keep their corners.
+fn smoothing(surface: ContactSurface, centre: Option<[f64; 2]>) -> Smoothing {
+    match (surface, centre) {
+        (ContactSurface::Arc, Some(centre)) => Smoothing::Arc { centre },
+        (ContactSurface::Nagata, Some(_)) => Smoothing::Nagata,
+        _ => Smoothing::Facet,
     }
 }
 

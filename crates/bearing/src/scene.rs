@@ -158,6 +158,8 @@ pub struct OperationScene {
 pub struct ContactScene {
     /// Where the penalty acts.
     pub method: ContactMethod,
+    /// What the facets of raceways and rollers stand for.
+    pub surface: ContactSurface,
     /// Integration points on a facet (`integrated` only).
     pub points_per_facet: usize,
     /// Penalty stiffness as a multiple of E / element size [-].
@@ -168,6 +170,18 @@ pub struct ContactScene {
     pub friction: f64,
     /// Coulomb coefficient of the adapter on the outer ring [-].
     pub seat_friction: f64,
+}
+
+/// What the facets of raceways and rollers stand for. Corners (walls of the defect, cage) stay sharp in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactSurface {
+    /// Themselves: contact is with the chords.
+    Facet,
+    /// Arcs about the centre of the ring or roller.
+    Arc,
+    /// Nagata patches, from the directions of neighbouring facets alone.
+    Nagata,
 }
 
 /// Where the contact penalty acts.
@@ -327,6 +341,7 @@ impl Default for ContactScene {
     fn default() -> Self {
         Self {
             method: ContactMethod::Integrated,
+            surface: ContactSurface::Facet,
             points_per_facet: 4,
             penalty_scale: 1.0,
             damping_ratio: 0.1,

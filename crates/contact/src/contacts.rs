@@ -1,6 +1,5 @@
 //! All contacts of a model: one more force on nodes.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use stribeck_solver::{
     Force,
@@ -222,6 +221,35 @@ impl Contacts {
     }
 }
 
+impl Pair {
+    /// About how much there is to do, judged by the step before.
+    fn work(&self) -> usize {
+        1 + self.push.len()
+    }
+}
+
+/// Less work than this is not worth another thread: a fork and join takes as long as some hundred pushes.
+const LEAST_WORK: usize = 400;
+
+/// Evaluates pairs on several threads, about equal work on each.
+fn share_out<F: Fn(&mut Pair) + Sync>(pairs: &mut [Pair], work: usize, threads: usize, evaluate: &F) {
+    if threads < 2 || pairs.len() < 2 || work < 2 * LEAST_WORK {
+        pairs.iter_mut().for_each(evaluate);
+        return;
+    }
+    let (mut cut, mut before) = (0, 0);
+    while cut + 1 < pairs.len() && (cut == 0 || 2 * before + pairs[cut].work() <= work) {
+        before += pairs[cut].work();
+        cut += 1;
+    }
+    let (first, second) = pairs.split_at_mut(cut);
+    let half = threads / 2;
+    rayon::join(
+        || share_out(first, before, half, evaluate),
+        || share_out(second, work - before, threads - half, evaluate),
+    );
+}
+
 /// Each of the two passes carries half of the stiffness.
 fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
     let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
@@ -241,11 +269,9 @@ impl Force for Contacts {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
             }
         };
-        if self.parallel {
-            pairs.par_iter_mut().for_each(evaluate);
-        } else {
-            pairs.iter_mut().for_each(evaluate);
-        }
+        let threads = if self.parallel { rayon::current_num_threads() } else { 1 };
+        let work = pairs.iter().map(Pair::work).sum();
+        share_out(pairs, work, threads, &evaluate);
         self.energy.stored = 0.0;
         for pair in &self.pairs {
             for &(slot, [fx, fy]) in &pair.push {

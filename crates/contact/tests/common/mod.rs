@@ -51,6 +51,11 @@ impl Scene {
         self.pairs.push(PairSpec { first, second, law, method });
     }
 
+    /// Surfaces in the order of the bodies.
+    pub(crate) fn surfaces(&self) -> &[(String, stribeck_mesh::Surface)] {
+        &self.surfaces
+    }
+
     /// The model, still to be changed.
     pub(crate) fn model(&self) -> Model {
         Model::new(self.mesh.clone(), steel(), THICKNESS).expect("a positive thickness")

@@ -1,0 +1,84 @@
+//! Scratch: force at fixed approach over one facet.
+#[path = "../tests/common/mod.rs"]
+mod common;
+use common::*;
+use std::f64::consts::TAU;
+use stribeck_contact::*;
+use stribeck_solver::{Force, Motion, force::NodalLoad, state::NodeForces};
+use stribeck_mesh::Annulus;
+
+const R: f64 = 9e-3;
+
+fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing; 2], method: Method, scale: f64, race: bool) -> f64 {
+    let size = TAU * R / facets as f64;
+    let mut scene = Scene::default();
+    let ground = if race {
+        let n = (TAU * 0.1 / 0.5e-3 * (facets as f64 / 112.0)).round() as usize;
+        let ring = Annulus { inner_radius: 0.1, outer_radius: 0.106, facets: n, layers: (12.0 * facets as f64/112.0) as usize, start_angle: -TAU/4.0 + shift * TAU / n as f64, groove: None };
+        scene.add("ground", &ring.part().unwrap(), "inner")
+    } else {
+        let columns = (16.0 * facets as f64 / 56.0) as usize;
+        let w = columns as f64 * size;
+        scene.add("ground", &rectangle([-0.5 * w + shift * size, -0.5 * w], w, 0.5 * w, columns, columns / 2), "top")
+    };
+    let centre = if race { [0.0, -0.1 + R - sink] } else { [0.0, R - sink] };
+    let d = disc(R, facets, size).rotated(-TAU / 4.0 + spin * TAU / facets as f64).translated(centre[0], centre[1]);
+    let roller = scene.add("roller", &d, "rim");
+    let law = Law::penalty(scale * 208e9 / 0.5e-3 * (facets as f64 / 112.0)).unwrap();
+    scene.pair(roller, ground, law, method);
+    let mut model = scene.model();
+    for n in 0..model.mesh.x.len() {
+        let (x, y) = (model.mesh.x[n], model.mesh.y[n]);
+        let in_roller = model.mesh.bodies[roller].nodes.contains(&n);
+        let held = if in_roller { (x - centre[0]).hypot(y - centre[1]) < 2e-3 } else if race { x.hypot(y) > 0.1059 || y > -0.08 || x.abs() > 0.02 } else { y < -0.49 * 2.0 * 8e-3 * 0.5 };
+        if held { model.motion[n] = Motion::Held; }
+    }
+    let (mut d, _) = scene.lay_out(&model);
+    let (x, y) = (d.state.x.clone(), d.state.y.clone());
+    let centres = [[0.0, 0.0], centre];
+    let surfaces = scene.surfaces().iter().enumerate().map(|(i, (name, s))| {
+        let slots = slots(&d, s.nodes.iter().map(|&n| n as usize));
+        let sm = match smoothing[1 - i] { Smoothing::Arc { .. } => Smoothing::Arc { centre: centres[i] }, o => o };
+        Surface::new(name.clone(), slots, s.closed, &x, &y).unwrap().smoothed(sm, &x, &y).unwrap()
+    }).collect();
+    let pair = PairSpec { first: 1, second: 0, law, method };
+    let mut contacts = Contacts::new(surfaces, &[pair], THICKNESS, &x, &y);
+    let bodies = [0, 1].map(|b| (format!("b{b}"), of_body(&d, &model, b)));
+    let mut load = NodalLoad::new(vec![]);
+    preload(&mut d, &mut contacts, &mut load, bodies.to_vec(), &[1e-6, 1e-7, 1e-8, 0.0], 1e-4);
+    contacts.set_preload(None);
+    let n = d.state.x.len();
+    let mut f = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+    contacts.accumulate(d.moment(), &mut f);
+    contacts.resultants().next().unwrap().force[1] / THICKNESS
+}
+
+fn main() {
+    let arg: Vec<String> = std::env::args().collect();
+    let sink: f64 = arg.get(1).map_or(13e-6, |s| s.parse().unwrap());
+    let n = 8;
+    let arc = Smoothing::Arc { centre: [0.0; 2] };
+    let fl = Smoothing::Facet;
+    for race in [false, true] {
+        let ground = |s: Smoothing| if race { s } else { Smoothing::Facet };
+        for (name, sm, method, scale) in [
+            ("collocated chords", [fl, fl], Method::Collocated, 1.0),
+            ("integrated 4 chords", [fl, fl], Method::Integrated { points: 4 }, 1.0),
+            ("arc 4", [arc, ground(arc)], Method::Integrated { points: 4 }, 1.0),
+            ("arc 8", [arc, ground(arc)], Method::Integrated { points: 8 }, 1.0),
+            ("arc 8 scale .3", [arc, ground(arc)], Method::Integrated { points: 8 }, 0.3),
+            ("arc 8 scale 3", [arc, ground(arc)], Method::Integrated { points: 8 }, 3.0),
+        ] {
+            print!("race {race} {name:20}");
+            let k = (force(112, 0.0, 0.0, sink + 1e-7, sm, method, scale, race) - force(112, 0.0, 0.0, sink, sm, method, scale, race)) / 1e-7;
+            for (what, a, b) in [("spin", 1.0, 0.0), ("nodes", 0.0, 1.0), ("both", 1.0, 1.0)] {
+                let f: Vec<f64> = (0..n).map(|i| { let s = i as f64 / n as f64; force(112, a * s, b * s, sink, sm, method, scale, race) }).collect();
+                let mean = f.iter().sum::<f64>() / n as f64;
+                let (lo, hi) = f.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+                let harm = |m: f64| { let (mut c, mut s) = (0.0, 0.0); for (i, v) in f.iter().enumerate() { let p = TAU * m * i as f64 / n as f64; c += v * p.cos(); s += v * p.sin(); } 2.0 * (c * c + s * s).sqrt() / n as f64 };
+                print!(" | {what}: F {:.1} kN/m p-p {:.3}% h1 {:.1} nm h2 {:.1} nm", mean / 1e3, 100.0 * (hi - lo) / mean, harm(1.0) / k * 1e9, harm(2.0) / k * 1e9);
+            }
+            println!(" K {:.2e}", k);
+        }
+    }
+}
