@@ -9,7 +9,7 @@ use stribeck_mesh::Annulus;
 
 const R: f64 = 9e-3;
 
-fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing; 2], method: Method, scale: f64, race: bool) -> f64 {
+fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing; 2], method: Method, scale: f64, race: bool, spline: bool, onset: f64) -> f64 {
     let size = TAU * R / facets as f64;
     let mut scene = Scene::default();
     let ground = if race {
@@ -24,7 +24,7 @@ fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing;
     let centre = if race { [0.0, -0.1 + R - sink] } else { [0.0, R - sink] };
     let d = disc(R, facets, size).rotated(-TAU / 4.0 + spin * TAU / facets as f64).translated(centre[0], centre[1]);
     let roller = scene.add("roller", &d, "rim");
-    let law = Law::penalty(scale * 208e9 / 0.5e-3 * (facets as f64 / 112.0)).unwrap();
+    let law = Law::penalty(scale * 208e9 / 0.5e-3 * (facets as f64 / 112.0)).unwrap().with_onset(onset).unwrap();
     scene.pair(roller, ground, law, method);
     let mut model = scene.model();
     for n in 0..model.mesh.x.len() {
@@ -39,7 +39,7 @@ fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing;
     let surfaces = scene.surfaces().iter().enumerate().map(|(i, (name, s))| {
         let slots = slots(&d, s.nodes.iter().map(|&n| n as usize));
         let sm = match smoothing[1 - i] { Smoothing::Arc { .. } => Smoothing::Arc { centre: centres[i] }, o => o };
-        Surface::new(name.clone(), slots, s.closed, &x, &y).unwrap().smoothed(sm, &x, &y).unwrap()
+        Surface::new(name.clone(), slots, s.closed, &x, &y).unwrap().smoothed(sm, &x, &y).map(|s| if spline { s.splined(&x, &y) } else { s }).unwrap()
     }).collect();
     let pair = PairSpec { first: 1, second: 0, law, method };
     let mut contacts = Contacts::new(surfaces, &[pair], THICKNESS, &x, &y);
@@ -56,27 +56,28 @@ fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing;
 fn main() {
     let arg: Vec<String> = std::env::args().collect();
     let sink: f64 = arg.get(1).map_or(13e-6, |s| s.parse().unwrap());
-    let n = 8;
+    let n: usize = arg.get(2).map_or(8, |s| s.parse().unwrap());
     let arc = Smoothing::Arc { centre: [0.0; 2] };
     let fl = Smoothing::Facet;
     for race in [false, true] {
         let ground = |s: Smoothing| if race { s } else { Smoothing::Facet };
-        for (name, sm, method, scale) in [
-            ("collocated chords", [fl, fl], Method::Collocated, 1.0),
-            ("integrated 4 chords", [fl, fl], Method::Integrated { points: 4 }, 1.0),
-            ("arc 4", [arc, ground(arc)], Method::Integrated { points: 4 }, 1.0),
-            ("arc 8", [arc, ground(arc)], Method::Integrated { points: 8 }, 1.0),
-            ("arc 8 scale .3", [arc, ground(arc)], Method::Integrated { points: 8 }, 0.3),
-            ("arc 8 scale 3", [arc, ground(arc)], Method::Integrated { points: 8 }, 3.0),
+        let m = |points| Method::Integrated { points };
+        for (name, sm, method, scale, spline, onset) in [
+            ("chords 4", [fl, fl], m(4), 1.0, false, 0.0),
+            ("arc 8", [arc, ground(arc)], m(8), 1.0, false, 0.0),
+            ("spline 8", [arc, ground(arc)], m(8), 1.0, true, 0.0),
+            ("spline 8 k.75", [arc, ground(arc)], m(8), 0.75, true, 0.0),
+            ("spline 8 k.75 e.5", [arc, ground(arc)], m(8), 0.75, true, 0.5e-6),
+            ("spline 12 k.75 e.5", [arc, ground(arc)], m(12), 0.75, true, 0.5e-6),
         ] {
             print!("race {race} {name:20}");
-            let k = (force(112, 0.0, 0.0, sink + 1e-7, sm, method, scale, race) - force(112, 0.0, 0.0, sink, sm, method, scale, race)) / 1e-7;
+            let k = (force(112, 0.0, 0.0, sink + 1e-7, sm, method, scale, race, spline, onset) - force(112, 0.0, 0.0, sink, sm, method, scale, race, spline, onset)) / 1e-7;
             for (what, a, b) in [("spin", 1.0, 0.0), ("nodes", 0.0, 1.0), ("both", 1.0, 1.0)] {
-                let f: Vec<f64> = (0..n).map(|i| { let s = i as f64 / n as f64; force(112, a * s, b * s, sink, sm, method, scale, race) }).collect();
+                let f: Vec<f64> = (0..n).map(|i| { let s = i as f64 / n as f64; force(112, a * s, b * s, sink, sm, method, scale, race, spline, onset) }).collect();
                 let mean = f.iter().sum::<f64>() / n as f64;
                 let (lo, hi) = f.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
                 let harm = |m: f64| { let (mut c, mut s) = (0.0, 0.0); for (i, v) in f.iter().enumerate() { let p = TAU * m * i as f64 / n as f64; c += v * p.cos(); s += v * p.sin(); } 2.0 * (c * c + s * s).sqrt() / n as f64 };
-                print!(" | {what}: F {:.1} kN/m p-p {:.3}% h1 {:.1} nm h2 {:.1} nm", mean / 1e3, 100.0 * (hi - lo) / mean, harm(1.0) / k * 1e9, harm(2.0) / k * 1e9);
+                print!(" | {what}: F {:.1} kN/m p-p {:.3}% h1 {:.1} nm rest {:.1} nm", mean / 1e3, 100.0 * (hi - lo) / mean, harm(1.0) / k * 1e9, (2..=n / 2).map(|m| harm(m as f64)).fold(0.0, f64::max) / k * 1e9);
             }
             println!(" K {:.2e}", k);
         }

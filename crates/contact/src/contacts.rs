@@ -9,9 +9,10 @@ use stribeck_solver::{
 
 use crate::{
     law::Law,
-    pass::{Memory, Pass, Push, Weights},
+    pass::{Memory, Pass, Weights},
     points::{Method, Points},
     search::Tree,
+    shape::Push,
     surface::Surface,
     touch::Sum,
 };
@@ -316,7 +317,7 @@ impl Force for Contacts {
         bound.iter_mut().zip(own).for_each(|(b, k)| *b += k);
     }
 
-    fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne)) {
+    fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne<'_>)) {
         for pair in &self.pairs {
             for pass in &pair.passes {
                 pass.tangent(&self.surfaces, x, y, &self.weights(&pair.spec), visit);

@@ -95,7 +95,9 @@ mod pass;
 mod points;
 mod projection;
 mod search;
+mod shape;
 mod smooth;
+mod spline;
 mod surface;
 mod touch;
 

@@ -1,6 +1,6 @@
 //! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
 
-use crate::{smooth::height, surface::Surface};
+use crate::surface::Surface;
 
 /// Where the penalty acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +51,7 @@ impl Points {
                 points.push(1.0, weight);
             }
             let new = points.height.len()..points.place.len();
-            points.height.extend(points.place[new].iter().map(|&s| height(surface.rise[f], s)));
+            points.height.extend(points.place[new].iter().map(|&s| surface.height(f, s)));
             points.first.push(points.place.len() as u32);
         }
         points
@@ -66,17 +66,18 @@ impl Points {
         self.place.len()
     }
 
-    /// Length of surface that the points deal out to each node [m].
+    /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.
     pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
-        let mut share = vec![0.0; surface.slots.len()];
+        let mut dealt = vec![0.0; surface.slots.len()];
         for f in 0..surface.facets() {
-            let next = surface.second(f);
             for i in self.of_facet(f) {
-                share[f] += (1.0 - self.place[i]) * self.weight[i];
-                share[next] += self.place[i] * self.weight[i];
+                // (Σ s u)² ≤ Σ|s| · Σ |s| u².
+                let shares = surface.shares(f, self.place[i]);
+                let sum: f64 = shares.iter().map(|(_, s)| s.abs()).sum();
+                shares.iter().for_each(|(v, s)| dealt[*v] += sum * s.abs() * self.weight[i]);
             }
         }
-        share
+        dealt
     }
 
     /// Longest length of surface that one point stands for [m].

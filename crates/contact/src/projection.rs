@@ -1,7 +1,9 @@
 //! Projection of a point onto a surface, and the signed gap (THEORY §4.1, §4.4).
 
 use crate::{
+    shape::{Poly, Push, Shape, Spot},
     smooth::{Rise, height, slope},
+    spline::Patch,
     surface::Surface,
 };
 
@@ -17,11 +19,14 @@ pub struct Projection {
     pub facet: usize,
     /// Place on the facet, 0 at its first node, 1 at its second.
     pub place: f64,
-    /// How much more of the gap's gradient falls on the facet's second node than on its first, because the curve turns
-    /// with its chord [-].
+    /// How the gap falls as the facet's polynomial turns: −∂gap/∂(n·c′) [-].
     pub(crate) turn: f64,
-    /// Height of the foot above its chord, in lengths of the facet [-].
+    /// Height of the foot above the polynomial [m].
     pub(crate) height: f64,
+    /// Unit normal of the polynomial there.
+    pub(crate) curve_normal: [f64; 2],
+    /// One over the length of its derivative [1/m].
+    pub(crate) inverse: f64,
 }
 
 /// A point at the distance d from a facet is compared with the neighbour where it stands closer to an end than this
@@ -31,7 +36,7 @@ const NEAR_END: f64 = 0.25;
 /// Walks at most this many facets from the starting one.
 const LONGEST_WALK: usize = 8;
 
-/// A facet in present positions.
+/// A facet in present positions, its chord as polynomial.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Frame {
     pub(crate) facet: usize,
@@ -48,9 +53,11 @@ pub(crate) struct Frame {
     rise: Rise,
 }
 
-impl Frame {
+impl Shape for Frame {
+    type Coefficients = Poly<2>;
+
     #[inline(always)]
-    pub(crate) fn new(surface: &Surface, x: &[f64], y: &[f64], facet: usize) -> Self {
+    fn new(surface: &Surface, x: &[f64], y: &[f64], facet: usize) -> Self {
         let (a, b) = surface.ends(facet);
         let along = [x[b] - x[a], y[b] - y[a]];
         let inverse = 1.0 / (along[0] * along[0] + along[1] * along[1]).sqrt();
@@ -65,34 +72,27 @@ impl Frame {
         }
     }
 
-    /// Point of the curve at a place whose height is known [m].
     #[inline(always)]
-    pub(crate) fn point(&self, place: f64, height: f64) -> [f64; 2] {
-        let Self { origin: [ax, ay], along: [tx, ty], normal: [nx, ny], .. } = *self;
-        [ax + place * tx + height * nx, ay + place * ty + height * ny]
+    fn facet(&self) -> usize {
+        self.facet
     }
 
-    /// Place on the chord below `p`.
     #[inline(always)]
-    fn place(&self, p: [f64; 2]) -> f64 {
-        let r = [p[0] - self.origin[0], p[1] - self.origin[1]];
-        (r[0] * self.along[0] + r[1] * self.along[1]) * (self.inverse * self.inverse)
+    fn spot(&self, place: f64, height: f64) -> Spot {
+        let Self { origin: [ax, ay], along: [tx, ty], normal, inverse, .. } = *self;
+        let at = [ax + place * tx + height * normal[0], ay + place * ty + height * normal[1]];
+        Spot { at, place, height, normal, inverse }
     }
 
-    /// Projection of `p` on the facet's curve, which goes on beyond its ends.
     #[inline(always)]
-    fn above(&self, p: [f64; 2], place: f64) -> Projection {
-        let Self { facet, origin, along: [tx, ty], inverse, normal: [nx, ny], rise, .. } = *self;
-        let off = (p[0] - origin[0]) * nx + (p[1] - origin[1]) * ny;
-        let (h, dh) = (height(rise, place), slope(rise, place));
-        let square = inverse * inverse;
-        // The chord's tangent falls with the curve's slope.
-        let fall = dh * square;
-        let normal = [nx - fall * tx, ny - fall * ty];
-        Projection { gap: off - h, normal, facet, place, turn: dh * off * square, height: h * inverse }
+    fn project(&mut self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2]) -> Option<Projection> {
+        let to = self.above(p, self.place(p));
+        if !surface.beside_corner[self.facet] && self.holds(&to) {
+            return Some(to);
+        }
+        walk(surface, x, y, p, self)
     }
 
-    /// Whether a foot lies so far within the facet that no neighbour is nearer, unless there is a corner between.
     #[inline(always)]
     fn holds(&self, to: &Projection) -> bool {
         let margin = NEAR_END * to.gap.abs() * self.inverse;
@@ -111,45 +111,90 @@ impl Frame {
         let dy = p[1] - self.origin[1] - end * self.along[1];
         Foot { to, distance: (dx * dx + dy * dy).sqrt(), inside: false }
     }
+
+    /// Beyond the line that halves the angle between the two chords.
+    fn is_past(&self, _to: &Projection, other: &Self, forward: bool, p: [f64; 2]) -> bool {
+        let vertex = if forward { other.origin } else { self.origin };
+        let t = [0, 1].map(|k| self.along[k] * self.inverse + other.along[k] * other.inverse);
+        let along = (p[0] - vertex[0]) * t[0] + (p[1] - vertex[1]) * t[1];
+        if forward { along > 0.0 } else { along < 0.0 }
+    }
+
+    #[inline(always)]
+    fn gather(&self, _surface: &Surface, x: &[f64], y: &[f64]) -> Poly<2> {
+        let (a, b) = self.ends;
+        Poly([[x[a], y[a]], [x[b] - x[a], y[b] - y[a]]])
+    }
+
+    #[inline(always)]
+    fn scatter(&self, _surface: &Surface, forces: &Poly<2>, push: &mut Vec<Push>) {
+        let Poly([all, second]) = *forces;
+        push.push((self.ends.0 as u32, [all[0] - second[0], all[1] - second[1]]));
+        push.push((self.ends.1 as u32, second));
+    }
+}
+
+impl Frame {
+    /// Place on the chord below `p`.
+    #[inline(always)]
+    fn place(&self, p: [f64; 2]) -> f64 {
+        let r = [p[0] - self.origin[0], p[1] - self.origin[1]];
+        (r[0] * self.along[0] + r[1] * self.along[1]) * (self.inverse * self.inverse)
+    }
+
+    /// Projection of `p` on the facet's curve, which goes on beyond its ends.
+    #[inline(always)]
+    fn above(&self, p: [f64; 2], place: f64) -> Projection {
+        let Self { facet, origin, along: [tx, ty], inverse, normal: [nx, ny], rise, .. } = *self;
+        let off = (p[0] - origin[0]) * nx + (p[1] - origin[1]) * ny;
+        let (h, dh) = (height(rise, place), slope(rise, place));
+        let square = inverse * inverse;
+        // The chord's tangent falls with the curve's slope.
+        let fall = dh * square;
+        let normal = [nx - fall * tx, ny - fall * ty];
+        Projection {
+            gap: off - h,
+            normal,
+            facet,
+            place,
+            turn: dh * off * square,
+            height: h,
+            curve_normal: [nx, ny],
+            inverse,
+        }
+    }
 }
 
 /// Projects `p` onto `surface`, starting the walk at `facet`. `None` beyond the ends of an open surface.
 pub fn project(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], facet: usize) -> Option<Projection> {
-    let mut frame = Frame::new(surface, x, y, facet);
-    project_from(surface, x, y, p, &mut frame)
-}
-
-/// The same from a facet's frame, which becomes that of the facet found.
-#[inline(always)]
-pub(crate) fn project_from(
-    surface: &Surface,
-    x: &[f64],
-    y: &[f64],
-    p: [f64; 2],
-    frame: &mut Frame,
-) -> Option<Projection> {
-    let to = frame.above(p, frame.place(p));
-    if !surface.beside_corner[frame.facet] && frame.holds(&to) {
-        return Some(to);
+    if surface.spline.is_some() {
+        Patch::new(surface, x, y, facet).project(surface, x, y, p)
+    } else {
+        Frame::new(surface, x, y, facet).project(surface, x, y, p)
     }
-    walk(surface, x, y, p, frame)
 }
 
 /// The nearest point of one facet.
 #[derive(Debug, Clone, Copy)]
-struct Foot {
-    to: Projection,
+pub(crate) struct Foot {
+    pub(crate) to: Projection,
     /// Unsigned distance [m].
-    distance: f64,
+    pub(crate) distance: f64,
     /// False when the nearest point is an end.
-    inside: bool,
+    pub(crate) inside: bool,
 }
 
 #[inline(never)]
-fn walk(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], frame: &mut Frame) -> Option<Projection> {
+pub(crate) fn walk<S: Shape>(
+    surface: &Surface,
+    x: &[f64],
+    y: &[f64],
+    p: [f64; 2],
+    frame: &mut S,
+) -> Option<Projection> {
     let mut best = frame.foot(p);
     for _ in 0..LONGEST_WALK {
-        let at = frame.facet;
+        let at = frame.facet();
         if !surface.beside_corner[at] && frame.holds(&best.to) {
             break;
         }
@@ -160,10 +205,10 @@ fn walk(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], frame: &mut Frame)
             if smooth && best.to.facet != at {
                 continue;
             }
-            let other = Frame::new(surface, x, y, next);
+            let other = S::new(surface, x, y, next);
             let foot = other.foot(p);
             let better = if smooth {
-                past_joint(frame, &other, forward, p)
+                frame.is_past(&best.to, &other, forward, p)
             } else {
                 // A foot inside a facet wins a tie against the vertex that both share.
                 foot.distance < best.distance
@@ -173,7 +218,7 @@ fn walk(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], frame: &mut Frame)
                 (best, nearer) = (foot, other);
             }
         }
-        if nearer.facet == at {
+        if nearer.facet() == at {
             break;
         }
         *frame = nearer;
@@ -182,20 +227,12 @@ fn walk(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], frame: &mut Frame)
         return Some(best.to);
     }
     let forward = best.to.place > 1.0;
-    let vertex = if forward { surface.second(frame.facet) } else { frame.facet };
+    let vertex = if forward { surface.second(frame.facet()) } else { frame.facet() };
     if surface.smooth[vertex] {
         // Curves that join without a kink leave no wedge: either goes on a little beyond its end.
         return Some(best.to);
     }
-    at_vertex(surface, x, y, p, frame, forward)
-}
-
-/// Whether `p` lies beyond the line through a joint that halves the angle between two facets.
-fn past_joint(from: &Frame, to: &Frame, forward: bool, p: [f64; 2]) -> bool {
-    let vertex = if forward { to.origin } else { from.origin };
-    let t = [0, 1].map(|k| from.along[k] * from.inverse + to.along[k] * to.inverse);
-    let along = (p[0] - vertex[0]) * t[0] + (p[1] - vertex[1]) * t[1];
-    if forward { along > 0.0 } else { along < 0.0 }
+    at_vertex(surface, x, y, p, &Frame::new(surface, x, y, frame.facet()), forward)
 }
 
 /// The nearest point is a vertex: the gap is the distance to it, its sign that of the normals around it.
@@ -217,13 +254,13 @@ fn at_vertex(
     let normal =
         if distance > 0.0 { [sign * r[0] / distance, sign * r[1] / distance] } else { frame.normal };
     let place = if forward { 1.0 } else { 0.0 };
-    Some(Projection { gap: sign * distance, normal, facet: frame.facet, place, turn: 0.0, height: 0.0 })
+    Some(Projection { gap: sign * distance, normal, place, turn: 0.0, height: 0.0, ..frame.above(p, place) })
 }
 
 /// Distance from a point to one chord [m].
 pub(crate) fn distance(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], facet: usize) -> f64 {
     let frame = Frame::new(surface, x, y, facet);
     let end = frame.place(p).clamp(0.0, 1.0);
-    let foot = frame.point(end, 0.0);
+    let foot = frame.spot(end, 0.0).at;
     (p[0] - foot[0]).hypot(p[1] - foot[1])
 }

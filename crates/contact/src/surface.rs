@@ -3,6 +3,7 @@
 use crate::{
     error::Error,
     smooth::{KINK, Rise, Smoothing, height, rises},
+    spline::Spline,
 };
 
 /// Vertices that turn by more than this are corners: they get a contact point of their own [rad].
@@ -27,6 +28,8 @@ pub struct Surface {
     pub(crate) rise: Vec<Rise>,
     /// True for a vertex where two smoothed facets join without a kink.
     pub(crate) smooth: Vec<bool>,
+    /// How the curve hangs on its nodes; `None` when each facet hangs on its own two.
+    pub(crate) spline: Option<Spline>,
 }
 
 /// Vertices of a polyline in given positions.
@@ -117,6 +120,7 @@ impl Surface {
             beside_corner,
             rise: vec![[0.0; 2]; facets],
             smooth: vec![false; n],
+            spline: None,
         })
     }
 
@@ -127,6 +131,7 @@ impl Surface {
     /// When the curve leaves a facet by more than half its length: the polyline is too coarse for it.
     pub fn smoothed(mut self, smoothing: Smoothing, x: &[f64], y: &[f64]) -> Result<Self, Error> {
         let at = Vertices { slots: &self.slots, closed: self.closed, x, y };
+        self.spline = None;
         self.rise = rises(smoothing, &at, &self.corner);
         if self.rise.iter().zip(&self.length).any(|(r, l)| !(r[0].abs().max(r[1].abs()) < 0.5 * l)) {
             let reason = "is too coarse to be smoothed: its curve would leave a chord by more than 27°";
@@ -157,6 +162,14 @@ impl Surface {
         Ok(self)
     }
 
+    /// The same curve, moving as a spline of its nodes instead of facet by facet; to be asked for after
+    /// [`smoothed`](Self::smoothed), in the same positions.
+    pub fn splined(mut self, x: &[f64], y: &[f64]) -> Self {
+        self.spline = Some(Spline::new(&self, x, y));
+        self.smooth = self.corner.iter().map(|corner| !corner).collect();
+        self
+    }
+
     /// Number of facets.
     pub fn facets(&self) -> usize {
         self.length.len()
@@ -170,13 +183,33 @@ impl Surface {
     /// Largest height of the curve above or below its chords [m].
     pub fn largest_sag(&self) -> f64 {
         let middle = |r: &Rise| height(*r, 0.5).abs();
-        self.rise.iter().map(middle).fold(0.0, f64::max)
+        let spline = self.spline.as_ref().map_or(0.0, Spline::largest_height);
+        self.rise.iter().map(middle).fold(spline, f64::max)
     }
 
     /// Steepest slope of the curve against its chords [-].
     pub(crate) fn steepest(&self) -> f64 {
         let slope = |(r, l): (&Rise, &f64)| r[0].abs().max(r[1].abs()) / l;
         self.rise.iter().zip(&self.length).map(slope).fold(0.0, f64::max)
+    }
+
+    /// Height of the curve at a place of a facet, above what moves with the nodes [m].
+    pub(crate) fn height(&self, facet: usize, place: f64) -> f64 {
+        match &self.spline {
+            Some(spline) => spline.height(facet, place),
+            None => height(self.rise[facet], place),
+        }
+    }
+
+    /// Vertices that a point hangs on, with their shares.
+    pub(crate) fn shares(&self, facet: usize, place: f64) -> [(usize, f64); 6] {
+        match &self.spline {
+            Some(spline) => spline.shares(facet, place),
+            None => {
+                let (a, b) = (facet, self.second(facet));
+                [(a, 1.0 - place), (b, place), (a, 0.0), (a, 0.0), (a, 0.0), (a, 0.0)]
+            }
+        }
     }
 
     /// Slots of the two ends of a facet.

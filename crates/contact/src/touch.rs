@@ -24,7 +24,7 @@ pub(crate) struct Sum {
     pub(crate) friction: f64,
     /// Heat of damping in the last step [J].
     pub(crate) damping: f64,
-    /// Deepest penetration [m].
+    /// Deepest effective penetration [m]; zero where nothing acts.
     pub(crate) penetration: f64,
 }
 
@@ -49,9 +49,12 @@ pub(crate) fn touch(
     sum: &mut Sum,
 ) -> [f64; 2] {
     let stiffness = law.stiffness * area;
-    let elastic = -stiffness * gap;
-    // Damping never pulls: the sum of both stays a pressure.
-    let damping = (-law.damping * area * slide.opening).max(-elastic);
+    let [depth, fall, work] = law.depth(gap);
+    let elastic = stiffness * depth;
+    sum.stored += stiffness * work;
+    sum.penetration = sum.penetration.max(depth);
+    // Damping sets in with the stiffness and never pulls: the sum of both stays a pressure.
+    let damping = (-law.damping * fall * area * slide.opening).max(-elastic);
     // Work of a force over a step is the mean of its two ends times the displacement (THEORY §2.5).
     sum.damping -= 0.5 * (history.damping + damping) * slide.opening * dt;
     history.damping = damping;
@@ -62,7 +65,7 @@ pub(crate) fn touch(
     let moved = slide.along * dt;
     let tangential = law.tangential * stiffness;
     // µ · elastic / tangential, without the division.
-    let limit = law.friction / law.tangential * -gap;
+    let limit = law.friction / law.tangential * depth;
     let before = history.slip;
     let after = (before + moved).clamp(-limit, limit);
     history.slip = after;

@@ -9,7 +9,6 @@ use proptest::{prelude::*, test_runner::RngSeed};
 use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Smoothing, Surface, project};
 use stribeck_solver::{
     Force,
-    force::RankOne,
     state::{Moment, NodeForces},
 };
 
@@ -138,7 +137,14 @@ struct DiscInRing {
 }
 
 impl DiscInRing {
-    fn new(counts: [usize; 2], smoothing: [Smoothing; 2], method: Method, turn: f64, deep: f64, seed: u64) -> Self {
+    fn new(
+        counts: [usize; 2],
+        smoothing: [(Smoothing, bool); 2],
+        method: Method,
+        turn: f64,
+        deep: f64,
+        seed: u64,
+    ) -> Self {
         let centre = [0.5 + deep, 0.0];
         let (mut x, mut y) = circle(counts[0], 0.5, centre, turn);
         let (ring_x, ring_y) = circle(counts[1], 1.0, [0.0; 2], 0.3 * turn);
@@ -147,15 +153,17 @@ impl DiscInRing {
         let disc = (0..counts[0] as u32).collect();
         // Solid outside: walked clockwise.
         let ring = (counts[0] as u32..x.len() as u32).rev().collect();
-        let about = |smoothing, centre| match smoothing {
-            Smoothing::Arc { .. } => Smoothing::Arc { centre },
-            other => other,
-        };
-        let make = |name: &str, slots, smoothing| {
-            Surface::new(name, slots, true, &x, &y).and_then(|s| s.smoothed(smoothing, &x, &y)).expect("a polygon")
+        let make = |name: &str, slots, (smoothing, spline): (Smoothing, bool), centre| {
+            let smoothing = match smoothing {
+                Smoothing::Arc { .. } => Smoothing::Arc { centre },
+                other => other,
+            };
+            let surface = Surface::new(name, slots, true, &x, &y);
+            let surface = surface.and_then(|s| s.smoothed(smoothing, &x, &y)).expect("a polygon");
+            if spline { surface.splined(&x, &y) } else { surface }
         };
         let surfaces =
-            vec![make("disc", disc, about(smoothing[0], centre)), make("ring", ring, about(smoothing[1], [0.0; 2]))];
+            vec![make("disc", disc, smoothing[0], centre), make("ring", ring, smoothing[1], [0.0; 2])];
         let mut noise = Noise(seed);
         let mut random = |scale: f64| -> Vec<f64> { x.iter().map(|_| scale * noise.next()).collect() };
         let (dx, dy, vx, vy) = (random(3e-4), random(3e-4), random(1.0), random(1.0));
@@ -185,6 +193,7 @@ fn curves() -> impl Strategy<Value = DiscInRing> {
         Just(Smoothing::Arc { centre: [0.0; 2] }),
         Just(Smoothing::Nagata)
     ];
+    let smoothing = (smoothing, any::<bool>());
     let method = prop_oneof![Just(Method::Collocated), Just(Method::Integrated { points: 5 })];
     (30..60_usize, 60..90_usize, smoothing.clone(), smoothing, method, 0.0..TAU, 1e-3..6e-3_f64, 0..1000_u64)
         .prop_map(|(m, n, a, b, method, turn, deep, seed)| DiscInRing::new([m, n], [a, b], method, turn, deep, seed))
@@ -199,9 +208,9 @@ proptest! {
     #![proptest_config(cases())]
 
     #[test]
-    fn invariant_forces_are_the_gradient_of_the_energy(shapes in curves(), seed in 0..1000_u64) {
+    fn invariant_forces_are_the_gradient_of_the_energy(shapes in curves(), seed in 0..1000_u64, onset in prop_oneof![Just(0.0), Just(1e-3)]) {
         // Along random displacements of all nodes: −dU = f·dx.
-        let law = Law::penalty(STIFFNESS).expect("a law");
+        let law = Law::penalty(STIFFNESS).and_then(|l| l.with_onset(onset)).expect("a law");
         let mut contacts = shapes.contacts(law);
         let force = shapes.forces(&mut contacts, &shapes.x, &shapes.y);
         prop_assume!(contacts.energy().stored > 0.0);
@@ -249,18 +258,21 @@ proptest! {
         shapes.forces(&mut contacts, &shapes.x, &shapes.y);
         let mut bound = vec![0.0; shapes.x.len()];
         contacts.stiffness_bound(0.0, &mut bound);
-        let mut pieces: Vec<RankOne> = Vec::new();
-        contacts.tangent(&shapes.x, &shapes.y, &mut |r| pieces.push(r));
+        let mut pieces = Vec::new();
+        contacts.tangent(&shapes.x, &shapes.y, &mut |r| {
+            pieces.push((r.nodes.to_vec(), r.direction.to_vec(), r.stiffness));
+        });
         let mut noise = Noise(seed);
         let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.next(), noise.next()]).collect();
         for _ in 0..60 {
             let mut force = vec![[0.0; 2]; u.len()];
             let mut twice = 0.0;
-            for r in &pieces {
-                let stretch: f64 = (0..8).map(|i| r.direction[i] * u[r.nodes[i / 2] as usize][i % 2]).sum();
-                twice += r.stiffness * stretch * stretch;
-                for i in 0..8 {
-                    force[r.nodes[i / 2] as usize][i % 2] += r.stiffness * stretch * r.direction[i];
+            for (nodes, direction, stiffness) in &pieces {
+                let along = |i: usize| direction[i] * u[nodes[i / 2] as usize][i % 2];
+                let stretch: f64 = (0..direction.len()).map(along).sum();
+                twice += stiffness * stretch * stretch;
+                for i in 0..direction.len() {
+                    force[nodes[i / 2] as usize][i % 2] += stiffness * stretch * direction[i];
                 }
             }
             let limit: f64 = u.iter().zip(&bound).map(|(u, b)| b * (u[0] * u[0] + u[1] * u[1])).sum();
