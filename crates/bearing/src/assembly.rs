@@ -11,7 +11,7 @@ use crate::{
     grading,
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
-    scene::{ContactMethod, ContactSurface, RollerCopies, Scene},
+    scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene},
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
@@ -19,6 +19,10 @@ const CAGE_ELEMENT_MM: f64 = 2.0;
 
 /// Integration points on a facet of the adapter's seat: two conforming surfaces need fewer than a line contact.
 const SEAT_POINTS: usize = 2;
+
+/// Places of the raceways among the contact surfaces; the outer ring's back and the seat have the other two of four.
+const OUTER_RACEWAY: usize = 0;
+const INNER_RACEWAY: usize = 2;
 
 /// A scene made into bodies, in mesh numbers.
 #[derive(Debug)]
@@ -249,7 +253,13 @@ impl Assembly {
                     Some(roller) if roller < centres.len() => Some(centres[roller]),
                     _ => None,
                 };
-                surface.smoothed(smoothing(scene.contact.surface, centre), x, y)
+                let surface = surface.smoothed(smoothing(scene.contact.surface, centre), x, y)?;
+                // Nothing travels over the seat, and the cage touches with its corners.
+                let rolls = i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
+                Ok::<_, Error>(match scene.contact.interpolation {
+                    ContactInterpolation::Spline if rolls => surface.splined(x, y),
+                    _ => surface,
+                })
             })
             .collect::<Result<Vec<_>, _>>()?;
 
@@ -292,7 +302,7 @@ impl Assembly {
         let base = Law::penalty(c.penalty_scale * steel.youngs_modulus() / size)?;
         // A surface layer is half an element deep.
         let base = base.with_damping(c.damping_ratio, 0.5 * steel.density() * size)?;
-        let rolling = base.with_friction(c.friction)?;
+        let rolling = base.with_friction(c.friction)?.with_onset(1e-6 * c.onset_um)?;
         let seat = base.with_friction(c.seat_friction)?;
         let method = |points| match c.method {
             ContactMethod::Collocated => Method::Collocated,
@@ -308,8 +318,8 @@ impl Assembly {
                 pairs.len() - 1
             };
             roller_pairs.push(RollerPairs {
-                outer: pair(0),
-                inner: pair(2),
+                outer: pair(OUTER_RACEWAY),
+                inner: pair(INNER_RACEWAY),
                 cage: self
                     .cage
                     .as_ref()

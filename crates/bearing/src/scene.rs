@@ -160,10 +160,15 @@ pub struct ContactScene {
     pub method: ContactMethod,
     /// What the facets of raceways and rollers stand for.
     pub surface: ContactSurface,
+    /// How the surfaces of raceways and rollers move with their nodes.
+    pub interpolation: ContactInterpolation,
     /// Integration points on a facet (`integrated` only).
     pub points_per_facet: usize,
     /// Penalty stiffness as a multiple of E / element size [-].
     pub penalty_scale: f64,
+    /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a parabola, beyond
+    /// it in proportion. Zero for a sharp corner.
+    pub onset_um: f64,
     /// Normal contact damping as a fraction of critical [-].
     pub damping_ratio: f64,
     /// Coulomb coefficient of rollers on raceways and cage [-].
@@ -182,6 +187,16 @@ pub enum ContactSurface {
     Arc,
     /// Nagata patches, from the directions of neighbouring facets alone.
     Nagata,
+}
+
+/// How a contact surface moves with its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactInterpolation {
+    /// Every facet with its own two nodes.
+    Linear,
+    /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where nodes are.
+    Spline,
 }
 
 /// Where the contact penalty acts.
@@ -342,8 +357,10 @@ impl Default for ContactScene {
         Self {
             method: ContactMethod::Integrated,
             surface: ContactSurface::Facet,
+            interpolation: ContactInterpolation::Linear,
             points_per_facet: 4,
             penalty_scale: 1.0,
+            onset_um: 0.0,
             damping_ratio: 0.1,
             friction: 0.005,
             seat_friction: 0.1,

@@ -59,6 +59,20 @@ fn main() {
     let n: usize = arg.get(2).map_or(8, |s| s.parse().unwrap());
     let arc = Smoothing::Arc { centre: [0.0; 2] };
     let fl = Smoothing::Facet;
+    if arg.get(3).is_some() {
+        for race in [false, true] {
+            for sink in [4e-6, 7e-6, 13e-6] {
+                print!("race {race} sink {:.0}: ", sink * 1e6);
+                for (facets, spline, scale) in [(112, false, 1.0), (112, true, 1.0), (112, true, 0.75), (112, true, 0.6), (224, false, 1.0), (224, true, 0.75), (336, false, 2.0)] {
+                    let m = Method::Integrated { points: 8 };
+                    let g = if race { arc } else { fl };
+                    print!(" {facets} {spline} {scale}: {:.1}", force(facets, 0.3, 0.1, sink, [arc, g], m, scale, race, spline, if spline { 0.5e-6 } else { 0.0 }) / 1e3);
+                }
+                println!();
+            }
+        }
+        return;
+    }
     for race in [false, true] {
         let ground = |s: Smoothing| if race { s } else { Smoothing::Facet };
         let m = |points| Method::Integrated { points };
