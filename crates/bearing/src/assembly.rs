@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Smoothing, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
 use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
 
@@ -11,7 +11,7 @@ use crate::{
     grading,
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
-    scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene},
+    scene::{ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, RollerCopies, Scene},
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
@@ -308,13 +308,17 @@ impl Assembly {
             ContactMethod::Collocated => Method::Collocated,
             ContactMethod::Integrated => Method::Integrated { points },
         };
+        let sides = match c.passes {
+            ContactPasses::Two => Sides::Both,
+            ContactPasses::One => Sides::First,
+        };
         let mut pairs = Vec::new();
         let mut roller_pairs = Vec::new();
         let n = self.rollers.len();
         for i in 0..n {
             let first = 4 + i;
             let mut pair = |second| {
-                pairs.push(PairSpec { first, second, law: rolling, method: method(c.points_per_facet) });
+                pairs.push(PairSpec { first, second, law: rolling, method: method(c.points_per_facet), sides });
                 pairs.len() - 1
             };
             roller_pairs.push(RollerPairs {
@@ -328,7 +332,7 @@ impl Assembly {
         }
         // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
         let points = SEAT_POINTS;
-        pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points } });
+        pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points }, sides: Sides::Both });
         Ok((pairs, roller_pairs))
     }
 }

@@ -164,6 +164,8 @@ pub struct ContactScene {
     pub interpolation: ContactInterpolation,
     /// Integration points on a facet (`integrated` only).
     pub points_per_facet: usize,
+    /// Whose points are evaluated where rollers touch.
+    pub passes: ContactPasses,
     /// Penalty stiffness as a multiple of E / element size [-].
     pub penalty_scale: f64,
     /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a parabola, beyond
@@ -197,6 +199,16 @@ pub enum ContactInterpolation {
     Linear,
     /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where nodes are.
     Spline,
+}
+
+/// Whose points are evaluated where rollers touch; the seat takes both sides in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactPasses {
+    /// Those of both bodies, each with half of the stiffness.
+    Two,
+    /// Those of the roller alone: half the work, for points that stand closer than the features of a raceway.
+    One,
 }
 
 /// Where the contact penalty acts.
@@ -359,6 +371,7 @@ impl Default for ContactScene {
             surface: ContactSurface::Facet,
             interpolation: ContactInterpolation::Linear,
             points_per_facet: 4,
+            passes: ContactPasses::Two,
             penalty_scale: 1.0,
             onset_um: 0.0,
             damping_ratio: 0.1,

@@ -41,7 +41,7 @@ fn force(facets: usize, spin: f64, shift: f64, sink: f64, smoothing: [Smoothing;
         let sm = match smoothing[1 - i] { Smoothing::Arc { .. } => Smoothing::Arc { centre: centres[i] }, o => o };
         Surface::new(name.clone(), slots, s.closed, &x, &y).unwrap().smoothed(sm, &x, &y).map(|s| if spline { s.splined(&x, &y) } else { s }).unwrap()
     }).collect();
-    let pair = PairSpec { first: 1, second: 0, law, method };
+    let pair = PairSpec { first: 1, second: 0, law, method, sides: Sides::Both };
     let mut contacts = Contacts::new(surfaces, &[pair], THICKNESS, &x, &y);
     let bodies = [0, 1].map(|b| (format!("b{b}"), of_body(&d, &model, b)));
     let mut load = NodalLoad::new(vec![]);

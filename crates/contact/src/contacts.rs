@@ -28,6 +28,17 @@ pub struct PairSpec {
     pub law: Law,
     /// Where it acts.
     pub method: Method,
+    /// Whose points are evaluated.
+    pub sides: Sides,
+}
+
+/// Whose points a pair evaluates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// Those of either surface against the other, each with half of the stiffness.
+    Both,
+    /// Those of the first surface alone. Half the work; its points must be closer than the other's features.
+    First,
 }
 
 /// What one pair does now.
@@ -75,7 +86,8 @@ pub struct Contacts {
 #[derive(Debug)]
 struct Pair {
     spec: PairSpec,
-    passes: [Pass; 2],
+    /// The first surface's points against the second, then, if wanted, the other way round.
+    passes: Vec<Pass>,
     push: Vec<Push>,
     found: Vec<(u32, u32)>,
     sum: [Sum; 2],
@@ -115,7 +127,10 @@ impl Contacts {
                 };
                 Pair {
                     spec: *spec,
-                    passes: [pass(spec.first, spec.second), pass(spec.second, spec.first)],
+                    passes: match spec.sides {
+                        Sides::Both => vec![pass(spec.first, spec.second), pass(spec.second, spec.first)],
+                        Sides::First => vec![pass(spec.first, spec.second)],
+                    },
                     push: Vec::new(),
                     found: Vec::new(),
                     sum: [Sum::default(); 2],
@@ -201,16 +216,18 @@ impl Contacts {
         let Self { trees, surfaces, pairs, .. } = self;
         for pair in pairs.iter_mut() {
             trees[pair.spec.first].pairs(&trees[pair.spec.second], &mut pair.found);
-            let [first, second] = &mut pair.passes;
-            first.take(pair.found.iter().copied(), surfaces, at.x, at.y);
-            pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
-            pair.found.sort_unstable();
-            second.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+            for pass in &mut pair.passes {
+                if pass.secondary != pair.spec.first {
+                    pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
+                    pair.found.sort_unstable();
+                }
+                pass.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+            }
             pair.push.clear();
-            pair.push.reserve(first.most_pushes() + second.most_pushes());
+            pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
         }
-        let speed = |&n: &u32| at.vx[n as usize].hypot(at.vy[n as usize]);
-        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(speed).fold(0.0, f64::max);
+        let square = |&n: &u32| at.vx[n as usize] * at.vx[n as usize] + at.vy[n as usize] * at.vy[n as usize];
+        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(square).fold(0.0, f64::max).sqrt();
         // Two points may approach each other, each at the highest speed.
         let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
@@ -251,10 +268,11 @@ fn share_out<F: Fn(&mut Pair) + Sync>(pairs: &mut [Pair], work: usize, threads: 
     );
 }
 
-/// Each of the two passes carries half of the stiffness.
+/// Two passes carry half of the stiffness each.
 fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
     let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
-    Weights { law, thickness: 0.5 * thickness, fastest, softness: preload.unwrap_or(0.0) }
+    let share = if spec.sides == Sides::Both { 0.5 } else { 1.0 };
+    Weights { law, thickness: share * thickness, fastest, softness: preload.unwrap_or(0.0) }
 }
 
 impl Force for Contacts {
@@ -302,15 +320,18 @@ impl Force for Contacts {
             // The gap's gradient is a little longer than one where a curve leaves its chord (THEORY §4.4).
             let steepest = [pair.spec.first, pair.spec.second].map(|s| self.surfaces[s].steepest());
             let k = k * (1.0 + STEEPER * (steepest[0] * steepest[0] + steepest[1] * steepest[1]));
-            let [first, second] = &pair.passes;
-            for (as_secondary, as_primary) in [(first, second), (second, first)] {
-                let surface = &self.surfaces[as_secondary.secondary];
-                let weights = as_secondary.points.on_nodes(surface);
-                let other = as_primary.points.largest_weight();
-                for ((&slot, weight), length) in surface.slots.iter().zip(weights).zip(surface.tributary()) {
-                    // Points of the other surface are dealt out over this one's nodes as they fall.
-                    let dealt = CLUSTERING * length.max(other);
-                    own[slot as usize] = own[slot as usize].max(k * (weight + dealt));
+            let share = if pair.spec.sides == Sides::Both { 1.0 } else { 2.0 };
+            let points = |surface| pair.passes.iter().find(|p| p.secondary == surface).map(|p| &p.points);
+            for (this, that) in [(pair.spec.first, pair.spec.second), (pair.spec.second, pair.spec.first)] {
+                let surface = &self.surfaces[this];
+                let held = points(this).map(|p| p.on_nodes(surface));
+                // Points of the other surface are dealt out over this one's nodes as they fall.
+                let other = points(that).map(Points::largest_weight);
+                let uneven = surface.unevenness();
+                for (v, (&slot, length)) in surface.slots.iter().zip(surface.tributary()).enumerate() {
+                    let dealt = other.map_or(0.0, |other| CLUSTERING * length.max(other) * uneven[v]);
+                    let weight = held.as_ref().map_or(0.0, |held| held[v]);
+                    own[slot as usize] = own[slot as usize].max(share * k * (weight + dealt));
                 }
             }
         }

@@ -18,7 +18,7 @@
 //! after 2L/c; the momentum goes over whole.
 //!
 //! ```
-//! use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+//! use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 //! use stribeck_mesh::{Mesh, Rectangle};
 //! use stribeck_solver::{Dynamics, Elastic, Model, Motion};
 //!
@@ -46,7 +46,7 @@
 //! ];
 //! // As stiff as one cell.
 //! let law = Law::penalty(steel.plane_strain_modulus() * columns as f64 / length)?;
-//! let pair = PairSpec { first: 0, second: 1, law, method: Method::Collocated };
+//! let pair = PairSpec { first: 0, second: 1, law, method: Method::Collocated, sides: Sides::Both };
 //! let mut contacts = Contacts::new(surfaces, &[pair], thickness, x, y);
 //!
 //! let critical = dynamics.critical_time_step(&[&contacts], 0.0);
@@ -101,7 +101,7 @@ mod spline;
 mod surface;
 mod touch;
 
-pub use contacts::{ContactState, Contacts, PairSpec, Resultant};
+pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
 pub use law::Law;
 pub use points::Method;

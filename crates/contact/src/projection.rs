@@ -100,7 +100,7 @@ impl Shape for Frame {
     }
 
     #[inline(always)]
-    fn foot(&self, p: [f64; 2]) -> Foot {
+    fn foot(&mut self, p: [f64; 2]) -> Foot {
         let place = self.place(p);
         let to = self.above(p, place);
         if (0.0..=1.0).contains(&place) {
@@ -205,7 +205,7 @@ pub(crate) fn walk<S: Shape>(
             if smooth && best.to.facet != at {
                 continue;
             }
-            let other = S::new(surface, x, y, next);
+            let mut other = S::new(surface, x, y, next);
             let foot = other.foot(p);
             let better = if smooth {
                 frame.is_past(&best.to, &other, forward, p)
@@ -262,5 +262,6 @@ pub(crate) fn distance(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], fac
     let frame = Frame::new(surface, x, y, facet);
     let end = frame.place(p).clamp(0.0, 1.0);
     let foot = frame.spot(end, 0.0).at;
-    (p[0] - foot[0]).hypot(p[1] - foot[1])
+    let (dx, dy) = (p[0] - foot[0], p[1] - foot[1]);
+    (dx * dx + dy * dy).sqrt()
 }

@@ -48,7 +48,7 @@ pub(crate) trait Shape: Copy {
     fn project(&mut self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2]) -> Option<Projection>;
 
     /// The nearest point of this facet alone.
-    fn foot(&self, p: [f64; 2]) -> Foot;
+    fn foot(&mut self, p: [f64; 2]) -> Foot;
 
     /// Whether a foot lies so far within the facet that no neighbour is nearer, unless there is a corner between.
     fn holds(&self, to: &Projection) -> bool;

@@ -20,6 +20,13 @@ type Matrix = [[f64; SUPPORT]; 4];
 /// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as that.
 const JOINT: f64 = 1e-9;
 
+/// Newton's method for a foot ends after a correction that leaves an error of rounding: a facet's curve turns by a tenth,
+/// so an error ε becomes less than 0.1 ε².
+const SMALL: f64 = 1e-5;
+
+/// It is given up after this many: far from the facet, where the walk goes on.
+const MOST_CORRECTIONS: usize = 4;
+
 /// How every facet of a surface hangs on its nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Spline {
@@ -67,8 +74,7 @@ impl Spline {
     }
 
     fn patch(&self, x: &[f64], y: &[f64], facet: usize) -> Patch {
-        let height = self.facets[facet].height;
-        Patch { facet, curve: self.gather(x, y, facet), height }
+        Patch::of(facet, self.gather(x, y, facet), self.facets[facet].height)
     }
 
     #[inline(always)]
@@ -168,29 +174,35 @@ pub(crate) struct Patch {
     facet: usize,
     curve: Poly<4>,
     height: [f64; 4],
+    /// Where the last foot was, of which point, and how far along a displacement of the point takes it.
+    place: f64,
+    start: [f64; 2],
+    step: [f64; 2],
 }
 
 impl Patch {
-    /// Projection of `p` on the curve, which goes on beyond its ends.
+    fn of(facet: usize, curve: Poly<4>, height: [f64; 4]) -> Self {
+        let (start, d) = (curve.value(0.5), curve.slope(0.5));
+        let square = d[0] * d[0] + d[1] * d[1];
+        Self { facet, curve, height, place: 0.5, start, step: [d[0] / square, d[1] / square] }
+    }
+
+    /// Projection of `p` on the curve, which goes on beyond its ends. Begins at the foot before this one.
     #[inline(always)]
-    fn above(&self, p: [f64; 2]) -> Projection {
-        let Poly(c) = &self.curve;
-        let mut s = 0.5;
-        let (mut r, mut d, mut dd) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-        // The curve is nearly straight and p near it: the second correction is below 1e-8, the third below rounding.
-        for turn in 0..4 {
-            let v = self.curve.value(s);
-            r = [p[0] - v[0], p[1] - v[1]];
-            d = self.curve.slope(s);
-            dd = [6.0 * c[3][0] * s + 2.0 * c[2][0], 6.0 * c[3][1] * s + 2.0 * c[2][1]];
-            if turn == 3 {
-                break;
-            }
-            let off = r[0] * d[0] + r[1] * d[1];
+    fn above(&mut self, p: [f64; 2]) -> Projection {
+        let ahead = (p[0] - self.start[0]) * self.step[0] + (p[1] - self.start[1]) * self.step[1];
+        // Far beyond the facet's ends its polynomial is no guide.
+        let mut s = (self.place + ahead).clamp(-2.0, 3.0);
+        let (mut r, mut d, mut dd) = self.curve.seen_from(p, s);
+        for _ in 0..MOST_CORRECTIONS {
             let square = d[0] * d[0] + d[1] * d[1];
             let bend = r[0] * dd[0] + r[1] * dd[1];
-            // Far beyond the facet's ends its polynomial is no guide.
-            s = (s + off / (square - bend.min(0.5 * square))).clamp(-2.0, 3.0);
+            let correction = (r[0] * d[0] + r[1] * d[1]) / (square - bend.min(0.5 * square));
+            s = (s + correction).clamp(-2.0, 3.0);
+            (r, d, dd) = self.curve.seen_from(p, s);
+            if correction.abs() < SMALL {
+                break;
+            }
         }
         let square = d[0] * d[0] + d[1] * d[1];
         let inverse = 1.0 / square.sqrt();
@@ -198,6 +210,8 @@ impl Patch {
         let off = r[0] * n[0] + r[1] * n[1];
         let height = value(&self.height, s);
         let steep = derivative(&self.height, s) / (square - off * (n[0] * dd[0] + n[1] * dd[1]));
+        let square = inverse * inverse;
+        (self.place, self.start, self.step) = (s, p, [d[0] * square, d[1] * square]);
         Projection {
             gap: off - height,
             normal: [n[0] - steep * d[0], n[1] - steep * d[1]],
@@ -208,6 +222,16 @@ impl Patch {
             curve_normal: n,
             inverse,
         }
+    }
+}
+
+impl Poly<4> {
+    /// From a point of the curve to `p`, and its first and second derivatives.
+    #[inline(always)]
+    fn seen_from(&self, p: [f64; 2], s: f64) -> ([f64; 2], [f64; 2], [f64; 2]) {
+        let (c, v) = (&self.0, self.value(s));
+        let dd = [6.0 * c[3][0] * s + 2.0 * c[2][0], 6.0 * c[3][1] * s + 2.0 * c[2][1]];
+        ([p[0] - v[0], p[1] - v[1]], self.slope(s), dd)
     }
 }
 
@@ -241,7 +265,7 @@ impl Shape for Patch {
         walk(surface, x, y, p, self)
     }
 
-    fn foot(&self, p: [f64; 2]) -> Foot {
+    fn foot(&mut self, p: [f64; 2]) -> Foot {
         let to = self.above(p);
         let inside = (0.0..=1.0).contains(&to.place);
         let end = self.curve.value(to.place.clamp(0.0, 1.0));

@@ -212,6 +212,20 @@ impl Surface {
         }
     }
 
+    /// What shares of both signs add to a bound on forces dealt out to each vertex [-]: one, but beside corners of a
+    /// spline.
+    pub(crate) fn unevenness(&self) -> Vec<f64> {
+        let mut most = vec![1.0_f64; self.slots.len()];
+        for f in (0..self.facets()).filter(|_| self.spline.is_some()) {
+            for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let shares = self.shares(f, s);
+                let sum: f64 = shares.iter().map(|(_, s)| s.abs()).sum();
+                shares.iter().for_each(|&(v, _)| most[v] = most[v].max(sum * sum));
+            }
+        }
+        most
+    }
+
     /// Slots of the two ends of a facet.
     #[inline(always)]
     pub(crate) fn ends(&self, facet: usize) -> (usize, usize) {

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use common::*;
 use proptest::{prelude::*, test_runner::RngSeed};
-use stribeck_contact::{ContactState, Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{ContactState, Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_solver::{
     Dynamics, Force,
     snapshot::Snapshot,
@@ -57,7 +57,7 @@ impl Shapes {
             let slots = self.nodes(i).map(|n| n as u32).collect();
             Surface::new(format!("polygon {i}"), slots, true, &self.x, &self.y).expect("a polygon")
         };
-        let pair = PairSpec { first: 0, second: 1, law, method };
+        let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
         Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
     }
 

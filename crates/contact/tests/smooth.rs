@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use common::*;
 use proptest::{prelude::*, test_runner::RngSeed};
-use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Smoothing, Surface, project};
+use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Sides, Smoothing, Surface, project};
 use stribeck_solver::{
     Force,
     state::{Moment, NodeForces},
@@ -173,7 +173,7 @@ impl DiscInRing {
     }
 
     fn contacts(&self, law: Law) -> Contacts {
-        let pair = PairSpec { first: 0, second: 1, law, method: self.method };
+        let pair = PairSpec { first: 0, second: 1, law, method: self.method, sides: Sides::Both };
         Contacts::new(self.surfaces.clone(), &[pair], THICKNESS, &self.x, &self.y)
     }
 
