@@ -221,7 +221,7 @@ impl Contacts {
                     pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
                     pair.found.sort_unstable();
                 }
-                pass.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+                pass.take(pair.found.iter().copied(), surfaces, at);
             }
             pair.push.clear();
             pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());

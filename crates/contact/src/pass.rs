@@ -31,6 +31,10 @@ pub(crate) struct Pass {
 pub(crate) struct Memory {
     /// Facet of the primary surface on which each point was last found.
     nearest: Vec<u32>,
+    /// Step of the last search.
+    searched: u64,
+    /// Steps after the search before which each point cannot touch.
+    doze: Vec<u16>,
     candidates: Vec<Candidate>,
     /// What points in contact remember; empty without damping and friction.
     history: Vec<History>,
@@ -96,6 +100,8 @@ impl Pass {
             primary,
             memory: Memory {
                 nearest: vec![0; n],
+                searched: 0,
+                doze: vec![0; n],
                 candidates: Vec::new(),
                 history: vec![History::default(); if remembers { n } else { 0 }],
             },
@@ -109,6 +115,7 @@ impl Pass {
     pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
         let (own, secondary, primary) = (&self.memory, &surfaces[self.secondary], &surfaces[self.primary]);
         memory.nearest.len() == own.nearest.len()
+            && memory.doze.len() == own.doze.len()
             && memory.history.len() == own.history.len()
             && memory.nearest.iter().all(|&facet| (facet as usize) < primary.facets())
             && memory.candidates.iter().all(|c| (c.facet as usize) < secondary.facets())
@@ -124,11 +131,12 @@ impl Pass {
         &mut self,
         pairs: impl Iterator<Item = (u32, u32)>,
         surfaces: &[Surface],
-        x: &[f64],
-        y: &[f64],
+        at: &Moment<'_>,
     ) {
+        let (x, y) = (at.x, at.y);
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let Memory { nearest, candidates, .. } = &mut self.memory;
+        let Memory { nearest, searched, doze, candidates, .. } = &mut self.memory;
+        *searched = at.step;
         candidates.clear();
         self.asleep = 0;
         let mut best: [f64; 64] = [f64::INFINITY; 64];
@@ -137,6 +145,7 @@ impl Pass {
             let range = self.points.of_facet(f as usize);
             if last != Some(f) {
                 candidates.push(Candidate { facet: f, wake: 0 });
+                doze[range.clone()].fill(0);
                 best = [f64::INFINITY; 64];
                 last = Some(f);
             }
@@ -191,7 +200,9 @@ impl Pass {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let reach = w.reach();
         let mut first_awake = u64::MAX;
-        let Memory { nearest, candidates, history } = &mut self.memory;
+        let Memory { nearest, searched, doze, candidates, history } = &mut self.memory;
+        let now = u16::try_from(at.step.saturating_sub(*searched)).unwrap_or(u16::MAX);
+        let closing = w.fastest * at.dt;
         // Consecutive points mostly share a primary facet: its forces wait until another one comes.
         let mut other: Option<Side<P>> = None;
         let mut shape: Option<P> = None;
@@ -202,9 +213,13 @@ impl Pass {
             }
             let facet = candidate.facet as usize;
             let mut own = Side::<S>::new(S::new(secondary, at.x, at.y, facet), secondary, at);
-            let mut nearest_gap = f64::INFINITY;
+            let mut soonest = u16::MAX;
             let mut touched = false;
             for i in self.points.of_facet(facet) {
+                if doze[i] > now {
+                    soonest = soonest.min(doze[i]);
+                    continue;
+                }
                 let spot = own.shape.spot(self.points.place[i], self.points.height[i]);
                 let start = nearest[i] as usize;
                 let shape = match &mut shape {
@@ -215,7 +230,10 @@ impl Pass {
                 nearest[i] = shape.facet() as u32;
                 let gap = found.map_or(f64::INFINITY, |f| f.gap);
                 let Some(to) = found.filter(|f| f.gap < reach && f.gap > -self.deepest) else {
-                    nearest_gap = nearest_gap.min((gap - reach).abs());
+                    // Points off both ends of an open surface report an infinite gap; the next search wakes them.
+                    let steps = ((gap - reach).abs() / closing) as u16;
+                    doze[i] = now.saturating_add(steps);
+                    soonest = soonest.min(doze[i]);
                     if let Some(history) = history.get_mut(i).filter(|h| !h.is_empty()) {
                         touched = true;
                         let side = Side::new(*shape, primary, at);
@@ -261,13 +279,9 @@ impl Pass {
                 own.flush(secondary, push);
                 sum.force = [sum.force[0] + own.force[0], sum.force[1] + own.force[1]];
                 first_awake = 0;
-            } else if nearest_gap > 0.0 && w.fastest > 0.0 {
-                // Points off both ends of an open surface report an infinite gap; the next search wakes them.
-                let steps = nearest_gap / (w.fastest * at.dt);
-                candidate.wake = at.step.saturating_add(steps as u64);
-                first_awake = first_awake.min(candidate.wake);
             } else {
-                first_awake = 0;
+                candidate.wake = *searched + u64::from(soonest);
+                first_awake = first_awake.min(candidate.wake);
             }
         }
         if let Some(side) = &other {
