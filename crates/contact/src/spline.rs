@@ -174,33 +174,28 @@ pub(crate) struct Patch {
     facet: usize,
     curve: Poly<4>,
     height: [f64; 4],
-    /// Where the last foot was, of which point, and how far along a displacement of the point takes it.
-    place: f64,
-    start: [f64; 2],
-    step: [f64; 2],
+    /// Position, first and second derivative in the middle.
+    middle: [[f64; 2]; 3],
 }
 
 impl Patch {
     fn of(facet: usize, curve: Poly<4>, height: [f64; 4]) -> Self {
-        let (start, d) = (curve.value(0.5), curve.slope(0.5));
-        let square = d[0] * d[0] + d[1] * d[1];
-        Self { facet, curve, height, place: 0.5, start, step: [d[0] / square, d[1] / square] }
+        let (r, d, dd) = curve.seen_from([0.0; 2], 0.5);
+        Self { facet, curve, height, middle: [[-r[0], -r[1]], d, dd] }
     }
 
-    /// Projection of `p` on the curve, which goes on beyond its ends. Begins at the foot before this one.
+    /// Projection of `p` on the curve, which goes on beyond its ends.
     #[inline(always)]
-    fn above(&mut self, p: [f64; 2]) -> Projection {
-        let ahead = (p[0] - self.start[0]) * self.step[0] + (p[1] - self.start[1]) * self.step[1];
+    fn above(&self, p: [f64; 2]) -> Projection {
+        let [m, d, dd] = self.middle;
         // Far beyond the facet's ends its polynomial is no guide.
-        let mut s = (self.place + ahead).clamp(-2.0, 3.0);
+        let mut s = (0.5 + correction([p[0] - m[0], p[1] - m[1]], d, dd)).clamp(-2.0, 3.0);
         let (mut r, mut d, mut dd) = self.curve.seen_from(p, s);
         for _ in 0..MOST_CORRECTIONS {
-            let square = d[0] * d[0] + d[1] * d[1];
-            let bend = r[0] * dd[0] + r[1] * dd[1];
-            let correction = (r[0] * d[0] + r[1] * d[1]) / (square - bend.min(0.5 * square));
-            s = (s + correction).clamp(-2.0, 3.0);
+            let more = correction(r, d, dd);
+            s = (s + more).clamp(-2.0, 3.0);
             (r, d, dd) = self.curve.seen_from(p, s);
-            if correction.abs() < SMALL {
+            if more.abs() < SMALL {
                 break;
             }
         }
@@ -210,8 +205,6 @@ impl Patch {
         let off = r[0] * n[0] + r[1] * n[1];
         let height = value(&self.height, s);
         let steep = derivative(&self.height, s) / (square - off * (n[0] * dd[0] + n[1] * dd[1]));
-        let square = inverse * inverse;
-        (self.place, self.start, self.step) = (s, p, [d[0] * square, d[1] * square]);
         Projection {
             gap: off - height,
             normal: [n[0] - steep * d[0], n[1] - steep * d[1]],
@@ -223,6 +216,14 @@ impl Patch {
             inverse,
         }
     }
+}
+
+/// How far along the foot of a point lies, seen from a place of the curve (Newton's method): `r` leads there.
+#[inline(always)]
+fn correction(r: [f64; 2], d: [f64; 2], dd: [f64; 2]) -> f64 {
+    let square = d[0] * d[0] + d[1] * d[1];
+    let bend = r[0] * dd[0] + r[1] * dd[1];
+    (r[0] * d[0] + r[1] * d[1]) / (square - bend.min(0.5 * square))
 }
 
 impl Poly<4> {
