@@ -158,16 +158,57 @@ pub struct OperationScene {
 pub struct ContactScene {
     /// Where the penalty acts.
     pub method: ContactMethod,
+    /// What the facets of raceways and rollers stand for.
+    pub surface: ContactSurface,
+    /// How the surfaces of raceways and rollers move with their nodes.
+    pub interpolation: ContactInterpolation,
     /// Integration points on a facet (`integrated` only).
     pub points_per_facet: usize,
+    /// Whose points are evaluated where rollers touch.
+    pub passes: ContactPasses,
     /// Penalty stiffness as a multiple of E / element size [-].
     pub penalty_scale: f64,
+    /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a parabola, beyond
+    /// it in proportion. Zero for a sharp corner.
+    pub onset_um: f64,
     /// Normal contact damping as a fraction of critical [-].
     pub damping_ratio: f64,
     /// Coulomb coefficient of rollers on raceways and cage [-].
     pub friction: f64,
     /// Coulomb coefficient of the adapter on the outer ring [-].
     pub seat_friction: f64,
+}
+
+/// What the facets of raceways and rollers stand for. Corners (walls of the defect, cage) stay sharp in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactSurface {
+    /// Themselves: contact is with the chords.
+    Facet,
+    /// Arcs about the centre of the ring or roller.
+    Arc,
+    /// Nagata patches, from the directions of neighbouring facets alone.
+    Nagata,
+}
+
+/// How a contact surface moves with its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactInterpolation {
+    /// Every facet with its own two nodes.
+    Linear,
+    /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where nodes are.
+    Spline,
+}
+
+/// Whose points are evaluated where rollers touch; the seat takes both sides in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactPasses {
+    /// Those of both bodies, each with half of the stiffness.
+    Two,
+    /// Those of the roller alone: half the work, for points that stand closer than the features of a raceway.
+    One,
 }
 
 /// Where the contact penalty acts.
@@ -327,8 +368,12 @@ impl Default for ContactScene {
     fn default() -> Self {
         Self {
             method: ContactMethod::Integrated,
+            surface: ContactSurface::Facet,
+            interpolation: ContactInterpolation::Linear,
             points_per_facet: 4,
+            passes: ContactPasses::Two,
             penalty_scale: 1.0,
+            onset_um: 0.0,
             damping_ratio: 0.1,
             friction: 0.005,
             seat_friction: 0.1,

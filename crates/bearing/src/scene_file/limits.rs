@@ -135,6 +135,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
     add("contact.points_per_facet", contact.points_per_facet as f64, within(1.0, 16.0), "");
     add("contact.penalty_scale", contact.penalty_scale, positive(1_000.0), "");
+    add("contact.onset_um", contact.onset_um, within(0.0, 20.0), "µm");
     add("contact.damping_ratio", contact.damping_ratio, within(0.0, 1.0), "");
     add("contact.friction", contact.friction, within(0.0, 2.0), "");
     add("contact.seat_friction", contact.seat_friction, within(0.0, 2.0), "");
