@@ -255,7 +255,8 @@ impl Assembly {
                 };
                 let surface = surface.smoothed(smoothing(scene.contact.surface, centre), x, y)?;
                 // Nothing travels over the seat, and the cage touches with its corners.
-                let rolls = i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
+                let rolls =
+                    i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
                 Ok::<_, Error>(match scene.contact.interpolation {
                     ContactInterpolation::Spline if rolls => surface.splined(x, y),
                     _ => surface,
@@ -318,7 +319,13 @@ impl Assembly {
         for i in 0..n {
             let first = 4 + i;
             let mut pair = |second| {
-                pairs.push(PairSpec { first, second, law: rolling, method: method(c.points_per_facet), sides });
+                pairs.push(PairSpec {
+                    first,
+                    second,
+                    law: rolling,
+                    method: method(c.points_per_facet),
+                    sides,
+                });
                 pairs.len() - 1
             };
             roller_pairs.push(RollerPairs {
@@ -332,7 +339,13 @@ impl Assembly {
         }
         // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
         let points = SEAT_POINTS;
-        pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points }, sides: Sides::Both });
+        pairs.push(PairSpec {
+            first: 1,
+            second: 3,
+            law: seat,
+            method: Method::Integrated { points },
+            sides: Sides::Both,
+        });
         Ok((pairs, roller_pairs))
     }
 }

@@ -26,6 +26,9 @@ const SAVE_EVERY: usize = 100;
 /// … but not so often that it would take more than this share of the time.
 const SAVE_SHARE: f64 = 0.005;
 
+/// Rounds of waiting until a thread that has nothing to do goes to sleep: about a millisecond.
+const SPINS_BEFORE_SLEEP: usize = 20_000;
+
 /// A run in its time loop.
 pub(crate) struct Run<'a> {
     pub(crate) info: RunInfo,
@@ -311,10 +314,32 @@ impl<'a> Run<'a> {
 }
 
 /// A pool for the time loop; none for one thread.
-fn workers(threads: usize) -> Result<Option<rayon::ThreadPool>, Error> {
+///
+/// The thread that calls is one of them. The others wait awake between two forks, which are some ten microseconds apart:
+/// put to sleep, they would come back too late for every one of them.
+fn workers(threads: usize) -> Result<Option<micropool::ThreadPool>, Error> {
     if threads < 2 {
         return Ok(None);
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map(Some).map_err(|e| Error::Threads { threads, source: e })
+    try_threads(threads - 1).map_err(|source| Error::Threads { threads, source })?;
+    let pool = micropool::ThreadPoolBuilder::default().num_threads(threads - 1);
+    Ok(Some(pool.idle_spin_cycles(SPINS_BEFORE_SLEEP).build()))
+}
+
+/// Starts and ends so many threads at a time, because a pool cannot say that it got fewer.
+fn try_threads(threads: usize) -> std::io::Result<()> {
+    let gate = std::sync::Arc::new(std::sync::RwLock::new(()));
+    let closed = gate.write();
+    let started: Vec<_> = (0..threads)
+        .map(|_| {
+            let gate = gate.clone();
+            std::thread::Builder::new().spawn(move || drop(gate.read()))
+        })
+        .collect();
+    drop(closed);
+    started.into_iter().try_for_each(|thread| {
+        // A thread that only waits for a gate cannot fail.
+        let _ = thread?.join();
+        Ok(())
+    })
 }

@@ -262,7 +262,7 @@ fn share_out<F: Fn(&mut Pair) + Sync>(pairs: &mut [Pair], work: usize, threads: 
     }
     let (first, second) = pairs.split_at_mut(cut);
     let half = threads / 2;
-    rayon::join(
+    micropool::join(
         || share_out(first, before, half, evaluate),
         || share_out(second, work - before, threads - half, evaluate),
     );
@@ -288,7 +288,7 @@ impl Force for Contacts {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
             }
         };
-        let threads = if self.parallel { rayon::current_num_threads() } else { 1 };
+        let threads = if self.parallel { micropool::num_threads() + 1 } else { 1 };
         let work = pairs.iter().map(Pair::work).sum();
         share_out(pairs, work, threads, &evaluate);
         self.energy.stored = 0.0;
