@@ -34,13 +34,21 @@ pub mod prediction;
 pub mod record;
 
 pub mod events;
+pub mod enveloping;
 pub mod filtering;
 pub mod kinematics;
 pub mod levels;
 pub mod load;
+pub mod reading;
+pub mod ring;
+pub mod spall;
 pub mod tones;
 
+pub mod artefacts;
+pub mod stress;
+
 pub mod findings;
+pub mod paper;
 
 pub mod plot;
 pub mod report;
