@@ -48,7 +48,7 @@ pub struct Artefact {
 /// Harmonics of the defect line that are looked for.
 const DEFECT_HARMONICS: usize = 6;
 /// Last bending mode of the ring that is looked for.
-const LAST_MODE: u32 = 6;
+pub const LAST_MODE: u32 = 6;
 /// A mounted ring's frequency may differ from the free thin ring's by this much.
 const MODE_REACH: f64 = 0.12;
 

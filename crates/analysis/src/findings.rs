@@ -17,6 +17,7 @@ use crate::paper;
 use crate::prediction::{Prediction, StaticCurve};
 use crate::reading::CursorReading;
 use crate::record::Record;
+use crate::ring;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones::{self, Tone};
 
@@ -36,6 +37,8 @@ pub struct Findings {
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
     pub lines: Vec<tones::Line>,
+    /// Bending modes of the free outer ring: waves around it, frequency [Hz].
+    pub modes: Vec<(u32, f64)>,
     /// Time of the first usable sample [s].
     pub start_s: f64,
     /// Sampling interval [s].
@@ -156,6 +159,7 @@ impl Findings {
         Ok(Self {
             summary,
             lines,
+            modes: ring::outer_ring_modes(&run.scene, artefacts::LAST_MODE),
             start_s: time.first().copied().unwrap_or(0.0),
             interval_s: record.interval_s(),
             sensors,
