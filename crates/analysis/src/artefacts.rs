@@ -141,7 +141,9 @@ fn defect(
                 resolution.record_s, resolution.width_6db_hz
             ),
             Some(tone) if tone.measured_hz.is_some() => "physics: rollers pass the defect".to_owned(),
-            Some(_) => "does not stand 10 dB above its surroundings; look at the envelope spectrum".to_owned(),
+            Some(_) => {
+                "does not stand 10 dB above its surroundings; look at the envelope spectrum".to_owned()
+            }
         };
         Artefact {
             family: Family::Defect,
@@ -176,7 +178,9 @@ fn mode(n: u32, hz: f64, density: &Spectrum) -> Result<Artefact, Error> {
         let line = density.sinusoid(&peak).map_err(Error::Signal)?;
         entry.measured_hz = Some(line.frequency_hz);
         entry.level_g = Some(line.amplitude);
-        entry.verdict = format!("a peak {above:.0} dB above its surroundings stands near; a free thin ring has its mode here");
+        entry.verdict = format!(
+            "a peak {above:.0} dB above its surroundings stands near; a free thin ring has its mode here"
+        );
     }
     Ok(entry)
 }
@@ -185,8 +189,12 @@ impl Artefact {
     fn of_mesh(tone: &Tone) -> Self {
         let verdict = match (tone.measured_hz, tone.prominence_db) {
             (Some(_), _) if tone.unresolved_from.is_empty() => "artefact of the mesh, on its own".to_owned(),
-            (Some(_), _) => "artefact of the mesh; this record cannot say of which of the merged lines".to_owned(),
-            (None, Some(db)) => format!("not above the background: {db:.0} dB, {:.0} dB count", tones::LEAST_PROMINENCE_DB),
+            (Some(_), _) => {
+                "artefact of the mesh; this record cannot say of which of the merged lines".to_owned()
+            }
+            (None, Some(db)) => {
+                format!("not above the background: {db:.0} dB, {:.0} dB count", tones::LEAST_PROMINENCE_DB)
+            }
             (None, None) => "no peak of its own".to_owned(),
         };
         Self {

@@ -97,7 +97,8 @@ impl Filter {
                 at_centre(rate, self.centre_hz(), window, a)? - at_centre(rate, self.centre_hz(), window, b)?,
             )
         };
-        let taken = |notch: &Notch| notch.magnitude_db(PAPER_BEAT_HZ).ok().map(|db| -db).filter(|db| db.is_finite());
+        let taken =
+            |notch: &Notch| notch.magnitude_db(PAPER_BEAT_HZ).ok().map(|db| -db).filter(|db| db.is_finite());
         NotchFinding {
             centre_hz: self.centre_hz(),
             paper_centre_hz: PAPER_CENTRE_HZ,

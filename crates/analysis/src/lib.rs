@@ -33,8 +33,8 @@ pub mod summary;
 pub mod prediction;
 pub mod record;
 
-pub mod events;
 pub mod enveloping;
+pub mod events;
 pub mod filtering;
 pub mod kinematics;
 pub mod levels;

@@ -121,6 +121,9 @@ mod tests {
         assert_eq!(difference(50.0, 50.0), "none");
         assert_eq!(difference(180.0, 960.0), "× 5.33");
         assert_eq!(difference(4671.0, 4664.0), "−0.15 %");
-        assert_eq!((shortest(4671.0), shortest(163.96), shortest(0.005)), ("4671".into(), "163.96".into(), "0.005".into()));
+        assert_eq!(
+            (shortest(4671.0), shortest(163.96), shortest(0.005)),
+            ("4671".into(), "163.96".into(), "0.005".into())
+        );
     }
 }

@@ -29,8 +29,11 @@ pub struct CursorReading {
     pub share_in_tone: f64,
     /// The same in the paper's equation (3).
     pub share_in_equation_3: f64,
-    /// Mean frequency of the peaks of equation (3) [Hz].
-    pub equation_3_mean_hz: f64,
+    /// The most common distance of its peaks [samples] and its share.
+    pub equation_3_common: (usize, f64),
+    /// Its carrier, the mean of its tones [Hz]: what peaks within a swell follow. At each node of the beat one peak more
+    /// slips in, so that peaks are as many as periods of the higher tone.
+    pub equation_3_carrier_hz: f64,
 }
 
 /// The paper's equation (3): two unit cosines [Hz], sampled.
@@ -63,6 +66,11 @@ pub fn gaps(signal: &[f64], sample_rate_hz: f64) -> Option<Gaps> {
 }
 
 impl Gaps {
+    /// The distance that occurs most often [samples], and its share.
+    pub fn most_common(&self) -> (usize, f64) {
+        self.share.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0))
+    }
+
     /// Share of one distance [samples].
     pub fn share_of(&self, samples: usize) -> f64 {
         self.share.iter().find(|s| s.0 == samples).map_or(0.0, |s| s.1)
@@ -78,7 +86,8 @@ impl CursorReading {
         if samples < 2 {
             return None;
         }
-        let tone: Vec<f64> = (0..SAMPLES).map(|n| (TAU * tone_hz * n as f64 / sample_rate_hz).cos()).collect();
+        let tone: Vec<f64> =
+            (0..SAMPLES).map(|n| (TAU * tone_hz * n as f64 / sample_rate_hz).cos()).collect();
         let in_tone = gaps(&tone, sample_rate_hz)?;
         let in_pair = gaps(&equation_3(pair_hz.0, pair_hz.1, sample_rate_hz, SAMPLES), sample_rate_hz)?;
         Some(Self {
@@ -87,7 +96,8 @@ impl CursorReading {
             neighbours_hz: (sample_rate_hz / (samples + 1) as f64, sample_rate_hz / (samples - 1) as f64),
             share_in_tone: in_tone.share_of(samples),
             share_in_equation_3: in_pair.share_of(samples),
-            equation_3_mean_hz: in_pair.mean_hz,
+            equation_3_common: in_pair.most_common(),
+            equation_3_carrier_hz: 0.5 * (pair_hz.0 + pair_hz.1),
         })
     }
 }
@@ -103,8 +113,11 @@ mod tests {
         assert_eq!(reading.samples, 22);
         assert!((reading.reads_hz - 4545.45).abs() < 0.01);
         assert!((reading.share_in_tone - 0.409).abs() < 0.002, "{reading:?}");
-        // The carrier of equation (3) is the mean of its tones, 4288 Hz; a node of the beat may lose or add a peak.
-        assert!((reading.equation_3_mean_hz - 4288.0).abs() < 45.0, "{reading:?}");
+        // The carrier of equation (3), 4288 Hz, is 23.3 samples long, so most gaps are 23.
+        assert_eq!((reading.equation_3_common.0, reading.equation_3_carrier_hz), (23, 4288.0));
+        // Zeros of a product add up: 2·4288 of the carrier and 848 of the swell make 4712 peaks a second.
+        let peaks = gaps(&equation_3(4712.0, 3864.0, 1e5, 100_000), 1e5).unwrap().mean_hz;
+        assert!((peaks - 4712.0).abs() < 1.0, "{peaks}");
     }
 
     #[test]

@@ -23,8 +23,7 @@ pub fn outer_ring_modes(scene: &Scene, last: u32) -> Vec<(u32, f64)> {
     let thickness = 1e-3 * b.outer_ring_thickness_mm;
     let radius = 0.5e-3 * b.outer_race_diameter_mm + 0.5 * thickness;
     let modulus = 1e9 * m.youngs_modulus_gpa;
-    let mode =
-        |n| (n, bending_mode_hz(n, radius, thickness, modulus, m.poissons_ratio, m.density_kg_m3));
+    let mode = |n| (n, bending_mode_hz(n, radius, thickness, modulus, m.poissons_ratio, m.density_kg_m3));
     (2..=last).map(mode).collect()
 }
 
@@ -45,7 +44,9 @@ mod tests {
     fn analytic_modes_and_waves_of_the_paper_ring() {
         let scene = Scene::default();
         // Love's formula evaluated by hand for R = 105 mm, h = 10 mm, plane strain [Hz].
-        for ((n, hz), expected) in outer_ring_modes(&scene, 5).into_iter().zip([592.0, 1673.0, 3209.0, 5189.0]) {
+        for ((n, hz), expected) in
+            outer_ring_modes(&scene, 5).into_iter().zip([592.0, 1673.0, 3209.0, 5189.0])
+        {
             assert!((hz / expected - 1.0).abs() < 1e-3, "n = {n}: {hz}");
         }
         // The paper says 97.

@@ -39,16 +39,12 @@ impl Edge {
         let (b, m) = (&scene.bearing, &scene.material);
         let (r, race) = (0.5e-3 * b.roller_diameter_mm, 0.5e-3 * b.outer_race_diameter_mm);
         let radius = 1.0 / (1.0 / r - 1.0 / race);
-        let stiffness = scene.contact.penalty_scale * 1e9 * m.youngs_modulus_gpa / (1e-3 * scene.mesh.size_mm);
+        let stiffness =
+            scene.contact.penalty_scale * 1e9 * m.youngs_modulus_gpa / (1e-3 * scene.mesh.size_mm);
         let modulus = 1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 - m.poissons_ratio.powi(2)));
         // Largest Hertz pressure 2w/(πb) with b² = 4wR/(πE*), divided by the penalty stiffness; two contacts.
         let penalty = 2.0 * (2.0 / PI) * (PI * modulus / (4.0 * radius)).sqrt() / stiffness;
-        Self {
-            rings: RigidRings::new(b, m),
-            radius,
-            penalty,
-            thickness: 1e-3 * b.thickness_mm,
-        }
+        Self { rings: RigidRings::new(b, m), radius, penalty, thickness: 1e-3 * b.thickness_mm }
     }
 
     /// Approach of the raceways [m] at a roller under `load_n`.
@@ -59,6 +55,11 @@ impl Edge {
     /// Distance [m] behind an edge at which a roller that carried `load_n` carries half of it.
     pub fn half_load_m(&self, load_n: f64) -> f64 {
         (2.0 * self.radius * (self.approach(load_n) - self.approach(0.5 * load_n)).max(0.0)).sqrt()
+    }
+
+    /// Distance [m] of its centre from an edge within which a roller cannot touch a floor `depth_m` below the raceway.
+    pub fn floor_m(&self, depth_m: f64) -> f64 {
+        (2.0 * self.radius * depth_m).sqrt()
     }
 
     /// Length of the defect [m]: `run_m` between the two picks, by a roller that carried `load_n`.

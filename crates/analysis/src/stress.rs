@@ -40,11 +40,17 @@ impl Lame {
         };
         let (xx, yy, xy) = (strain(0, 0), strain(1, 1), strain(0, 1));
         let pressure = self.lambda * (xx + yy);
-        let s = [[pressure + 2.0 * self.mu * xx, 2.0 * self.mu * xy], [2.0 * self.mu * xy, pressure + 2.0 * self.mu * yy]];
+        let s = [
+            [pressure + 2.0 * self.mu * xx, 2.0 * self.mu * xy],
+            [2.0 * self.mu * xy, pressure + 2.0 * self.mu * yy],
+        ];
         let area = f[0][0] * f[1][1] - f[0][1] * f[1][0];
         // σ = F S Fᵀ / J; out of the plane F is 1.
         let cauchy = |i: usize, j: usize| {
-            let sum: f64 = (0..2).flat_map(|a| (0..2).map(move |b| (a, b))).map(|(a, b)| f[i][a] * s[a][b] * f[j][b]).sum();
+            let sum: f64 = (0..2)
+                .flat_map(|a| (0..2).map(move |b| (a, b)))
+                .map(|(a, b)| f[i][a] * s[a][b] * f[j][b])
+                .sum();
             sum / area
         };
         let (xx, yy, zz, xy) = (cauchy(0, 0), cauchy(1, 1), pressure / area, cauchy(0, 1));
@@ -116,7 +122,9 @@ mod tests {
     #[test]
     fn invariant_rotation_is_without_stress() {
         let turn = |p: [f64; 2]| [0.6 * p[0] - 0.8 * p[1] + 3.0, 0.8 * p[0] + 0.6 * p[1]];
-        for corners in [vec![[0.0, 0.0], [1.0, 0.1], [1.2, 1.0], [-0.1, 0.9]], vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]] {
+        for corners in
+            [vec![[0.0, 0.0], [1.0, 0.1], [1.2, 1.0], [-0.1, 0.9]], vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]]
+        {
             let turned: Vec<[f64; 2]> = corners.iter().copied().map(turn).collect();
             let f = gradient(&corners, &turned);
             assert!((f[0][0] - 0.6).abs() < 1e-12 && (f[1][0] - 0.8).abs() < 1e-12, "{f:?}");

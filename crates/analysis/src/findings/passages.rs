@@ -25,6 +25,7 @@ pub(super) fn picked_events(
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
     let edge = Edge::of(scene);
     let speed_m_s = prediction.kinematics.contact_speed_m_s;
+    let floor_s = edge.floor_m(scene.defect.as_ref().map_or(0.0, |d| 1e-3 * d.depth_mm)) / speed_m_s;
     let mut events = Vec::new();
     for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {
         let mut event = Event::expected(passage);
@@ -46,12 +47,13 @@ pub(super) fn picked_events(
                     middle_s: near(edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
                     smoothing_s: prediction.smoothing_s(passage.exit_s - passage.entry_s),
                 };
-                let picked = events::pick(time, &roller.outer_normal(), &seen);
+                let normal = roller.outer_normal();
+                let picked = events::pick(time, &normal, &seen);
                 notes.extend(picked.notes.iter().map(|n| format!("roller {}: {n}", passage.roller)));
                 event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
                 event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
                 event.level_n = picked.level_n;
-                event.impact_ms = picked.floor_impact_s(time, &roller.outer_normal()).map(|t| 1e3 * t);
+                event.impact_ms = picked.floor_impact_s(time, &normal, &seen, floor_s).map(|t| 1e3 * t);
                 let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
                 let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
                 event.spall_mm = run_s.zip(picked.level_n).map(length);
@@ -69,7 +71,8 @@ pub(super) fn picked_events(
 fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]) {
     let time = record.time_s();
     let count = record.rollers().len();
-    let spans: Vec<(usize, f64, f64)> = events.iter().map(|e| (e.roller, e.extent_s().0, e.extent_s().1)).collect();
+    let spans: Vec<(usize, f64, f64)> =
+        events.iter().map(|e| (e.roller, e.extent_s().0, e.extent_s().1)).collect();
     for event in events.iter_mut() {
         let neighbours = spans.iter().filter(|s| {
             let apart = event.roller.abs_diff(s.0);

@@ -15,7 +15,9 @@ pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
 
 fn table_1(source: &Source<'_>) -> Vec<Row> {
     let (b, m) = (&source.scene.bearing, &source.scene.material);
-    let given = |quantity: &str, paper: f64, ours: f64, unit: &str| number(PART, quantity, paper, Some(ours), unit, GIVEN);
+    let given = |quantity: &str, paper: f64, ours: f64, unit: &str| {
+        number(PART, quantity, paper, Some(ours), unit, GIVEN)
+    };
     let mut rows = vec![
         given("Outer race diameter D_o", 200.0, b.outer_race_diameter_mm, "mm"),
         given("Outer ring thickness h_o", 10.0, b.outer_ring_thickness_mm, "mm"),
@@ -33,7 +35,8 @@ fn table_1(source: &Source<'_>) -> Vec<Row> {
     rows.push(given("Adapter height H_a, central", 40.0, a.height_mm, "mm"));
     let defect = source.scene.defect.as_ref();
     let estimated = source.summary.events.iter().find_map(|e| e.spall_mm);
-    let why = estimated.map_or("given".to_owned(), |mm| format!("given; estimated back from the event times: {mm:.2} mm"));
+    let why = estimated
+        .map_or("given".to_owned(), |mm| format!("given; estimated back from the event times: {mm:.2} mm"));
     rows.push(number(PART, "Defect length L_d", 10.0, defect.map(|d| d.length_mm), "mm", &why));
     let why = "given; nodes of the raceway are moved outwards instead of removing a layer of elements";
     rows.push(number(PART, "Defect depth H_d (one element)", 0.2, defect.map(|d| d.depth_mm), "mm", why));
@@ -46,7 +49,11 @@ fn table_1(source: &Source<'_>) -> Vec<Row> {
 fn discretisation(source: &Source<'_>) -> Vec<Row> {
     let (scene, mesh) = (source.scene, source.mesh);
     let waves = ring::elements_per_wavelength(scene, 40_000.0);
-    let graded = if scene.mesh.grading.is_some() { "given, along the raceways; larger elements elsewhere" } else { GIVEN };
+    let graded = if scene.mesh.grading.is_some() {
+        "given, along the raceways; larger elements elsewhere"
+    } else {
+        GIVEN
+    };
     let facet_mm = std::f64::consts::PI * scene.bearing.roller_diameter_mm / mesh.roller_facets as f64;
     vec![
         number(PART, "Element size", 0.5, Some(scene.mesh.size_mm), "mm", graded),
@@ -94,7 +101,9 @@ fn operation(source: &Source<'_>) -> Vec<Row> {
     let scene = source.scene;
     let (o, c, s) = (&scene.operation, &scene.contact, &scene.solver);
     let top = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg);
-    let given = |quantity: &str, paper: f64, ours: f64, unit: &str| number(PART, quantity, paper, Some(ours), unit, GIVEN);
+    let given = |quantity: &str, paper: f64, ours: f64, unit: &str| {
+        number(PART, quantity, paper, Some(ours), unit, GIVEN)
+    };
     let samples_khz = 1e3 / scene.output.interval_us;
     vec![
         given("Offset of the roller left of the defect", 4.0, scene.bearing.first_roller_deg - top, "°"),

@@ -23,7 +23,8 @@ pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
 fn motion(source: &Source<'_>) -> Vec<Row> {
     let k = &source.prediction.kinematics;
     let exits: Vec<f64> = source.summary.events.iter().filter_map(|e| e.exit_ms).collect();
-    let spacing_s = (exits.len() > 1).then(|| 1e-3 * (exits[exits.len() - 1] - exits[0]) / (exits.len() - 1) as f64);
+    let spacing_s =
+        (exits.len() > 1).then(|| 1e-3 * (exits[exits.len() - 1] - exits[0]) / (exits.len() - 1) as f64);
     let b = &source.scene.bearing;
     let percent = spacing_s.map(|s| 100.0 * (1.0 / s / k.bpfo_hz - 1.0));
     vec![
@@ -43,7 +44,14 @@ fn motion(source: &Source<'_>) -> Vec<Row> {
             "mm",
             "not printed; (D_o + D_i)/2",
         ),
-        number(MOTION, "Separation of the impulses", 0.011, spacing_s, "s", "between the first and the last exit picked from the forces"),
+        number(
+            MOTION,
+            "Separation of the impulses",
+            0.011,
+            spacing_s,
+            "s",
+            "between the first and the last exit picked from the forces",
+        ),
         number(
             MOTION,
             "BPFO from the impulses",
@@ -67,12 +75,35 @@ fn levels(source: &Source<'_>) -> Vec<Row> {
     let levels = &source.summary.levels;
     let sensor = levels.sensor.as_deref().unwrap_or("none");
     let why = |what: &str| {
-        format!("{what}; sensor “{sensor}”. The paper states neither thickness, contact stiffness, damping nor the place of its sensor: docs/results/paper.md says what each does")
+        format!(
+            "{what}; sensor “{sensor}”. The paper states neither thickness, contact stiffness, damping nor the place of its sensor: docs/results/paper.md says what each does"
+        )
     };
     vec![
-        number(NOISE, "Impulses, peak", IMPULSE_G, levels.impulse_g, "g", &why("largest within 1 ms of an exit")),
-        number(NOISE, "Between impulses, peak", BETWEEN_G, levels.between_g, "g", &why("largest away from events")),
-        number(NOISE, "Between impulses, notched, peak", FILTERED_G, levels.between_filtered_g, "g", &why("the same behind the notch")),
+        number(
+            NOISE,
+            "Impulses, peak",
+            IMPULSE_G,
+            levels.impulse_g,
+            "g",
+            &why("largest within 1 ms of an exit"),
+        ),
+        number(
+            NOISE,
+            "Between impulses, peak",
+            BETWEEN_G,
+            levels.between_g,
+            "g",
+            &why("largest away from events"),
+        ),
+        number(
+            NOISE,
+            "Between impulses, notched, peak",
+            FILTERED_G,
+            levels.between_filtered_g,
+            "g",
+            &why("the same behind the notch"),
+        ),
     ]
 }
 
@@ -87,7 +118,8 @@ fn lines(source: &Source<'_>) -> Vec<Row> {
     let record = resolution.map_or("no spectrum".into(), |s| {
         format!("{:.1} Hz, drawn every {:.1} Hz", s.resolution_hz, s.grid_hz)
     });
-    let fifth = summary.tones.iter().find(|t| t.sensor == leading && t.harmonic == 5 && t.name == "roller_vertices");
+    let fifth =
+        summary.tones.iter().find(|t| t.sensor == leading && t.harmonic == 5 && t.name == "roller_vertices");
     let off = measured.map(|hz| 100.0 * (1.0 - hz / EQUATION_2_HZ.0));
     vec![
         words(
@@ -115,14 +147,24 @@ fn lines(source: &Source<'_>) -> Vec<Row> {
             NOISE,
             "Fifth harmonic",
             23.0,
-            Some(fifth.and_then(|t| t.measured_hz).or(fifth.map(|t| t.predicted_hz)).unwrap_or(5.0 * TONE_HZ) * 1e-3),
+            Some(
+                fifth.and_then(|t| t.measured_hz).or(fifth.map(|t| t.predicted_hz)).unwrap_or(5.0 * TONE_HZ)
+                    * 1e-3,
+            ),
             "kHz",
             match fifth.and_then(|t| t.measured_hz) {
                 Some(_) => "measured; \"approximately\" in the paper",
                 None => "predicted: at this sensor no fifth harmonic stands 10 dB above the background",
             },
         ),
-        number(NOISE, "Equation (2), outer raceway", EQUATION_2_HZ.0, Some(outer), "Hz", "the paper rounds the cage frequency to 3.75 Hz"),
+        number(
+            NOISE,
+            "Equation (2), outer raceway",
+            EQUATION_2_HZ.0,
+            Some(outer),
+            "Hz",
+            "the paper rounds the cage frequency to 3.75 Hz",
+        ),
         number(
             NOISE,
             "Equation (2), inner raceway",
@@ -190,10 +232,11 @@ fn beat(source: &Source<'_>) -> Vec<Row> {
             "Peaks of equation (3), A₁ = A₂ = 1",
             "4545 Hz",
             reading.map_or("–".into(), |r| {
-                format!("{:.0} Hz on average, {:.0} % of the gaps read {:.0} Hz", r.equation_3_mean_hz, 100.0 * r.share_in_equation_3, r.reads_hz)
+                let (gap, share) = r.equation_3_common;
+                format!("carrier {:.0} Hz; {:.0} % of the gaps are {gap} samples, {:.0} % read {:.0} Hz", r.equation_3_carrier_hz, 100.0 * share, 100.0 * r.share_in_equation_3, r.reads_hz)
             }),
             "–",
-            "the carrier of two equal tones is their mean, 4288 Hz; most gaps of the paper's own sum are 23 samples, 4348 Hz",
+            "two equal tones swell on the mean of their frequencies; a single pair of cursors reads one of several numbers of samples",
         ),
         words(
             NOISE,

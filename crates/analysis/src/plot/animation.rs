@@ -121,7 +121,10 @@ mod tests {
 
     #[test]
     fn invariant_a_square_fills_its_pixels_and_no_other() {
-        for corners in [[[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]], [[1.0, 3.0], [4.0, 3.0], [4.0, 1.0], [1.0, 1.0]]] {
+        for corners in [
+            [[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]],
+            [[1.0, 3.0], [4.0, 3.0], [4.0, 1.0], [1.0, 1.0]],
+        ] {
             let mut canvas = Canvas::new(6, 5);
             canvas.fill(&corners, 1.0);
             assert_eq!(canvas.pixels.iter().filter(|&&p| p != 0).count(), 6);

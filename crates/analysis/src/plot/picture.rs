@@ -75,7 +75,8 @@ impl Sheet {
 
     /// A circle.
     pub fn circle(&mut self, [x, y]: [f64; 2], radius: f64, paint: &str) {
-        let _ = write!(self.body, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius:.2}\" style=\"{paint}\"/>");
+        let _ =
+            write!(self.body, "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{radius:.2}\" style=\"{paint}\"/>");
     }
 
     /// One line of text.
@@ -179,7 +180,9 @@ mod tests {
     #[test]
     fn invariant_a_sheet_is_well_formed_and_its_words_are_escaped() {
         let mut sheet = Sheet::new(100.0, 50.0);
-        sheet.clipped("c", [0.0, 0.0], [50.0, 50.0], |s| s.path(&[[0.0, 0.0], [10.0, 5.0]], true, "fill:none"));
+        sheet.clipped("c", [0.0, 0.0], [50.0, 50.0], |s| {
+            s.path(&[[0.0, 0.0], [10.0, 5.0]], true, "fill:none")
+        });
         sheet.text([5.0, 5.0], 12.0, Anchor::Middle, "#000", "a < b & c");
         let svg = sheet.to_svg();
         assert!(svg.contains("a &lt; b &amp; c") && svg.contains("M0.00 0.00L10.00 5.00z"), "{svg}");

@@ -100,7 +100,11 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
 /// The two readings of the paper that its own numbers do not carry.
 pub(super) fn readings(summary: &Summary) -> Markup {
     let line = |name: &str| {
-        summary.artefacts.iter().find(|a| a.family == Family::Mesh && a.name == name && a.harmonic == 1).map(|a| a.predicted_hz)
+        summary
+            .artefacts
+            .iter()
+            .find(|a| a.family == Family::Mesh && a.name == name && a.harmonic == 1)
+            .map(|a| a.predicted_hz)
     };
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.0} Hz"));
     let (vertices, inner) = (line("roller_vertices"), line("inner_race_nodes"));
@@ -127,8 +131,9 @@ pub(super) fn readings(summary: &Summary) -> Markup {
             p {
                 "A cursor between two sampled peaks reads a whole number of samples: " (format!("{:.0}, {:.0} or {:.0} Hz", r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1))
                 ". " (format!("{:.0} %", 100.0 * r.share_in_tone)) " of the periods of a pure 4671 Hz tone are " (r.samples) " samples long, so the reading \
-                 needs no second tone. The paper's own sum of 4712 and 3864 Hz peaks " (format!("{:.0}", r.equation_3_mean_hz)) " times a second on average; "
-                (format!("{:.0} %", 100.0 * r.share_in_equation_3)) " of its gaps read 4545 Hz."
+                 needs no second tone. The paper's own sum of two tones swells on a carrier of " (format!("{:.0} Hz", r.equation_3_carrier_hz)) "; "
+                (format!("{:.0} %", 100.0 * r.equation_3_common.1)) " of its gaps are " (r.equation_3_common.0) " samples, "
+                (format!("{:.0} %", 100.0 * r.share_in_equation_3)) " read 4545 Hz."
             }
         }
     }

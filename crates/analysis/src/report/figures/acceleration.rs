@@ -52,8 +52,9 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
 pub(super) fn others(findings: &Findings) -> Vec<Figure> {
     let mut figures = Vec::new();
     for sensor in findings.sensors.iter().skip(1) {
-        let mut figure = over_time(&format!("acceleration-{}", sensor.name), &format!("Sensor “{}”", sensor.name))
-            .with(sampled(findings, "raw", Colour::Grey, &sensor.raw_g));
+        let mut figure =
+            over_time(&format!("acceleration-{}", sensor.name), &format!("Sensor “{}”", sensor.name))
+                .with(sampled(findings, "raw", Colour::Grey, &sensor.raw_g));
         if !sensor.filtered_g.is_empty() {
             figure = figure.with(sampled(findings, "notched", Colour::Orange, &sensor.filtered_g));
         }

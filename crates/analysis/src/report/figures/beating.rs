@@ -26,19 +26,20 @@ pub(super) fn figures() -> [Figure; 2] {
             outer - inner
         ))
         .note("Equation (3) with A₁ = A₂ = 1 and φ = 0. Of these two frequencies only the first is in the model: vertices pass the inner raceway as often as the outer one.");
-    let envelope: Vec<f64> = (0..SAMPLES).map(|n| 2.0 * (0.5 * TAU * (outer - inner) * n as f64 * step).cos().abs()).collect();
+    let envelope: Vec<f64> =
+        (0..SAMPLES).map(|n| 2.0 * (0.5 * TAU * (outer - inner) * n as f64 * step).cos().abs()).collect();
     let reads = |samples: usize| SAMPLE_RATE_HZ / samples as f64;
     let share = |samples: usize| gaps.as_ref().map_or(0.0, |g| 100.0 * g.share_of(samples));
     let mut zoom = chart("beat-zoom", "Fig. 5b: the same from 10 to 15 ms, with its envelope")
         .with(Series::sampled("envelope", Colour::Orange, 0.0, step, envelope))
         .caption(format!(
             "Two neighbouring peaks are a whole number of samples apart: 22 read {:.0} Hz ({:.0} % of them), 23 read {:.0} Hz \
-             ({:.0} %); on average they come at {:.0} Hz, the mean of the two tones.",
+             ({:.0} %). Within a swell they follow the mean of the two tones, {:.0} Hz.",
             reads(22),
             share(22),
             reads(23),
             share(23),
-            gaps.as_ref().map_or(0.0, |g| g.mean_hz)
+            0.5 * (outer + inner)
         ))
         .note(format!(
             "The paper reads {CURSOR_HZ:.0} Hz from one such pair and finds it again in its acceleration. A pure tone of 4671 Hz \

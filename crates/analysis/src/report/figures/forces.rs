@@ -27,8 +27,7 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         figure = figure.with(sampled(findings, "notched", Colour::Blue, &crossing.filtered_n));
     }
     figure.bands = transient(findings);
-    for (ms, label) in
-        [(event.expected_entry_ms, "leading edge"), (event.expected_exit_ms, "trailing edge")]
+    for (ms, label) in [(event.expected_entry_ms, "leading edge"), (event.expected_exit_ms, "trailing edge")]
     {
         figure.marks.push(mark(1e-3 * ms, label, Colour::Orange, true));
     }
@@ -44,7 +43,9 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         }
     }
     let time = |ms: Option<f64>| ms.map_or("not at all".into(), |t| format!("at {t:.2} ms"));
-    let floor = event.impact_ms.map_or("does not touch the floor in between".into(), |t| format!("strikes the floor at {t:.2} ms"));
+    let floor = event
+        .impact_ms
+        .map_or("does not touch the floor in between".into(), |t| format!("strikes the floor at {t:.2} ms"));
     let help = event.compensation_gain.map_or(String::new(), |gain| {
         format!(" While a neighbour is in the defect it carries {:.0} % more.", 100.0 * (gain - 1.0))
     });
@@ -71,7 +72,8 @@ pub(super) fn sums(run: &Run) -> Option<Figure> {
     if rollers.is_empty() || record.is_empty() {
         return None;
     }
-    let sum: Vec<f64> = (0..record.len()).map(|n| -rollers.iter().map(|r| r.outer_fy[n]).sum::<f64>()).collect();
+    let sum: Vec<f64> =
+        (0..record.len()).map(|n| -rollers.iter().map(|r| r.outer_fy[n]).sum::<f64>()).collect();
     let load = run.info.expected_support_n;
     let off = |n: f64| 100.0 * (n / load - 1.0);
     let count = sum.len() as f64;

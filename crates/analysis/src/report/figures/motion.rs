@@ -28,8 +28,10 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
         let off = rate.iter().map(|r| 100.0 * (r.abs() / without_slip_rad_s.abs() - 1.0)).collect();
         Series::sampled(name, colour, start, record.interval_s(), off)
     };
-    let mut spin = chart("spin", "Spin of the rollers that cross the defect", "Spin against rolling without slip");
-    let mut orbit = chart("orbit", "Speed of the cage and of these rollers", "Orbit against rolling without slip");
+    let mut spin =
+        chart("spin", "Spin of the rollers that cross the defect", "Spin against rolling without slip");
+    let mut orbit =
+        chart("orbit", "Speed of the cage and of these rollers", "Orbit against rolling without slip");
     for (&number, colour) in crossing.iter().zip(colours) {
         let Some(roller) = record.roller(number) else { continue };
         let name = format!("roller {number}");
@@ -43,8 +45,13 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
         return Vec::new();
     }
     let motion = &findings.summary.kinematics;
-    let slip = motion.cage_hz.map_or("–".into(), |hz| format!("{:+.2} %", 100.0 * (hz / motion.expected_cage_hz - 1.0)));
-    let note = format!("Mean over {:.2} ms. Measured rates of every roller stand in the table of kinematics.", 1e3 * width as f64 * record.interval_s());
+    let slip = motion
+        .cage_hz
+        .map_or("–".into(), |hz| format!("{:+.2} %", 100.0 * (hz / motion.expected_cage_hz - 1.0)));
+    let note = format!(
+        "Mean over {:.2} ms. Measured rates of every roller stand in the table of kinematics.",
+        1e3 * width as f64 * record.interval_s()
+    );
     vec![
         spin.caption(
             "A loaded roller rolls; in the defect nothing drives it at the outer raceway, and where its speed then differs from \

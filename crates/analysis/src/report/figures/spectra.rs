@@ -50,9 +50,10 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
         figure
     };
     let attenuation = findings.summary.notch.as_ref().and_then(|n| n.attenuation_db);
-    let mut whole = overlay("spectrum-notched", "Fig. 7a: unfiltered and notched", (0.0, 0.5 * raw.sample_rate_hz()))
-        .caption("The notch takes the tone and leaves everything else, its harmonics included.")
-        .note(stated(raw));
+    let mut whole =
+        overlay("spectrum-notched", "Fig. 7a: unfiltered and notched", (0.0, 0.5 * raw.sample_rate_hz()))
+            .caption("The notch takes the tone and leaves everything else, its harmonics included.")
+            .note(stated(raw));
     whole.marks = harmonic_marks(findings);
     let zoom = zoom(findings, raw);
     let title = format!("Fig. 7b: the same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
@@ -134,13 +135,20 @@ fn envelope(findings: &Findings) -> Option<Figure> {
     let bpfo = findings.prediction.kinematics.bpfo_hz;
     let top = (FAMILY as f64 + 1.0) * bpfo;
     let power = Axis::plain("Squared envelope spectrum", "dB re 1 g⁴");
-    let mut figure = Figure::new("envelope", "Envelope spectrum", Axis::si("Frequency", "Hz").over(0.0, top), power)
-        .with(density("squared envelope", Colour::Blue, spectrum));
-    let seen: Vec<String> =
-        finding.lines.iter().filter(|l| l.measured_hz.is_some()).map(|l| format!("×{}", l.harmonic)).collect();
+    let mut figure =
+        Figure::new("envelope", "Envelope spectrum", Axis::si("Frequency", "Hz").over(0.0, top), power)
+            .with(density("squared envelope", Colour::Blue, spectrum));
+    let seen: Vec<String> = finding
+        .lines
+        .iter()
+        .filter(|l| l.measured_hz.is_some())
+        .map(|l| format!("×{}", l.harmonic))
+        .collect();
     let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
     figure = figure
-        .caption(format!("Knocks come at BPFO: of its multiples {seen} stand 10 dB above their surroundings."))
+        .caption(format!(
+            "Knocks come at BPFO: of its multiples {seen} stand 10 dB above their surroundings."
+        ))
         .note(format!(
             "Envelope of {:.0} to {:.0} Hz, {:.1} periods of BPFO on record. {}",
             finding.band_hz.0,
@@ -208,7 +216,9 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     let mut marks = Vec::new();
     for (index, (name, _)) in findings.prediction.facet_lines.iter().enumerate().rev() {
         let of_name = findings.lines.iter().filter(|l| l.name == *name);
-        marks.extend(of_name.map(|l| mark(l.predicted_hz, &label(index, l.harmonic), colours[index % 3], true)));
+        marks.extend(
+            of_name.map(|l| mark(l.predicted_hz, &label(index, l.harmonic), colours[index % 3], true)),
+        );
     }
     let ring = findings.modes.iter().filter(|m| m.1 > LOW_HZ);
     marks.extend(ring.map(|(n, hz)| mark(*hz, &format!("ring n = {n}"), Colour::Brown, true)));
@@ -230,7 +240,8 @@ fn line_marks(findings: &Findings) -> Vec<Mark> {
         .iter()
         .map(|l| mark(l.predicted_hz, &text(&l.name, l.harmonic, l.predicted_hz), colour_of(&l.name), true))
         .collect();
-    marks.extend(findings.modes.iter().map(|(n, hz)| mark(*hz, &format!("ring n = {n}"), Colour::Brown, true)));
+    marks.extend(
+        findings.modes.iter().map(|(n, hz)| mark(*hz, &format!("ring n = {n}"), Colour::Brown, true)),
+    );
     marks
 }
-

@@ -44,7 +44,8 @@ fn draw(sheet: &mut Sheet, assembly: &Assembly, view: &View, width: f64, seen: i
     let mesh = &assembly.model.mesh;
     for (number, body) in mesh.bodies.iter().enumerate() {
         let at = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
-        let lines = edges(assembly, number).into_iter().map(|e| e.map(at)).filter(|e| e.iter().any(|p| seen(*p)));
+        let lines =
+            edges(assembly, number).into_iter().map(|e| e.map(at)).filter(|e| e.iter().any(|p| seen(*p)));
         let paint = format!("{EDGE}{};stroke-width:{width}", colour(&body.name).css());
         sheet.lines(lines.map(|e| e.map(|p| view.place(p))), &paint);
     }
@@ -54,19 +55,26 @@ fn draw(sheet: &mut Sheet, assembly: &Assembly, view: &View, width: f64, seen: i
 pub(super) fn whole(assembly: &Assembly) -> Picture {
     let mesh = &assembly.model.mesh;
     let range = |values: &[f64]| {
-        let (low, high) = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        let (low, high) =
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
         (low - 0.004, high + 0.004)
     };
     let ((x0, x1), (y0, y1)) = (range(&mesh.x), range(&mesh.y));
     let view = View::new([x0, y0], [x1, y1], [0.0, 0.0], WIDTH);
     let mut sheet = Sheet::new(WIDTH, view.height.ceil());
     draw(&mut sheet, assembly, &view, 0.25, |_| true);
-    let names = [("adapter", 0.5 * (y1 + 0.11)), ("outer ring", -0.105), ("inner ring", 0.077), ("roller", 0.0)];
+    let names =
+        [("adapter", 0.5 * (y1 + 0.11)), ("outer ring", -0.105), ("inner ring", 0.077), ("roller", 0.0)];
     for (name, y) in names {
         let x = if name == "roller" { 0.091 } else { 0.0 };
         let at = view.place([x, y]);
         let half = 4.0 * name.len() as f64;
-        let ground = [[at[0] - half, at[1] - 12.0], [at[0] + half, at[1] - 12.0], [at[0] + half, at[1] + 5.0], [at[0] - half, at[1] + 5.0]];
+        let ground = [
+            [at[0] - half, at[1] - 12.0],
+            [at[0] + half, at[1] - 12.0],
+            [at[0] + half, at[1] + 5.0],
+            [at[0] - half, at[1] + 5.0],
+        ];
         sheet.path(&ground, true, "fill:#fff;fill-opacity:0.85");
         sheet.text(at, 14.0, Anchor::Middle, "#000", name);
     }
@@ -97,8 +105,13 @@ pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
         draw(sheet, assembly, &view, 0.8, seen);
         let first = scene.bearing.first_roller_deg.to_radians();
         for (direction, paint) in [(angle, "#000"), (first, Colour::Red.css())] {
-            let ray = [0.8, 1.3].map(|r: f64| view.place([r * radius * direction.cos(), r * radius * direction.sin()]));
-            sheet.path(&ray, false, &format!("fill:none;stroke:{paint};stroke-width:1.5;stroke-dasharray:6 4"));
+            let ray = [0.8, 1.3]
+                .map(|r: f64| view.place([r * radius * direction.cos(), r * radius * direction.sin()]));
+            sheet.path(
+                &ray,
+                false,
+                &format!("fill:none;stroke:{paint};stroke-width:1.5;stroke-dasharray:6 4"),
+            );
         }
         if let Some(d) = &scene.defect {
             let reach = 0.5e-3 * d.length_mm;
@@ -114,7 +127,10 @@ pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
         }
     });
     let offset = scene.bearing.first_roller_deg - angle.to_degrees();
-    sheet.text([12.0, 22.0], 13.0, Anchor::Start, Colour::Red.css(), &format!("roller 1 stands {offset} ° before the middle of the defect"));
+    let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
+    sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
+    let words = format!("roller 1 stands {offset} ° before the middle of the defect");
+    sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
     scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
     let mut picture = Picture::new("mesh-defect", "Fig. 1b: the mesh about the defect", sheet);
     picture.caption = match &scene.defect {
@@ -124,6 +140,8 @@ pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
         ),
         None => "The raceway is sound.".into(),
     };
-    picture.note = "Undeformed, before the load. Dashed: middle of the defect and roller 1. Rollers move to the right.".into();
+    picture.note =
+        "Undeformed, before the load. Dashed: middle of the defect and roller 1. Rollers move to the right."
+            .into();
     picture
 }

@@ -29,7 +29,13 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
     while level <= largest {
         sheet.circle(middle, RACE + REACH * level / largest, "fill:none;stroke:#d8dde2");
         let words = format!("{:.0} kN", 1e-3 * level);
-        sheet.text([middle[0] + 4.0, middle[1] + RACE + REACH * level / largest - 3.0], 11.0, Anchor::Start, "#5c6670", &words);
+        sheet.text(
+            [middle[0] + 4.0, middle[1] + RACE + REACH * level / largest - 3.0],
+            11.0,
+            Anchor::Start,
+            "#5c6670",
+            &words,
+        );
         level += step;
     }
     for deg in (0..360).step_by(30) {
@@ -45,17 +51,24 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
         sheet.path(&sector, true, "fill:#b3202c;fill-opacity:0.12");
     }
     if let Some(curve) = static_curve {
-        let points: Vec<[f64; 2]> = curve.angle_deg.iter().zip(&curve.force_n).map(|(a, f)| at(*a, *f)).collect();
+        let points: Vec<[f64; 2]> =
+            curve.angle_deg.iter().zip(&curve.force_n).map(|(a, f)| at(*a, *f)).collect();
         sheet.path(&points, true, &format!("fill:none;stroke:{};stroke-width:2", Colour::Orange.css()));
     }
     let known = dynamic.angle_deg.iter().zip(&dynamic.mean_n).filter(|(_, f)| f.is_finite());
     let points: Vec<[f64; 2]> = known.map(|(a, f)| at(*a, f.max(0.0))).collect();
     sheet.path(&points, true, &format!("fill:none;stroke:{};stroke-width:2", Colour::Blue.css()));
     for (n, (words, colour)) in
-        [("in motion, mean", Colour::Blue), ("at rest, rigid rings", Colour::Orange), ("defect", Colour::Red)].into_iter().enumerate()
+        [("in motion, mean", Colour::Blue), ("at rest, rigid rings", Colour::Orange), ("defect", Colour::Red)]
+            .into_iter()
+            .enumerate()
     {
         let y = 20.0 + 18.0 * n as f64;
-        sheet.path(&[[14.0, y], [38.0, y]], false, &format!("fill:none;stroke:{};stroke-width:3", colour.css()));
+        sheet.path(
+            &[[14.0, y], [38.0, y]],
+            false,
+            &format!("fill:none;stroke:{};stroke-width:3", colour.css()),
+        );
         sheet.text([44.0, y + 4.0], 12.0, Anchor::Start, "#000", words);
     }
     let mut picture = Picture::new("load-polar", "Load zone", sheet);

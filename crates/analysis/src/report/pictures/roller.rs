@@ -41,7 +41,8 @@ fn to_scale(sheet: &mut Sheet, scene: &Scene, assembly: &Assembly) {
     let nodes = all.bodies[body].nodes.clone();
     let middle = |values: &[f64]| {
         let part = &values[nodes.clone()];
-        let (low, high) = part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        let (low, high) =
+            part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
         0.5 * (low + high)
     };
     let centre = [middle(&all.x), middle(&all.y)];
@@ -81,5 +82,9 @@ fn magnified(sheet: &mut Sheet, radius: f64, facets: usize, sag_um: f64) {
         sheet.text([left + 0.5 * WIDTH_PX, y], 14.0, Anchor::Middle, "#000", words);
     };
     label(sheet, top - 22.0, "circle (dashed) and polygon, seen from the circle");
-    label(sheet, top + HEIGHT_PX + 30.0, &format!("facet of {:.4} mm, sag {sag_um:.2} µm", 2.0 * radius * (0.5 * step).sin()));
+    label(
+        sheet,
+        top + HEIGHT_PX + 30.0,
+        &format!("facet of {:.4} mm, sag {sag_um:.2} µm", 2.0 * radius * (0.5 * step).sin()),
+    );
 }

@@ -102,14 +102,21 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
     };
     let shown = moments.iter().flat_map(|m| m.cells.iter().filter(move |c| near(m, c)));
     let end = end_of_scale(shown);
-    let highest = moments.iter().flat_map(|m| m.cells.iter().filter(move |c| near(m, c))).map(|c| c.von_mises).fold(0.0, f64::max);
+    let highest = moments
+        .iter()
+        .flat_map(|m| m.cells.iter().filter(move |c| near(m, c)))
+        .map(|c| c.von_mises)
+        .fold(0.0, f64::max);
     let mut sheet = Sheet::new(20.0 + (side + 10.0) * moments.len() as f64, side + top + 60.0);
     for (n, moment) in moments.iter().enumerate() {
         let left = 10.0 + (side + 10.0) * n as f64;
         let scale = 0.5 * side / half;
         let place = |c: &[f64; 2]| {
             let [x, y] = window.place(c[0], c[1]);
-            [left + 0.5 * side + scale * (x - moment.focus[0]), top + 0.5 * side - scale * (y - moment.focus[1])]
+            [
+                left + 0.5 * side + scale * (x - moment.focus[0]),
+                top + 0.5 * side - scale * (y - moment.focus[1]),
+            ]
         };
         let words = format!("{:.2} ms: {}", 1e3 * moment.time_s, moment.title);
         sheet.text([left, 22.0], 14.0, Anchor::Start, "#000", &words);
@@ -117,7 +124,11 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
             for cell in moment.cells.iter().filter(|c| near(moment, c)) {
                 let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
                 let [r, g, b] = shade_rgb(cell.von_mises / end);
-                sheet.path(&corners, true, &format!("fill:#{r:02x}{g:02x}{b:02x};stroke:#fff;stroke-width:0.3"));
+                sheet.path(
+                    &corners,
+                    true,
+                    &format!("fill:#{r:02x}{g:02x}{b:02x};stroke:#fff;stroke-width:0.3"),
+                );
             }
         });
         super::scale_bar(&mut sheet, [left + 8.0, top + side - 12.0], 1e-3, scale, "1 mm");
