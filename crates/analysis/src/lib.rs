@@ -39,8 +39,10 @@ pub mod filtering;
 pub mod kinematics;
 pub mod levels;
 pub mod load;
+pub mod lumped;
 pub mod reading;
 pub mod ring;
+pub mod signal;
 pub mod spall;
 pub mod tones;
 

@@ -4,6 +4,7 @@ use stribeck_bearing::run_dir::Run;
 
 use super::{mark, sampled, transient};
 use crate::findings::{CrossingForce, Findings};
+use crate::load;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
 use crate::record::Record;
 use crate::summary::Event;
@@ -68,14 +69,12 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
 /// What all rollers carry together, sample by sample.
 pub(super) fn sums(run: &Run) -> Option<Figure> {
     let record = Record::new(run);
-    let rollers = record.rollers();
-    if rollers.is_empty() || record.is_empty() {
+    if record.rollers().is_empty() || record.is_empty() {
         return None;
     }
-    let sum: Vec<f64> =
-        (0..record.len()).map(|n| -rollers.iter().map(|r| r.outer_fy[n]).sum::<f64>()).collect();
-    let load = run.info.expected_support_n;
-    let off = |n: f64| 100.0 * (n / load - 1.0);
+    let sum = load::vertical_sum(&record);
+    let supported = run.info.expected_support_n;
+    let off = |n: f64| 100.0 * (n / supported - 1.0);
     let count = sum.len() as f64;
     let mean = sum.iter().sum::<f64>() / count;
     let rms = (sum.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / count).sqrt();
@@ -93,11 +92,11 @@ pub(super) fn sums(run: &Run) -> Option<Figure> {
         "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by {:.1} % (RMS), between \
          {:+.0} and {:+.0} %, because ring and adapter have mass.",
         off(mean),
-        100.0 * rms / load,
+        100.0 * rms / supported,
         off(low),
         off(high)
     ).replace('-', "−"))
     .note("The difference accelerates the outer ring and the adapter. Load plus their weight is the dashed line.");
-    figure.levels = vec![Level { y: load, label: "load and weight".into(), colour: Colour::Orange }];
+    figure.levels = vec![Level { y: supported, label: "load and weight".into(), colour: Colour::Orange }];
     Some(figure)
 }
