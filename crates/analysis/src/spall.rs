@@ -105,6 +105,7 @@ mod tests {
     fn analytic_a_stiff_contact_rolls_over_a_sharp_edge() {
         // Without penalty compliance the roller sinks by s²/2R, so half of its load is left at √(2R (δ(Q) − δ(Q/2))).
         let mut scene = Scene::default();
+        scene.bearing.thickness_mm = 20.0;
         scene.contact.penalty_scale = 1e4;
         let edge = Edge::of(&scene);
         let sunk = edge.rings.approach_m(10_400.0) - edge.rings.approach_m(5_200.0);

@@ -284,7 +284,7 @@ impl Default for BearingScene {
             inner_ring_thickness_mm: 10.0,
             rollers: 24,
             roller_diameter_mm: 18.0,
-            thickness_mm: 20.0,
+            thickness_mm: 30.0,
             first_roller_deg: 94.0,
         }
     }
@@ -343,8 +343,8 @@ impl Default for ContactScene {
     fn default() -> Self {
         Self {
             method: ContactMethod::Integrated,
-            points_per_facet: 4,
-            penalty_scale: 1.0,
+            points_per_facet: 16,
+            penalty_scale: 0.05,
             damping_ratio: 0.1,
             friction: 0.005,
             seat_friction: 0.1,

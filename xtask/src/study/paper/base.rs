@@ -25,7 +25,6 @@ pub(super) fn variants() -> Vec<Variant> {
     };
     vec![
         short("default", &[]),
-        short("thickness-5", &["bearing.thickness_mm=5.0"]),
         short("thickness-10", &["bearing.thickness_mm=10.0"]),
         short("thickness-20", &["bearing.thickness_mm=20.0"]),
         short("thickness-50", &["bearing.thickness_mm=50.0"]),
@@ -33,8 +32,8 @@ pub(super) fn variants() -> Vec<Variant> {
         short("penalty-0.1", &["contact.penalty_scale=0.1"]),
         short("penalty-0.3", &["contact.penalty_scale=0.3"]),
         short("penalty-1", &["contact.penalty_scale=1.0"]),
-        short("points-2", &["contact.points_per_facet=2"]),
         short("points-4", &["contact.points_per_facet=4"]),
+        short("points-8", &["contact.points_per_facet=8"]),
         short("collocated", &["contact.method=collocated"]),
         short("collocated-penalty-1", &["contact.method=collocated", "contact.penalty_scale=1.0"]),
         short("contact-damping-0", &["contact.damping_ratio=0.0"]),
