@@ -92,6 +92,7 @@ pub mod damping;
 pub mod dynamics;
 pub mod element;
 mod error;
+pub mod field;
 pub mod force;
 mod gather;
 mod lanes;
