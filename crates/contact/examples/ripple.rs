@@ -93,7 +93,7 @@ fn force(
     preload(&mut d, &mut contacts, &mut load, bodies.to_vec(), &[1e-6, 1e-7, 1e-8, 0.0], 1e-4);
     contacts.set_preload(None);
     let n = d.state.x.len();
-    let mut f = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+    let mut f = NodeForces::zeros(n);
     contacts.accumulate(d.moment(), &mut f);
     contacts.resultants().next().unwrap().force[1] / THICKNESS
 }
