@@ -4,6 +4,7 @@ pub mod assembly;
 mod checkpoint;
 pub mod error;
 mod grading;
+mod guards;
 pub mod kinematics;
 mod ledger;
 mod recorder;

@@ -12,8 +12,9 @@ use crate::{
     assembly::{Assembly, Machine},
     checkpoint::Checkpoint,
     error::Error,
+    guards::Guards,
     run_dir::RunDir,
-    run_info::{EnergyInfo, RunInfo, Status},
+    run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
     start::{launch, preload},
     time_loop::Run,
@@ -93,7 +94,7 @@ pub fn simulate(
     damp(scene, &mut machine)?;
 
     let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0) as usize;
-    let info = RunInfo {
+    let mut info = RunInfo {
         version: host.version.clone(),
         commit: host.commit.clone(),
         scene_hash: scene.hash(),
@@ -113,9 +114,11 @@ pub fn simulate(
         setup_s: (host.wall_s)() - started,
         resumed_at_s: Vec::new(),
         energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0 },
+        guards: GuardInfo::default(),
         expected_support_n: expected_support(scene, &machine),
         warnings: Vec::new(),
     };
+    info.warnings = Guards::before(scene, &assembly.model.materials[0], &info);
     dir.start(scene, &info)?;
     write_mesh(&assembly, &machine, dir)?;
     Run::start(scene, &assembly, machine, info, dir)?.finish(dir, host, progress, watch)
@@ -180,7 +183,7 @@ fn may_go_on(dir: &RunDir) -> Result<(), Error> {
 }
 
 /// Critical time step with contact; its damping acts half a step late and counts with the step it is used at.
-fn critical_time_step(machine: &Machine) -> f64 {
+pub(crate) fn critical_time_step(machine: &Machine) -> f64 {
     let forces: [&dyn Force; 1] = [&machine.contacts];
     let first = machine.dynamics.critical_time_step(&forces, 0.0).time_step;
     machine.dynamics.critical_time_step(&forces, 0.9 * first).time_step

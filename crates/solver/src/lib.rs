@@ -82,6 +82,7 @@
 //! | What force does an element make? | `element.rs` |
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
 //! | How long may a step be? | `critical.rs` |
+//! | How distorted are the elements? | `distortion.rs` |
 //! | How is equilibrium found? | `statics.rs` |
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
@@ -89,6 +90,7 @@
 mod advance;
 pub mod critical;
 pub mod damping;
+pub mod distortion;
 pub mod dynamics;
 pub mod element;
 mod error;
