@@ -111,16 +111,16 @@ impl Guards {
     }
 
     /// Looks at the machine after a sample: adds warnings to `info`; the reason to stop, if there is one. `error` is the
-    /// imbalance of energy over the peak strain energy, `before` the largest one of earlier samples.
+    /// imbalance of energy over the peak strain energy.
     pub(crate) fn look(
         &self,
         info: &mut RunInfo,
         assembly: &Assembly,
         machine: &Machine,
         ledger: &Ledger,
-        [error, before]: [f64; 2],
+        error: f64,
     ) -> Option<String> {
-        let stop = self.energy(info, assembly, machine, [error, before]);
+        let stop = self.energy(info, assembly, machine, error);
         self.hourglass(info, ledger);
         // Each look is taken, so that the worst of each is known; the first reason is the one given.
         let stop = stop.or(self.penetration(info, machine));
@@ -134,7 +134,7 @@ impl Guards {
         info: &mut RunInfo,
         assembly: &Assembly,
         machine: &Machine,
-        [error, before]: [f64; 2],
+        error: f64,
     ) -> Option<String> {
         let [warning, stop] =
             [self.limits.energy_warning_percent, self.limits.energy_stop_percent].map(|p| 0.01 * p);
@@ -155,7 +155,9 @@ impl Guards {
                 when(info)
             ));
         }
-        if error > warning && before <= warning {
+        // A load that comes suddenly is soon larger than the strain energy of the first samples.
+        if error > warning && !info.guards.energy_warned && info.samples.is_multiple_of(LOOK_EVERY) {
+            info.guards.energy_warned = true;
             info.warnings.push(format!(
                 "energy is out of balance by {:.2} % of the peak strain energy (limit {} %) {}: take a smaller \
                  `solver.time_step_factor`, a smaller `contact.penalty_scale`, or start `preloaded`",

@@ -100,6 +100,8 @@ pub struct EnergyInfo {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GuardInfo {
+    /// The imbalance of energy has been warned of.
+    pub energy_warned: bool,
     /// Largest hourglass energy over strain energy [-].
     pub hourglass_share: f64,
     /// Deepest penetration over the element size [-].
@@ -118,6 +120,7 @@ pub struct GuardInfo {
 impl Default for GuardInfo {
     fn default() -> Self {
         Self {
+            energy_warned: false,
             hourglass_share: 0.0,
             penetration_share: 0.0,
             least_area: f64::INFINITY,

@@ -37,6 +37,9 @@ impl Surface {
         if n < 2 || (closed && n < 3) {
             return Err(Error::BadSurface { name, reason: "needs at least one facet, three when closed" });
         }
+        if slots.iter().any(|&s| s as usize >= x.len().min(y.len())) {
+            return Err(Error::BadSurface { name, reason: "lists a slot for which there is no position" });
+        }
         let facets = if closed { n } else { n - 1 };
         let along = |f: usize| {
             let (a, b) = (slots[f] as usize, slots[(f + 1) % n] as usize);

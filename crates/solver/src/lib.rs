@@ -84,6 +84,7 @@
 //! | How long may a step be? | `critical.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
 //! | How is equilibrium found? | `statics.rs` |
+//! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
@@ -96,10 +97,12 @@ pub mod element;
 mod error;
 pub mod force;
 mod gather;
+pub mod integrators;
 mod lanes;
 pub mod layout;
 pub mod material;
 pub mod model;
+pub mod reference;
 pub mod rigid;
 pub mod snapshot;
 pub mod state;
