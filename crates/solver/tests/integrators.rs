@@ -1,6 +1,8 @@
 //! Integrators and elements for comparisons: their orders, limits and damping; and that the plain path is the kernel's.
 
 mod common;
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
 
 use std::f64::consts::PI;
 
@@ -35,11 +37,13 @@ fn converges_integrators_with_their_order() {
 #[test]
 fn analytic_limits_of_the_integrators() {
     // Central differences: 2. Tchamwa–Wielgosz: trace 2 − φΩ² and determinant 1 − (φ − 1)Ω² of its step give
-    // Ω = 2/√(2φ − 1). Noh–Bathe with p = 0.54: 1.85 times that of central differences (Noh and Bathe 2013, §3).
+    // Ω = 2/√(2φ − 1). Noh–Bathe with p = 1/2 is two steps of central differences: 4; an uneven split shortens that a little.
     let [central, tchamwa, noh] = SCHEMES.map(|s| s.limit());
-    assert_close(central, 2.0, 1e-6, "central differences");
-    assert_close(tchamwa, 2.0 / (2.0 * 1.03 - 1.0_f64).sqrt(), 1e-6, "Tchamwa–Wielgosz");
-    assert_close(noh, 2.0 * 1.85, 0.01, "Noh–Bathe");
+    ledger::compare("limit Ω of central differences", "ωΔt = 2: Belytschko, Liu and Moran 2000, §6.6", "-", central, 2.0, 1e-6);
+    let exact = 2.0 / (2.0 * 1.03 - 1.0_f64).sqrt();
+    ledger::compare("limit Ω of Tchamwa–Wielgosz, φ = 1.03", "2/√(2φ − 1), from trace and determinant", "-", tchamwa, exact, 1e-6);
+    assert_close(Scheme::NohBathe { p: 0.5 }.limit(), 4.0, 1e-6, "Noh–Bathe, even split");
+    assert!(noh > 3.5 && noh < 4.0, "Noh–Bathe: {noh}");
 }
 
 #[test]

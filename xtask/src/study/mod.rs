@@ -10,6 +10,7 @@ mod rig;
 mod runner;
 mod stability;
 mod table;
+mod work_precision;
 
 use std::process::ExitCode;
 
@@ -34,6 +35,9 @@ enum Study {
     Kills(kills::Options),
     /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
     Stability(stability::Options),
+    /// Error against work: elements, integrators, contacts, meshes
+    #[command(name = "work_precision")]
+    WorkPrecision(work_precision::Options),
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
@@ -41,5 +45,6 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         Study::Paper(options) => paper::run(options),
         Study::Kills(options) => kills::run(options),
         Study::Stability(options) => stability::run(options),
+        Study::WorkPrecision(options) => work_precision::run(options),
     }
 }

@@ -7,6 +7,9 @@ mod materials;
 mod scenes;
 mod stiffness;
 
+pub(super) use limit::split;
+pub(super) use materials::{cylinder, cylinder_of};
+
 use std::process::ExitCode;
 
 use anyhow::Result;

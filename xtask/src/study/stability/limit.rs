@@ -79,7 +79,7 @@ fn distorted(columns: usize, rows: usize, size: f64) -> Result<Part> {
 }
 
 /// Every quadrilateral as two triangles.
-pub(super) fn split(mut part: Part) -> Part {
+pub(in crate::study) fn split(mut part: Part) -> Part {
     part.triangles = part.quads.drain(..).flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     part
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use anyhow::Result;
-use stribeck_mesh::Annulus;
+use stribeck_mesh::{Annulus, Part};
 use stribeck_solver::{Elastic, force::NodalLoad, statics::{Equilibrator, Statics}};
 
 use super::{Case, Chapter};
@@ -16,11 +16,17 @@ const PRESSURE: f64 = 10e6;
 
 /// Displacement of the bore of a thick cylinder under internal pressure over Lamé's
 /// (Timoshenko and Goodier, *Theory of Elasticity*, 3rd ed. 1970, §28, plane strain).
-pub(super) fn cylinder(material: Elastic, facets: usize, layers: usize) -> Result<f64> {
+pub(in crate::study) fn cylinder(material: Elastic, facets: usize, layers: usize) -> Result<f64> {
+    let [inner_radius, outer_radius] = CYLINDER;
+    let ring = Annulus { inner_radius, outer_radius, facets, layers, start_angle: 0.0, groove: None };
+    cylinder_of(&ring.part()?, material, facets)
+}
+
+/// The same for a mesh of that cylinder with `facets` on its bore.
+pub(in crate::study) fn cylinder_of(part: &Part, material: Elastic, facets: usize) -> Result<f64> {
     let [a, b] = CYLINDER;
-    let ring = Annulus { inner_radius: a, outer_radius: b, facets, layers, start_angle: 0.0, groove: None };
     let mut plan = Plan::default();
-    let body = plan.add(&ring.part()?);
+    let body = plan.add(part);
     let bore = plan.nodes(body, "inner").nodes.clone();
     let mut rig = plan.lay_out(&plan.model(material)?)?;
     let d = &mut rig.dynamics;
