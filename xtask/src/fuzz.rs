@@ -124,7 +124,12 @@ fn all(options: &Options, inputs: &Inputs) -> Result<ExitCode> {
     for failure in failures.iter().take(20) {
         eprintln!("FAILED {failure}");
     }
-    println!("{} inputs, {} unhandled (folder {})", options.cases, failures.len(), workspace::shown(&inputs.folder));
+    println!(
+        "{} inputs, {} unhandled (folder {})",
+        options.cases,
+        failures.len(),
+        workspace::shown(&inputs.folder)
+    );
     Ok(if failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

@@ -134,7 +134,8 @@ fn invariant_random_kills_leave_runs_that_end_with_the_same_bytes() {
 #[test]
 fn invariant_a_folder_that_cannot_be_written_is_said_at_once() {
     // The kernel's own folder takes no files, not even from root.
-    let output = simulate(Path::new("/proc/stribeck"), "1").stderr(Stdio::piped()).output().expect("it starts");
+    let output =
+        simulate(Path::new("/proc/stribeck"), "1").stderr(Stdio::piped()).output().expect("it starts");
     let said = words(&output);
     assert!(!output.status.success(), "{said}");
     for word in ["/proc/stribeck", "Nothing was changed", "--out"] {

@@ -86,24 +86,25 @@ impl Guards {
         let (step, critical) = (info.time_step_s, info.critical_time_step_s);
         if step > critical {
             warnings.push(format!(
-                "the time step of {:.2} ns is {:.3} times the critical one: the run will diverge. Take a `solver.time_step_factor` \
+                "the time step of {:.2} ns is {:.3} times the critical one: the run may diverge. Take a `solver.time_step_factor` \
                  below 1",
                 1e9 * step,
                 step / critical
             ));
         }
-        let size = 1e-3 * scene.mesh.size_mm;
+        let facet = std::f64::consts::PI * scene.bearing.roller_diameter_mm / scene.mesh.roller_facets as f64;
+        let size = 1e-3 * scene.mesh.size_mm.min(facet);
         // A regular mesh of squares of side a has ω = (2/a) √((λ + 2µ)/ρ) at most for plane waves along a row.
         let square = size / steel.dilatational_speed();
         if critical < SMALL_STEP * square {
             warnings.push(format!(
-                "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {} mm: some cell is very small, or the \
+                "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: some cell is very small, or the \
                  contact very stiff. Look at `defect.depth_mm`, `mesh.roller_facets` and `contact.penalty_scale`, or expect a run {:.0} \
                  times as long",
                 1e9 * critical,
                 100.0 * critical / square,
                 1e9 * square,
-                scene.mesh.size_mm,
+                1e3 * size,
                 square / critical
             ));
         }

@@ -28,6 +28,9 @@ const ITERATIONS: usize = 80;
 /// Gaps over which the contact law is rounded, stage by stage [m]; the last stage is the law itself.
 const SOFTNESS: [f64; 7] = [4e-6, 1e-6, 2e-7, 4e-8, 8e-9, 2e-9, 0.0];
 
+/// Diametral clearance for which these serve [m]; in a larger one they grow with it.
+const CLEARANCE: f64 = 40e-6;
+
 /// Stages before the last need not be exact: this multiple of the tolerance will do.
 const ROUGH: f64 = 1e4;
 
@@ -51,6 +54,12 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
         }
     }
     acceleration
+}
+
+/// Diametral clearance [mm].
+fn clearance_mm(scene: &Scene) -> f64 {
+    let b = &scene.bearing;
+    b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm
 }
 
 /// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came only near.
@@ -84,7 +93,9 @@ pub(crate) fn preload(
     let mut solver = Equilibrator::new(&machine.dynamics)?;
     let enough = ENOUGH * scene.operation.load_n.max(1.0);
     let mut warning = None;
-    for softness in SOFTNESS {
+    // Rollers in a wide clearance feel its sides from farther away.
+    let wide = (1e-3 * clearance_mm(scene) / CLEARANCE).max(1.0);
+    for softness in SOFTNESS.map(|e| e * wide) {
         machine.contacts.set_preload(Some(softness));
         let tolerance = if softness > 0.0 { ROUGH * statics.tolerance } else { statics.tolerance };
         let statics = Statics { tolerance, ..statics.clone() };
@@ -96,7 +107,8 @@ pub(crate) fn preload(
                 if residual_n.is_finite() && (softness > 0.0 || residual_n <= enough) =>
             {
                 warning = Some(format!(
-                    "the preload left a force of {residual_n:.2e} N unbalanced, {:.1e} of the load: the start rings a little. A softer                      `contact.penalty_scale` converges better",
+                    "the preload left a force of {residual_n:.2e} N unbalanced, {:.1e} of the load: the start rings a little. A softer \
+                     `contact.penalty_scale` converges better",
                     residual_n / scene.operation.load_n
                 ));
             }

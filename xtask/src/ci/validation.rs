@@ -60,9 +60,12 @@ fn compare(root: &Path, folder: &Path) -> Result<Vec<String>> {
         complaints.push(format!("docs/VALIDATION.md has {} lines, the tests make {}", old.len(), new.len()));
     }
     let changed = old.iter().zip(&new).filter(|(a, b)| !same(a, b));
-    complaints.extend(changed.take(5).map(|(a, b)| format!("docs/VALIDATION.md says\n           {a}\n         and the tests\n           {b}")));
+    complaints.extend(changed.take(5).map(|(a, b)| {
+        format!("docs/VALIDATION.md says\n           {a}\n         and the tests\n           {b}")
+    }));
     if !complaints.is_empty() {
-        complaints.push("`cargo xtask ci` writes it anew; look at what has changed before you commit it".into());
+        complaints
+            .push("`cargo xtask ci` writes it anew; look at what has changed before you commit it".into());
     }
     Ok(complaints)
 }
@@ -77,7 +80,9 @@ fn same(old: &str, new: &str) -> bool {
     // Cells: nothing, quantity, ours, theirs, unit, difference, tolerance, source, test, nothing. The difference follows.
     let words = [1, 3, 4, 6, 7, 8].iter().all(|&i| a[i] == b[i]);
     let number = |text: &str| text.parse::<f64>().ok();
-    let (Some(p), Some(q), Some(theirs)) = (number(&a[2]), number(&b[2]), number(&b[3])) else { return a == b };
+    let (Some(p), Some(q), Some(theirs)) = (number(&a[2]), number(&b[2]), number(&b[3])) else {
+        return a == b;
+    };
     let tolerance = b[6].trim_end_matches('%').trim().parse::<f64>().unwrap_or(0.0) / 100.0;
     words && (p - q).abs() <= (ROUNDING * tolerance).max(SHOWN) * theirs.abs()
 }
@@ -87,7 +92,8 @@ fn read(folder: &Path) -> Result<Vec<Row>> {
     let entries = std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     for entry in entries {
         let path = entry?.path();
-        let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         rows.push(parse(text.trim_end()).with_context(|| format!("{} is no row", path.display()))?);
     }
     rows.sort_by(|a, b| (&a.package, &a.quantity).cmp(&(&b.package, &b.quantity)));
@@ -96,7 +102,9 @@ fn read(folder: &Path) -> Result<Vec<Row>> {
 
 fn parse(line: &str) -> Option<Row> {
     let cells: Vec<&str> = line.split('\t').collect();
-    let [package, quantity, unit, source, test, ours, theirs, tolerance] = cells.as_slice() else { return None };
+    let [package, quantity, unit, source, test, ours, theirs, tolerance] = cells.as_slice() else {
+        return None;
+    };
     let word = |w: &&str| w.replace('|', "/");
     Some(Row {
         package: word(package),

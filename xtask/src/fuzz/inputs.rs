@@ -56,7 +56,8 @@ impl Inputs {
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
         });
         let run = folder.join("run");
-        let set = ["solver.start=sudden", "solver.duration_ms=0.1", "mesh.size_mm=4.0", "mesh.roller_facets=40"];
+        let set =
+            ["solver.start=sudden", "solver.duration_ms=0.1", "mesh.size_mm=4.0", "mesh.roller_facets=40"];
         let file = workspace::locate("fixtures/scenes/quick.ron".as_ref());
         let scene = Scene::read_with(&file, &set.map(String::from))?;
         let mut samples = 0;
@@ -65,7 +66,8 @@ impl Inputs {
             samples += usize::from(progress.phase == "run");
             if samples == 2 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
         })?;
-        let read = |path: PathBuf| std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()));
+        let read =
+            |path: PathBuf| std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()));
         Ok(Self {
             scenes: scenes.into_iter().collect::<Result<_>>()?,
             trace: read(dir.trace())?,
@@ -106,9 +108,11 @@ fn scene(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
 /// Whether a scene's mesh is small enough to be made thousands of times.
 fn small(scene: &Scene) -> bool {
     let (b, size) = (&scene.bearing, scene.mesh.size_mm);
-    let rings = 8.0 * b.outer_race_diameter_mm * (b.outer_ring_thickness_mm + b.inner_ring_thickness_mm) / (size * size);
+    let rings = 8.0 * b.outer_race_diameter_mm * (b.outer_ring_thickness_mm + b.inner_ring_thickness_mm)
+        / (size * size);
     let facets = scene.mesh.roller_facets as f64;
-    let adapter = scene.adapter.width_mm * (scene.adapter.height_mm + b.outer_race_diameter_mm) / (size * size);
+    let adapter =
+        scene.adapter.width_mm * (scene.adapter.height_mm + b.outer_race_diameter_mm) / (size * size);
     let pieces = scene.cage.as_ref().map_or(0.0, |c| 10.0 * c.outer_diameter_mm * c.thickness_mm);
     let given = scene.mesh.outer_facets.unwrap_or(0).max(scene.mesh.inner_facets.unwrap_or(0)) as f64;
     let given = given * (b.outer_ring_thickness_mm.max(b.inner_ring_thickness_mm) / size).max(1.0);
@@ -117,8 +121,20 @@ fn small(scene: &Scene) -> bool {
 
 fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     const FIELDS: [&str; 14] = [
-        "mesh.size_mm", "bearing.rollers", "cage", "cage.thickness_mm", "defect", "defect.length_mm", "solver.start",
-        "output.sensors", "output.sensors[0].angle_deg", "mesh.grading", "mesh.outer_facets", "name", "operation", "",
+        "mesh.size_mm",
+        "bearing.rollers",
+        "cage",
+        "cage.thickness_mm",
+        "defect",
+        "defect.length_mm",
+        "solver.start",
+        "output.sensors",
+        "output.sensors[0].angle_deg",
+        "mesh.grading",
+        "mesh.outer_facets",
+        "name",
+        "operation",
+        "",
     ];
     let field = dice.pick(&FIELDS);
     let value = match dice.below(3) {
@@ -126,7 +142,8 @@ fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
         1 => text("Some((coarse_mm: 2.0, fine_layers: 2))", dice),
         _ => text("[(name: \"side\", angle_deg: 0.0)]", dice),
     };
-    let set = if dice.one_in(10) { text(&format!("{field}={value}"), dice) } else { format!("{field}={value}") };
+    let set =
+        if dice.one_in(10) { text(&format!("{field}={value}"), dice) } else { format!("{field}={value}") };
     let file = workspace::locate("fixtures/scenes/quick.ron".as_ref());
     let _ = inputs;
     Ok(answered(Scene::read_with(&file, &[set]))?.0)
@@ -193,7 +210,7 @@ fn run_info(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
 
 /// Lists of nodes and elements that no generator would make.
 fn mesh(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
-    let nodes = dice.below(20);
+    let nodes = 1 + dice.below(20);
     let odd = dice.one_in(2);
     let coordinate = |dice: &mut Dice| if odd && dice.one_in(8) { dice.number() } else { dice.share() };
     let index = |dice: &mut Dice| {
@@ -244,19 +261,28 @@ fn shape(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
         1 => 1e-6 * dice.share(),
         _ => 0.2 * dice.share(),
     };
+    // Counts that are large and allowed make large meshes, as they should; they are left out.
     let count = |dice: &mut Dice| match dice.below(12) {
-        0 => dice.next() as usize,
+        0 => dice.next() as usize | 1 << 40,
         1 => dice.below(3),
-        2 => 1_usize << dice.below(63),
+        2 => 1_usize << (20 + dice.below(43)),
         _ => dice.below(150),
     };
+    let mut asked = String::new();
+    let began = std::time::Instant::now();
     let part = match dice.below(5) {
         0 => {
             let [x0, y0, width, height] = [0; 4].map(|_| length(dice));
-            Rectangle { x0, y0, width, height, columns: count(dice), rows: count(dice) }.part()
+            let shape = Rectangle { x0, y0, width, height, columns: count(dice), rows: count(dice) };
+            asked += &format!("{shape:?}");
+            shape.part()
         }
         1 => {
-            let disc = Disc { radius: length(dice), facets: count(dice), size: length(dice), rotation: dice.number() };
+            let (radius, size) = (length(dice), length(dice));
+            // Fine squares that are allowed make a large core.
+            let size = if size < 0.02 * radius && size > 1e-4 * radius { 0.02 * radius } else { size };
+            let disc = Disc { radius, facets: count(dice), size, rotation: dice.number() };
+            asked += &format!("{disc:?}");
             if dice.one_in(2) { disc.part() } else { disc.part_with_layers(count(dice)) }
         }
         2 => {
@@ -275,42 +301,52 @@ fn shape(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
                 start_angle: dice.share(),
                 groove,
             };
+            asked += &format!("{ring:?}");
             if dice.one_in(3) {
                 let side = if dice.one_in(2) { Circle::Inner } else { Circle::Outer };
-                ring.graded_part(&Grading { fine: side, fine_layers: count(dice), transitions: dice.below(14) })
+                let grading = Grading { fine: side, fine_layers: count(dice), transitions: dice.below(14) };
+                asked += &format!(" {grading:?}");
+                ring.graded_part(&grading)
             } else {
                 ring.part()
             }
         }
-        3 => ArcBlock {
-            inner_radius: length(dice),
-            outer_radius: length(dice),
-            right_line_angle: dice.share(),
-            left_line_angle: 2.0 * dice.share(),
-            half_width: 0.1 * length(dice),
-            rows: count(dice),
-            columns: count(dice),
+        3 => {
+            let shape = ArcBlock {
+                inner_radius: length(dice),
+                outer_radius: length(dice),
+                right_line_angle: dice.share(),
+                left_line_angle: 2.0 * dice.share(),
+                half_width: 0.1 * length(dice),
+                rows: count(dice),
+                columns: count(dice),
+            };
+            asked += &format!("{shape:?}");
+            shape.part()
         }
-        .part(),
-        _ => SeatedBlock {
-            width: length(dice),
-            height: length(dice),
-            seat_radius: length(dice),
-            columns: count(dice),
-            rows: count(dice),
+        _ => {
+            let shape = SeatedBlock {
+                width: length(dice),
+                height: length(dice),
+                seat_radius: length(dice),
+                columns: count(dice),
+                rows: count(dice),
+            };
+            asked += &format!("{shape:?}");
+            shape.part()
         }
-        .part(),
     };
+    ensure!(began.elapsed().as_secs() < 3, "{asked} took {:.1} s", began.elapsed().as_secs_f64());
     let (answer, part) = answered(part)?;
     if let Some(part) = part {
         // What a generator makes, the solver takes.
-        ensure!(part.x.iter().chain(&part.y).all(|v| v.is_finite()), "a node that is no number");
+        ensure!(part.x.iter().chain(&part.y).all(|v| v.is_finite()), "{asked} has a node that is no number");
         if part.x.len() < 3000 {
             let mut mesh = Mesh::new();
             mesh.add("body", &part);
             let nodes = mesh.x.len();
             let model = Model::new(mesh, Elastic::new(208e9, 0.3, 7800.0)?, 0.01)?;
-            Dynamics::new(&model, &vec![false; nodes], 1)?;
+            Dynamics::new(&model, &vec![false; nodes], 1).with_context(|| asked)?;
         }
     }
     Ok(answer)

@@ -84,8 +84,7 @@ fn kill_all(options: &Options, folder: &Path) -> Result<Tally> {
         let mut continued = false;
         loop {
             let threads = 1 + dice.below(2);
-            let mut child =
-                if continued { resume(&run, threads)? } else { start(options, &run, threads)? };
+            let mut child = if continued { resume(&run, threads)? } else { start(options, &run, threads)? };
             // Some moments lie after the end: that run is whole.
             let moment = Duration::from_secs_f64(1.1 * length * dice.share());
             let killed = tally.kills < options.kills && kill_after(&mut child, moment)?;
@@ -105,7 +104,11 @@ fn kill_all(options: &Options, folder: &Path) -> Result<Tally> {
         }
         let found = files(&run)?;
         if found != expected {
-            bail!("after {} kills: the files of {} differ from those of an unbroken run", tally.kills, run.display());
+            bail!(
+                "after {} kills: the files of {} differ from those of an unbroken run",
+                tally.kills,
+                run.display()
+            );
         }
         std::fs::remove_dir_all(&run).ok();
         tally.finished += 1;

@@ -48,7 +48,13 @@ impl Plan {
     }
 
     /// Lets the surface `one` of body `a` and `other` of body `b` touch.
-    pub(crate) fn touch(&mut self, (a, one): (usize, &str), (b, other): (usize, &str), law: Law, method: Method) {
+    pub(crate) fn touch(
+        &mut self,
+        (a, one): (usize, &str),
+        (b, other): (usize, &str),
+        law: Law,
+        method: Method,
+    ) {
         let [first, second] = [(a, one), (b, other)].map(|(body, name)| {
             let surface = self.nodes(body, name).clone();
             let [p, q] = surface.facet(0).map(|n| n as usize);
@@ -209,10 +215,7 @@ impl Rig {
         self.peak = self.peak.max(inside);
         let off = (balance - start).abs() / self.peak.max(f64::MIN_POSITIVE);
         self.worst = self.worst.max(if off.is_finite() { off } else { f64::INFINITY });
-        Energies {
-            kinetic,
-            balance: balance - start,
-        }
+        Energies { kinetic, balance: balance - start }
     }
 
     /// Takes `steps` steps and looks at every `every`-th; the reason to stop, if there is one. `see` gets each look.
@@ -250,7 +253,8 @@ impl Rig {
             return Some(format!("an element has {:.0} % of its area left at step {at}", 100.0 * area));
         }
         let depth = self.contacts.resultants().map(|r| r.penetration).fold(0.0, f64::max) / self.facet;
-        (depth > PENETRATION_STOP).then(|| format!("penetration of {:.0} % of a facet at step {at}", 100.0 * depth))
+        (depth > PENETRATION_STOP)
+            .then(|| format!("penetration of {:.0} % of a facet at step {at}", 100.0 * depth))
     }
 
     /// Velocity of a body's centre of mass [m/s].
@@ -280,7 +284,11 @@ impl Rig {
                 share[i] += 0.5 * length(pair) / whole;
                 share[i + 1] += 0.5 * length(pair) / whole;
             }
-            slots.extend(side.iter().zip(share).map(|(&s, part)| (s, factor * part * total[0], factor * part * total[1])));
+            slots.extend(
+                side.iter()
+                    .zip(share)
+                    .map(|(&s, part)| (s, factor * part * total[0], factor * part * total[1])),
+            );
         }
         self.load = NodalLoad::new(slots);
         self.load.supplied = supplied;

@@ -91,8 +91,14 @@ struct Chapter {
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let runner = Runner::new("stability", &options.flags)?;
-    let rigs: [fn() -> Result<Chapter>; 6] =
-        [limit::chapter, stiffness::chapter, materials::chapter, geometry::chapter, long::chapter, long::loads];
+    let rigs: [fn() -> Result<Chapter>; 6] = [
+        limit::chapter,
+        stiffness::chapter,
+        materials::chapter,
+        geometry::chapter,
+        long::chapter,
+        long::loads,
+    ];
     let mut chapters = Vec::new();
     for rig in rigs {
         let chapter = rig()?;
@@ -144,5 +150,10 @@ fn row(case: &Case) -> Vec<String> {
         Some(e) if e < 1e-4 => format!("{:.0e}", e),
         Some(e) => format!("{:.2} %", 100.0 * e),
     };
-    vec![case.done.clone(), energy, case.verdict.word().to_owned(), case.seen.replace('\n', " ").replace('|', "/")]
+    vec![
+        case.done.clone(),
+        energy,
+        case.verdict.word().to_owned(),
+        case.seen.replace('\n', " ").replace('|', "/"),
+    ]
 }

@@ -71,7 +71,8 @@ impl Curve {
             return None;
         }
         let n = points.len() as f64;
-        let [mx, my] = [points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n];
+        let [mx, my] =
+            [points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n];
         let cross: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
         let square: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
         (square > 0.0).then(|| cross / square)
@@ -155,9 +156,12 @@ impl Problem {
         sheet.say(&self.words);
         let front = self.front();
         let rows = self.curves.iter().map(|curve| {
-            let list = |of: &dyn Fn(&Point) -> String| curve.points.iter().map(of).collect::<Vec<_>>().join(", ");
+            let list =
+                |of: &dyn Fn(&Point) -> String| curve.points.iter().map(of).collect::<Vec<_>>().join(", ");
             let marked = |p: &Point| {
-                let on = front.iter().any(|(name, q)| *name == curve.name && q.work == p.work && q.error == p.error);
+                let on = front
+                    .iter()
+                    .any(|(name, q)| *name == curve.name && q.work == p.work && q.error == p.error);
                 if on { format!("**{}**", percent(p.error)) } else { percent(p.error) }
             };
             vec![

@@ -61,7 +61,10 @@ pub(super) fn chapter() -> Result<Chapter> {
         let c = collide([steel(); 2], 1.0, 1.0, method, place, unit)?;
         let off = (c.after[0] - home.after[0]).abs().max((c.after[1] - home.after[1]).abs());
         let right = off < 2e-3 && c.momentum() < 1e-6;
-        let seen = format!("velocities within {off:.1e} m/s of those at home, momentum kept to {:.0e}", c.momentum());
+        let seen = format!(
+            "velocities within {off:.1e} m/s of those at home, momentum kept to {:.0e}",
+            c.momentum()
+        );
         cases.push(Case::of(done, c.energy, c.stop, right, seen));
     }
     Ok(Chapter {

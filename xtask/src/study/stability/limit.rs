@@ -110,12 +110,22 @@ fn pressed(method: Method, scale: f64) -> Result<Rig> {
 }
 
 pub(super) fn chapter() -> Result<Chapter> {
-    let ring = Annulus { inner_radius: 0.02, outer_radius: 0.026, facets: 60, layers: 4, start_angle: 0.0, groove: None };
+    let ring = Annulus {
+        inner_radius: 0.02,
+        outer_radius: 0.026,
+        facets: 60,
+        layers: 4,
+        start_angle: 0.0,
+        groove: None,
+    };
     let bodies: [(&str, Part); 5] = [
         ("squares", rectangle([0.0; 2], [8e-3, 6e-3], [8, 6])?),
         ("distorted quadrilaterals", distorted(8, 6, 1e-3)?),
         ("triangles", split(distorted(8, 6, 1e-3)?)),
-        ("disc of quadrilaterals and triangles", Disc { radius: 9e-3, facets: 32, size: 2e-3, rotation: 0.1 }.part()?),
+        (
+            "disc of quadrilaterals and triangles",
+            Disc { radius: 9e-3, facets: 32, size: 2e-3, rotation: 0.1 }.part()?,
+        ),
         ("ring in strips", ring.part()?),
     ];
     let mut cases = Vec::new();
@@ -130,7 +140,8 @@ pub(super) fn chapter() -> Result<Chapter> {
     let mut factors = factors;
     factors.sort_by(f64::total_cmp);
     let mut curve = |name: &str, colour, bench: &mut Bench, limit: f64| -> Result<()> {
-        let grown = factors.iter().map(|f| bench.growth(f * limit, 2000).map(|g| g.min(1e30).max(1e-3).log10()));
+        let grown =
+            factors.iter().map(|f| bench.growth(f * limit, 2000).map(|g| g.min(1e30).max(1e-3).log10()));
         let series = Series::listed(name, colour, factors.clone(), grown.collect::<Result<_>>()?);
         figure.series.push(series);
         Ok(())
@@ -144,7 +155,8 @@ pub(super) fn chapter() -> Result<Chapter> {
             curve(name, [Colour::Blue, Colour::Blue, Colour::Orange][i], &mut bench, limit)?;
         }
     }
-    let methods = [("collocated", Method::Collocated), ("integrated, 4 points", Method::Integrated { points: 4 })];
+    let methods =
+        [("collocated", Method::Collocated), ("integrated, 4 points", Method::Integrated { points: 4 })];
     for (name, method) in methods {
         for scale in [1.0, 10.0] {
             let mut bench = Bench::new(pressed(method, scale)?);
@@ -152,8 +164,13 @@ pub(super) fn chapter() -> Result<Chapter> {
             let limit = bench.rig.dynamics.present_critical_time_step(&[contacts]).time_step;
             let bound = bench.rig.dynamics.critical_time_step(&[contacts], 0.0).time_step;
             let onset = bench.onset(limit)?;
-            let note = format!("; runs use a bound for any configuration, {:.1} % of it", 100.0 * bound / limit);
-            cases.push(judged(&format!("two blocks pressed together, {name} contact, penalty × {scale}"), onset, note));
+            let note =
+                format!("; runs use a bound for any configuration, {:.1} % of it", 100.0 * bound / limit);
+            cases.push(judged(
+                &format!("two blocks pressed together, {name} contact, penalty × {scale}"),
+                onset,
+                note,
+            ));
             if scale == 1.0 && method == Method::Collocated {
                 curve("blocks in contact", Colour::Green, &mut bench, limit)?;
             }

@@ -145,7 +145,8 @@ fn sticking() -> Result<Case> {
     let ground = plan.add(&rectangle([-5e-3, -2e-3], [0.03, 2e-3], [15, 1])?);
     let block = plan.add(&rectangle([0.0, 0.0], [0.01, 5e-3], [5, 3])?);
     // Soft enough for a long time in few steps; damped, so that the sudden weight comes to rest.
-    let law = penalty(&steel(), 2e-3, 1e-3)?.with_friction(friction)?.with_damping(0.2, 0.5 * 7800.0 * 2e-3)?;
+    let law =
+        penalty(&steel(), 2e-3, 1e-3)?.with_friction(friction)?.with_damping(0.2, 0.5 * 7800.0 * 2e-3)?;
     plan.touch((block, "bottom"), (ground, "top"), law, Method::Integrated { points: 3 });
     let mut model = plan.model(steel())?;
     for n in model.mesh.bodies[ground].nodes.clone() {
@@ -214,13 +215,20 @@ pub(super) fn loads() -> Result<Chapter> {
         let stop = stop.or_else(|| rig.run(1500, 5, |_, _| {}));
         let leaves = rig.velocity(upper)[1];
         let touching = rig.contacts.resultants().any(|r| r.force != [0.0; 2]);
-        let right = if factor > 0.0 { rig.contacts.resultants().all(|r| r.penetration < 1e-4) } else { leaves > 0.0 };
+        let right =
+            if factor > 0.0 { rig.contacts.resultants().all(|r| r.penetration < 1e-4) } else { leaves > 0.0 };
         let seen = format!(
             "the block {} at {leaves:.3} m/s, {}",
             if leaves > 0.0 { "rises" } else { "sinks" },
             if touching { "touching" } else { "free" }
         );
-        cases.push(Case::of(format!("100 MPa between two blocks, the load {done} in mid-run"), rig.worst, stop, right, seen));
+        cases.push(Case::of(
+            format!("100 MPa between two blocks, the load {done} in mid-run"),
+            rig.worst,
+            stop,
+            right,
+            seen,
+        ));
     }
     Ok(Chapter {
         title: "Loads that change in mid-run",

@@ -4,7 +4,11 @@ use std::f64::consts::TAU;
 
 use anyhow::Result;
 use stribeck_mesh::{Annulus, Part};
-use stribeck_solver::{Elastic, force::NodalLoad, statics::{Equilibrator, Statics}};
+use stribeck_solver::{
+    Elastic,
+    force::NodalLoad,
+    statics::{Equilibrator, Statics},
+};
 
 use super::{Case, Chapter};
 use crate::study::rig::{Plan, THICKNESS, rectangle};
@@ -68,7 +72,13 @@ pub(super) fn chapter() -> Result<Chapter> {
         rig.set_step(0.9)?;
         rig.stir(0.01);
         let stop = rig.run(50_000, 50, |_, _| {});
-        cases.push(Case::of(format!("ν = {nu}: 50 000 steps of a stirred block"), rig.worst, stop, right, seen));
+        cases.push(Case::of(
+            format!("ν = {nu}: 50 000 steps of a stirred block"),
+            rig.worst,
+            stop,
+            right,
+            seen,
+        ));
     }
     Ok(Chapter {
         title: "Poisson's ratio",

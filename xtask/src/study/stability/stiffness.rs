@@ -53,7 +53,11 @@ pub(super) fn collide(
     let block = |x: f64| rectangle([place + x, place], [length, 2.0 * size], [cells, 2]);
     let a = plan.add(&block(-length)?);
     let b = plan.add(&block(0.02 * size)?);
-    let softer = if materials[0].youngs_modulus() < materials[1].youngs_modulus() { materials[0] } else { materials[1] };
+    let softer = if materials[0].youngs_modulus() < materials[1].youngs_modulus() {
+        materials[0]
+    } else {
+        materials[1]
+    };
     plan.touch((a, "right"), (b, "left"), penalty(&softer, size, scale)?, method);
     let mut model = plan.model(materials[0])?;
     model.materials = materials.to_vec();
@@ -94,7 +98,13 @@ pub(super) fn chapter() -> Result<Chapter> {
             c.momentum(),
             c.steps
         );
-        cases.push(Case::of(format!("bar impact at 1 m/s, penalty × {scale:e}"), c.energy, c.stop, right, seen));
+        cases.push(Case::of(
+            format!("bar impact at 1 m/s, penalty × {scale:e}"),
+            c.energy,
+            c.stop,
+            right,
+            seen,
+        ));
     }
     for (name, second) in [
         ("E contrast 10⁶", Elastic::new(208e3, 0.3, 7800.0)?),
@@ -118,7 +128,12 @@ pub(super) fn chapter() -> Result<Chapter> {
     let soft = Elastic::new(208e3, 0.3, 7800.0)?;
     let c = collide([steel(), soft], 1e6, 1e-3 * soft.dilatational_speed(), Method::Collocated, 0.0, 1.0)?;
     let right = c.momentum() < 1e-6 && (0.0..=1.001).contains(&c.restitution());
-    let seen = format!("restitution {:.4}, momentum kept to {:.0e}, {} steps", c.restitution(), c.momentum(), c.steps);
+    let seen = format!(
+        "restitution {:.4}, momentum kept to {:.0e}, {} steps",
+        c.restitution(),
+        c.momentum(),
+        c.steps
+    );
     let done = "hard bar on a soft one (E 10⁶ : 1), contact as stiff as the hard one";
     cases.push(Case::of(done, c.energy, c.stop, right, seen));
 
@@ -131,7 +146,9 @@ pub(super) fn chapter() -> Result<Chapter> {
     )
     .with(Series::listed("energy imbalance", Colour::Blue, scale.clone(), energy))
     .with(Series::listed("steps", Colour::Orange, scale, steps))
-    .caption("The time step follows the contact, so that a hundred times the stiffness costs ten times the steps.");
+    .caption(
+        "The time step follows the contact, so that a hundred times the stiffness costs ten times the steps.",
+    );
     Ok(Chapter {
         title: "Contact stiffness and contrasts",
         words: "Two bars with held sides meet at 1 m/s (contrasts: at a thousandth of the slower wave). Two equal bars stay in \

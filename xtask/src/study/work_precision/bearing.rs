@@ -38,10 +38,30 @@ const ROWS: [Row; 13] = [
 type Quantity = (&'static str, &'static str, &'static str, fn(&Finished) -> Option<Vec<f64>>);
 
 const QUANTITIES: [Quantity; 4] = [
-    ("bearing-force", "Bearing: force on the most loaded roller", "Mean force of roller 2 on the outer raceway.", force),
-    ("bearing-events", "Bearing: times of the events", "When roller 1 enters the defect and leaves it.", events),
-    ("bearing-impulse", "Bearing: impulse at the exit", "Largest acceleration at the leading sensor after the exit.", impulse),
-    ("bearing-tone", "Bearing: facet tone", "Level of the strongest facet line at the leading sensor between impulses.", tone),
+    (
+        "bearing-force",
+        "Bearing: force on the most loaded roller",
+        "Mean force of roller 2 on the outer raceway.",
+        force,
+    ),
+    (
+        "bearing-events",
+        "Bearing: times of the events",
+        "When roller 1 enters the defect and leaves it.",
+        events,
+    ),
+    (
+        "bearing-impulse",
+        "Bearing: impulse at the exit",
+        "Largest acceleration at the leading sensor after the exit.",
+        impulse,
+    ),
+    (
+        "bearing-tone",
+        "Bearing: facet tone",
+        "Level of the strongest facet line at the leading sensor between impulses.",
+        tone,
+    ),
 ];
 
 pub(super) fn problems(runner: &Runner) -> Result<Vec<Problem>> {
@@ -66,15 +86,13 @@ pub(super) fn problems(runner: &Runner) -> Result<Vec<Problem>> {
             let Some(info) = &run.info else { continue };
             let worst = found.iter().zip(&truth).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
             let elements = (info.mesh.quads + info.mesh.triangles) as f64;
-            let point = Point {
-                size: row.4,
-                work: info.steps as f64 * elements,
-                seconds: info.wall_s,
-                error: worst,
-            };
+            let point =
+                Point { size: row.4, work: info.steps as f64 * elements, seconds: info.wall_s, error: worst };
             match curves.iter_mut().find(|c| c.name == row.0) {
                 Some(curve) => curve.points.push(point),
-                None => curves.push(Curve { name: row.0.into(), refined: "see the name", points: vec![point] }),
+                None => {
+                    curves.push(Curve { name: row.0.into(), refined: "see the name", points: vec![point] })
+                }
             }
         }
         let words = format!(

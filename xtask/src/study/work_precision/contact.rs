@@ -46,7 +46,11 @@ pub(super) fn bar_impact() -> Result<Problem> {
     let cells = [25, 50, 100, 200, 400];
     let mut curve = |name: &str, method, scale, factor| -> Result<()> {
         let points = cells.iter().map(|&n| timed(|| bars(n, method, scale, factor), 0.05 / n as f64));
-        curves.push(Curve { name: name.into(), refined: "element size", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: name.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
         Ok(())
     };
     curve("integrated, 4 points", POINTS, 1.0, 0.9)?;
@@ -189,7 +193,11 @@ pub(super) fn rolling() -> Result<Problem> {
         let points = [32, 64, 128, 256].into_iter().map(|facets| {
             timed(|| roll(facets, method, friction), std::f64::consts::TAU * 0.02 / facets as f64)
         });
-        curves.push(Curve { name: name.into(), refined: "facet length", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: name.into(),
+            refined: "facet length",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     Ok(Problem {
         id: "rolling",
@@ -229,8 +237,13 @@ pub(super) fn sliding() -> Result<Problem> {
         ("collocated, 10¹² Pa/m", 1e12, Method::Collocated),
         ("integrated, 10¹¹ Pa/m", 1e11, POINTS),
     ] {
-        let points = [4e-6, 2e-6, 1e-6, 0.5e-6].into_iter().map(|dt| timed(|| stop(stiffness, dt, method), dt));
-        curves.push(Curve { name: name.into(), refined: "time step", points: points.collect::<Result<_>>()? });
+        let points =
+            [4e-6, 2e-6, 1e-6, 0.5e-6].into_iter().map(|dt| timed(|| stop(stiffness, dt, method), dt));
+        curves.push(Curve {
+            name: name.into(),
+            refined: "time step",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     Ok(Problem {
         id: "sliding",

@@ -77,7 +77,11 @@ pub(super) fn ring() -> Result<Problem> {
         }
         let layers = [1, 2, 4];
         let points = layers.iter().map(|&n| timed(|| bending(&way, n, 0.9), RING[1] / n as f64));
-        curves.push(Curve { name: way.0.into(), refined: "element size", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: way.0.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     Ok(Problem {
         id: "ring",
@@ -96,12 +100,21 @@ pub(super) fn ring() -> Result<Problem> {
 pub(super) fn cylinder() -> Result<Problem> {
     let mut curves = Vec::new();
     let sizes = [(24, 3), (48, 6), (96, 12), (192, 24)];
-    for (name, poisson) in [("one-point quadrilaterals", 0.3), ("one-point quadrilaterals, ν = 0.4999", 0.4999)] {
+    for (name, poisson) in
+        [("one-point quadrilaterals", 0.3), ("one-point quadrilaterals, ν = 0.4999", 0.4999)]
+    {
         let steel = Elastic::new(208e9, poisson, 7800.0)?;
         let points = sizes.iter().map(|&(facets, layers)| {
-            timed(|| Ok(((facets * layers) as f64, (bore(steel, facets, layers)? - 1.0).abs())), 0.05 / layers as f64)
+            timed(
+                || Ok(((facets * layers) as f64, (bore(steel, facets, layers)? - 1.0).abs())),
+                0.05 / layers as f64,
+            )
         });
-        curves.push(Curve { name: name.into(), refined: "element size", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: name.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     for (name, poisson) in [("triangles", 0.3), ("triangles, ν = 0.4999", 0.4999)] {
         let steel = Elastic::new(208e9, poisson, 7800.0)?;
@@ -116,7 +129,11 @@ pub(super) fn cylinder() -> Result<Problem> {
                 0.05 / layers as f64,
             )
         });
-        curves.push(Curve { name: name.into(), refined: "element size", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: name.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     // Three facets become one away from the bore.
     let points = [(81, 10), (162, 20), (324, 40)].map(|(facets, layers)| {

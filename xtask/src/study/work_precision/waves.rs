@@ -110,12 +110,20 @@ pub(super) fn pressure_wave() -> Result<Problem> {
     let mut curves = Vec::new();
     for way in ways() {
         let points = cells.iter().map(|&n| timed(|| pulse(&way, n, 0.8), 0.2 / n as f64));
-        curves.push(Curve { name: way.0.into(), refined: "element size", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: way.0.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     let way = &ways()[0];
     let points: Result<Vec<Point>> =
         [0.99, 0.8, 0.5, 0.25].into_iter().map(|f| timed(|| pulse(way, 400, f), f)).collect();
-    curves.push(Curve { name: "400 cells, Δt factor 0.99 … 0.25".into(), refined: "time step", points: points? });
+    curves.push(Curve {
+        name: "400 cells, Δt factor 0.99 … 0.25".into(),
+        refined: "time step",
+        points: points?,
+    });
     Ok(Problem {
         id: "pressure",
         title: "Pressure wave",
@@ -162,10 +170,7 @@ impl Rayleigh {
         let b = 2.0 * k * q / (k * k + s * s);
         let (p, t) = ((-q * z).exp(), (-s * z).exp());
         let amplitude = 1e-7 / k;
-        [
-            amplitude * (-k * p + s * b * t) * (k * x).sin(),
-            -amplitude * (-q * p + k * b * t) * (k * x).cos(),
-        ]
+        [amplitude * (-k * p + s * b * t) * (k * x).sin(), -amplitude * (-q * p + k * b * t) * (k * x).cos()]
     }
 }
 
@@ -196,7 +201,11 @@ pub(super) fn rayleigh_wave() -> Result<Problem> {
     let mut curves = Vec::new();
     for way in ways() {
         let points = cells.iter().map(|&n| timed(|| rayleigh(&way, n, 0.8), 0.01 / n as f64));
-        curves.push(Curve { name: way.0.into(), refined: "element size", points: points.collect::<Result<_>>()? });
+        curves.push(Curve {
+            name: way.0.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
     }
     Ok(Problem {
         id: "rayleigh",
