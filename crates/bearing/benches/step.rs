@@ -88,7 +88,7 @@ fn step(criterion: &mut Criterion) {
 
             let Machine { dynamics, contacts, load, .. } = &mut m;
             let n = dynamics.state.x.len();
-            let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+            let mut force = NodeForces::zeros(n);
             let mut at = dynamics.moment();
             group.bench_function(format!("contact alone, {threads} threads"), |bench| {
                 within(pool, || {

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use stribeck_solver::{Force, rigid::RigidState};
+use stribeck_solver::{Force, field::Field, rigid::RigidState};
 
 use crate::{
     assembly::{Assembly, Machine},
@@ -43,8 +43,8 @@ pub(crate) struct Run<'a> {
 /// Velocities before a step, for the kinetic energy at its start.
 #[derive(Default)]
 struct Before {
-    vx: Vec<f64>,
-    vy: Vec<f64>,
+    vx: Field,
+    vy: Field,
     rigid: Vec<RigidState>,
 }
 

@@ -80,7 +80,7 @@ fn contact(criterion: &mut Criterion) {
     {
         let (d, mut contacts) = scene(method);
         let n = d.state.x.len();
-        let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+        let mut force = NodeForces::zeros(n);
         let mut at = d.moment();
         contacts.accumulate(at, &mut force);
         let touching = contacts.resultants().filter(|r| r.penetration > 0.0).count();

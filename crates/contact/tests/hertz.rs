@@ -70,7 +70,7 @@ fn pressed(columns: usize, method: Method) -> [f64; 2] {
     preload(&mut d, &mut contacts, &mut load, bodies.to_vec(), &softness, tolerance);
 
     let n = d.state.x.len();
-    let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+    let mut force = NodeForces::zeros(n);
     contacts.accumulate(d.moment(), &mut force);
     let (mut sum, mut moment) = (0.0, 0.0);
     for s in of_body(&d, &model, lower) {

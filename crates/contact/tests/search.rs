@@ -68,7 +68,7 @@ impl Shapes {
 
     fn forces(&self, contacts: &mut Contacts, step: u64, dt: f64) -> NodeForces {
         let n = self.x.len();
-        let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+        let mut force = NodeForces::zeros(n);
         contacts.accumulate(self.moment(step, dt), &mut force);
         force
     }

@@ -13,7 +13,8 @@ use stribeck_solver::{Dynamics, Elastic, Model};
 const SIZE: f64 = 0.5e-3;
 
 /// Columns and rows of blocks from 10³ to 10⁶ elements.
-const BLOCKS: [(usize, usize); 5] = [(40, 25), (100, 100), (420, 250), (625, 400), (1250, 800)];
+const BLOCKS: [(usize, usize); 7] =
+    [(40, 5), (400, 2), (40, 25), (100, 100), (420, 250), (625, 400), (1250, 800)];
 
 /// And the block that is measured on request.
 const LARGE: (usize, usize) = (4000, 2500);

@@ -1,190 +1,239 @@
 //! Moving nodes: central difference, with damping where there is some, and prescribed rotation (THEORY §2.3, §2.6).
 
+use pulp::Simd;
+
 use crate::{
     damping::LaneFrames,
-    lanes::{LANES, Lanes, lanes, lanes_mut},
+    lanes::{LANES, Number, Vector},
 };
 
-/// What is the same for all nodes of a row.
-#[derive(Clone, Copy)]
-pub(crate) struct Step<'a> {
-    pub(crate) dt: f64,
-    /// Time step times gravity [m/s].
-    pub(crate) fall: [f64; 2],
-    /// One for a component that answers to forces, zero for one that is held.
-    pub(crate) free: [f64; 2],
-    pub(crate) damping: Option<Damping<'a>>,
-}
-
-/// Mass-proportional damping of a tile.
-#[derive(Clone, Copy)]
-pub(crate) struct Damping<'a> {
-    /// (1 − αΔt/2)/(1 + αΔt/2): what is left of the relative velocity after a step.
-    keep: f64,
-    /// 1/(1 + αΔt/2): the share of a push that becomes velocity.
-    gain: f64,
+/// What is the same for all nodes of a tile.
+pub(crate) struct Step<S: Simd> {
+    dt: Vector<S>,
+    /// Gravity times what a push gains [m/s].
+    fall: [Vector<S>; 2],
+    /// What is left of a velocity after a step, (1 − αΔt/2)/(1 + αΔt/2).
+    keep: Vector<S>,
+    /// Velocity that the frame of each lane gives back in a step, at the origin [m/s] and by place [1/s]; the first with
+    /// gravity.
+    drift_x: [f64; LANES],
+    drift_y: [f64; LANES],
+    turn: [f64; LANES],
+    /// The frames themselves.
+    frames: LaneFrames,
     /// αΔt: heat over mass and squared velocity.
     loss: f64,
-    frames: &'a LaneFrames,
 }
 
-impl<'a> Damping<'a> {
-    pub(crate) fn new(rate: f64, frames: &'a LaneFrames, dt: f64) -> Self {
+impl<S: Simd> Step<S> {
+    /// A step [s] under gravity [m/s²] with damping at `rate` [1/s].
+    pub(crate) fn new(simd: S, dt: f64, gravity: [f64; 2], rate: f64, frames: &LaneFrames) -> Self {
         let half = 0.5 * rate * dt;
-        let gain = 1.0 / (1.0 + half);
-        Self { keep: (1.0 - half) * gain, gain, loss: 2.0 * half, frames }
+        let gain = gain(rate, dt);
+        let fall = gravity.map(|g| dt * gain * g);
+        let given = 2.0 * half * gain;
+        Self {
+            dt: Vector::all(simd, dt),
+            fall: fall.map(|v| Vector::all(simd, v)),
+            keep: Vector::all(simd, (1.0 - half) * gain),
+            drift_x: frames.origin_x.map(|v| fall[0] + given * v),
+            drift_y: frames.origin_y.map(|v| fall[1] + given * v),
+            turn: frames.spin.map(|w| given * w),
+            frames: frames.clone(),
+            loss: 2.0 * half,
+        }
+    }
+
+    /// Heat of damping [J] from what [`advance`] counts.
+    pub(crate) fn heat(&self, counted: Vector<S>) -> f64 {
+        self.loss * counted.sum()
     }
 }
 
-/// Fields of a row of nodes; the first is in lane 0 of its tile.
-pub(crate) struct Row<'a> {
+/// The share of a push that becomes velocity in a step [s] with damping at `rate` [1/s]: 1/(1 + αΔt/2).
+pub(crate) fn gain(rate: f64, dt: f64) -> f64 {
+    1.0 / (1.0 + 0.5 * rate * dt)
+}
+
+/// Fields of a tile, and the forces summed so far. All are longer by a group of lanes than the last node that counts.
+pub(crate) struct Nodes<'a> {
     pub(crate) x: &'a mut [f64],
     pub(crate) y: &'a mut [f64],
     pub(crate) vx: &'a mut [f64],
     pub(crate) vy: &'a mut [f64],
-    /// Time step over mass [s/kg].
+    pub(crate) fx: &'a mut [f64],
+    pub(crate) fy: &'a mut [f64],
+    /// Time step times [`gain`] over mass [s/kg].
     pub(crate) step_over_mass: &'a [f64],
-    /// Mass [kg]; only read with damping.
+    /// Mass [kg]; only read where heat is counted.
     pub(crate) mass: &'a [f64],
 }
 
-/// Where the forces on a row come from. Taking leaves zeros behind.
-pub(crate) trait Forces {
-    /// Forces x and y on a group of nodes from `at` on.
-    fn take(&mut self, at: usize) -> (Lanes, Lanes);
-    /// The same for one node.
-    fn take_one(&mut self, at: usize) -> (f64, f64);
-}
-
-/// Forces summed in scratch.
-pub(crate) struct Summed<'a> {
-    pub(crate) fx: &'a mut [f64],
-    pub(crate) fy: &'a mut [f64],
-}
-
-impl Forces for Summed<'_> {
+impl Nodes<'_> {
+    /// The same arrays, all of one length that the compiler knows to be one.
     #[inline(always)]
-    fn take(&mut self, at: usize) -> (Lanes, Lanes) {
-        (std::mem::take(lanes_mut(self.fx, at)), std::mem::take(lanes_mut(self.fy, at)))
-    }
-
-    #[inline(always)]
-    fn take_one(&mut self, at: usize) -> (f64, f64) {
-        (std::mem::take(&mut self.fx[at]), std::mem::take(&mut self.fy[at]))
-    }
-}
-
-/// Takes a row one step on; returns the heat of damping [J].
-#[inline(always)]
-pub(crate) fn advance(row: Row<'_>, forces: impl Forces, step: &Step<'_>) -> f64 {
-    // The choice is made here, once a row, not once a node.
-    match &step.damping {
-        Some(damping) => damping.loss * each_group::<true>(row, forces, step, damping),
-        None => each_group::<false>(row, forces, step, &Damping::new(0.0, &REST, step.dt)),
-    }
-}
-
-static REST: LaneFrames = LaneFrames::REST;
-
-#[inline(always)]
-fn each_group<const DAMPED: bool>(
-    row: Row<'_>,
-    mut forces: impl Forces,
-    step: &Step<'_>,
-    damping: &Damping<'_>,
-) -> f64 {
-    let n = row.x.len();
-    let whole = n - n % LANES;
-    let frames = damping.frames;
-    let mut heat = [0.0; LANES];
-    for i in (0..whole).step_by(LANES) {
-        let (fx, fy) = forces.take(i);
-        let (x, y, vx, vy) = (lanes(row.x, i), lanes(row.y, i), lanes(row.vx, i), lanes(row.vy, i));
-        let m = lanes(row.step_over_mass, i);
-        let mass = if DAMPED { lanes(row.mass, i) } else { m };
-        let (mut ux, mut uy, mut px, mut py) = ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-        for l in 0..LANES {
-            let frame = [frames.origin_x[l], frames.origin_y[l], frames.spin[l]];
-            let (place, speed) = ([x[l], y[l]], [vx[l], vy[l]]);
-            let moved = node::<DAMPED>(place, speed, [fx[l], fy[l]], m[l], mass[l], step, damping, frame);
-            [px[l], py[l], ux[l], uy[l]] = [moved[0], moved[1], moved[2], moved[3]];
-            heat[l] += moved[4];
+    pub(crate) fn alike(&mut self) -> Nodes<'_> {
+        let n = self.x.len();
+        Nodes {
+            x: &mut self.x[..n],
+            y: &mut self.y[..n],
+            vx: &mut self.vx[..n],
+            vy: &mut self.vy[..n],
+            fx: &mut self.fx[..n],
+            fy: &mut self.fy[..n],
+            step_over_mass: &self.step_over_mass[..n],
+            mass: self.mass,
         }
-        *lanes_mut(row.x, i) = px;
-        *lanes_mut(row.y, i) = py;
-        *lanes_mut(row.vx, i) = ux;
-        *lanes_mut(row.vy, i) = uy;
     }
-    for i in whole..n {
-        // Rows that are not whole groups belong to tiles of one body, whose lanes are all alike.
-        let (fx, fy) = forces.take_one(i);
-        let frame = [frames.origin_x[0], frames.origin_y[0], frames.spin[0]];
-        let (place, speed) = ([row.x[i], row.y[i]], [row.vx[i], row.vy[i]]);
-        let mass = if DAMPED { row.mass[i] } else { 0.0 };
-        let m = row.step_over_mass[i];
-        let moved = node::<DAMPED>(place, speed, [fx, fy], m, mass, step, damping, frame);
-        [row.x[i], row.y[i], row.vx[i], row.vy[i]] = [moved[0], moved[1], moved[2], moved[3]];
-        heat[0] += moved[4];
-    }
-    heat.iter().sum()
 }
 
-/// One node: v += Δt·a, x += Δt·v; returns the new (x, y, vx, vy) and the heat over αΔt.
+/// How nodes are damped, known when the program is compiled: an undamped tile runs no damping code.
+pub(crate) trait Damping {
+    /// Whether velocities decay.
+    const DAMPS: bool;
+    /// Whether the heat of that is counted.
+    const COUNTS: bool;
+}
+
+/// No damping.
+pub(crate) struct Undamped;
+/// Damping whose heat is not counted in this step.
+pub(crate) struct Damped;
+/// Damping and its heat.
+pub(crate) struct Counted;
+
+impl Damping for Undamped {
+    const DAMPS: bool = false;
+    const COUNTS: bool = false;
+}
+
+impl Damping for Damped {
+    const DAMPS: bool = true;
+    const COUNTS: bool = false;
+}
+
+impl Damping for Counted {
+    const DAMPS: bool = true;
+    const COUNTS: bool = true;
+}
+
+/// Takes a group of nodes from `at` on one step on under forces x, y [N]: v += Δt·a, x += Δt·v. With `LAST`, only the
+/// first `n` of them.
+///
+/// `lane` is that of the first node, zero where all lanes have one frame. `free` is one for a component that answers to
+/// forces, zero for one that is held. Forces summed in `nodes` become zero. Adds to `heat` what, times αΔt, is the heat of
+/// damping.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)] // all that one node has
-fn node<const DAMPED: bool>(
-    [x, y]: [f64; 2],
-    [vx, vy]: [f64; 2],
-    [fx, fy]: [f64; 2],
-    step_over_mass: f64,
-    mass: f64,
-    step: &Step<'_>,
-    damping: &Damping<'_>,
-    [origin_x, origin_y, spin]: [f64; 3],
-) -> [f64; 5] {
-    let (push_x, push_y) = (fx * step_over_mass + step.fall[0], fy * step_over_mass + step.fall[1]);
-    if !DAMPED {
-        let (qx, qy) = (step.free[0] * (vx + push_x), step.free[1] * (vy + push_y));
-        return [x + step.dt * qx, y + step.dt * qy, qx, qy, 0.0];
+#[allow(clippy::too_many_arguments)] // all that a group of nodes has
+pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
+    simd: S,
+    nodes: &mut Nodes<'_>,
+    at: usize,
+    lane: usize,
+    n: usize,
+    [fx, fy]: [Vector<S>; 2],
+    free: [f64; 2],
+    step: &Step<S>,
+    heat: &mut Vector<S>,
+) {
+    let (x, y) = (Vector::load(simd, nodes.x, at), Vector::load(simd, nodes.y, at));
+    let (vx, vy) = (Vector::load(simd, nodes.vx, at), Vector::load(simd, nodes.vy, at));
+    let m = Vector::load(simd, nodes.step_over_mass, at);
+    let (mut ux, mut uy) = if D::DAMPS {
+        let turn = Vector::load(simd, &step.turn, lane);
+        let drift_x = (-turn).times_plus(y, Vector::load(simd, &step.drift_x, lane));
+        let drift_y = turn.times_plus(x, Vector::load(simd, &step.drift_y, lane));
+        (
+            step.keep.times_plus(vx, fx.times_plus(m, drift_x)),
+            step.keep.times_plus(vy, fy.times_plus(m, drift_y)),
+        )
+    } else {
+        (vx + fx.times_plus(m, step.fall[0]), vy + fy.times_plus(m, step.fall[1]))
+    };
+    if free[0] != 1.0 {
+        ux = ux * Vector::all(simd, free[0]);
     }
-    let (ux, uy) = (origin_x - spin * y, origin_y + spin * x);
-    let qx = step.free[0] * (ux + (damping.keep * (vx - ux) + damping.gain * push_x));
-    let qy = step.free[1] * (uy + (damping.keep * (vy - uy) + damping.gain * push_y));
-    // Damping acts on, and works with, the velocity between the two half steps.
-    let (sx, sy) = (0.5 * (vx + qx), 0.5 * (vy + qy));
-    let heat = mass * ((sx - ux) * sx + (sy - uy) * sy);
-    [x + step.dt * qx, y + step.dt * qy, qx, qy, heat]
+    if free[1] != 1.0 {
+        uy = uy * Vector::all(simd, free[1]);
+    }
+    if D::COUNTS {
+        // Damping acts on, and works with, the velocity between the two half steps.
+        let half = Vector::all(simd, 0.5);
+        let (sx, sy) = (half * (vx + ux), half * (vy + uy));
+        let spin = Vector::load(simd, &step.frames.spin, lane);
+        let rx = sx - (-spin).times_plus(y, Vector::load(simd, &step.frames.origin_x, lane));
+        let ry = sy - spin.times_plus(x, Vector::load(simd, &step.frames.origin_y, lane));
+        let warm = Vector::load(simd, nodes.mass, at) * rx.times_plus(sx, ry * sy);
+        *heat = *heat + if LAST { warm.first(n) } else { warm };
+    }
+    let zero = Vector::all(simd, 0.0);
+    put::<S, LAST>(ux.times_plus(step.dt, x), n, nodes.x, at);
+    put::<S, LAST>(uy.times_plus(step.dt, y), n, nodes.y, at);
+    put::<S, LAST>(ux, n, nodes.vx, at);
+    put::<S, LAST>(uy, n, nodes.vy, at);
+    put::<S, LAST>(zero, n, nodes.fx, at);
+    put::<S, LAST>(zero, n, nodes.fy, at);
+}
+
+#[inline(always)]
+fn put<S: Simd, const LAST: bool>(value: Vector<S>, n: usize, to: &mut [f64], at: usize) {
+    if LAST { value.store_first(n, to, at) } else { value.store(to, at) }
+}
+
+/// Takes a row of nodes one step on under the forces summed so far. `lanes` says that they are of bodies in lanes.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // see `advance`
+pub(crate) fn advance_row<S: Simd, D: Damping>(
+    simd: S,
+    nodes: &mut Nodes<'_>,
+    row: std::ops::Range<usize>,
+    lanes: bool,
+    free: [f64; 2],
+    step: &Step<S>,
+    heat: &mut Vector<S>,
+) {
+    let len = Vector::<S>::LEN;
+    for at in row.clone().step_by(len) {
+        let force = [Vector::load(simd, nodes.fx, at), Vector::load(simd, nodes.fy, at)];
+        let (lane, n) = (if lanes { at % LANES } else { 0 }, row.end - at);
+        if n >= len {
+            advance::<S, D, false>(simd, nodes, at, lane, len, force, free, step, heat);
+        } else {
+            advance::<S, D, true>(simd, nodes, at, lane, n, force, free, step, heat);
+        }
+    }
 }
 
 /// Turns a row about a centre [m] by the exact angle of one step at `rate` [rad/s]; returns the work [J] of the drive,
-/// whose force is what mass and other forces leave over.
+/// whose force is what mass and other forces leave over. `gain` is that of the nodes' `step_over_mass`.
 #[inline(always)]
 pub(crate) fn rotate(
-    row: Row<'_>,
-    forces: Summed<'_>,
+    nodes: &mut Nodes<'_>,
+    row: std::ops::Range<usize>,
     centre: [f64; 2],
     rate: f64,
     dt: f64,
+    gain: f64,
     gravity: [f64; 2],
 ) -> f64 {
     // cos − 1 without cancellation: the angle of a step is about 1e-6.
     let half = (0.5 * rate * dt).sin();
     let (c1, s) = (-2.0 * half * half, (rate * dt).sin());
     let mut work = 0.0;
-    for i in 0..row.x.len() {
-        let (rx, ry) = (row.x[i] - centre[0], row.y[i] - centre[1]);
+    for i in row {
+        let (rx, ry) = (nodes.x[i] - centre[0], nodes.y[i] - centre[1]);
         let (dx, dy) = (c1 * rx - s * ry, s * rx + c1 * ry);
         let (vx, vy) = (dx / dt, dy / dt);
-        let m = dt / row.step_over_mass[i];
-        let reaction_x = m * ((vx - row.vx[i]) / dt - gravity[0]) - forces.fx[i];
-        let reaction_y = m * ((vy - row.vy[i]) / dt - gravity[1]) - forces.fy[i];
-        work += 0.5 * dt * (reaction_x * (vx + row.vx[i]) + reaction_y * (vy + row.vy[i]));
-        row.x[i] += dx;
-        row.y[i] += dy;
-        row.vx[i] = vx;
-        row.vy[i] = vy;
+        let m = gain * dt / nodes.step_over_mass[i];
+        let reaction_x = m * ((vx - nodes.vx[i]) / dt - gravity[0]) - nodes.fx[i];
+        let reaction_y = m * ((vy - nodes.vy[i]) / dt - gravity[1]) - nodes.fy[i];
+        work += 0.5 * dt * (reaction_x * (vx + nodes.vx[i]) + reaction_y * (vy + nodes.vy[i]));
+        nodes.x[i] += dx;
+        nodes.y[i] += dy;
+        nodes.vx[i] = vx;
+        nodes.vy[i] = vy;
+        nodes.fx[i] = 0.0;
+        nodes.fy[i] = 0.0;
     }
-    forces.fx.fill(0.0);
-    forces.fy.fill(0.0);
     work
 }

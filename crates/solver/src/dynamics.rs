@@ -5,18 +5,23 @@ use std::sync::Mutex;
 use serde::{Deserialize, Serialize};
 
 use crate::{
+    advance::gain,
     damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
     error::{Error, check, check_count},
+    field::Field,
     force::Force,
     lanes::LANES,
     layout::{Layout, lay_out},
     model::{Behaviour, Model, Motion},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
-    sweep::{Counted, Drive, Scratch, TileFields, sweep},
+    sweep::{Drive, Energies, Scratch, TileFields, sweep},
     tile::{Tile, TileDamping},
 };
+
+/// The heat of mass damping is counted in every so manyth step: it costs as much as damping itself.
+const HEAT_EVERY: u64 = 4;
 
 /// A model in motion.
 #[derive(Debug)]
@@ -32,7 +37,7 @@ pub struct Dynamics {
     layout: Layout,
     pub(crate) tiles: Vec<Tile>,
     rigid_bodies: Vec<RigidBody>,
-    mass: Vec<f64>,
+    mass: Field,
     motion: Vec<Motion>,
     body_nodes: Vec<std::ops::Range<usize>>,
     elements: Elements,
@@ -63,6 +68,11 @@ pub struct Accumulated {
 }
 
 impl Accumulated {
+    fn add(&mut self, step: f64) {
+        self.total += step;
+        self.last = step;
+    }
+
     /// Up to the time of the positions before the last step [J].
     pub fn at_last_positions(&self) -> f64 {
         self.total - 0.5 * self.last
@@ -106,8 +116,8 @@ impl Dynamics {
         let (quads, triangles) = model.references()?;
         let masses = model.masses(&quads, &triangles)?;
         let layout = lay_out(model, &quads, &triangles);
-        let at_slot = |f: &dyn Fn(usize) -> f64, ghost: f64| -> Vec<f64> {
-            let mut v: Vec<f64> =
+        let at_slot = |f: &dyn Fn(usize) -> f64, ghost: f64| -> Field {
+            let mut v: Field =
                 layout.node_of_slot.iter().map(|n| n.map_or(ghost, |n| f(n as usize))).collect();
             if ghost == 0.0 {
                 layout.ghosts.iter().for_each(|&(g, _)| v[g as usize] = 0.0);
@@ -118,8 +128,8 @@ impl Dynamics {
         let mut state = State {
             x: at_slot(&|n| model.mesh.x[n], f64::NAN),
             y: at_slot(&|n| model.mesh.y[n], f64::NAN),
-            vx: vec![0.0; layout.len()],
-            vy: vec![0.0; layout.len()],
+            vx: Field::zeros(layout.len()),
+            vy: Field::zeros(layout.len()),
             ..State::default()
         };
         pad(&layout, &mut state);
@@ -165,7 +175,7 @@ impl Dynamics {
             motion,
             body_nodes: model.mesh.bodies.iter().map(|b| b.nodes.clone()).collect(),
             elements,
-            forces: NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] },
+            forces: NodeForces::zeros(n),
             scratch: (0..threads.max(1)).map(|_| Mutex::new(Scratch::new(largest))).collect(),
             time_step: 0.0,
             gravity: model.gravity,
@@ -228,11 +238,16 @@ impl Dynamics {
     pub fn set_time_step(&mut self, dt: f64) -> Result<(), Error> {
         check("time step [s]", dt, dt > 0.0, "positive")?;
         self.time_step = dt;
-        for tile in &mut self.tiles {
-            let mass = &self.mass[tile.slots.clone()];
-            tile.step_over_mass = mass.iter().map(|&m| if m > 0.0 { dt / m } else { 0.0 }).collect();
-        }
+        self.set_step_over_mass();
         Ok(())
+    }
+
+    fn set_step_over_mass(&mut self) {
+        for tile in &mut self.tiles {
+            let push = self.time_step * tile.damping.as_ref().map_or(1.0, |d| gain(d.rate, self.time_step));
+            let mass = &self.mass[tile.slots.clone()];
+            tile.step_over_mass = mass.iter().map(|&m| if m > 0.0 { push / m } else { 0.0 }).collect();
+        }
     }
 
     /// The moment that forces see.
@@ -279,7 +294,7 @@ impl Dynamics {
             if !tile.elastic || layout.bodies.iter().any(|b| damping.frame(*b).is_none()) {
                 continue;
             }
-            let mass = self.mass[tile.slots.clone()].to_vec();
+            let mass = self.mass[tile.slots.clone()].iter().copied().collect();
             let frames = LaneFrames::new(std::array::from_fn(|l| frame(l).unwrap_or(Frame::Rest)));
             tile.damping = Some(TileDamping { rate: damping.rate(), frames, mass });
             for lane in 0..LANES {
@@ -293,6 +308,7 @@ impl Dynamics {
                 bodies[at].1.places.push((t, lane));
             }
         }
+        self.set_step_over_mass();
         self.frames_placed = None;
         self.damped = (!bodies.is_empty()).then(|| bodies.into_iter().map(|(_, body)| body).collect());
     }
@@ -331,13 +347,17 @@ impl Dynamics {
             fx: &mut self.forces.fx,
             fy: &mut self.forces.fy,
         };
-        let drive = Drive { dt: self.time_step, gravity: self.gravity };
+        let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
+        let drive = Drive { dt: self.time_step, gravity: self.gravity, count_heat };
         let scratch = if self.parallel { self.scratch.as_slice() } else { &self.scratch[..1] };
-        let Counted { work, heat } = sweep_all(&self.tiles, fields, scratch, drive);
-        self.drive.total += work;
-        self.drive.last = work;
-        self.heat.total += heat;
-        self.heat.last = heat;
+        let Energies { work, heat } = sweep_all(&self.tiles, fields, scratch, drive);
+        self.drive.add(work);
+        let before = self.heat.last;
+        self.heat.add(if count_heat { heat } else { before });
+        if count_heat && before > 0.0 {
+            // In between the heat of the last count stood for all; it ran straight from there to here.
+            self.heat.total += 0.5 * (HEAT_EVERY - 1) as f64 * (heat - before);
+        }
     }
 
     /// Strain and hourglass energy of the present positions [J].
@@ -407,7 +427,7 @@ impl Dynamics {
     }
 }
 
-/// Padding lanes of congruent tiles copy their neighbour's place, so that their elements rest.
+/// Padding copies its neighbour's place, so that elements of padding lanes rest.
 fn pad(layout: &Layout, state: &mut State) {
     for slot in 1..layout.len() {
         if layout.node_of_slot[slot].is_none() {
@@ -418,9 +438,9 @@ fn pad(layout: &Layout, state: &mut State) {
 }
 
 /// Sweeps tiles, halving the list while there are threads to share it; the sum of works has the order of the tree.
-fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>], drive: Drive) -> Counted {
+fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>], drive: Drive) -> Energies {
     match tiles {
-        [] => Counted::default(),
+        [] => Energies::default(),
         [tile] => {
             let worker = rayon::current_thread_index().unwrap_or(0) % scratch.len();
             let mut scratch = scratch[worker].lock().unwrap_or_else(|e| e.into_inner());

@@ -1,10 +1,9 @@
 //! Total-Lagrangian elements: the one-point quadrilateral with hourglass stiffness and the constant-strain
 //! triangle, St. Venant–Kirchhoff material, plane strain (THEORY §2.1–2.2).
 //!
-//! A force kernel is written once for `L` elements side by side; `L = 1` is the gather path, `L = 8` the one for
-//! congruent bodies, and strips run it over neighbouring elements.
+//! A force kernel is written once, for one element or for as many side by side as an instruction takes.
 
-use crate::{error::Error, material::Elastic};
+use crate::{error::Error, lanes::Number, material::Elastic};
 
 /// What a quadrilateral keeps of its reference shape, in a frame of its own: the material is isotropic, so only
 /// the shape matters, and congruent elements have equal references wherever they lie.
@@ -35,13 +34,13 @@ pub struct TriangleReference {
 
 /// Constants of one body's elements.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Stiffness {
+pub struct Stiffness<T = f64> {
     /// First Lamé parameter [Pa].
-    pub lame: f64,
+    pub lame: T,
     /// Twice the shear modulus [Pa].
-    pub two_shear: f64,
+    pub two_shear: T,
     /// Hourglass stiffness [N/m] on γ·x.
-    pub hourglass: f64,
+    pub hourglass: T,
 }
 
 impl Stiffness {
@@ -141,116 +140,207 @@ fn gradients_agree(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> bool {
     a.as_flattened().iter().zip(b.as_flattened()).all(|(p, q)| (p - q).abs() <= CONGRUENT * size)
 }
 
-/// Stress power of one element: internal nodal forces −P·b1·V and −P·b2·V for F = p ⊗ b1 + r ⊗ b2.
+/// Forces −P·b1·V and −P·b2·V of the stresses in an element with F = p ⊗ b1 + r ⊗ b2.
 #[inline(always)]
-fn stress_forces(
-    p: [f64; 2],
-    r: [f64; 2],
-    b1: [f64; 2],
-    b2: [f64; 2],
-    lame_v: f64,
-    two_shear_v: f64,
-) -> ([f64; 2], [f64; 2]) {
-    let fxx = p[0] * b1[0] + r[0] * b2[0];
-    let fxy = p[0] * b1[1] + r[0] * b2[1];
-    let fyx = p[1] * b1[0] + r[1] * b2[0];
-    let fyy = p[1] * b1[1] + r[1] * b2[1];
-    // Green–Lagrange strain (halved once, here) and second Piola–Kirchhoff stress times volume.
-    let exx = 0.5 * (fxx * fxx + fyx * fyx) - 0.5;
-    let eyy = 0.5 * (fxy * fxy + fyy * fyy) - 0.5;
-    let exy = 0.5 * (fxx * fxy + fyx * fyy);
-    let pressure = lame_v * (exx + eyy);
-    let sxx = pressure + two_shear_v * exx;
-    let syy = pressure + two_shear_v * eyy;
-    let sxy = two_shear_v * exy;
-    // Forces −F·(S·b): two products with b first, then two with F, are fewer operations than F·S.
-    let (t1x, t1y) = (sxx * b1[0] + sxy * b1[1], sxy * b1[0] + syy * b1[1]);
-    let (t2x, t2y) = (sxx * b2[0] + sxy * b2[1], sxy * b2[0] + syy * b2[1]);
+fn stress_forces<T: Number>(
+    p: [T; 2],
+    r: [T; 2],
+    b1: [T; 2],
+    b2: [T; 2],
+    half_volume: T,
+    k: &Stiffness<T>,
+) -> ([T; 2], [T; 2]) {
+    let fxx = p[0].times_plus(b1[0], r[0] * b2[0]);
+    let fxy = p[0].times_plus(b1[1], r[0] * b2[1]);
+    let fyx = p[1].times_plus(b1[0], r[1] * b2[0]);
+    let fyy = p[1].times_plus(b1[1], r[1] * b2[1]);
+    // Twice the Green–Lagrange strain, and minus the second Piola–Kirchhoff stress times volume.
+    let minus_one = half_volume.constant(-1.0);
+    let exx = fxx.times_plus(fxx, fyx.times_plus(fyx, minus_one));
+    let eyy = fxy.times_plus(fxy, fyy.times_plus(fyy, minus_one));
+    let exy = fxx.times_plus(fxy, fyx * fyy);
+    let (lame, shear) = (-(k.lame * half_volume), -(k.two_shear * half_volume));
+    let pressure = lame * (exx + eyy);
+    let (sxx, syy, sxy) = (shear.times_plus(exx, pressure), shear.times_plus(eyy, pressure), shear * exy);
+    // F·(S·b): two products with b first, then two with F, are fewer operations than F·S.
+    let (t1x, t1y) = (sxx.times_plus(b1[0], sxy * b1[1]), sxy.times_plus(b1[0], syy * b1[1]));
+    let (t2x, t2y) = (sxx.times_plus(b2[0], sxy * b2[1]), sxy.times_plus(b2[0], syy * b2[1]));
     (
-        [-(fxx * t1x + fxy * t1y), -(fyx * t1x + fyy * t1y)],
-        [-(fxx * t2x + fxy * t2y), -(fyx * t2x + fyy * t2y)],
+        [fxx.times_plus(t1x, fxy * t1y), fyx.times_plus(t1x, fyy * t1y)],
+        [fxx.times_plus(t2x, fxy * t2y), fyx.times_plus(t2x, fyy * t2y)],
     )
 }
 
-/// Forces [N] on the four corners of one quadrilateral at positions `x`, `y` [m].
+/// Shape gradients of one quadrilateral as a kernel takes them; see [`QuadReference`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct QuadGradients<T> {
+    pub(crate) b1: [T; 2],
+    pub(crate) b2: [T; 2],
+    pub(crate) s1: T,
+    pub(crate) s2: T,
+    /// Half of area times thickness [m³].
+    pub(crate) half_volume: T,
+}
+
+impl<T: Number> QuadGradients<T> {
+    /// Forces [N] on the four corners at positions `x`, `y` [m].
+    #[inline(always)]
+    pub(crate) fn forces(&self, x: [T; 4], y: [T; 4], k: &Stiffness<T>) -> [[T; 2]; 4] {
+        let p = [x[0] - x[2], y[0] - y[2]];
+        let r = [x[1] - x[3], y[1] - y[3]];
+        let (g1, g2) = stress_forces(p, r, self.b1, self.b2, self.half_volume, k);
+        let w = hourglass(x, y, p, r, self.s1, self.s2, k.hourglass);
+        corner_forces(g1, g2, w, self.s1, self.s2)
+    }
+}
+
+/// Forces [N] of the hourglass stiffness.
 #[inline(always)]
+fn hourglass<T: Number>(x: [T; 4], y: [T; 4], p: [T; 2], r: [T; 2], s1: T, s2: T, stiffness: T) -> [T; 2] {
+    let hx = (x[0] + x[2]) - (x[1] + x[3]);
+    let hy = (y[0] + y[2]) - (y[1] + y[3]);
+    let wx = stiffness * (-s1).times_plus(p[0], (-s2).times_plus(r[0], hx));
+    let wy = stiffness * (-s1).times_plus(p[1], (-s2).times_plus(r[1], hy));
+    [wx, wy]
+}
+
+/// Forces [N] on the corners from those of the diagonals and of the hourglass stiffness.
+#[inline(always)]
+fn corner_forces<T: Number>(g1: [T; 2], g2: [T; 2], [wx, wy]: [T; 2], s1: T, s2: T) -> [[T; 2]; 4] {
+    let t1 = [s1.times_plus(wx, g1[0]), s1.times_plus(wy, g1[1])];
+    let t2 = [s2.times_plus(wx, g2[0]), s2.times_plus(wy, g2[1])];
+    [
+        [t1[0] - wx, t1[1] - wy],
+        [t2[0] + wx, t2[1] + wy],
+        [-(t1[0] + wx), -(t1[1] + wy)],
+        [wx - t2[0], wy - t2[1]],
+    ]
+}
+
+/// Forces [N] on the four corners of one quadrilateral at positions `x`, `y` [m].
 pub fn quad_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [[f64; 2]; 4] {
-    let p = [x[0] - x[2], y[0] - y[2]];
-    let r = [x[1] - x[3], y[1] - y[3]];
-    let (g1, g2) = stress_forces(p, r, q.b1, q.b2, k.lame * q.volume, k.two_shear * q.volume);
-    let wx = k.hourglass * (((x[0] + x[2]) - (x[1] + x[3])) - q.s1 * p[0] - q.s2 * r[0]);
-    let wy = k.hourglass * (((y[0] + y[2]) - (y[1] + y[3])) - q.s1 * p[1] - q.s2 * r[1]);
-    let t1 = [g1[0] + q.s1 * wx, g1[1] + q.s1 * wy];
-    let t2 = [g2[0] + q.s2 * wx, g2[1] + q.s2 * wy];
-    [[t1[0] - wx, t1[1] - wy], [t2[0] + wx, t2[1] + wy], [-t1[0] - wx, -t1[1] - wy], [wx - t2[0], wy - t2[1]]]
+    let QuadReference { b1, b2, s1, s2, volume } = *q;
+    QuadGradients { b1, b2, s1, s2, half_volume: 0.5 * volume }.forces(x, y, k)
 }
 
 /// A quadrilateral's reference and material in terms of the inner products of its diagonals: the fewest operations
 /// where the numbers need not be loaded for every element (THEORY §2.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct QuadMetric {
-    /// Inner products of the reference diagonals p·p, r·r and 2 p·r [m²].
-    rest: [f64; 3],
-    /// Minus the stiffness from changes of those to the tensions along p·p, r·r and p·r, symmetric: 11, 12, 13, 22, 23,
-    /// 33 [N/m³].
-    stiffness: [f64; 6],
+pub(crate) struct QuadMetric<T = f64> {
+    /// Minus the inner products of the reference diagonals p·p, r·r and p·r [m²].
+    minus_rest: [T; 3],
+    /// Minus the stiffness [N/m³] from changes of p·p and r·r to the tensions along p·p, r·r and p·r: 11, 12, 22, 13, 23.
+    stiffness: [T; 5],
+    /// The same from a change of p·r, which counts twice.
+    from_mixed: [T; 3],
     /// See [`QuadReference::s1`].
-    s1: f64,
+    s1: T,
     /// See [`QuadReference::s1`].
-    s2: f64,
+    s2: T,
     /// Hourglass stiffness [N/m].
-    hourglass: f64,
+    hourglass: T,
 }
 
 impl QuadMetric {
     /// The same element in other terms.
-    pub fn new(q: &QuadReference, k: &Stiffness) -> Self {
+    pub(crate) fn new(q: &QuadReference, k: &Stiffness) -> Self {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let (b11, b12, b22) = (dot(q.b1, q.b1), dot(q.b1, q.b2), dot(q.b2, q.b2));
         // The diagonals are dual to the gradients, so their inner products are the inverse of those of the gradients.
         let determinant = b11 * b22 - b12 * b12;
-        let rest = [b22 / determinant, b11 / determinant, -2.0 * b12 / determinant];
+        let minus_rest = [-b22 / determinant, -b11 / determinant, b12 / determinant];
         let (half_lame, shear, v) = (0.5 * k.lame, 0.5 * k.two_shear, q.volume);
         let direct = half_lame + shear;
+        let (k13, k23) = (-v * direct * b11 * b12, -v * direct * b22 * b12);
         let stiffness = [
             -v * direct * b11 * b11,
             -v * (half_lame * b11 * b22 + shear * b12 * b12),
-            -v * direct * b11 * b12,
             -v * direct * b22 * b22,
-            -v * direct * b22 * b12,
-            -v * (half_lame * b12 * b12 + 0.5 * shear * (b11 * b22 + b12 * b12)),
+            k13,
+            k23,
         ];
-        Self { rest, stiffness, s1: q.s1, s2: q.s2, hourglass: k.hourglass }
+        let k33 = -v * (half_lame * b12 * b12 + 0.5 * shear * (b11 * b22 + b12 * b12));
+        let from_mixed = [2.0 * k13, 2.0 * k23, 2.0 * k33];
+        Self { minus_rest, stiffness, from_mixed, s1: q.s1, s2: q.s2, hourglass: k.hourglass }
     }
 
+    /// The same element with corners numbered 4, 3, 2, 1.
+    pub(crate) fn turned_over(&self) -> Self {
+        let ([p, r, pr], [k11, k12, k22, k13, k23]) = (self.minus_rest, self.stiffness);
+        let [m1, m2, m3] = self.from_mixed;
+        Self {
+            minus_rest: [r, p, pr],
+            stiffness: [k22, k12, k11, k23, k13],
+            from_mixed: [m2, m1, m3],
+            s1: self.s2,
+            s2: self.s1,
+            hourglass: self.hourglass,
+        }
+    }
+
+    /// The same in numbers of another kind.
+    #[inline(always)]
+    pub(crate) fn of<T: Number>(&self, kind: T) -> QuadMetric<T> {
+        let ([p, r, pr], [k11, k12, k22, k13, k23]) = (self.minus_rest, self.stiffness);
+        let [m1, m2, m3] = self.from_mixed;
+        let (k11, k12, k22) = (kind.constant(k11), kind.constant(k12), kind.constant(k22));
+        QuadMetric {
+            minus_rest: [kind.constant(p), kind.constant(r), kind.constant(pr)],
+            stiffness: [k11, k12, k22, kind.constant(k13), kind.constant(k23)],
+            from_mixed: [kind.constant(m1), kind.constant(m2), kind.constant(m3)],
+            s1: kind.constant(self.s1),
+            s2: kind.constant(self.s2),
+            hourglass: kind.constant(self.hourglass),
+        }
+    }
+}
+
+impl<T: Number> QuadMetric<T> {
     /// Forces [N] on the four corners at positions `x`, `y` [m]; equal to [`quad_forces`] but for rounding.
     #[inline(always)]
-    pub fn forces(&self, x: [f64; 4], y: [f64; 4]) -> [[f64; 2]; 4] {
-        let [k11, k12, k13, k22, k23, k33] = self.stiffness;
+    pub(crate) fn forces(&self, x: [T; 4], y: [T; 4]) -> [[T; 2]; 4] {
+        let ([k11, k12, k22, k13, k23], [m1, m2, m3]) = (self.stiffness, self.from_mixed);
         let (px, py, rx, ry) = (x[0] - x[2], y[0] - y[2], x[1] - x[3], y[1] - y[3]);
-        let pr = px * rx + py * ry;
-        let e1 = (px * px + py * py) - self.rest[0];
-        let e2 = (rx * rx + ry * ry) - self.rest[1];
-        let e3 = (pr + pr) - self.rest[2];
-        let t11 = (k11 * e1 + k12 * e2) + k13 * e3;
-        let t22 = (k12 * e1 + k22 * e2) + k23 * e3;
-        let t12 = (k13 * e1 + k23 * e2) + k33 * e3;
-        let wx = self.hourglass * (((x[0] + x[2]) - (x[1] + x[3])) - (self.s1 * px + self.s2 * rx));
-        let wy = self.hourglass * (((y[0] + y[2]) - (y[1] + y[3])) - (self.s1 * py + self.s2 * ry));
-        let t1x = (t11 * px + t12 * rx) + self.s1 * wx;
-        let t1y = (t11 * py + t12 * ry) + self.s1 * wy;
-        let t2x = (t12 * px + t22 * rx) + self.s2 * wx;
-        let t2y = (t12 * py + t22 * ry) + self.s2 * wy;
-        [[t1x - wx, t1y - wy], [t2x + wx, t2y + wy], [-(t1x + wx), -(t1y + wy)], [wx - t2x, wy - t2y]]
+        let e1 = px.times_plus(px, py.times_plus(py, self.minus_rest[0]));
+        let e2 = rx.times_plus(rx, ry.times_plus(ry, self.minus_rest[1]));
+        let e3 = px.times_plus(rx, py.times_plus(ry, self.minus_rest[2]));
+        let t11 = k11.times_plus(e1, k12.times_plus(e2, m1 * e3));
+        let t22 = k22.times_plus(e2, k12.times_plus(e1, m2 * e3));
+        let t12 = k13.times_plus(e1, k23.times_plus(e2, m3 * e3));
+        let g1 = [t11.times_plus(px, t12 * rx), t11.times_plus(py, t12 * ry)];
+        let g2 = [t22.times_plus(rx, t12 * px), t22.times_plus(ry, t12 * py)];
+        let w = hourglass(x, y, [px, py], [rx, ry], self.s1, self.s2, self.hourglass);
+        corner_forces(g1, g2, w, self.s1, self.s2)
+    }
+}
+
+impl Stiffness {
+    /// The same in numbers of another kind.
+    #[inline(always)]
+    pub(crate) fn of<T: Number>(&self, kind: T) -> Stiffness<T> {
+        let (lame, two_shear) = (kind.constant(self.lame), kind.constant(self.two_shear));
+        Stiffness { lame, two_shear, hourglass: kind.constant(self.hourglass) }
     }
 }
 
 /// Forces [N] on corners 1 and 2 of one triangle; that on corner 3 is the negative of their sum.
-#[inline(always)]
 pub fn triangle_forces(x: [f64; 3], y: [f64; 3], t: &TriangleReference, k: &Stiffness) -> [[f64; 2]; 2] {
+    any_triangle_forces(x, y, t, k)
+}
+
+/// The same for numbers of any kind.
+#[inline(always)]
+pub(crate) fn any_triangle_forces<T: Number>(
+    x: [T; 3],
+    y: [T; 3],
+    t: &TriangleReference,
+    k: &Stiffness<T>,
+) -> [[T; 2]; 2] {
     let p = [x[0] - x[2], y[0] - y[2]];
     let r = [x[1] - x[2], y[1] - y[2]];
-    let (f1, f2) = stress_forces(p, r, t.b1, t.b2, k.lame * t.volume, k.two_shear * t.volume);
+    let b1 = [p[0].constant(t.b1[0]), p[0].constant(t.b1[1])];
+    let b2 = [p[0].constant(t.b2[0]), p[0].constant(t.b2[1])];
+    let (f1, f2) = stress_forces(p, r, b1, b2, p[0].constant(0.5 * t.volume), k);
     [f1, f2]
 }
 

@@ -1,20 +1,47 @@
-//! The kernels for elements outside strips: one by one, or the same element of congruent bodies at a time.
+//! The kernels for elements outside strips: a few at a time wherever their nodes lie, or the same element of congruent
+//! bodies at a time.
+
+use pulp::Simd;
 
 use crate::{
-    element::triangle_forces,
-    lanes::{LANES, Lanes, lanes, lanes_mut},
-    tile::Tile,
+    element::{Stiffness, any_triangle_forces, triangle_forces},
+    lanes::{LANES, Vector},
+    tile::{CongruentRun, Tile},
 };
 
-/// The gather path: elements one by one.
+/// Corner values of a group of elements, one row a corner.
+type Corners = [[f64; LANES]; 4];
+
+/// The gather path: quadrilaterals in groups, triangles one by one.
 #[inline(always)]
-pub(crate) fn single_elements(tile: &Tile, x: &[f64], y: &[f64], fx: &mut [f64], fy: &mut [f64]) {
-    for (corners, metric) in &tile.quads {
-        let c = corners.map(|c| c as usize);
-        let f = metric.forces(c.map(|c| x[c]), c.map(|c| y[c]));
-        for (c, f) in c.into_iter().zip(f) {
-            fx[c] += f[0];
-            fy[c] += f[1];
+pub(crate) fn single_elements<S: Simd>(
+    simd: S,
+    tile: &Tile,
+    k: &Stiffness<Vector<S>>,
+    x: &[f64],
+    y: &[f64],
+    fx: &mut [f64],
+    fy: &mut [f64],
+) {
+    let (mut xs, mut ys): (Corners, Corners) = Default::default();
+    for (g, elements) in tile.quads.chunks(Vector::<S>::LEN).enumerate() {
+        for (l, corners) in elements.iter().enumerate() {
+            for c in 0..4 {
+                xs[c][l] = x[corners[c] as usize];
+                ys[c][l] = y[corners[c] as usize];
+            }
+        }
+        let references = tile.varying.group(simd, tile.first_gathered, g * Vector::<S>::LEN);
+        let forces = references.forces(rows(simd, &xs), rows(simd, &ys), k);
+        for c in 0..4 {
+            forces[c][0].store(&mut xs[c], 0);
+            forces[c][1].store(&mut ys[c], 0);
+        }
+        for (l, corners) in elements.iter().enumerate() {
+            for c in 0..4 {
+                fx[corners[c] as usize] += xs[c][l];
+                fy[corners[c] as usize] += ys[c][l];
+            }
         }
     }
     for (corners, reference) in &tile.triangles {
@@ -30,61 +57,84 @@ pub(crate) fn single_elements(tile: &Tile, x: &[f64], y: &[f64], fx: &mut [f64],
 }
 
 #[inline(always)]
-fn add_lanes(v: &mut [f64], at: usize, f: &Lanes) {
-    let v = lanes_mut(v, at);
-    for l in 0..LANES {
-        v[l] += f[l];
+fn rows<S: Simd>(simd: S, v: &Corners) -> [Vector<S>; 4] {
+    let [a, b, c, d] = v;
+    [Vector::load(simd, a, 0), Vector::load(simd, b, 0), Vector::load(simd, c, 0), Vector::load(simd, d, 0)]
+}
+
+#[inline(always)]
+fn add<S: Simd>(simd: S, v: &mut [f64], at: usize, f: Vector<S>) {
+    (Vector::load(simd, v, at) + f).store(v, at);
+}
+
+/// Forces of a tile of congruent bodies, the same element of some bodies at a time.
+#[inline(always)]
+pub(crate) fn congruent_elements<S: Simd>(
+    simd: S,
+    tile: &Tile,
+    k: &Stiffness<Vector<S>>,
+    x: &[f64],
+    y: &[f64],
+    fx: &mut [f64],
+    fy: &mut [f64],
+) {
+    for lane in (0..LANES).step_by(Vector::<S>::LEN) {
+        for run in &tile.runs {
+            congruent_quads(simd, tile, run, lane, x, y, fx, fy);
+        }
+        for (corners, reference) in &tile.triangles {
+            let c = corners.map(|c| c as usize + lane);
+            let xs = [Vector::load(simd, x, c[0]), Vector::load(simd, x, c[1]), Vector::load(simd, x, c[2])];
+            let ys = [Vector::load(simd, y, c[0]), Vector::load(simd, y, c[1]), Vector::load(simd, y, c[2])];
+            let [f1, f2] = any_triangle_forces(xs, ys, reference, k);
+            for (v, i) in [(&mut *fx, 0), (&mut *fy, 1)] {
+                add(simd, v, c[0], f1[i]);
+                add(simd, v, c[1], f2[i]);
+                add(simd, v, c[2], -(f1[i] + f2[i]));
+            }
+        }
     }
 }
 
-/// The same quadrilateral of [`LANES`] congruent bodies at a time.
+/// A run of quadrilaterals each of which has its left side in common with the one before: what both do to those two nodes
+/// stays in registers.
 #[inline(always)]
-pub(crate) fn congruent_quads(tile: &Tile, x: &[f64], y: &[f64], fx: &mut [f64], fy: &mut [f64]) {
-    for (corners, metric) in &tile.quads {
-        let c = [corners[0] as usize, corners[1] as usize, corners[2] as usize, corners[3] as usize];
-        // Spelled out: a closure is not sure to be compiled for the wide registers.
-        let xs = [lanes(x, c[0]), lanes(x, c[1]), lanes(x, c[2]), lanes(x, c[3])];
-        let ys = [lanes(y, c[0]), lanes(y, c[1]), lanes(y, c[2]), lanes(y, c[3])];
-        let ([mut f1x, mut f2x, mut f3x, mut f4x], [mut f1y, mut f2y, mut f3y, mut f4y]) =
-            ([[0.0; LANES]; 4], [[0.0; LANES]; 4]);
-        for l in 0..LANES {
-            let px = [xs[0][l], xs[1][l], xs[2][l], xs[3][l]];
-            let py = [ys[0][l], ys[1][l], ys[2][l], ys[3][l]];
-            let [f1, f2, f3, f4] = metric.forces(px, py);
-            [f1x[l], f2x[l], f3x[l], f4x[l]] = [f1[0], f2[0], f3[0], f4[0]];
-            [f1y[l], f2y[l], f3y[l], f4y[l]] = [f1[1], f2[1], f3[1], f4[1]];
-        }
-        for (c, f) in c.into_iter().zip([&f1x, &f2x, &f3x, &f4x]) {
-            add_lanes(fx, c, f);
-        }
-        for (c, f) in c.into_iter().zip([&f1y, &f2y, &f3y, &f4y]) {
-            add_lanes(fy, c, f);
-        }
+#[allow(clippy::too_many_arguments)] // the arrays of one kernel
+fn congruent_quads<S: Simd>(
+    simd: S,
+    tile: &Tile,
+    run: &CongruentRun,
+    lane: usize,
+    x: &[f64],
+    y: &[f64],
+    fx: &mut [f64],
+    fy: &mut [f64],
+) {
+    let zero = [Vector::all(simd, 0.0); 2];
+    let [mut low, mut high] = run.left;
+    let (mut a, mut d) = (node(simd, x, y, low as usize + lane), node(simd, x, y, high as usize + lane));
+    let (mut on_low, mut on_high) = (zero, zero);
+    for ([next_low, next_high], metric) in &tile.quads_of_runs[run.quads.clone()] {
+        let (b, c) =
+            (node(simd, x, y, *next_low as usize + lane), node(simd, x, y, *next_high as usize + lane));
+        let [f1, f2, f3, f4] = metric.of(a[0]).forces([a[0], b[0], c[0], d[0]], [a[1], b[1], c[1], d[1]]);
+        let (l, h) = (low as usize + lane, high as usize + lane);
+        add(simd, fx, l, on_low[0] + f1[0]);
+        add(simd, fy, l, on_low[1] + f1[1]);
+        add(simd, fx, h, on_high[0] + f4[0]);
+        add(simd, fy, h, on_high[1] + f4[1]);
+        (on_low, on_high) = (f2, f3);
+        (low, high) = (*next_low, *next_high);
+        (a, d) = (b, c);
     }
+    let (l, h) = (low as usize + lane, high as usize + lane);
+    add(simd, fx, l, on_low[0]);
+    add(simd, fy, l, on_low[1]);
+    add(simd, fx, h, on_high[0]);
+    add(simd, fy, h, on_high[1]);
 }
 
-/// The same triangle of [`LANES`] congruent bodies at a time.
 #[inline(always)]
-pub(crate) fn congruent_triangles(tile: &Tile, x: &[f64], y: &[f64], fx: &mut [f64], fy: &mut [f64]) {
-    let k = tile.stiffness;
-    for (corners, reference) in &tile.triangles {
-        let c = corners.map(|c| c as usize);
-        let xs = [lanes(x, c[0]), lanes(x, c[1]), lanes(x, c[2])];
-        let ys = [lanes(y, c[0]), lanes(y, c[1]), lanes(y, c[2])];
-        let ([mut f1x, mut f2x, mut f3x], [mut f1y, mut f2y, mut f3y]) =
-            ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);
-        for l in 0..LANES {
-            let px = [xs[0][l], xs[1][l], xs[2][l]];
-            let py = [ys[0][l], ys[1][l], ys[2][l]];
-            let [f1, f2] = triangle_forces(px, py, reference, &k);
-            [f1x[l], f2x[l], f3x[l]] = [f1[0], f2[0], -f1[0] - f2[0]];
-            [f1y[l], f2y[l], f3y[l]] = [f1[1], f2[1], -f1[1] - f2[1]];
-        }
-        for (c, f) in c.into_iter().zip([&f1x, &f2x, &f3x]) {
-            add_lanes(fx, c, f);
-        }
-        for (c, f) in c.into_iter().zip([&f1y, &f2y, &f3y]) {
-            add_lanes(fy, c, f);
-        }
-    }
+fn node<S: Simd>(simd: S, x: &[f64], y: &[f64], at: usize) -> [Vector<S>; 2] {
+    [Vector::load(simd, x, at), Vector::load(simd, y, at)]
 }

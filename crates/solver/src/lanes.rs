@@ -1,18 +1,153 @@
-//! Eight values side by side: what one instruction works on where the processor has wide registers.
+//! Numbers that a kernel computes with: one at a time, or as many side by side as one instruction takes.
 
-/// Values that the kernels work on at a time, and congruent bodies that share a tile.
+use std::ops::{Add, Mul, Neg, Sub};
+
+use pulp::Simd;
+
+/// Congruent bodies that share a tile; no instruction set takes more numbers at a time.
 pub(crate) const LANES: usize = 8;
 
-pub(crate) type Lanes = [f64; LANES];
+/// What a kernel does with numbers.
+pub(crate) trait Number:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+{
+    /// self · factor + term. Vectors round once, whatever the instruction set; a single number rounds twice.
+    fn times_plus(self, factor: Self, term: Self) -> Self;
 
-/// The values from `at` on.
-#[inline(always)]
-pub(crate) fn lanes(v: &[f64], at: usize) -> &Lanes {
-    v[at..at + LANES].try_into().expect("a slice of LANES values")
+    /// A constant of the same kind.
+    fn constant(self, value: f64) -> Self;
 }
 
-/// The values from `at` on, to change.
-#[inline(always)]
-pub(crate) fn lanes_mut(v: &mut [f64], at: usize) -> &mut Lanes {
-    (&mut v[at..at + LANES]).try_into().expect("a slice of LANES values")
+impl Number for f64 {
+    #[inline(always)]
+    fn times_plus(self, factor: f64, term: f64) -> f64 {
+        self * factor + term
+    }
+
+    #[inline(always)]
+    fn constant(self, value: f64) -> f64 {
+        value
+    }
+}
+
+/// Numbers side by side, in registers of the instruction set `S`; in memory they begin a line of cache.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Vector<S: Simd> {
+    simd: S,
+    lanes: S::f64s,
+}
+
+/// Ones and then zeros, bit by bit: a window of it keeps the first numbers of a vector.
+static KEEP: [u64; 2 * LANES] = {
+    let mut keep = [0; 2 * LANES];
+    let mut i = 0;
+    while i < LANES {
+        keep[i] = u64::MAX;
+        i += 1;
+    }
+    keep
+};
+
+/// The bits of the last number of a vector that ends here.
+static KEEP_LAST: [u64; LANES] = [0, 0, 0, 0, 0, 0, 0, u64::MAX];
+
+impl<S: Simd> Vector<S> {
+    /// How many numbers.
+    pub(crate) const LEN: usize = S::F64_LANES;
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub(crate) fn all(simd: S, value: f64) -> Self {
+        Self { simd, lanes: simd.splat_f64s(value) }
+    }
+
+    /// The numbers from `at` on.
+    #[inline(always)]
+    pub(crate) fn load(simd: S, from: &[f64], at: usize) -> Self {
+        Self { simd, lanes: S::as_simd_f64s(&from[at..at + Self::LEN]).0[0] }
+    }
+
+    /// Writes the numbers from `at` on.
+    #[inline(always)]
+    pub(crate) fn store(self, to: &mut [f64], at: usize) {
+        S::as_mut_simd_f64s(&mut to[at..at + Self::LEN]).0[0] = self.lanes;
+    }
+
+    /// Writes the first `n` numbers from `at` on.
+    #[inline(always)]
+    pub(crate) fn store_first(self, n: usize, to: &mut [f64], at: usize) {
+        self.simd.partial_store_f64s(&mut to[at..at + n], self.lanes);
+    }
+
+    /// The first `n` numbers, and zeros.
+    #[inline(always)]
+    pub(crate) fn first(self, n: usize) -> Self {
+        let keep = S::as_simd_u64s(&KEEP[LANES - n..LANES - n + Self::LEN]).0[0];
+        let bits = self.simd.and_u64s(self.simd.transmute_u64s_f64s(self.lanes), keep);
+        Self { lanes: self.simd.transmute_f64s_u64s(bits), ..self }
+    }
+
+    /// Every number one lane up, the last of `before` in front.
+    #[inline(always)]
+    pub(crate) fn shifted_in(self, before: Self) -> Self {
+        let simd = self.simd;
+        let all_but_last = S::as_simd_u64s(&KEEP[LANES - Self::LEN + 1..LANES + 1]).0[0];
+        let last = S::as_simd_u64s(&KEEP_LAST[LANES - Self::LEN..LANES]).0[0];
+        let (now, before) = (simd.transmute_u64s_f64s(self.lanes), simd.transmute_u64s_f64s(before.lanes));
+        let joined = simd.or_u64s(simd.and_u64s(now, all_but_last), simd.and_u64s(before, last));
+        Self { lanes: simd.rotate_right_f64s(simd.transmute_f64s_u64s(joined), 1), ..self }
+    }
+
+    /// The sum of all numbers.
+    #[inline(always)]
+    pub(crate) fn sum(self) -> f64 {
+        let mut each = [0.0; LANES];
+        self.store(&mut each, 0);
+        each.iter().sum()
+    }
+}
+
+impl<S: Simd> Add for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { lanes: self.simd.add_f64s(self.lanes, other.lanes), ..self }
+    }
+}
+
+impl<S: Simd> Sub for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { lanes: self.simd.sub_f64s(self.lanes, other.lanes), ..self }
+    }
+}
+
+impl<S: Simd> Mul for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self { lanes: self.simd.mul_f64s(self.lanes, other.lanes), ..self }
+    }
+}
+
+impl<S: Simd> Neg for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { lanes: self.simd.xor_f64s(self.lanes, self.simd.splat_f64s(-0.0)), ..self }
+    }
+}
+
+impl<S: Simd> Number for Vector<S> {
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        Self { lanes: self.simd.mul_add_f64s(self.lanes, factor.lanes, term.lanes), ..self }
+    }
+
+    #[inline(always)]
+    fn constant(self, value: f64) -> Self {
+        Self::all(self.simd, value)
+    }
 }

@@ -8,14 +8,15 @@
 //! Two kinds of tile: a piece of one body, whose quadrilaterals form strips; and eight congruent bodies side by
 //! side, node by node, so that one instruction works on the same element of all eight.
 
-use std::ops::Range;
+use std::{collections::HashSet, ops::Range};
 
-use stribeck_mesh::Mesh;
+use stribeck_mesh::{Mesh, strips::find_strips};
 
 use crate::{
     element::{QuadReference, TriangleReference},
     lanes::LANES,
     model::{Behaviour, Model, Motion},
+    tile::SHORTEST_STRIP,
 };
 
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
@@ -40,10 +41,12 @@ pub struct Layout {
 /// One tile, in local slot numbers (relative to `slots.start`).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TileLayout {
-    /// Slots, own and ghosts.
+    /// Slots: own, ghosts, padding.
     pub(crate) slots: Range<usize>,
-    /// How many of them are own.
+    /// How many of them are own, padding between them included.
     pub(crate) own: usize,
+    /// Which slots are padding.
+    pub(crate) padding: Vec<bool>,
     /// The body of the (first) elements; all elements of a tile share one material.
     pub(crate) body: usize,
     /// Its bodies: one, or up to [`LANES`] congruent ones.
@@ -87,6 +90,12 @@ impl Layout {
         self.node_of_slot.is_empty()
     }
 
+    /// Leaves slots free until the next one begins a line of cache.
+    fn pad(&mut self) {
+        let padding = self.len().next_multiple_of(LANES) - self.len();
+        self.node_of_slot.extend(std::iter::repeat_n(None, padding));
+    }
+
     fn add_congruent(&mut self, mesh: &Mesh, bodies: &[usize]) {
         let first = &mesh.bodies[bodies[0]];
         let start = self.len();
@@ -103,6 +112,8 @@ impl Layout {
         self.tiles.push(TileLayout {
             slots: start..self.len(),
             own: self.len() - start,
+            // Padding lanes move with the others.
+            padding: vec![false; self.len() - start],
             body: bodies[0],
             bodies: bodies.to_vec(),
             quads: first.quads.clone().map(|e| (mesh.quads[e].map(local), e)).collect(),
@@ -139,11 +150,16 @@ impl Layout {
         let mut local = vec![NONE; body.nodes.len()];
         for t in 0..tiles {
             let start = self.len();
+            let rows = row_starts(&quads[t].iter().map(|&e| mesh.quads[e]).collect::<Vec<_>>());
             for &n in &own[t] {
+                if rows.contains(&n) {
+                    self.pad();
+                }
                 self.slot_of_node[n as usize] = self.len() as u32;
                 local[n as usize - body.nodes.start] = (self.len() - start) as u32;
                 self.node_of_slot.push(Some(n));
             }
+            let own_slots = self.len() - start;
             let mut ghosts = Vec::new();
             let corner_lists = quads[t]
                 .iter()
@@ -157,10 +173,16 @@ impl Layout {
                     ghosts.push(n);
                 }
             }
+            if model.behaviour[b] == Behaviour::Elastic {
+                // A kernel may read and write a whole group of lanes from the last node on.
+                self.node_of_slot.extend([None; LANES]);
+                self.pad();
+            }
             let at = |n: u32| local[n as usize - body.nodes.start];
             self.tiles.push(TileLayout {
                 slots: start..self.len(),
-                own: own[t].len(),
+                own: own_slots,
+                padding: self.node_of_slot[start..].iter().map(Option::is_none).collect(),
                 body: b,
                 bodies: vec![b],
                 quads: quads[t].iter().map(|&e| (mesh.quads[e].map(at), e)).collect(),
@@ -170,14 +192,29 @@ impl Layout {
             for n in own[t].iter().chain(&ghosts) {
                 local[*n as usize - body.nodes.start] = NONE;
             }
+            self.pad();
         }
         for tile in &self.tiles[self.tiles.len() - tiles..] {
             for ghost in tile.slots.start + tile.own..tile.slots.end {
-                let node = self.node_of_slot[ghost].expect("a ghost copies a node");
-                self.ghosts.push((ghost as u32, self.slot_of_node[node as usize]));
+                if let Some(node) = self.node_of_slot[ghost] {
+                    self.ghosts.push((ghost as u32, self.slot_of_node[node as usize]));
+                }
             }
         }
     }
+}
+
+/// First nodes of the rows along strips of a list of quadrilaterals; none of them lies within the row of another strip.
+fn row_starts(quads: &[[u32; 4]]) -> HashSet<u32> {
+    let (mut first, mut within) = (HashSet::new(), HashSet::new());
+    for strip in find_strips(quads).into_iter().filter(|s| s.len >= SHORTEST_STRIP) {
+        for corners in [[strip.corners[0], strip.corners[1]], [strip.corners[3], strip.corners[2]]] {
+            let start = corners[0].min(corners[1]);
+            first.insert(start);
+            within.extend(start + 1..=start + strip.len as u32);
+        }
+    }
+    &first - &within
 }
 
 /// Calls `f` once for each distinct tile.

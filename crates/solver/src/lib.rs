@@ -95,6 +95,7 @@ pub mod distortion;
 pub mod dynamics;
 pub mod element;
 mod error;
+pub mod field;
 pub mod force;
 mod gather;
 pub mod integrators;

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::field::Field;
+
 /// Everything that changes in time. Node fields are flat arrays, one value a slot (see [`crate::layout`]).
 ///
 /// Velocities belong to the half step before `time` (leapfrog, THEORY §2.3).
@@ -12,13 +14,13 @@ pub struct State {
     /// Time of the positions [s].
     pub time: f64,
     /// Positions [m].
-    pub x: Vec<f64>,
+    pub x: Field,
     /// Positions [m].
-    pub y: Vec<f64>,
+    pub y: Field,
     /// Velocities, half a step earlier [m/s].
-    pub vx: Vec<f64>,
+    pub vx: Field,
     /// Velocities, half a step earlier [m/s].
-    pub vy: Vec<f64>,
+    pub vy: Field,
 }
 
 /// What a force sees of the state: positions at `time`, velocities half a step before.
@@ -46,9 +48,16 @@ pub struct Moment<'a> {
 #[derive(Debug, Clone, Default)]
 pub struct NodeForces {
     /// Force [N].
-    pub fx: Vec<f64>,
+    pub fx: Field,
     /// Force [N].
-    pub fy: Vec<f64>,
+    pub fy: Field,
+}
+
+impl NodeForces {
+    /// No force on `n` slots.
+    pub fn zeros(n: usize) -> Self {
+        Self { fx: Field::zeros(n), fy: Field::zeros(n) }
+    }
 }
 
 /// Energy of one force since the start [J].

@@ -207,7 +207,7 @@ struct Residual {
 impl Residual {
     fn new(d: &Dynamics) -> Self {
         let n = d.state.x.len();
-        Self { force: NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] } }
+        Self { force: NodeForces::zeros(n) }
     }
 
     fn evaluate(&mut self, d: &Dynamics, forces: &mut [&mut dyn Force], statics: &Statics) {

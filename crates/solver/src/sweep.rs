@@ -1,13 +1,16 @@
 //! One pass over a tile: element forces, then each finished row of nodes moves while it is still in cache
 //! (THEORY §2.3; cost in PERFORMANCE.md).
 
-use multiversion::multiversion;
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    advance::{Damping, Step, Summed, advance, rotate},
-    gather::{congruent_quads, congruent_triangles, single_elements},
+    advance::{Counted, Damped, Damping, Nodes, Step, Undamped, advance_row, gain, rotate},
+    damping::LaneFrames,
+    field::Field,
+    gather::{congruent_elements, single_elements},
+    lanes::Vector,
     model::Motion,
-    strip::{Corners, Nodes, strip},
+    strip::strip,
     tile::Tile,
 };
 
@@ -26,14 +29,13 @@ pub(crate) struct TileFields<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct Scratch {
     /// Forces on the nodes of the tile at hand; all zero between tiles.
-    fx: Vec<f64>,
-    fy: Vec<f64>,
-    corners: Box<Corners>,
+    fx: Field,
+    fy: Field,
 }
 
 impl Scratch {
     pub(crate) fn new(slots: usize) -> Self {
-        Self { fx: vec![0.0; slots], fy: vec![0.0; slots], corners: Box::new([[[[0.0; _]; 2]; 2]; 2]) }
+        Self { fx: Field::zeros(slots), fy: Field::zeros(slots) }
     }
 }
 
@@ -42,18 +44,20 @@ impl Scratch {
 pub(crate) struct Drive {
     pub(crate) dt: f64,
     pub(crate) gravity: [f64; 2],
+    /// Whether the heat of damping is counted in this step.
+    pub(crate) count_heat: bool,
 }
 
-/// What a sweep counts [J], each from half a step before to half a step after the positions' time.
+/// Energies of a step [J], each from half a step before to half a step after the positions' time.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Counted {
+pub(crate) struct Energies {
     /// Work of prescribed motion.
     pub(crate) work: f64,
-    /// Heat of mass damping.
+    /// Heat of mass damping; zero where it is not counted.
     pub(crate) heat: f64,
 }
 
-impl std::ops::Add for Counted {
+impl std::ops::Add for Energies {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { work: self.work + other.work, heat: self.heat + other.heat }
@@ -61,57 +65,79 @@ impl std::ops::Add for Counted {
 }
 
 /// Computes the forces of one tile and takes its nodes one step on.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx512bw+avx512cd+avx2+bmi2", "x86_64+avx2+bmi2"))]
-pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> Counted {
-    let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
-    let n = tile.slots.len();
-    let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
-    for &node in &tile.loaded {
-        let node = node as usize;
-        fx[node] = outer_x[node];
-        fy[node] = outer_y[node];
-        outer_x[node] = 0.0;
-        outer_y[node] = 0.0;
-    }
-    if tile.congruent {
-        congruent_quads(tile, x, y, fx, fy);
-        congruent_triangles(tile, x, y, fx, fy);
-    } else {
-        single_elements(tile, x, y, fx, fy);
-    }
-    let Drive { dt, gravity } = drive;
-    let damping = tile.damping.as_ref();
-    let step = Step {
-        dt,
-        fall: [dt * gravity[0], dt * gravity[1]],
-        free: [1.0, 1.0],
-        damping: damping.map(|d| Damping::new(d.rate, &d.frames, dt)),
-    };
-    let mass = damping.map_or(&[][..], |d| &d.mass);
-    let mut nodes = Nodes { x, y, vx, vy, fx, fy, step_over_mass: &tile.step_over_mass, mass };
-    let mut finish = tile.finish.iter().peekable();
-    let mut counted = Counted::default();
-    for done in 0..=tile.strips.len() {
-        while let Some(f) = finish.next_if(|f| f.after == done) {
-            let (row, [fx, fy]) = nodes.split(f.nodes.start, f.nodes.len());
-            let forces = Summed { fx, fy };
-            let free = match f.motion {
-                Motion::Free => [1.0, 1.0],
-                Motion::HeldX => [0.0, 1.0],
-                Motion::HeldY => [1.0, 0.0],
-                Motion::Held => [0.0, 0.0],
-                Motion::Rotating { centre, rate } => {
-                    counted.work += rotate(row, forces, centre, rate, dt, gravity);
-                    continue;
-                }
-            };
-            counted.heat += advance(row, forces, &Step { free, ..step });
-        }
-        if let Some(s) = tile.strips.get(done) {
-            counted.heat += strip(s, &tile.varying, &tile.stiffness, &mut nodes, &mut scratch.corners, &step);
+pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> Energies {
+    Arch::new().dispatch(Sweep { tile, fields, scratch, drive })
+}
+
+/// A sweep to be compiled for each instruction set and kind of damping.
+struct Sweep<'a> {
+    tile: &'a Tile,
+    fields: TileFields<'a>,
+    scratch: &'a mut Scratch,
+    drive: Drive,
+}
+
+impl WithSimd for Sweep<'_> {
+    type Output = Energies;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Energies {
+        match &self.tile.damping {
+            None => self.run::<S, Undamped>(simd),
+            Some(_) if self.drive.count_heat => self.run::<S, Counted>(simd),
+            Some(_) => self.run::<S, Damped>(simd),
         }
     }
-    fx[tile.own..].fill(0.0);
-    fy[tile.own..].fill(0.0);
-    counted
+}
+
+impl Sweep<'_> {
+    #[inline(always)]
+    fn run<S: Simd, D: Damping>(self, simd: S) -> Energies {
+        let Self { tile, fields, scratch, drive } = self;
+        let Drive { dt, gravity, .. } = drive;
+        let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
+        let step = &Step::new(simd, dt, gravity, rate, frames);
+        let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
+        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
+        let n = tile.slots.len();
+        let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
+        for &node in &tile.loaded {
+            let node = node as usize;
+            fx[node] = outer_x[node];
+            fy[node] = outer_y[node];
+            outer_x[node] = 0.0;
+            outer_y[node] = 0.0;
+        }
+        if tile.congruent {
+            congruent_elements(simd, tile, stiffness, x, y, fx, fy);
+        } else {
+            single_elements(simd, tile, stiffness, x, y, fx, fy);
+        }
+        let mass = tile.damping.as_ref().map_or(&[][..], |d| &d.mass);
+        let mut nodes = Nodes { x, y, vx, vy, fx, fy, step_over_mass: &tile.step_over_mass, mass };
+        let mut finish = tile.finish.iter().peekable();
+        let (mut work, mut heat) = (0.0, Vector::all(simd, 0.0));
+        for done in 0..=tile.strips.len() {
+            while let Some(f) = finish.next_if(|f| f.after == done) {
+                let free = match f.motion {
+                    Motion::Free => [1.0, 1.0],
+                    Motion::HeldX => [0.0, 1.0],
+                    Motion::HeldY => [1.0, 0.0],
+                    Motion::Held => [0.0, 0.0],
+                    Motion::Rotating { centre, rate } => {
+                        let gain = gain(tile.damping.as_ref().map_or(0.0, |d| d.rate), dt);
+                        work += rotate(&mut nodes, f.nodes.clone(), centre, rate, dt, gain, gravity);
+                        continue;
+                    }
+                };
+                advance_row::<S, D>(simd, &mut nodes, f.nodes.clone(), tile.congruent, free, step, &mut heat);
+            }
+            if let Some(s) = tile.strips.get(done) {
+                strip::<S, D>(simd, s, &tile.varying, stiffness, &mut nodes, step, &mut heat);
+            }
+        }
+        fx[tile.own..].fill(0.0);
+        fy[tile.own..].fill(0.0);
+        Energies { work, heat: step.heat(heat) }
+    }
 }

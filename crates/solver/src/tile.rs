@@ -2,18 +2,20 @@
 
 use std::ops::Range;
 
+use pulp::Simd;
 use stribeck_mesh::strips::find_strips;
 
 use crate::{
     damping::LaneFrames,
-    element::{QuadMetric, QuadReference, Stiffness, TriangleReference},
-    lanes::LANES,
+    element::{QuadGradients, QuadMetric, QuadReference, Stiffness, TriangleReference},
+    field::Field,
+    lanes::{LANES, Vector},
     layout::TileLayout,
     model::Motion,
 };
 
 /// Shorter runs of quadrilaterals go through the gather path.
-const SHORTEST_STRIP: usize = 4;
+pub(crate) const SHORTEST_STRIP: usize = 4;
 
 /// One tile of work. All node numbers are local to the tile.
 #[derive(Debug, Clone)]
@@ -25,8 +27,13 @@ pub(crate) struct Tile {
     pub(crate) strips: Vec<Strip>,
     /// References of strips whose elements differ, one array a component.
     pub(crate) varying: VaryingReferences,
-    /// Elements outside strips; in a tile of congruent bodies all elements of the first body.
-    pub(crate) quads: Vec<([u32; 4], QuadMetric)>,
+    /// Quadrilaterals outside strips; their references stand in `varying` from group `first_gathered` on.
+    pub(crate) quads: Vec<[u32; 4]>,
+    pub(crate) first_gathered: usize,
+    /// Quadrilaterals of congruent bodies: runs, and the right corners (2, 3) of each element in the first body.
+    pub(crate) runs: Vec<CongruentRun>,
+    pub(crate) quads_of_runs: Vec<([u32; 2], QuadMetric)>,
+    /// Triangles; in a tile of congruent bodies those of the first body.
     pub(crate) triangles: Vec<([u32; 3], TriangleReference)>,
     pub(crate) congruent: bool,
     /// False for a rigid body, whose nodes this tile does not move.
@@ -36,7 +43,7 @@ pub(crate) struct Tile {
     /// Own nodes that other forces may push.
     pub(crate) loaded: Vec<u32>,
     /// Time step over mass [s/kg]; zero for nodes without mass.
-    pub(crate) step_over_mass: Vec<f64>,
+    pub(crate) step_over_mass: Field,
     /// Damping of this tile's bodies, if any.
     pub(crate) damping: Option<TileDamping>,
 }
@@ -48,7 +55,7 @@ pub(crate) struct TileDamping {
     pub(crate) rate: f64,
     pub(crate) frames: LaneFrames,
     /// Mass of each slot [kg], for the heat.
-    pub(crate) mass: Vec<f64>,
+    pub(crate) mass: Field,
 }
 
 /// A run of quadrilaterals whose corners all advance by one.
@@ -57,10 +64,16 @@ pub(crate) struct Strip {
     pub(crate) corners: [u32; 4],
     pub(crate) len: usize,
     pub(crate) references: StripReferences,
-    /// The whole row of corners 1 and 2 (or 4 and 3) is free and complete after this strip: it moves with it.
+    /// The whole row of corners 1 and 2 is free and complete after this strip: it moves with it.
     pub(crate) completes: bool,
-    /// It is the row of corners 4 and 3.
-    pub(crate) completes_upper: bool,
+}
+
+/// Quadrilaterals of congruent bodies, each of which has its left side in common with the right one of the one before.
+#[derive(Debug, Clone)]
+pub(crate) struct CongruentRun {
+    /// Corners 1 and 4 of the first element.
+    pub(crate) left: [u32; 2],
+    pub(crate) quads: Range<usize>,
 }
 
 /// References of a strip's elements.
@@ -68,21 +81,14 @@ pub(crate) struct Strip {
 pub(crate) enum StripReferences {
     /// All alike: a ring's row, a square grid.
     Uniform(QuadMetric),
-    /// From this position of the tile's [`VaryingReferences`].
+    /// From this group of the tile's [`VaryingReferences`] on.
     Varying(usize),
 }
 
-/// [`QuadReference`]s as a structure of arrays.
+/// Shape gradients of quadrilaterals ([`crate::element::QuadGradients`]) in groups of lanes: eight values of each kind,
+/// one kind after the other, so that a kernel reads them as one stream.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct VaryingReferences {
-    pub(crate) b1x: Vec<f64>,
-    pub(crate) b1y: Vec<f64>,
-    pub(crate) b2x: Vec<f64>,
-    pub(crate) b2y: Vec<f64>,
-    pub(crate) s1: Vec<f64>,
-    pub(crate) s2: Vec<f64>,
-    pub(crate) volume: Vec<f64>,
-}
+pub(crate) struct VaryingReferences(Field);
 
 /// Consecutive own nodes that move alike and are complete once strip `after` is done, and do not move with it.
 #[derive(Debug, Clone)]
@@ -93,25 +99,67 @@ pub(crate) struct Finish {
     pub(crate) motion: Motion,
 }
 
-impl VaryingReferences {
-    fn push(&mut self, q: &QuadReference) {
-        self.b1x.push(q.b1[0]);
-        self.b1y.push(q.b1[1]);
-        self.b2x.push(q.b2[0]);
-        self.b2y.push(q.b2[1]);
-        self.s1.push(q.s1);
-        self.s2.push(q.s2);
-        self.volume.push(q.volume);
+impl Strip {
+    /// Renumbers the corners 4, 3, 2, 1: the upper row becomes the lower one.
+    fn turn_over(&mut self, varying: &mut VaryingReferences) {
+        self.corners.reverse();
+        match &mut self.references {
+            StripReferences::Uniform(q) => *q = q.turned_over(),
+            StripReferences::Varying(start) => varying.turn_over(*start, self.len),
+        }
     }
 }
 
 impl VaryingReferences {
-    /// Repeats the last element, so that every strip ends with a whole group of lanes.
-    fn pad(&mut self) {
-        let Self { b1x, b1y, b2x, b2y, s1, s2, volume } = self;
-        for v in [b1x, b1y, b2x, b2y, s1, s2, volume] {
-            let last = v.last().copied().unwrap_or(0.0);
-            v.resize(v.len() + LANES, last);
+    /// b1, b2, s1, s2 and half of the volume.
+    const KINDS: usize = 7;
+
+    /// Appends groups with the references of some elements; returns the number of the first group. The last group is
+    /// filled up with its last element, and one more follows, because kernels read a group beyond the end.
+    fn push<'a>(&mut self, elements: impl ExactSizeIterator<Item = &'a QuadReference>) -> usize {
+        let start = self.0.len() / (Self::KINDS * LANES);
+        let groups = elements.len() / LANES + 1;
+        let mut kinds = [const { Vec::new() }; Self::KINDS];
+        for q in elements {
+            let values = [q.b1[0], q.b1[1], q.b2[0], q.b2[1], q.s1, q.s2, 0.5 * q.volume];
+            kinds.iter_mut().zip(values).for_each(|(kind, value)| kind.push(value));
+        }
+        for group in 0..groups {
+            for kind in &kinds {
+                let last = kind.last().copied().unwrap_or(0.0);
+                (0..LANES).for_each(|l| self.0.push(kind.get(group * LANES + l).copied().unwrap_or(last)));
+            }
+        }
+        start
+    }
+
+    /// Renumbers the corners 4, 3, 2, 1 of `n` elements from group `start` on.
+    fn turn_over(&mut self, start: usize, n: usize) {
+        for group in start..=start + n / LANES {
+            let at = group * Self::KINDS * LANES;
+            let values = &mut self.0[at..at + Self::KINDS * LANES];
+            for l in 0..LANES {
+                let of = |kind: usize| kind * LANES + l;
+                for k in 0..2 {
+                    (values[of(k)], values[of(2 + k)]) = (-values[of(2 + k)], -values[of(k)]);
+                }
+                values.swap(of(4), of(5));
+            }
+        }
+    }
+
+    /// References of the elements from `e` on of those whose first group is `start`.
+    #[inline(always)]
+    pub(crate) fn group<S: Simd>(&self, simd: S, start: usize, e: usize) -> QuadGradients<Vector<S>> {
+        let at = (start + e / LANES) * Self::KINDS * LANES;
+        let values = &self.0[at..at + Self::KINDS * LANES];
+        let lane = e % LANES;
+        QuadGradients {
+            b1: [Vector::load(simd, values, lane), Vector::load(simd, values, LANES + lane)],
+            b2: [Vector::load(simd, values, 2 * LANES + lane), Vector::load(simd, values, 3 * LANES + lane)],
+            s1: Vector::load(simd, values, 4 * LANES + lane),
+            s2: Vector::load(simd, values, 5 * LANES + lane),
+            half_volume: Vector::load(simd, values, 6 * LANES + lane),
         }
     }
 }
@@ -133,26 +181,42 @@ impl Tile {
             strips: Vec::new(),
             varying: VaryingReferences::default(),
             quads: Vec::new(),
+            first_gathered: 0,
+            runs: Vec::new(),
+            quads_of_runs: Vec::new(),
             triangles: layout.triangles.iter().map(|&(c, e)| (c, triangles[e])).collect(),
             congruent: layout.congruent,
             elastic: true,
             finish: Vec::new(),
             loaded: (0..layout.own as u32).filter(|&n| loaded[n as usize]).collect(),
-            step_over_mass: Vec::new(),
+            step_over_mass: Field::default(),
             damping: None,
         };
         if layout.congruent {
-            tile.quads =
-                layout.quads.iter().map(|&(c, e)| (c, QuadMetric::new(&quads[e], &stiffness))).collect();
+            tile.add_runs(layout, quads);
         } else {
             tile.add_strips(layout, quads);
-            tile.varying.pad();
         }
-        tile.schedule(motion);
+        tile.schedule(layout, motion);
         tile
     }
 
+    fn add_runs(&mut self, layout: &TileLayout, quads: &[QuadReference]) {
+        let mut right = None;
+        for (at, &([a, b, c, d], e)) in layout.quads.iter().enumerate() {
+            if right != Some([a, d]) {
+                self.runs.push(CongruentRun { left: [a, d], quads: at..at });
+            }
+            right = Some([b, c]);
+            self.quads_of_runs.push(([b, c], QuadMetric::new(&quads[e], &self.stiffness)));
+            if let Some(run) = self.runs.last_mut() {
+                run.quads.end = at + 1;
+            }
+        }
+    }
+
     fn add_strips(&mut self, layout: &TileLayout, quads: &[QuadReference]) {
+        let mut gathered = Vec::new();
         let corners: Vec<[u32; 4]> = layout.quads.iter().map(|&(c, _)| c).collect();
         for run in find_strips(&corners) {
             let elements = &layout.quads[run.first_element..run.first_element + run.len];
@@ -160,31 +224,23 @@ impl Tile {
             let rows_apart = run.corners[0].abs_diff(run.corners[3]) as usize > run.len;
             let pairs = run.corners[1] == run.corners[0] + 1 && run.corners[2] == run.corners[3] + 1;
             if run.len < SHORTEST_STRIP || !rows_apart || !pairs {
-                let metric = |&(c, e): &([u32; 4], usize)| (c, QuadMetric::new(&quads[e], &self.stiffness));
-                self.quads.extend(elements.iter().map(metric));
+                self.quads.extend(elements.iter().map(|&(corners, _)| corners));
+                gathered.extend(elements.iter().map(|&(_, e)| e));
                 continue;
             }
             let first = quads[elements[0].1];
             let references = if elements.iter().all(|&(_, e)| quads[e].is_congruent(&first)) {
                 StripReferences::Uniform(QuadMetric::new(&first, &self.stiffness))
             } else {
-                let start = self.varying.b1x.len();
-                elements.iter().for_each(|&(_, e)| self.varying.push(&quads[e]));
-                StripReferences::Varying(start)
+                StripReferences::Varying(self.varying.push(elements.iter().map(|&(_, e)| &quads[e])))
             };
-            let (completes, completes_upper) = (false, false);
-            self.strips.push(Strip {
-                corners: run.corners,
-                len: run.len,
-                references,
-                completes,
-                completes_upper,
-            });
+            self.strips.push(Strip { corners: run.corners, len: run.len, references, completes: false });
         }
+        self.first_gathered = self.varying.push(gathered.iter().map(|&e: &usize| &quads[e]));
     }
 
     /// Lists which nodes are complete after which strip: the last one that reads or pushes them.
-    fn schedule(&mut self, motion: &[Motion]) {
+    fn schedule(&mut self, layout: &TileLayout, motion: &[Motion]) {
         let mut after = vec![0; self.own];
         for (s, strip) in self.strips.iter().enumerate() {
             for corner in strip.corners {
@@ -195,15 +251,20 @@ impl Tile {
                 }
             }
         }
-        let mut with_strip = vec![false; self.own];
-        for (s, strip) in self.strips.iter_mut().enumerate() {
-            for upper in [false, true] {
-                let first = strip.corners[if upper { 3 } else { 0 }] as usize;
+        // Padding never moves.
+        let mut with_strip: Vec<bool> = layout.padding[..self.own].to_vec();
+        for s in 0..self.strips.len() {
+            for turned in [false, true] {
+                let strip = &mut self.strips[s];
+                let first = strip.corners[if turned { 3 } else { 0 }] as usize;
                 let row = first..first + strip.len + 1;
-                if row.end <= self.own && row.clone().all(|n| after[n] == s + 1 && motion[n] == Motion::Free)
-                {
-                    (strip.completes, strip.completes_upper) = (true, upper);
+                let done = |n: usize| after[n] == s + 1 && motion[n] == Motion::Free;
+                if row.end <= self.own && row.clone().all(done) {
+                    strip.completes = true;
                     with_strip[row].fill(true);
+                    if turned {
+                        strip.turn_over(&mut self.varying);
+                    }
                     break;
                 }
             }
