@@ -16,8 +16,8 @@ use inputs::Inputs;
 
 use crate::{host, workspace};
 
-/// An input that takes longer than this hangs: the largest mesh that is tried takes a tenth.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// An input that takes longer than this hangs: the largest mesh that is tried takes a tenth of that on a busy machine.
+const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Memory that a small input may take beyond what the program has [MiB].
 const MEMORY_MIB: f64 = 512.0;

@@ -3,6 +3,7 @@
 pub mod assembly;
 mod checkpoint;
 pub mod error;
+pub mod frames;
 mod grading;
 mod guards;
 pub mod kinematics;

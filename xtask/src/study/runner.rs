@@ -119,15 +119,19 @@ impl Runner {
     /// # Errors
     /// When a variant is not a scene, or at Ctrl-C; what has been run is kept.
     pub(crate) fn run(&self, variants: &[Variant]) -> Result<Vec<Finished>> {
+        self.run_with(&self.flags, variants)
+    }
+
+    fn run_with(&self, flags: &Flags, variants: &[Variant]) -> Result<Vec<Finished>> {
         let mut all = Vec::new();
         for (number, variant) in variants.iter().enumerate() {
             let scene = variant.scene()?;
             let folder = self.folder.join(&variant.name);
-            let wanted = self.flags.wants(&variant.name);
+            let wanted = flags.wants(&variant.name);
             let mut failed = None;
             match state_of(&folder, &scene) {
                 State::Done => {}
-                _ if !wanted || self.flags.tables_only => continue,
+                _ if !wanted || flags.tables_only => continue,
                 state => {
                     eprintln!("{} of {}: {}", number + 1, variants.len(), variant.name);
                     if let Err(error) = self.run_one(&scene, &folder, state) {
@@ -142,6 +146,17 @@ impl Runner {
             all.push(finished(variant.clone(), folder, scene, failed));
         }
         Ok(all)
+    }
+
+    /// As [`Runner::run`]; when not `wanted`, nothing is run and what has been run is returned.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub(crate) fn run_if(&self, wanted: bool, variants: &[Variant]) -> Result<Vec<Finished>> {
+        if wanted {
+            return self.run(variants);
+        }
+        self.run_with(&Flags { tables_only: true, ..self.flags.clone() }, variants)
     }
 
     fn run_one(&self, scene: &Scene, folder: &Path, state: State) -> Result<()> {

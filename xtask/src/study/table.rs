@@ -114,6 +114,11 @@ impl Sheet {
     }
 }
 
+/// The number of a column for a run; not a number when it has none, a gap in a picture.
+pub(crate) fn quantity_by(column: &Column, run: &Finished) -> f64 {
+    (column.of)(run).unwrap_or(f64::NAN)
+}
+
 /// A number with a real minus sign.
 pub(crate) fn number(value: f64, decimals: usize) -> String {
     format!("{value:.decimals$}").replace('-', "−")
