@@ -266,7 +266,7 @@ impl Assembly {
 
         let (pairs, roller_pairs) = self.pairs(scene, first_piece)?;
         let seat_pair = pairs.len() - 1;
-        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y);
+        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y)?;
         contacts.set_parallel(threads > 1);
 
         let rollers = self

@@ -9,6 +9,7 @@ use crate::{
     checkpoint::Checkpoint,
     error::Error,
     frames::Frames,
+    guards::Guards,
     ledger::{COLUMNS, Ledger, Reference},
     recorder::Recorder,
     run_dir::{RunDir, write_atomic},
@@ -18,8 +19,8 @@ use crate::{
     trace::TraceWriter,
 };
 
-/// A run stops when the imbalance of energy passes this share of the peak strain energy.
-const WORST_IMBALANCE: f64 = 0.25;
+/// Imbalance is never measured against less than this share of the kinetic energy.
+const ROUNDING: f64 = 1e-9;
 
 /// Checkpoint and `run.json` are written again after this many samples …
 const SAVE_EVERY: usize = 100;
@@ -41,6 +42,7 @@ pub(crate) struct Run<'a> {
     frames: Option<Frames>,
     reference: Reference,
     before: Before,
+    guards: Guards,
 }
 
 /// Velocities before a step, for the kinetic energy at its start.
@@ -63,7 +65,10 @@ struct Saved {
 
 impl Saved {
     fn is_due(&self, sample: usize, wall_s: f64) -> bool {
-        sample - self.sample >= SAVE_EVERY && SAVE_SHARE * (wall_s - self.wall_s) >= self.cost_s
+        let passed = wall_s - self.wall_s;
+        // A clock that was set back, or that is none, must not put off saving.
+        let counts = passed >= 0.0 && self.cost_s >= 0.0;
+        sample - self.sample >= SAVE_EVERY && (!counts || SAVE_SHARE * passed >= self.cost_s)
     }
 }
 
@@ -83,6 +88,7 @@ impl<'a> Run<'a> {
             frames: Frames::of(scene, dir.frames()),
             reference: Reference::default(),
             before: Before::default(),
+            guards: Guards::new(scene, assembly, &machine),
             info,
             assembly,
             machine,
@@ -117,6 +123,7 @@ impl<'a> Run<'a> {
             frames: Frames::of(scene, dir.frames()),
             reference: saved.reference,
             before: Before::default(),
+            guards: Guards::new(scene, assembly, &machine),
             info: saved.info,
             assembly,
             machine,
@@ -156,14 +163,16 @@ impl<'a> Run<'a> {
             let state = &self.machine.dynamics.state;
             self.info.steps = state.step;
             self.info.samples = sample;
-            self.info.wall_s = earlier.0 + (host.wall_s)() - began;
-            self.info.cpu_s = earlier.1 + (host.cpu_s)();
+            // Clocks may jump; times that are written only grow.
+            self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
+            self.info.cpu_s = self.info.cpu_s.max(earlier.1 + (host.cpu_s)());
             progress.step = state.step;
             progress.time_s = state.time;
             progress.energy_error = error;
-            if error > WORST_IMBALANCE {
+            let stop = self.guards.look(&mut self.info, self.assembly, &self.machine, &ledger, error);
+            if stop.is_some() {
                 self.info.status = Status::Diverged;
-                self.info.stop_reason = Some(self.why_stopped(error));
+                self.info.stop_reason = stop;
                 break;
             }
             if watch(&progress).is_break() {
@@ -189,7 +198,8 @@ impl<'a> Run<'a> {
         self.trace.finish()?;
         self.energy.finish()?;
         dir.write_info(&self.info)?;
-        if self.info.status != Status::Interrupted {
+        // A stopped run keeps its last one: that is the state before things went wrong.
+        if self.info.status == Status::Complete {
             dir.remove_checkpoint();
         }
         Ok(self.info)
@@ -287,36 +297,15 @@ impl<'a> Run<'a> {
         let energy = &mut self.info.energy;
         energy.peak_strain_j = energy.peak_strain_j.max(l.strain);
         let imbalance = (l.balance() - self.reference.balance.unwrap_or(0.0)).abs();
-        let scale = if energy.peak_strain_j > 0.0 { energy.peak_strain_j } else { 1.0 };
+        // Where nothing is strained, the rounding of a large kinetic energy is no imbalance.
+        let scale = energy.peak_strain_j.max(ROUNDING * l.kinetic.abs());
+        let scale = if scale > 0.0 { scale } else { 1.0 };
         let error = if imbalance.is_finite() { imbalance / scale } else { f64::INFINITY };
         energy.max_relative_error = energy.max_relative_error.max(error);
         let time = self.machine.dynamics.state.time - self.machine.dynamics.time_step();
         self.energy.push(&l.row(time, error))?;
         self.trace.push(self.recorder.sample(&self.machine))?;
         Ok(error)
-    }
-
-    fn why_stopped(&self, error: f64) -> String {
-        let d = &self.machine.dynamics;
-        let s = &d.state;
-        let speed = |n: usize| s.vx[n].hypot(s.vy[n]);
-        let worse = |a: usize, b: usize| if speed(a) >= speed(b) || speed(a).is_nan() { a } else { b };
-        let worst = (0..s.x.len()).filter(|&n| d.mass()[n] > 0.0).reduce(worse).unwrap_or(0);
-        let node = d.layout().node_of_slot[worst].unwrap_or(0) as usize;
-        let mesh = &self.assembly.model.mesh;
-        let body = mesh.bodies.iter().find(|b| b.nodes.contains(&node)).map_or("", |b| b.name.as_str());
-        format!(
-            "energy is out of balance by {:.1} % of the peak strain energy (limit {:.0} %) at step {}, t = {:.5} ms; the \
-             fastest node is in the {body} at x = {:.3} mm, y = {:.3} mm with {:.3e} m/s. Try a smaller \
-             `solver.time_step_factor`, a smaller `contact.penalty_scale`, or look for bodies that overlap",
-            100.0 * error,
-            100.0 * WORST_IMBALANCE,
-            s.step,
-            1e3 * s.time,
-            1e3 * s.x[worst],
-            1e3 * s.y[worst],
-            speed(worst),
-        )
     }
 }
 

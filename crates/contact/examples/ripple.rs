@@ -87,7 +87,7 @@ fn force(
         })
         .collect();
     let pair = PairSpec { first: 1, second: 0, law, method, sides: Sides::Both };
-    let mut contacts = Contacts::new(surfaces, &[pair], THICKNESS, &x, &y);
+    let mut contacts = Contacts::new(surfaces, &[pair], THICKNESS, &x, &y).expect("two surfaces");
     let bodies = [0, 1].map(|b| (format!("b{b}"), of_body(&d, &model, b)));
     let mut load = NodalLoad::new(vec![]);
     preload(&mut d, &mut contacts, &mut load, bodies.to_vec(), &[1e-6, 1e-7, 1e-8, 0.0], 1e-4);

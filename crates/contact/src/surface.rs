@@ -98,6 +98,9 @@ impl Surface {
         if n < 2 || (closed && n < 3) {
             return Err(Error::BadSurface { name, reason: "needs at least one facet, three when closed" });
         }
+        if slots.iter().any(|&s| s as usize >= x.len().min(y.len())) {
+            return Err(Error::BadSurface { name, reason: "lists a slot for which there is no position" });
+        }
         let at = Vertices { slots: &slots, closed, x, y };
         let along = |f: usize| {
             let ([ax, ay], [bx, by]) = at.ends(f);

@@ -59,6 +59,7 @@ impl Shapes {
         };
         let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
         Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
+            .expect("two surfaces")
     }
 
     fn moment(&self, step: u64, dt: f64) -> Moment<'_> {

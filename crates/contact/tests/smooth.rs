@@ -174,7 +174,7 @@ impl DiscInRing {
 
     fn contacts(&self, law: Law) -> Contacts {
         let pair = PairSpec { first: 0, second: 1, law, method: self.method, sides: Sides::Both };
-        Contacts::new(self.surfaces.clone(), &[pair], THICKNESS, &self.x, &self.y)
+        Contacts::new(self.surfaces.clone(), &[pair], THICKNESS, &self.x, &self.y).expect("two surfaces")
     }
 
     fn forces(&self, contacts: &mut Contacts, x: &[f64], y: &[f64]) -> NodeForces {

@@ -72,7 +72,8 @@ impl Scene {
                 Surface::new(name, slots, s.closed, &d.state.x, &d.state.y).expect("a surface with facets")
             })
             .collect();
-        let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y);
+        let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y)
+            .expect("surfaces and pairs that exist");
         (d, contacts)
     }
 }
