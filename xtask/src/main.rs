@@ -1,4 +1,4 @@
-//! Command line of Stribeck: `cargo xtask simulate`, `report`, `compare` and `ci`.
+//! Command line of Stribeck: `cargo xtask simulate`, `report`, `study`, `compare` and `ci`.
 //!
 //! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
 
@@ -9,6 +9,7 @@ mod host;
 mod progress;
 mod report;
 mod simulate;
+mod study;
 mod workspace;
 
 use std::process::ExitCode;
@@ -29,6 +30,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Writes the report of a run again.
     Report(report::Options),
+    /// Answers a question by many runs: tables and pictures in docs/results
+    Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
     Compare(compare::Options),
     /// Checks format, lints, tests and documents.
@@ -40,6 +43,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Simulate(options) => simulate::run(&options),
         Command::Report(options) => report::run(&options),
+        Command::Study(options) => study::run(&options),
         Command::Compare(options) => compare::run(&options),
         Command::Ci(options) => ci::run(&options),
     };

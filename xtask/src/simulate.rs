@@ -97,12 +97,12 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     })
 }
 
-fn available_threads() -> usize {
+pub(crate) fn available_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// The first Ctrl-C asks the run to end after its step, the second ends the program.
-fn listen_for_interrupt() -> Result<Arc<AtomicBool>> {
+pub(crate) fn listen_for_interrupt() -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let seen = Arc::clone(&flag);
     ctrlc::set_handler(move || {

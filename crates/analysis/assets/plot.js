@@ -109,6 +109,27 @@
           ctx.stroke();
         });
         ctx.globalAlpha = 1;
+        ctx.setLineDash([5 * ratio, 4 * ratio]);
+        for (const level of spec.levels) {
+          if (level.y < u.scales.y.min || level.y > u.scales.y.max) continue;
+          const up = u.valToPos(level.y, "y", true), right = bbox.left + bbox.width;
+          ctx.strokeStyle = theme(level.colour);
+          ctx.beginPath();
+          ctx.moveTo(bbox.left, up);
+          ctx.lineTo(right, up);
+          ctx.stroke();
+          if (!level.label) continue;
+          const wide = widthOf(level.label) * ratio;
+          ctx.globalAlpha = 0.8;
+          ctx.fillStyle = theme("--paper");
+          ctx.fillRect(right - wide, up - 15 * ratio, wide, 13 * ratio);
+          ctx.globalAlpha = 1;
+          ctx.fillStyle = theme(level.colour);
+          ctx.textAlign = "right";
+          ctx.fillText(level.label, right - 4 * ratio, up - 4 * ratio);
+          ctx.textAlign = "center";
+        }
+        ctx.setLineDash([]);
         // Labels come after all lines, on ground of their own, so that no line crosses a word.
         seen.forEach((m, i) => {
           if (!m.label || rows[i] > rowLimit) return;
@@ -170,7 +191,12 @@
     const pixels = (x) => ((x - from) / (to - from)) * (width() - 100);
     const first = visibleMarks(spec.marks, from, to).map((m) => [pixels(m.x), widthOf(m.label)]);
     const rowLimit = Math.min(5, Math.max(-1, ...rowsOf(first)));
-    const fixed = (range) => (range ? { range: () => range } : {});
+    const held = spec.levels.map((level) => level.y);
+    const fixed = (range) => {
+      if (range) return { range: () => range };
+      if (!held.length) return {};
+      return { range: (u, low, high) => uPlot.rangeNum(Math.min(low, ...held), Math.max(high, ...held), 0.1, true) };
+    };
     const chart = new uPlot({
       width: width(),
       height: 330 + ROW * (rowLimit + 1),

@@ -101,6 +101,26 @@ pub fn pick(time_s: &[f64], force_n: &[f64], passage: &Passage) -> Picked {
     picked
 }
 
+/// A roller that touches the floor presses on it with this part of its load at least.
+const LEAST_IMPACT: f64 = 0.05;
+
+impl Picked {
+    /// When the roller strikes the floor [s]: its largest force while its centre is at least `reach_s` away from either
+    /// edge, the time within which the edges keep a roller off the floor. `None` when it does not touch the floor.
+    pub fn floor_impact_s(
+        &self,
+        time_s: &[f64],
+        force_n: &[f64],
+        passage: &Passage,
+        reach_s: f64,
+    ) -> Option<f64> {
+        let level = self.level_n?;
+        let inside = span(time_s, passage.entry_s + reach_s, passage.exit_s - reach_s);
+        let at = inside.max_by(|&a, &b| force_n[a].total_cmp(&force_n[b]))?;
+        (force_n[at] > LEAST_IMPACT * level).then(|| time_s[at])
+    }
+}
+
 /// Times [s] at which a body rotating from `angle` [rad] (unwrapped, one a sample) passes `edge` [rad], modulo a turn.
 pub fn crossings(time_s: &[f64], angle: &[f64], edge: f64) -> Vec<f64> {
     let turns = |a: f64| (a - edge) / std::f64::consts::TAU;

@@ -40,6 +40,8 @@ pub struct NotchFinding {
     pub attenuation_boxcar_settled_db: Option<f64>,
     /// What the filter takes from a steady 4545 Hz [dB], from its transfer function.
     pub attenuation_4545_db: Option<f64>,
+    /// The same of the paper's own notch, centred at 4671 Hz: −20 log |H(4545 Hz)| from the coefficients.
+    pub paper_4545_db: Option<f64>,
 }
 
 /// A notch made for one record.
@@ -95,6 +97,8 @@ impl Filter {
                 at_centre(rate, self.centre_hz(), window, a)? - at_centre(rate, self.centre_hz(), window, b)?,
             )
         };
+        let taken =
+            |notch: &Notch| notch.magnitude_db(PAPER_BEAT_HZ).ok().map(|db| -db).filter(|db| db.is_finite());
         NotchFinding {
             centre_hz: self.centre_hz(),
             paper_centre_hz: PAPER_CENTRE_HZ,
@@ -106,12 +110,8 @@ impl Filter {
             attenuation_settled_db: drop(Window::Hann, self.settled),
             attenuation_boxcar_db: drop(Window::Boxcar, 0),
             attenuation_boxcar_settled_db: drop(Window::Boxcar, self.settled),
-            attenuation_4545_db: self
-                .notch
-                .magnitude_db(PAPER_BEAT_HZ)
-                .ok()
-                .map(|db| -db)
-                .filter(|db| db.is_finite()),
+            attenuation_4545_db: taken(&self.notch),
+            paper_4545_db: Notch::new(rate, PAPER_CENTRE_HZ, QUALITY).ok().as_ref().and_then(taken),
         }
     }
 }
@@ -144,6 +144,7 @@ mod tests {
         let found = filter.finding(&tone, &filter.acceleration(&tone).unwrap());
         assert!((found.width_hz - 311.4).abs() < 0.05);
         assert!((found.attenuation_4545_db.unwrap() - 3.96).abs() < 0.01, "{:?}", found.attenuation_4545_db);
+        assert!((found.paper_4545_db.unwrap() - 3.96).abs() < 0.005, "{:?}", found.paper_4545_db);
         assert!((found.time_constant_s - 1.02e-3).abs() < 0.01e-3);
         assert!((found.transient_s - 7.07e-3).abs() < 0.05e-3, "{}", found.transient_s);
         // A clean tone gives 29 dB with a boxcar and 56 dB with Hann (computed with scipy over 30 ms).

@@ -4,15 +4,20 @@ mod passages;
 
 use stribeck_bearing::run_dir::Run;
 use stribeck_bearing::run_info::Status;
-use stribeck_dsp::{PeriodCount, PeriodVerdict, Spectrum, Welch};
+use stribeck_dsp::{Spectrum, Welch};
 
 use self::passages::{crossing_forces, level_finding, picked_events};
 use crate::Error;
+use crate::artefacts;
+use crate::enveloping;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
 use crate::load::{self, Distribution};
+use crate::paper;
 use crate::prediction::{Prediction, StaticCurve};
+use crate::reading::CursorReading;
 use crate::record::Record;
+use crate::ring;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones::{self, Tone};
 
@@ -32,6 +37,8 @@ pub struct Findings {
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
     pub lines: Vec<tones::Line>,
+    /// Bending modes of the free outer ring: waves around it, frequency [Hz].
+    pub modes: Vec<(u32, f64)>,
     /// Time of the first usable sample [s].
     pub start_s: f64,
     /// Sampling interval [s].
@@ -42,6 +49,8 @@ pub struct Findings {
     pub crossings: Vec<CrossingForce>,
     /// Mean roller force by angle.
     pub distribution: Distribution,
+    /// Squared envelope spectrum of the leading sensor [g⁴]; `None` when the record is too short.
+    pub envelope: Option<Spectrum>,
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
 }
@@ -97,7 +106,7 @@ impl Findings {
             filter_sensors(filter, &record, &mut sensors)?;
         }
 
-        let mut events = picked_events(&record, &prediction, &mut notes);
+        let mut events = picked_events(&run.scene, &record, &prediction, &mut notes);
         let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
         let crossings = crossing_forces(&record, &events, filter.as_ref())?;
         let notch = filter.as_ref().zip(sensors.first()).map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g));
@@ -114,9 +123,17 @@ impl Findings {
         load.static_max_roller_defect_n = static_curve.as_ref().map(|c| c.largest_n);
         load.static_loaded_rollers = static_curve.as_ref().map(|c| c.loaded_rollers);
         let span = time.last().copied().unwrap_or(0.0);
-        note_on_envelope(span, prediction.kinematics.bpfo_hz, &mut notes);
+        let artefacts = match sensors.first().zip(spectrum) {
+            Some((sensor, density)) => {
+                artefacts::ledger(&run.scene, &prediction, &motion, &measured, &sensor.name, density)?
+            }
+            None => Vec::new(),
+        };
+        let (envelope, enveloped) = envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
+        let pair = prediction.kinematics.paper_noise_hz(run.scene.mesh.size_mm);
+        let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
 
-        let summary = Summary {
+        let mut summary = Summary {
             scene: run.scene.name.clone(),
             status: run.info.status,
             mesh: run.info.mesh.clone(),
@@ -132,16 +149,23 @@ impl Findings {
             levels,
             notch,
             spectrum: spectrum.map(|s| SpectrumFinding::of(s.resolution())),
+            artefacts,
+            envelope: enveloped,
+            cursor,
+            paper: Vec::new(),
             notes,
         };
+        summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
         Ok(Self {
             summary,
             lines,
+            modes: ring::outer_ring_modes(&run.scene, artefacts::LAST_MODE),
             start_s: time.first().copied().unwrap_or(0.0),
             interval_s: record.interval_s(),
             sensors,
             crossings,
             distribution: load::distribution(&record),
+            envelope,
             static_curve,
             prediction,
         })
@@ -286,10 +310,22 @@ fn filter_sensors(filter: &Filter, record: &Record<'_>, sensors: &mut [SensorSig
     Ok(())
 }
 
-/// Says whether the record is long enough for envelope analysis instead of drawing one that means nothing.
-fn note_on_envelope(record_s: f64, bpfo_hz: f64, notes: &mut Vec<String>) {
-    let Ok(count) = PeriodCount::new(record_s, bpfo_hz) else { return };
-    if count.verdict() == PeriodVerdict::TooFew {
-        notes.push(format!("no envelope spectrum: {count}"));
+/// The envelope spectrum of the leading sensor when the record is long enough; a note otherwise, instead of a spectrum that
+/// means nothing.
+fn envelope(
+    record: &Record<'_>,
+    prediction: &Prediction,
+    motion: &kinematics::KinematicsFinding,
+    sensors: &[SensorSignal],
+    notes: &mut Vec<String>,
+) -> Result<(Option<Spectrum>, Option<enveloping::EnvelopeFinding>), Error> {
+    let Some(leading) = sensors.first().filter(|s| !s.raw_g.is_empty()) else { return Ok((None, None)) };
+    let lines = artefacts::defect_lines(prediction, motion);
+    match enveloping::analyse(&leading.raw_g, record.sample_rate_hz(), &lines)? {
+        Ok((spectrum, finding)) => Ok((Some(spectrum), Some(finding))),
+        Err(why) => {
+            notes.push(why);
+            Ok((None, None))
+        }
     }
 }

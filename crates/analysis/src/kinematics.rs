@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use stribeck_bearing::kinematics::Kinematics;
 
+use crate::events::median;
 use crate::record::{Record, Roller};
 
 /// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
@@ -94,7 +95,7 @@ pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding 
         expected_cage_hz: expected.cage_hz,
         bpfo_hz: cage_hz.filter(|_| !rollers.is_empty()).map(|hz| hz * rollers.len() as f64),
         expected_bpfo_hz: expected.bpfo_hz,
-        roller_spin_hz: mean(motions.iter().filter(|m| m.loaded).map(|m| m.spin_hz)),
+        roller_spin_hz: middle(motions.iter().filter(|m| m.loaded).map(|m| m.spin_hz)),
         expected_roller_spin_hz: expected.roller_spin_hz,
         roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
         rollers: motions,
@@ -110,6 +111,13 @@ pub fn rate(time_s: &[f64], angle: &[f64]) -> Option<f64> {
         spread += (t - t0) * (t - t0);
     }
     (spread > 0.0).then(|| moment / spread)
+}
+
+/// Median; `None` of nothing. A roller that has been free in the defect may spin at its own speed for a while, and a mean
+/// would give it a vote.
+fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    (!values.is_empty()).then(|| median(&mut values))
 }
 
 /// Arithmetic mean; `None` of nothing.

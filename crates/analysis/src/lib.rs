@@ -33,14 +33,24 @@ pub mod summary;
 pub mod prediction;
 pub mod record;
 
+pub mod enveloping;
 pub mod events;
 pub mod filtering;
 pub mod kinematics;
 pub mod levels;
 pub mod load;
+pub mod lumped;
+pub mod reading;
+pub mod ring;
+pub mod signal;
+pub mod spall;
 pub mod tones;
 
+pub mod artefacts;
+pub mod stress;
+
 pub mod findings;
+pub mod paper;
 
 pub mod plot;
 pub mod report;

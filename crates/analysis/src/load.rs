@@ -71,6 +71,12 @@ pub fn measure(record: &Record<'_>, expected_n: f64, facet_period_s: f64) -> Loa
     }
 }
 
+/// Vertical force of all rollers on the outer ring at every sample [N], positive when it supports the load.
+pub fn vertical_sum(record: &Record<'_>) -> Vec<f64> {
+    let rollers = record.rollers();
+    (0..record.len()).map(|n| -rollers.iter().map(|r| r.outer_fy[n]).sum::<f64>()).collect()
+}
+
 /// Mean outer-raceway force by angle over all rollers and samples, in bins of one degree.
 pub fn distribution(record: &Record<'_>) -> Distribution {
     let bins = (360.0 / BIN_DEG) as usize;

@@ -172,7 +172,8 @@ mod tests {
 
     #[test]
     fn analytic_static_curve_has_a_hole_and_relieving_neighbours() {
-        let scene = Scene::default();
+        let mut scene = Scene::default();
+        scene.bearing.thickness_mm = 20.0;
         let prediction = Prediction::of(&scene, &mesh(1257, 1030));
         let curve = prediction.static_curve(&scene, 50_000.0).unwrap();
         assert_eq!(curve.angle_deg.len(), 24 * CAGE_STEPS);

@@ -3,7 +3,8 @@
 
 mod comparison;
 mod figures;
-mod signals;
+mod pictures;
+mod sections;
 mod tables;
 
 use std::fs;
@@ -14,9 +15,15 @@ use stribeck_bearing::run_dir::{Run, write_atomic};
 use stribeck_bearing::run_info::Status;
 
 use crate::findings::Findings;
-use crate::plot::{self, Figure};
+use crate::plot;
 use crate::summary::Summary;
-use crate::{Error, report::figures::Figures};
+use crate::{
+    Error,
+    report::{
+        figures::{Figures, Item},
+        pictures::Pictures,
+    },
+};
 
 /// Writes the report of the run in `run_dir` into that directory and returns its numbers.
 ///
@@ -27,21 +34,35 @@ use crate::{Error, report::figures::Figures};
 /// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     let run = Run::read(run_dir)?;
-    let findings = Findings::of(&run)?;
+    let mut findings = Findings::of(&run)?;
+    let pictures = Pictures::of(&run, &findings, run_dir)?;
+    findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
-
-    let figures = Figures::of(&run, &findings);
-    let folder = run_dir.join("figures");
-    fs::create_dir_all(&folder).map_err(|why| Error::Write { path: folder.clone(), why })?;
-    for figure in figures.all() {
-        let path = folder.join(format!("{}.svg", figure.id));
-        fs::write(&path, figure.to_svg()?).map_err(|why| Error::Write { path, why })?;
-    }
+    let figures = Figures::of(&run, &findings, pictures);
+    write_figures(&figures, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.
     let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
     let page = page(&run, &findings, &figures, &scene)?.into_string();
     write_atomic(&run_dir.join("report.html"), page.as_bytes())?;
     Ok(findings.summary)
+}
+
+/// Every figure as SVG and as PNG; one that moves as GIF too.
+fn write_figures(figures: &Figures, folder: &Path) -> Result<(), Error> {
+    fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
+    let write = |name: String, bytes: &[u8]| {
+        let path = folder.join(name);
+        fs::write(&path, bytes).map_err(|why| Error::Write { path, why })
+    };
+    for item in figures.all() {
+        let (id, svg) = (item.id(), item.to_svg()?);
+        write(format!("{id}.svg"), svg.as_bytes())?;
+        write(format!("{id}.png"), &plot::png(id, &svg)?)?;
+        if let Some(gif) = item.animation() {
+            write(format!("{id}.gif"), gif)?;
+        }
+    }
+    Ok(())
 }
 
 /// `summary.json` with a final line end.
@@ -71,15 +92,24 @@ fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Resul
                 (banner(run))
                 (contents())
                 (opening(summary, findings))
-                (section("acceleration", "Acceleration", tables::levels(summary), &figures.acceleration, "No sensor was recorded.")?)
-                (section("spectra", "Spectra", html! {}, &figures.spectra, "The record is too short for a spectrum.")?)
-                (tables::tones(summary))
+                h2 #numbers { "Every number of the paper" }
+                (sections::paper(summary))
+                (section("paper", "The paper's figures", index(&figures.paper), &figures.paper, tables::events(summary), "")?)
+                h2 #artefacts { "Which lines are physics, which are mesh" }
+                (sections::artefacts(summary))
+                (sections::readings(summary))
                 (tables::notch(summary))
-                (section("forces", "Contact forces over the defect", tables::events(summary), &figures.forces, "")?)
-                (section("load", "Load distribution", tables::loads(summary), &figures.load, "No roller was recorded.")?)
-                (section("energy", "Energy", html! {}, &figures.energy, "No energy was recorded.")?)
+                (section("spectra", "More spectra", html! {}, &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
+                (section("sensors", "Other sensors", html! {}, &figures.acceleration, tables::levels(summary), "One sensor was recorded, and it is above.")?)
+                (section("bearing", "Load, slip and cage", html! {}, &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
+                h3 { "Length of the defect, from the events" }
+                (sections::spall(run, summary))
+                (section("stress", "Stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
+                (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
                 h2 #kinematics { "Kinematics" }
                 (tables::kinematics(summary))
+                h2 #lines { "Facet lines at every sensor" }
+                (tables::tones(summary))
                 (closing(run, summary, scene))
             }
         }
@@ -89,16 +119,25 @@ fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Resul
 fn contents() -> Markup {
     let entries = [
         ("summary", "Summary"),
-        ("acceleration", "Acceleration"),
-        ("spectra", "Spectra"),
-        ("forces", "Contact forces"),
-        ("load", "Load"),
+        ("numbers", "The paper's numbers"),
+        ("paper", "The paper's figures"),
+        ("artefacts", "Physics or mesh"),
+        ("spectra", "More spectra"),
+        ("sensors", "Other sensors"),
+        ("bearing", "Load, slip and cage"),
+        ("stress", "Stress"),
         ("energy", "Energy"),
         ("kinematics", "Kinematics"),
+        ("lines", "Facet lines"),
         ("notes", "Notes"),
         ("provenance", "Provenance"),
     ];
-    html! { nav { @for (id, name) in entries { a href={ "#" (id) } { (name) } } } }
+    html! { nav aria-label="Contents" { @for (id, name) in entries { a href={ "#" (id) } { (name) } } } }
+}
+
+/// Titles of the figures of a section, as links.
+fn index(items: &[Item]) -> Markup {
+    html! { p class="index" { @for item in items { a href={ "#" (item.id()) } { (item.title().split(':').next().unwrap_or_default()) } " " } } }
 }
 
 /// The sentence under the title.
@@ -150,17 +189,19 @@ fn opening(summary: &Summary, findings: &Findings) -> Markup {
     }
 }
 
-/// A heading, the figures (`otherwise` when there are none) and what stands after them.
+/// A heading, what stands before the figures, the figures (`otherwise` when there are none) and what stands after them.
 fn section(
     id: &str,
     name: &str,
+    before: Markup,
+    items: &[Item],
     after: Markup,
-    figures: &[Figure],
     otherwise: &str,
 ) -> Result<Markup, Error> {
-    let drawn = figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+    let drawn = items.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         h2 id=(id) { (name) }
+        (before)
         @if drawn.is_empty() { p { (otherwise) } }
         @for figure in drawn { (figure) }
         (after)

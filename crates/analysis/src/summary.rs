@@ -5,9 +5,13 @@ use serde::{Deserialize, Serialize};
 use stribeck_bearing::run_info::{MeshInfo, RunInfo, Status};
 use stribeck_dsp::Resolution;
 
+use crate::artefacts::Artefact;
+use crate::enveloping::EnvelopeFinding;
 use crate::filtering::NotchFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
+use crate::paper::Row;
+use crate::reading::CursorReading;
 use crate::tones::Tone;
 
 /// Everything a run says, in numbers.
@@ -37,6 +41,14 @@ pub struct Summary {
     pub notch: Option<NotchFinding>,
     /// What the spectra can tell apart.
     pub spectrum: Option<SpectrumFinding>,
+    /// Every line of the leading sensor's spectrum: mesh, beats, defect, ring.
+    pub artefacts: Vec<Artefact>,
+    /// The defect's family in the envelope; `None` when the record is too short.
+    pub envelope: Option<EnvelopeFinding>,
+    /// What the paper's 4545 Hz can be at this sample rate.
+    pub cursor: Option<CursorReading>,
+    /// Every number of the paper beside ours.
+    pub paper: Vec<Row>,
     /// Why something is missing, and what to be careful with.
     pub notes: Vec<String>,
 }
@@ -96,6 +108,14 @@ pub struct Event {
     pub level_n: Option<f64>,
     /// Largest |a_y| within 1 ms of the exit at the leading sensor [g].
     pub impulse_g: Option<f64>,
+    /// When the roller strikes the floor of the defect [ms] (event #2); `None` when it does not touch it.
+    pub impact_ms: Option<f64>,
+    /// When the roller carries most for a neighbour in the defect [ms] (event #3).
+    pub compensation_ms: Option<f64>,
+    /// Its force then over its force before that neighbour entered.
+    pub compensation_gain: Option<f64>,
+    /// Length of the defect estimated from both times and the speed without slip [mm].
+    pub spall_mm: Option<f64>,
 }
 
 /// Levels of a_y [g], mean over each sampling interval.

@@ -3,6 +3,7 @@
 pub mod assembly;
 mod checkpoint;
 pub mod error;
+pub mod frames;
 mod grading;
 pub mod kinematics;
 mod ledger;

@@ -1,9 +1,9 @@
 //! The folder of one run: who may write it, what lies in it, how it is read again.
 //!
 //! ```text
-//! runs/x/  scene.ron  run.json  trace.npy  energy.npy  mesh.vtu  checkpoint      written by the run
-//!          report.html  summary.json  figures/                                   written by the report
-//!          .lock                                                                 held while the run writes
+//! runs/x/  scene.ron  run.json  trace.npy  energy.npy  mesh.vtu  checkpoint  frames/   written by the run
+//!          report.html  summary.json  figures/                                         written by the report
+//!          .lock                                                                       held while the run writes
 //! ```
 //!
 //! The checkpoint is there from the first step of a run to its end. Whatever kills the run in between, the folder can be
@@ -27,6 +27,7 @@ const CHECKPOINT: &str = "checkpoint";
 const REPORT: &str = "report.html";
 const SUMMARY: &str = "summary.json";
 const FIGURES: &str = "figures";
+const FRAMES: &str = "frames";
 const LOCK: &str = ".lock";
 /// Written beside a file, then renamed over it: a reader sees the old file or the new one, never half of either.
 const PARTIAL: &str = ".part";
@@ -82,7 +83,8 @@ impl RunDir {
         for name in FILES {
             remove(&self.path.join(name))?;
         }
-        remove_figures(&self.figures())?;
+        remove_files(&self.figures(), &["svg", "png", "gif"])?;
+        remove_files(&self.frames(), &["npy"])?;
         write_atomic(&self.scene(), scene.to_ron().as_bytes())?;
         self.write_info(info)?;
         self.started.set(true);
@@ -208,6 +210,11 @@ impl RunDir {
         self.path.join(SUMMARY)
     }
 
+    /// Folder of the frames about the defect; it need not exist.
+    pub fn frames(&self) -> PathBuf {
+        self.path.join(FRAMES)
+    }
+
     /// Folder of the report's pictures; it need not exist.
     pub fn figures(&self) -> PathBuf {
         self.path.join(FIGURES)
@@ -330,12 +337,13 @@ fn remove(path: &Path) -> Result<(), Error> {
     }
 }
 
-/// Removes the pictures of an earlier report, and only those.
-fn remove_figures(folder: &Path) -> Result<(), Error> {
+/// Removes what an earlier run or report left in a folder, by its extensions, and only that.
+fn remove_files(folder: &Path, extensions: &[&str]) -> Result<(), Error> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(()) };
     for entry in entries.flatten() {
-        if entry.path().extension().is_some_and(|extension| extension == "svg") {
-            remove(&entry.path())?;
+        let path = entry.path();
+        if path.extension().and_then(|e| e.to_str()).is_some_and(|e| extensions.contains(&e)) {
+            remove(&path)?;
         }
     }
     Ok(())

@@ -270,6 +270,22 @@ pub struct OutputScene {
     pub interval_us: f64,
     /// Sensors on the outer surface of the outer ring; the first is the one that the report leads with.
     pub sensors: Vec<SensorScene>,
+    /// Pictures of the stress about the defect; `None` writes none.
+    pub frames: Option<FramesScene>,
+}
+
+/// Displacements of all nodes near the middle of the defect (the top of a sound bearing) at several times.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FramesScene {
+    /// Time of the first frame [ms].
+    pub from_ms: f64,
+    /// No frame is later [ms].
+    pub to_ms: f64,
+    /// Time between two frames [µs], rounded to whole samples.
+    pub every_us: f64,
+    /// Half the side of the square that is kept, about the path of the rollers' centres [mm].
+    pub half_width_mm: f64,
 }
 
 /// One sensor: a node on the outer surface of the outer ring.
@@ -309,7 +325,7 @@ impl Default for BearingScene {
             inner_ring_thickness_mm: 10.0,
             rollers: 24,
             roller_diameter_mm: 18.0,
-            thickness_mm: 20.0,
+            thickness_mm: 30.0,
             first_roller_deg: 94.0,
         }
     }
@@ -370,9 +386,9 @@ impl Default for ContactScene {
             method: ContactMethod::Integrated,
             surface: ContactSurface::Facet,
             interpolation: ContactInterpolation::Linear,
-            points_per_facet: 4,
+            points_per_facet: 16,
             passes: ContactPasses::Two,
-            penalty_scale: 1.0,
+            penalty_scale: 0.05,
             onset_um: 0.0,
             damping_ratio: 0.1,
             friction: 0.005,
@@ -405,6 +421,13 @@ impl Default for OutputScene {
                 sensor("seat", 90.0),
                 sensor("bottom", 270.0),
             ],
+            frames: Some(FramesScene::default()),
         }
+    }
+}
+
+impl Default for FramesScene {
+    fn default() -> Self {
+        Self { from_ms: 0.2, to_ms: 5.6, every_us: 100.0, half_width_mm: 14.0 }
     }
 }

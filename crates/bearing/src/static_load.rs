@@ -125,6 +125,11 @@ impl RigidRings {
         }
     }
 
+    /// Approach of the two raceways at a roller [m] under the force `load_n` [N] through it: both its contacts.
+    pub fn approach_m(&self, load_n: f64) -> f64 {
+        if load_n > 0.0 { self.compliance.approach(load_n / self.length_m).0 } else { 0.0 }
+    }
+
     /// Equilibrium of the outer ring under `load_n`, downwards, over rollers at `angles_deg` (90° is the top).
     ///
     /// A roller that carries nothing, because it stands in a defect, is left out of the list. Horizontal forces balance

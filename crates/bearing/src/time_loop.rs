@@ -8,6 +8,7 @@ use crate::{
     assembly::{Assembly, Machine},
     checkpoint::Checkpoint,
     error::Error,
+    frames::Frames,
     ledger::{COLUMNS, Ledger, Reference},
     recorder::Recorder,
     run_dir::{RunDir, write_atomic},
@@ -34,6 +35,7 @@ pub(crate) struct Run<'a> {
     recorder: Recorder,
     trace: TraceWriter,
     energy: TraceWriter,
+    frames: Option<Frames>,
     reference: Reference,
     before: Before,
 }
@@ -75,6 +77,7 @@ impl<'a> Run<'a> {
             recorder: Recorder::new(scene, &machine),
             trace: TraceWriter::create(dir.trace(), &Recorder::names(scene))?,
             energy: TraceWriter::create(dir.energy(), &COLUMNS)?,
+            frames: Frames::of(scene, dir.frames()),
             reference: Reference::default(),
             before: Before::default(),
             info,
@@ -108,6 +111,7 @@ impl<'a> Run<'a> {
             recorder,
             trace: TraceWriter::resume(dir.trace(), &Recorder::names(scene), rows)?,
             energy: TraceWriter::resume(dir.energy(), &COLUMNS, rows)?,
+            frames: Frames::of(scene, dir.frames()),
             reference: saved.reference,
             before: Before::default(),
             info: saved.info,
@@ -143,6 +147,9 @@ impl<'a> Run<'a> {
                 None => self.interval(steps_per_sample),
             };
             let error = self.account(&ledger)?;
+            if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
+                frames.write(sample, self.assembly, &self.machine)?;
+            }
             let state = &self.machine.dynamics.state;
             self.info.steps = state.step;
             self.info.samples = sample;

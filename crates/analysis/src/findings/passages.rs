@@ -1,6 +1,7 @@
 //! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
 
 use stribeck_bearing::kinematics::Crossing;
+use stribeck_bearing::scene::Scene;
 
 use super::{CrossingForce, SensorSignal};
 use crate::Error;
@@ -9,10 +10,12 @@ use crate::filtering::Filter;
 use crate::levels;
 use crate::prediction::Prediction;
 use crate::record::Record;
+use crate::spall::Edge;
 use crate::summary::{Event, LevelsFinding, SensorLevels};
 
 /// One event for every passage that begins within the record.
 pub(super) fn picked_events(
+    scene: &Scene,
     record: &Record<'_>,
     prediction: &Prediction,
     notes: &mut Vec<String>,
@@ -20,6 +23,9 @@ pub(super) fn picked_events(
     let Some(edges) = prediction.defect else { return Vec::new() };
     let time = record.time_s();
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
+    let edge = Edge::of(scene);
+    let speed_m_s = prediction.kinematics.contact_speed_m_s;
+    let floor_s = edge.floor_m(scene.defect.as_ref().map_or(0.0, |d| 1e-3 * d.depth_mm)) / speed_m_s;
     let mut events = Vec::new();
     for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {
         let mut event = Event::expected(passage);
@@ -41,18 +47,56 @@ pub(super) fn picked_events(
                     middle_s: near(edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
                     smoothing_s: prediction.smoothing_s(passage.exit_s - passage.entry_s),
                 };
-                let picked = events::pick(time, &roller.outer_normal(), &seen);
+                let normal = roller.outer_normal();
+                let picked = events::pick(time, &normal, &seen);
                 notes.extend(picked.notes.iter().map(|n| format!("roller {}: {n}", passage.roller)));
                 event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
                 event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
                 event.level_n = picked.level_n;
+                event.impact_ms = picked.floor_impact_s(time, &normal, &seen, floor_s).map(|t| 1e3 * t);
+                let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
+                let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
+                event.spall_mm = run_s.zip(picked.level_n).map(length);
                 event.path_entry_ms = path_entry.map(|t| 1e3 * t);
                 event.path_exit_ms = path_exit.map(|t| 1e3 * t);
             }
         }
         events.push(event);
     }
+    compensate(record, prediction, &mut events);
     events
+}
+
+/// Event #3: the largest force that a roller carries while a neighbour is in the defect.
+fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]) {
+    let time = record.time_s();
+    let count = record.rollers().len();
+    let spans: Vec<(usize, f64, f64)> =
+        events.iter().map(|e| (e.roller, e.extent_s().0, e.extent_s().1)).collect();
+    for event in events.iter_mut() {
+        let neighbours = spans.iter().filter(|s| {
+            let apart = event.roller.abs_diff(s.0);
+            apart.min(count.saturating_sub(apart)) == 1
+        });
+        let Some(roller) = record.roller(event.roller) else { continue };
+        let own = event.extent_s();
+        let found = neighbours.filter_map(|&(_, from, to)| {
+            let smoothing = prediction.smoothing_s(to - from);
+            let seen = events::span(time, from - 0.5 * (to - from), to);
+            let time = &time[seen.clone()];
+            let force = events::running_median(time, &roller.outer_normal()[seen], smoothing);
+            let during = events::span(time, from, to);
+            // A roller that is itself over the defect, or only just behind it, tells nothing.
+            let free = |n: &usize| time[*n] < own.0 - smoothing || time[*n] > own.1 + 4.0 * smoothing;
+            let most = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b]))?;
+            let before = events::median(&mut force[..during.start].to_vec());
+            (before > 0.0 && force[most] > before).then(|| (time[most], force[most] / before))
+        });
+        if let Some((at, gain)) = found.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            event.compensation_ms = Some(1e3 * at);
+            event.compensation_gain = Some(gain);
+        }
+    }
 }
 
 /// Levels at every sensor; fills in the impulse of each event at the leading one.
@@ -140,6 +184,10 @@ impl Event {
             path_exit_ms: None,
             level_n: None,
             impulse_g: None,
+            impact_ms: None,
+            compensation_ms: None,
+            compensation_gain: None,
+            spall_mm: None,
         }
     }
 

@@ -13,6 +13,11 @@ pub(super) fn floats(values: &[f64]) -> String {
     encode(&bytes)
 }
 
+/// Encodes bytes as they are.
+pub(super) fn bytes(bytes: &[u8]) -> String {
+    encode(bytes)
+}
+
 fn encode(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for chunk in bytes.chunks(3) {

@@ -17,6 +17,7 @@ struct Sent<'a> {
     series: Vec<SentSeries<'a>>,
     marks: Vec<SentMark<'a>>,
     bands: Vec<(f64, f64)>,
+    levels: Vec<SentLevel<'a>>,
     sync: Option<&'a str>,
 }
 
@@ -48,6 +49,13 @@ struct SentMark<'a> {
     label: &'a str,
     colour: &'static str,
     dashed: bool,
+}
+
+#[derive(Serialize)]
+struct SentLevel<'a> {
+    y: f64,
+    label: &'a str,
+    colour: &'static str,
 }
 
 impl Figure {
@@ -93,6 +101,11 @@ impl Figure {
                 .map(|m| SentMark { x: m.x, label: &m.label, colour: m.colour.name(), dashed: m.dashed })
                 .collect(),
             bands: self.bands.iter().map(|b| (b.from, b.to)).collect(),
+            levels: self
+                .levels
+                .iter()
+                .map(|l| SentLevel { y: l.y, label: &l.label, colour: l.colour.name() })
+                .collect(),
             sync: self.sync.as_deref(),
         };
         let text = serde_json::to_string(&sent)

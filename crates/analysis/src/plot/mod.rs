@@ -12,14 +12,20 @@
 //! # Ok::<(), stribeck_analysis::Error>(())
 //! ```
 
+mod animation;
 mod base64;
 mod decimate;
 mod interactive;
 mod labels;
+mod picture;
+mod raster;
 mod scale;
 mod svg;
 
+pub use animation::{Canvas, gif, shade_rgb};
 pub use interactive::script;
+pub use picture::{Anchor, Picture, Sheet};
+pub use raster::png;
 pub use scale::{Scale, ticks};
 
 /// One chart: an abscissa, an ordinate, what is drawn over them and what the reader should see in it.
@@ -43,6 +49,8 @@ pub struct Figure {
     pub marks: Vec<Mark>,
     /// Shaded spans of the abscissa.
     pub bands: Vec<Band>,
+    /// Horizontal lines with a label at their right end.
+    pub levels: Vec<Level>,
     /// Figures with the same key share the cursor.
     pub sync: Option<String>,
 }
@@ -145,6 +153,17 @@ pub struct Band {
     pub label: String,
 }
 
+/// A horizontal line, dashed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// Position [unit of the vertical axis].
+    pub y: f64,
+    /// Label; an empty one draws the line only.
+    pub label: String,
+    /// Colour.
+    pub colour: Colour,
+}
+
 impl Figure {
     /// An empty chart.
     pub fn new(id: &str, title: &str, x: Axis, y: Axis) -> Self {
@@ -158,6 +177,7 @@ impl Figure {
             series: Vec::new(),
             marks: Vec::new(),
             bands: Vec::new(),
+            levels: Vec::new(),
             sync: None,
         }
     }
@@ -204,7 +224,7 @@ impl Figure {
             let seen = self.series.iter().flat_map(|s| {
                 (0..s.y.len()).filter(move |&n| (from..=to).contains(&s.position(n))).map(|n| s.y[n])
             });
-            widened(seen, 0.04)
+            widened(seen.chain(self.levels.iter().map(|l| l.y)), 0.04)
         })
     }
 }

@@ -65,6 +65,7 @@ impl Figure {
         draw_grid(&root, &chart, (&self.x, x), (&self.y, y))?;
         self.draw_marks(&root, &chart, &placed, y)?;
         self.draw_series(&mut chart, x)?;
+        self.draw_levels(&root, &chart, x, y)?;
         self.draw_legend(&root)?;
         root.present()?;
         Ok(height)
@@ -152,6 +153,30 @@ impl Figure {
                         chart.draw_series(run.into_iter().map(|p| Circle::new(p, px(3), colour.filled())))?;
                     }
                 }
+            }
+        }
+        Ok(())
+    }
+
+    fn draw_levels(
+        &self,
+        root: &Area<'_>,
+        chart: &Chart<'_, '_>,
+        x: (f64, f64),
+        y: (f64, f64),
+    ) -> Result<(), Box<dyn std::error::Error>> {
+        for level in self.levels.iter().filter(|l| (y.0..=y.1).contains(&l.y)) {
+            let (left, up) = chart.backend_coord(&(x.0, level.y));
+            let (right, _) = chart.backend_coord(&(x.1, level.y));
+            for start in (left..right).step_by(px(9) as usize) {
+                let line = [(start, up), ((start + px(5)).min(right), up)];
+                root.draw(&PathElement::new(line, level.colour.rgb().stroke_width(FINE)))?;
+            }
+            if !level.label.is_empty() {
+                let width = (CHARACTER * level.label.chars().count() as f64) as i32;
+                let ground = [(right - px(4) - width, up - px(15)), (right - px(2), up - px(2))];
+                root.draw(&Rectangle::new(ground, WHITE.mix(0.8).filled()))?;
+                text(root, &level.label, (right - px(4), up - px(15)), 12, HPos::Right, &level.colour.rgb())?;
             }
         }
         Ok(())

@@ -1,85 +1,116 @@
 //! The figures of the report, in the order in which the page shows them.
 
+mod acceleration;
+mod beating;
+mod forces;
+mod motion;
+mod spectra;
+
+use maud::Markup;
 use stribeck_bearing::run_dir::Run;
 
-use super::signals::{acceleration, spectra};
-use crate::findings::{CrossingForce, Findings};
-use crate::plot::{Axis, Band, Colour, Figure, Mark, Series};
-use crate::summary::Event;
+use super::pictures::Pictures;
+use crate::Error;
+use crate::findings::Findings;
+use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
 
-/// Rollers whose force is drawn: the paper's three. All others are in the table.
-const DRAWN_CROSSINGS: usize = 3;
+/// A chart or a picture.
+#[derive(Debug)]
+pub(super) enum Item {
+    Chart(Figure),
+    Picture(Picture),
+}
+
+impl Item {
+    pub(super) fn id(&self) -> &str {
+        match self {
+            Self::Chart(figure) => &figure.id,
+            Self::Picture(picture) => &picture.id,
+        }
+    }
+
+    pub(super) fn title(&self) -> &str {
+        match self {
+            Self::Chart(figure) => &figure.title,
+            Self::Picture(picture) => &picture.title,
+        }
+    }
+
+    pub(super) fn to_svg(&self) -> Result<String, Error> {
+        match self {
+            Self::Chart(figure) => figure.to_svg(),
+            Self::Picture(picture) => Ok(picture.sheet.to_svg()),
+        }
+    }
+
+    pub(super) fn to_html(&self) -> Result<Markup, Error> {
+        match self {
+            Self::Chart(figure) => figure.to_html(),
+            Self::Picture(picture) => picture.to_html(),
+        }
+    }
+
+    /// The moving form, when there is one.
+    pub(super) fn animation(&self) -> Option<&[u8]> {
+        match self {
+            Self::Chart(_) => None,
+            Self::Picture(picture) => picture.animation.as_deref(),
+        }
+    }
+}
 
 /// All figures that the run can yield, grouped by section.
 #[derive(Debug, Default)]
 pub(super) struct Figures {
-    pub(super) acceleration: Vec<Figure>,
-    pub(super) spectra: Vec<Figure>,
-    pub(super) forces: Vec<Figure>,
-    pub(super) load: Vec<Figure>,
-    pub(super) energy: Vec<Figure>,
+    /// The paper's, in its order.
+    pub(super) paper: Vec<Item>,
+    pub(super) acceleration: Vec<Item>,
+    pub(super) spectra: Vec<Item>,
+    pub(super) bearing: Vec<Item>,
+    pub(super) stress: Vec<Item>,
+    pub(super) energy: Vec<Item>,
 }
 
 impl Figures {
-    pub(super) fn of(run: &Run, findings: &Findings) -> Self {
+    pub(super) fn of(run: &Run, findings: &Findings, pictures: Pictures) -> Self {
+        let mut mesh = drawn(pictures.mesh).collect::<Vec<_>>();
+        // The paper shows its roller after its spectrum.
+        let roller = if mesh.len() > 2 { mesh.pop() } else { None };
+        let mut paper = mesh;
+        paper.extend(charts(acceleration::raw(findings)));
+        paper.extend(charts(spectra::raw(findings)));
+        paper.extend(roller);
+        paper.extend(charts(beating::figures()));
+        paper.extend(charts(acceleration::notched(findings)));
+        paper.extend(charts(spectra::notched(findings)));
+        paper.extend(charts(forces::crossings(findings)));
         Self {
-            acceleration: acceleration(findings),
-            spectra: spectra(findings),
-            forces: forces(findings),
-            load: load(findings),
-            energy: energy(run),
+            paper,
+            acceleration: charts(acceleration::others(findings)).collect(),
+            spectra: charts(spectra::others(findings)).collect(),
+            bearing: drawn(pictures.load)
+                .chain(charts(load(findings)))
+                .chain(charts(forces::sums(run)))
+                .chain(charts(motion::figures(run, findings)))
+                .collect(),
+            stress: drawn(pictures.stress).collect(),
+            energy: charts(energy(run)).collect(),
         }
     }
 
-    pub(super) fn all(&self) -> impl Iterator<Item = &Figure> {
-        [&self.acceleration, &self.spectra, &self.forces, &self.load, &self.energy].into_iter().flatten()
+    pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
+        [&self.paper, &self.acceleration, &self.spectra, &self.bearing, &self.stress, &self.energy]
+            .into_iter()
+            .flatten()
     }
 }
 
-fn forces(findings: &Findings) -> Vec<Figure> {
-    let crossings = findings.crossings.iter().zip(&findings.summary.events).take(DRAWN_CROSSINGS);
-    crossings.enumerate().map(|(at, (crossing, event))| force(findings, crossing, event, at)).collect()
+fn charts(figures: impl IntoIterator<Item = Figure>) -> impl Iterator<Item = Item> {
+    figures.into_iter().map(Item::Chart)
 }
 
-fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize) -> Figure {
-    let vertical = Axis::si("Vertical force, compression positive", "N");
-    let mut figure = Figure::new(
-        &format!("force-{}", at + 1),
-        &format!("Outer raceway on roller {}", crossing.roller),
-        Axis::si("Time", "s"),
-        vertical,
-    )
-    .synced("time")
-    .with(sampled(findings, "raw", Colour::Grey, &crossing.raw_n));
-    if !crossing.filtered_n.is_empty() {
-        figure = figure.with(sampled(findings, "notched", Colour::Blue, &crossing.filtered_n));
-    }
-    let time = |ms: Option<f64>| ms.map_or("not at all".into(), |t| format!("at {t:.2} ms"));
-    figure.bands = transient(findings);
-    for (ms, label) in
-        [(event.expected_entry_ms, "expected entry"), (event.expected_exit_ms, "expected exit")]
-    {
-        figure.marks.push(mark(1e-3 * ms, label, Colour::Orange, true));
-    }
-    for (ms, label) in [(event.entry_ms, "unloaded"), (event.exit_ms, "loaded again")] {
-        if let Some(ms) = ms {
-            figure.marks.push(mark(1e-3 * ms, label, Colour::Green, false));
-        }
-    }
-    figure
-        .caption(format!(
-            "The roller loses its load {} (expected over the leading edge at {:.2} ms) and takes it up again {} (trailing \
-             edge at {:.2} ms).",
-            time(event.entry_ms),
-            event.expected_entry_ms,
-            time(event.exit_ms),
-            event.expected_exit_ms
-        ))
-        .note(format!(
-            "Compare the paper's Fig. 8{}. A roller of finite stiffness unloads after its centre has passed the leading \
-             edge and is loaded before it reaches the trailing one.",
-            char::from(b'a' + at as u8)
-        ))
+fn drawn(pictures: Vec<Picture>) -> impl Iterator<Item = Item> {
+    pictures.into_iter().map(Item::Picture)
 }
 
 fn load(findings: &Findings) -> Vec<Figure> {

@@ -148,6 +148,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     for (i, sensor) in output.sensors.iter().enumerate() {
         add(&format!("output.sensors[{i}].angle_deg"), sensor.angle_deg, within(-360.0, 360.0), "°");
     }
+    if let Some(frames) = &output.frames {
+        add("output.frames.from_ms", frames.from_ms, within(0.0, 60_000.0), "ms");
+        add("output.frames.to_ms", frames.to_ms, within(0.0, 60_000.0), "ms");
+        add("output.frames.every_us", frames.every_us, positive(1e6), "µs");
+        add("output.frames.half_width_mm", frames.half_width_mm, positive(20_000.0), "mm");
+    }
     list
 }
 

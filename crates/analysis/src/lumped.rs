@@ -1,0 +1,154 @@
+//! How strong a facet tone must be by the simplest model: rigid rings on springs whose ends follow the polygons.
+//!
+//! A facet of length ℓ on a roller of radius r leaves a gap whose first harmonic is h₁ = ℓ²/(2π²r) high (THEORY §5.2). A
+//! contact of half-width b averages over it; a pressure like √(1 − x²/b²) leaves
+//!
+//! ```text
+//! g(u) = (2/π) ∫ √(1 − x²) cos(u x) dx  = 2 J₁(u)/u          u = 2πb/ℓ
+//! ```
+//!
+//! Vertices meet the outer raceway with the phase N_v θ_j at the roller j and the inner one with N_v (θ_j + π): in step for
+//! an even count, against each other for an odd one. Copies in one orientation have the phase N_v θ_j; copies turned with the
+//! pattern all have the same. With equal springs under all loaded rollers the outer ring follows
+//!
+//! ```text
+//! y = |Σ sin θ_j g(u_j) (1 + e^{iπN_v}) e^{iN_vθ_j}| h₁ / Σ sin² θ_j          a = (2π f_v)² y
+//! ```
+//!
+//! Neither the ring's bending nor its mass is in this: it says how levels compare, not what a sensor hears (own).
+
+use std::f64::consts::{PI, TAU};
+
+use stribeck_bearing::error::Error;
+use stribeck_bearing::kinematics::Kinematics;
+use stribeck_bearing::scene::{RollerCopies, Scene};
+use stribeck_bearing::static_load::{self, roller_angles_deg};
+
+use crate::levels::STANDARD_GRAVITY;
+
+/// Strips of the average over the contact.
+const STRIPS: usize = 400;
+
+/// What the model says of one scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lumped {
+    /// Frequency of the roller vertices [Hz].
+    pub frequency_hz: f64,
+    /// First harmonic of the gap under one facet [m].
+    pub height_m: f64,
+    /// What the width of the most loaded contact leaves of it, 0 to 1; negative past the first zero.
+    pub smoothing: f64,
+    /// What the phases of all loaded rollers leave, 0 to 1.
+    pub phases: f64,
+    /// 2 for an even count of facets, 0 for an odd one.
+    pub both_contacts: f64,
+    /// Amplitude of the ring's acceleration [g].
+    pub level_g: f64,
+}
+
+impl Lumped {
+    /// Evaluates the model for a scene at its start.
+    ///
+    /// # Errors
+    /// When the scene has no static load distribution.
+    pub fn of(scene: &Scene) -> Result<Self, Error> {
+        let load = static_load::at_start(scene)?;
+        let facets = scene.mesh.roller_facets as f64;
+        let radius = 0.5e-3 * scene.bearing.roller_diameter_mm;
+        let facet = TAU * radius / facets;
+        let height_m = facet * facet / (2.0 * PI * PI * radius);
+        let (mut re, mut im, mut springs, mut arms) = (0.0, 0.0, 0.0, 0.0);
+        let mut smoothing = 1.0;
+        let largest = load.max_roller_n();
+        for (force, deg) in load.roller_n.iter().zip(roller_angles_deg(&scene.bearing)) {
+            if *force <= 0.0 {
+                continue;
+            }
+            let angle = deg.to_radians();
+            let phase = match scene.mesh.roller_copies {
+                RollerCopies::Translated => facets * angle,
+                RollerCopies::Rotated => 0.0,
+            };
+            let kept = average(TAU * half_width(scene, *force) / facet);
+            if *force == largest {
+                smoothing = kept;
+            }
+            re += angle.sin() * kept * phase.cos();
+            im += angle.sin() * kept * phase.sin();
+            arms += (angle.sin() * kept).abs();
+            springs += angle.sin().powi(2);
+        }
+        let both_contacts = 1.0 + (PI * facets).cos();
+        let frequency_hz = facets * Kinematics::of(scene).roller_spin_hz;
+        let y = re.hypot(im) * both_contacts * height_m / springs;
+        Ok(Self {
+            frequency_hz,
+            height_m,
+            smoothing,
+            phases: if arms > 0.0 { re.hypot(im) / arms } else { 0.0 },
+            both_contacts,
+            level_g: (TAU * frequency_hz).powi(2) * y / STANDARD_GRAVITY,
+        })
+    }
+}
+
+/// Half-width of the outer contact [m]: that of Hertz and that of the penalty's own indentation, as squares.
+fn half_width(scene: &Scene, force_n: f64) -> f64 {
+    let (b, m) = (&scene.bearing, &scene.material);
+    let (r, race) = (0.5e-3 * b.roller_diameter_mm, 0.5e-3 * b.outer_race_diameter_mm);
+    let radius = 1.0 / (1.0 / r - 1.0 / race);
+    let line = force_n / (1e-3 * b.thickness_mm);
+    let modulus = 1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 - m.poissons_ratio.powi(2)));
+    let hertz = 4.0 * line * radius / (PI * modulus);
+    let stiffness = scene.contact.penalty_scale * 1e9 * m.youngs_modulus_gpa / (1e-3 * scene.mesh.size_mm);
+    let indentation = (0.75 * line / (stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+    (hertz + 2.0 * radius * indentation).sqrt()
+}
+
+/// g(u): the mean of a cosine of phase `u` at the contact's end, weighted like a Hertz pressure.
+fn average(u: f64) -> f64 {
+    // x = sin t turns the root into a cosine.
+    let step = PI / STRIPS as f64;
+    let sum: f64 = (0..STRIPS)
+        .map(|n| -0.5 * PI + (n as f64 + 0.5) * step)
+        .map(|t| t.cos().powi(2) * (u * t.sin()).cos())
+        .sum();
+    2.0 / PI * sum * step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene(facets: usize, copies: RollerCopies) -> Scene {
+        let mut scene = Scene::default();
+        scene.mesh.roller_facets = facets;
+        scene.mesh.roller_copies = copies;
+        scene
+    }
+
+    #[test]
+    fn analytic_average_is_a_bessel_function() {
+        // 2 J₁(u)/u from tables: J₁(1) = 0.440 050 6, J₁(3.831 706) = 0.
+        assert!((average(1.0) - 2.0 * 0.440_050_6).abs() < 1e-6);
+        assert!(average(3.831_706).abs() < 1e-6);
+        assert!((average(0.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn analytic_phases_follow_copies_and_parity() {
+        let of = |facets, copies| Lumped::of(&scene(facets, copies)).unwrap();
+        // Copies in one orientation: 112 facets make three groups that partly cancel, 120 = 5·24 are all in step.
+        let (three, all) = (of(112, RollerCopies::Translated), of(120, RollerCopies::Translated));
+        assert!(three.phases < 0.4, "{three:?}");
+        assert!((all.phases - 1.0).abs() < 1e-9, "{all:?}");
+        assert!((of(112, RollerCopies::Rotated).phases - 1.0).abs() < 1e-12);
+        assert!(of(113, RollerCopies::Translated).level_g < 1e-9);
+        // The height of one facet alone makes 2v²/r = 126 g, whatever the count.
+        for facets in [56, 112, 224] {
+            let one = of(facets, RollerCopies::Translated);
+            let level = (TAU * one.frequency_hz).powi(2) * one.height_m / STANDARD_GRAVITY;
+            assert!((level / 126.0 - 1.0).abs() < 0.01, "{level}");
+        }
+    }
+}

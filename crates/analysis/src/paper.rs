@@ -1,0 +1,129 @@
+//! Every number in the paper's text beside ours: quantity, paper, ours, difference, why.
+//!
+//! The paper: "Numerical noise generation in modelled bearing vibration signals", Inter-Noise 2014. Its numbers are
+//! written here once, as it prints them.
+
+mod model;
+mod signal;
+
+use serde::{Deserialize, Serialize};
+use stribeck_bearing::run_info::MeshInfo;
+use stribeck_bearing::scene::Scene;
+
+use crate::prediction::Prediction;
+use crate::summary::Summary;
+
+/// The paper's dominant line [Hz].
+pub const TONE_HZ: f64 = 4671.0;
+/// The line that the paper reads from a pair of peaks [Hz].
+pub const CURSOR_HZ: f64 = 4545.0;
+/// Its equation (2) for the outer and the inner raceway [Hz], as printed.
+pub const EQUATION_2_HZ: (f64, f64) = (4712.0, 3864.0);
+/// Peak level of the impulses in its Fig. 2 [g].
+pub const IMPULSE_G: f64 = 180.0;
+/// Level between the impulses in its Fig. 2 [g].
+pub const BETWEEN_G: f64 = 50.0;
+/// The same behind the notch, Fig. 6 [g].
+pub const FILTERED_G: f64 = 20.0;
+
+/// One number of the paper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Part of the paper.
+    pub part: String,
+    /// What is counted or measured.
+    pub quantity: String,
+    /// As the paper prints it.
+    pub paper: String,
+    /// Of this run; words when there is no number.
+    pub ours: String,
+    /// Ours against the paper's.
+    pub difference: String,
+    /// Why, or what to make of it.
+    pub why: String,
+}
+
+/// What the rows are made of.
+struct Source<'a> {
+    scene: &'a Scene,
+    mesh: &'a MeshInfo,
+    prediction: &'a Prediction,
+    summary: &'a Summary,
+}
+
+/// All rows, in the order of the paper. None is blank: what this run cannot yield says so.
+pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<Row> {
+    let source = Source { scene, mesh, prediction, summary };
+    let mut rows = model::rows(&source);
+    rows.extend(signal::rows(&source));
+    rows
+}
+
+/// A number that both have.
+fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str, why: &str) -> Row {
+    let text = |v: f64| format!("{} {unit}", shortest(v)).trim_end().to_owned();
+    Row {
+        part: part.into(),
+        quantity: quantity.into(),
+        paper: text(paper),
+        ours: ours.map_or("this record cannot tell".into(), text),
+        difference: ours.map_or("–".into(), |ours| difference(paper, ours)),
+        why: why.into(),
+    }
+}
+
+/// A row of words.
+fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str, why: &str) -> Row {
+    Row {
+        part: part.into(),
+        quantity: quantity.into(),
+        paper: paper.into(),
+        ours,
+        difference: difference.into(),
+        why: why.into(),
+    }
+}
+
+/// Ours against the paper's, in per cent or as a factor.
+fn difference(paper: f64, ours: f64) -> String {
+    let ratio = ours / paper;
+    if (ratio - 1.0).abs() < 5e-5 {
+        "none".into()
+    } else if (0.5..1.5).contains(&ratio) {
+        let percent = 100.0 * (ratio - 1.0);
+        let decimals = if percent.abs() < 1.0 { 2 } else { 1 };
+        format!("{percent:+.decimals$} %").replace('-', "−")
+    } else {
+        format!("× {ratio:.2}")
+    }
+}
+
+/// A number with as many decimals as make sense for its size.
+fn shortest(value: f64) -> String {
+    let size = value.abs();
+    let decimals = match size {
+        _ if value == value.round() && size < 1e6 => 0,
+        s if s >= 1000.0 => 1,
+        s if s >= 1.0 => 2,
+        _ => 4,
+    };
+    let text = format!("{value:.decimals$}").replace('-', "−");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_differences_in_words() {
+        assert_eq!(difference(90.07, 90.109), "+0.04 %");
+        assert_eq!(difference(50.0, 50.0), "none");
+        assert_eq!(difference(180.0, 960.0), "× 5.33");
+        assert_eq!(difference(4671.0, 4664.0), "−0.15 %");
+        assert_eq!(
+            (shortest(4671.0), shortest(163.96), shortest(0.005)),
+            ("4671".into(), "163.96".into(), "0.005".into())
+        );
+    }
+}

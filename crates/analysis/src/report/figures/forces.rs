@@ -1,0 +1,102 @@
+//! Contact forces over time: the paper's Fig. 8, and their sum against the load.
+
+use stribeck_bearing::run_dir::Run;
+
+use super::{mark, sampled, transient};
+use crate::findings::{CrossingForce, Findings};
+use crate::load;
+use crate::plot::{Axis, Colour, Figure, Level, Series};
+use crate::record::Record;
+use crate::summary::Event;
+
+/// Rollers whose force is drawn: the paper's three. All others are in the table.
+const DRAWN: usize = 3;
+
+/// Figs. 8a to 8c: vertical force of the outer raceway on each roller that crosses the defect.
+pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
+    let crossings = findings.crossings.iter().zip(&findings.summary.events).take(DRAWN);
+    crossings.enumerate().map(|(at, (crossing, event))| force(findings, crossing, event, at)).collect()
+}
+
+fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize) -> Figure {
+    let vertical = Axis::si("Vertical force, compression positive", "N");
+    let title = format!("Fig. 8{}: outer raceway on roller {}", char::from(b'a' + at as u8), crossing.roller);
+    let mut figure = Figure::new(&format!("force-{}", at + 1), &title, Axis::si("Time", "s"), vertical)
+        .synced("time")
+        .with(sampled(findings, "raw", Colour::Grey, &crossing.raw_n));
+    if !crossing.filtered_n.is_empty() {
+        figure = figure.with(sampled(findings, "notched", Colour::Blue, &crossing.filtered_n));
+    }
+    figure.bands = transient(findings);
+    for (ms, label) in [(event.expected_entry_ms, "leading edge"), (event.expected_exit_ms, "trailing edge")]
+    {
+        figure.marks.push(mark(1e-3 * ms, label, Colour::Orange, true));
+    }
+    let events = [
+        (event.entry_ms, "#1 unloads"),
+        (event.impact_ms, "#2 strikes the floor"),
+        (event.compensation_ms, "#3 carries for a neighbour"),
+        (event.exit_ms, "#4 loaded again"),
+    ];
+    for (ms, label) in events {
+        if let Some(ms) = ms {
+            figure.marks.push(mark(1e-3 * ms, label, Colour::Green, false));
+        }
+    }
+    let time = |ms: Option<f64>| ms.map_or("not at all".into(), |t| format!("at {t:.2} ms"));
+    let floor = event
+        .impact_ms
+        .map_or("does not touch the floor in between".into(), |t| format!("strikes the floor at {t:.2} ms"));
+    let help = event.compensation_gain.map_or(String::new(), |gain| {
+        format!(" While a neighbour is in the defect it carries {:.0} % more.", 100.0 * (gain - 1.0))
+    });
+    figure
+        .caption(format!(
+            "The roller loses its load {} (#1; its centre is over the leading edge at {:.2} ms without slip), {floor} (#2) and \
+             takes its load up again {} (#4; trailing edge at {:.2} ms).{help}",
+            time(event.entry_ms),
+            event.expected_entry_ms,
+            time(event.exit_ms),
+            event.expected_exit_ms
+        ))
+        .note(
+            "Events are picked from the force by the rule of THEORY §7.4. A roller of finite stiffness unloads after its centre has \
+             passed the leading edge and is loaded before it reaches the trailing one. Forces are filtered from the steady \
+             state of their first value.",
+        )
+}
+
+/// What all rollers carry together, sample by sample.
+pub(super) fn sums(run: &Run) -> Option<Figure> {
+    let record = Record::new(run);
+    if record.rollers().is_empty() || record.is_empty() {
+        return None;
+    }
+    let sum = load::vertical_sum(&record);
+    let supported = run.info.expected_support_n;
+    let off = |n: f64| 100.0 * (n / supported - 1.0);
+    let count = sum.len() as f64;
+    let mean = sum.iter().sum::<f64>() / count;
+    let rms = (sum.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / count).sqrt();
+    let (low, high) = sum.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &s| (l.min(s), h.max(s)));
+    let time = record.time_s();
+    let mut figure = Figure::new(
+        "load-sum",
+        "Vertical force of all rollers on the outer ring",
+        Axis::si("Time", "s"),
+        Axis::si("Sum of the vertical forces", "N"),
+    )
+    .synced("time")
+    .with(Series::sampled("sum, each sample", Colour::Blue, time[0], record.interval_s(), sum.clone()))
+    .caption(format!(
+        "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by {:.1} % (RMS), between \
+         {:+.0} and {:+.0} %, because ring and adapter have mass.",
+        off(mean),
+        100.0 * rms / supported,
+        off(low),
+        off(high)
+    ).replace('-', "−"))
+    .note("The difference accelerates the outer ring and the adapter. Load plus their weight is the dashed line.");
+    figure.levels = vec![Level { y: supported, label: "load and weight".into(), colour: Colour::Orange }];
+    Some(figure)
+}

@@ -1,0 +1,77 @@
+//! Slip: how fast rollers spin and run, and the cage turns, against rolling without slip.
+
+use std::f64::consts::TAU;
+
+use stribeck_bearing::run_dir::Run;
+
+use crate::findings::Findings;
+use crate::load::running_mean;
+use crate::plot::{Axis, Colour, Figure, Level, Series};
+use crate::record::Record;
+
+/// Rates are means over this time [s]; at most a tenth of the record.
+const SMOOTHING_S: f64 = 0.5e-3;
+
+/// Spin of the rollers that cross the defect, and orbit of rollers and cage.
+pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
+    let record = Record::new(run);
+    if record.len() < 20 {
+        return Vec::new();
+    }
+    let width = ((SMOOTHING_S / record.interval_s()) as usize).clamp(1, record.len() / 10).max(1);
+    let k = &findings.prediction.kinematics;
+    let start = record.time_s()[0] + 0.5 * (width + 1) as f64 * record.interval_s();
+    let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
+    let crossing: Vec<usize> = findings.summary.events.iter().map(|e| e.roller).take(3).collect();
+    let percent = |name: &str, colour: Colour, angle: &[f64], without_slip_rad_s: f64| {
+        let rate = rates(angle, record.interval_s(), width);
+        let off = rate.iter().map(|r| 100.0 * (r.abs() / without_slip_rad_s.abs() - 1.0)).collect();
+        Series::sampled(name, colour, start, record.interval_s(), off)
+    };
+    let mut spin =
+        chart("spin", "Spin of the rollers that cross the defect", "Spin against rolling without slip");
+    let mut orbit =
+        chart("orbit", "Speed of the cage and of these rollers", "Orbit against rolling without slip");
+    for (&number, colour) in crossing.iter().zip(colours) {
+        let Some(roller) = record.roller(number) else { continue };
+        let name = format!("roller {number}");
+        spin = spin.with(percent(&name, colour, roller.spin, k.roller_rad_s));
+        orbit = orbit.with(percent(&name, colour, &roller.orbit(), TAU * k.cage_hz));
+    }
+    if let Some(angle) = record.channel("cage.angle_rad") {
+        orbit = orbit.with(percent("cage", Colour::Black, angle, TAU * k.cage_hz));
+    }
+    if spin.series.is_empty() && orbit.series.is_empty() {
+        return Vec::new();
+    }
+    let motion = &findings.summary.kinematics;
+    let slip = motion
+        .cage_hz
+        .map_or("–".into(), |hz| format!("{:+.2} %", 100.0 * (hz / motion.expected_cage_hz - 1.0)));
+    let note = format!(
+        "Mean over {:.2} ms. Measured rates of every roller stand in the table of kinematics.",
+        1e3 * width as f64 * record.interval_s()
+    );
+    vec![
+        spin.caption(
+            "A loaded roller rolls; in the defect nothing drives it at the outer raceway, and where its speed then differs from \
+             rolling it slips until the contact has it again.",
+        )
+        .note(note.clone()),
+        orbit
+            .caption(format!("The cage turns {slip} of its speed without slip, over the whole record.").replace('-', "−"))
+            .note(note),
+    ]
+}
+
+fn chart(id: &str, title: &str, quantity: &str) -> Figure {
+    let mut figure = Figure::new(id, title, Axis::si("Time", "s"), Axis::plain(quantity, "%")).synced("time");
+    figure.levels = vec![Level { y: 0.0, label: "no slip".into(), colour: Colour::Grey }];
+    figure
+}
+
+/// Rate of an angle [rad/s], each a mean over `width` samples.
+fn rates(angle: &[f64], interval_s: f64, width: usize) -> Vec<f64> {
+    let differences: Vec<f64> = angle.windows(2).map(|w| (w[1] - w[0]) / interval_s).collect();
+    running_mean(&differences, width)
+}

@@ -1,0 +1,147 @@
+//! The mesh, whole and about the defect (the paper's Fig. 1).
+
+use stribeck_bearing::assembly::Assembly;
+use stribeck_bearing::scene::Scene;
+
+use super::{View, scale_bar};
+use crate::plot::{Anchor, Colour, Picture, Sheet};
+
+/// Width of the pictures [px].
+const WIDTH: f64 = 900.0;
+const EDGE: &str = "fill:none;stroke-linejoin:round;stroke:";
+
+/// Edges of the elements of one body, each once, as node numbers.
+pub(super) fn edges(assembly: &Assembly, body: usize) -> Vec<[u32; 2]> {
+    let mesh = &assembly.model.mesh;
+    let body = &mesh.bodies[body];
+    let around = |corners: &[u32]| -> Vec<[u32; 2]> {
+        (0..corners.len())
+            .map(|n| {
+                let (a, b) = (corners[n], corners[(n + 1) % corners.len()]);
+                [a.min(b), a.max(b)]
+            })
+            .collect()
+    };
+    let quads = mesh.quads[body.quads.clone()].iter().flat_map(|q| around(q));
+    let mut edges: Vec<[u32; 2]> =
+        quads.chain(mesh.triangles[body.triangles.clone()].iter().flat_map(|t| around(t))).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    edges
+}
+
+fn colour(body: &str) -> Colour {
+    match body {
+        "outer ring" => Colour::Blue,
+        "inner ring" => Colour::Green,
+        "adapter" => Colour::Brown,
+        "cage" => Colour::Red,
+        _ => Colour::Orange,
+    }
+}
+
+fn draw(sheet: &mut Sheet, assembly: &Assembly, view: &View, width: f64, seen: impl Fn([f64; 2]) -> bool) {
+    let mesh = &assembly.model.mesh;
+    for (number, body) in mesh.bodies.iter().enumerate() {
+        let at = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
+        let lines =
+            edges(assembly, number).into_iter().map(|e| e.map(at)).filter(|e| e.iter().any(|p| seen(*p)));
+        let paint = format!("{EDGE}{};stroke-width:{width}", colour(&body.name).css());
+        sheet.lines(lines.map(|e| e.map(|p| view.place(p))), &paint);
+    }
+}
+
+/// All bodies.
+pub(super) fn whole(assembly: &Assembly) -> Picture {
+    let mesh = &assembly.model.mesh;
+    let range = |values: &[f64]| {
+        let (low, high) =
+            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+        (low - 0.004, high + 0.004)
+    };
+    let ((x0, x1), (y0, y1)) = (range(&mesh.x), range(&mesh.y));
+    let view = View::new([x0, y0], [x1, y1], [0.0, 0.0], WIDTH);
+    let mut sheet = Sheet::new(WIDTH, view.height.ceil());
+    draw(&mut sheet, assembly, &view, 0.25, |_| true);
+    let names =
+        [("adapter", 0.5 * (y1 + 0.11)), ("outer ring", -0.105), ("inner ring", 0.077), ("roller", 0.0)];
+    for (name, y) in names {
+        let x = if name == "roller" { 0.091 } else { 0.0 };
+        let at = view.place([x, y]);
+        let half = 4.0 * name.len() as f64;
+        let ground = [
+            [at[0] - half, at[1] - 12.0],
+            [at[0] + half, at[1] - 12.0],
+            [at[0] + half, at[1] + 5.0],
+            [at[0] - half, at[1] + 5.0],
+        ];
+        sheet.path(&ground, true, "fill:#fff;fill-opacity:0.85");
+        sheet.text(at, 14.0, Anchor::Middle, "#000", name);
+    }
+    scale_bar(&mut sheet, [20.0, view.height - 20.0], 0.02, view.scale, "20 mm");
+    let mut picture = Picture::new("mesh", "Fig. 1a: the mesh", sheet);
+    picture.dense = true;
+    picture.caption = format!(
+        "Adapter, outer ring, {} rollers, cage and inner ring: {} elements.",
+        mesh.bodies.iter().filter(|b| b.name.starts_with("roller")).count(),
+        mesh.elements()
+    );
+    picture.note = "Made again from the run's scene, undeformed.".into();
+    picture
+}
+
+/// Two rollers and the defect between them.
+pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
+    let angle = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg).to_radians();
+    let radius = 0.5e-3 * scene.bearing.outer_race_diameter_mm;
+    let centre = [radius * angle.cos(), radius * angle.sin()];
+    let half = [0.014, 0.0075];
+    let low = [centre[0] - half[0], centre[1] - 1.25 * half[1]];
+    let high = [centre[0] + half[0], centre[1] + 0.75 * half[1]];
+    let view = View::new(low, high, [0.0, 0.0], WIDTH);
+    let mut sheet = Sheet::new(WIDTH, view.height.ceil());
+    let seen = |p: [f64; 2]| (0..2).all(|c| (low[c]..=high[c]).contains(&p[c]));
+    sheet.clipped("defect-window", [0.0, 0.0], [WIDTH, view.height], |sheet| {
+        draw(sheet, assembly, &view, 0.8, seen);
+        let first = scene.bearing.first_roller_deg.to_radians();
+        for (direction, paint) in [(angle, "#000"), (first, Colour::Red.css())] {
+            let ray = [0.8, 1.3]
+                .map(|r: f64| view.place([r * radius * direction.cos(), r * radius * direction.sin()]));
+            sheet.path(
+                &ray,
+                false,
+                &format!("fill:none;stroke:{paint};stroke-width:1.5;stroke-dasharray:6 4"),
+            );
+        }
+        if let Some(d) = &scene.defect {
+            let reach = 0.5e-3 * d.length_mm;
+            let ring: Vec<[f64; 2]> = (0..60)
+                .map(|n| {
+                    let t = std::f64::consts::TAU * f64::from(n) / 60.0;
+                    let (along, out) = (1.2 * reach * t.cos(), 0.0009 * t.sin() + 0.0001);
+                    let (r, a) = (radius + out, angle + along / radius);
+                    view.place([r * a.cos(), r * a.sin()])
+                })
+                .collect();
+            sheet.path(&ring, true, "fill:none;stroke:#b3202c;stroke-width:2");
+        }
+    });
+    let offset = scene.bearing.first_roller_deg - angle.to_degrees();
+    let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
+    sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
+    let words = format!("roller 1 stands {offset} ° before the middle of the defect");
+    sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
+    scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
+    let mut picture = Picture::new("mesh-defect", "Fig. 1b: the mesh about the defect", sheet);
+    picture.caption = match &scene.defect {
+        Some(d) => format!(
+            "The defect, {} mm long and {} mm deep, is one layer of elements whose nodes are moved outwards; its walls are single facets.",
+            d.length_mm, d.depth_mm
+        ),
+        None => "The raceway is sound.".into(),
+    };
+    picture.note =
+        "Undeformed, before the load. Dashed: middle of the defect and roller 1. Rollers move to the right."
+            .into();
+    picture
+}

@@ -1,0 +1,214 @@
+//! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
+
+use stribeck_bearing::assembly::Assembly;
+use stribeck_bearing::frames::{Frame, Window};
+use stribeck_bearing::run_dir::Run;
+
+use crate::Error;
+use crate::findings::Findings;
+use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};
+use crate::record::Record;
+use crate::stress::{Cell, Lame, cells};
+
+/// Part of the cells whose stress the scale leaves above its end: single corners would take all colours.
+const ABOVE: f64 = 0.002;
+/// Side of an animated picture [px].
+const SIDE: u16 = 480;
+/// Time for one animated picture [1/100 s].
+const HUNDREDTHS: u16 = 9;
+
+/// A moment: what stands there, its cells, and the point to look at, in the window's own axes [m].
+struct Moment {
+    title: String,
+    time_s: f64,
+    cells: Vec<Cell>,
+    focus: [f64; 2],
+}
+
+pub(super) fn pictures(
+    run: &Run,
+    findings: &Findings,
+    assembly: &Assembly,
+    window: &Window,
+    frames: &[Frame],
+) -> Result<Vec<Picture>, Error> {
+    let lame = Lame::of(&run.scene.material);
+    let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(assembly, f, &lame))).collect();
+    let mut pictures = Vec::new();
+    let moments = moments(run, findings, window, &all);
+    if !moments.is_empty() {
+        pictures.push(still(&moments, window));
+    }
+    if all.len() > 2 {
+        pictures.push(moving(findings, window, &all)?);
+    }
+    Ok(pictures)
+}
+
+/// The first frame, seen where its roller touches the outer raceway, and the frame with the highest stress near the
+/// trailing edge while the roller climbs out.
+fn moments(run: &Run, findings: &Findings, window: &Window, all: &[(f64, Vec<Cell>)]) -> Vec<Moment> {
+    let record = Record::new(run);
+    let radius = 0.5e-3 * run.scene.bearing.outer_race_diameter_mm;
+    let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
+    let mut moments = Vec::new();
+    let loaded = all.first().zip(findings.summary.events.first()).and_then(|((time, cells), event)| {
+        let roller = record.roller(event.roller)?;
+        let at = record.time_s().partition_point(|t| t < time).min(record.len().checked_sub(1)?);
+        let angle = roller.y[at].atan2(roller.x[at]).to_degrees();
+        let force = roller.outer_normal()[at];
+        let title = format!("roller {} carries {:.1} kN", event.roller, 1e-3 * force);
+        Some(Moment { title, time_s: *time, cells: cells.clone(), focus: on_race(angle) })
+    });
+    moments.extend(loaded);
+    let exit = findings.prediction.defect.zip(findings.summary.events.first()).and_then(|(edges, event)| {
+        let focus = on_race(edges.trailing_deg);
+        let exit_s = 1e-3 * event.exit_ms?;
+        let half_ms = 0.5e-3;
+        let near = |cell: &&Cell| distance(centre(cell, window), focus) < 2e-3;
+        let highest = |cells: &[Cell]| cells.iter().filter(near).map(|c| c.von_mises).fold(0.0, f64::max);
+        let about = all.iter().filter(|f| (f.0 - exit_s).abs() <= half_ms);
+        let (time_s, cells) = about.max_by(|a, b| highest(&a.1).total_cmp(&highest(&b.1)))?;
+        let title = format!("roller {} at the exit edge", event.roller);
+        Some(Moment { title, time_s: *time_s, cells: cells.clone(), focus })
+    });
+    moments.extend(exit);
+    moments
+}
+
+fn centre(cell: &Cell, window: &Window) -> [f64; 2] {
+    let count = cell.corners.len() as f64;
+    let sum = cell.corners.iter().fold([0.0; 2], |s, c| [s[0] + c[0], s[1] + c[1]]);
+    window.place(sum[0] / count, sum[1] / count)
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Stress that all but a few cells stay below [Pa].
+fn end_of_scale<'a>(cells: impl Iterator<Item = &'a Cell>) -> f64 {
+    let mut stress: Vec<f64> = cells.map(|c| c.von_mises).collect();
+    stress.sort_unstable_by(f64::total_cmp);
+    let at = ((1.0 - ABOVE) * stress.len() as f64) as usize;
+    stress.get(at.min(stress.len().saturating_sub(1))).copied().unwrap_or(1.0).max(1.0)
+}
+
+fn still(moments: &[Moment], window: &Window) -> Picture {
+    let (side, half, top) = (430.0, 3e-3, 34.0);
+    let near = |m: &Moment, c: &Cell| {
+        let at = centre(c, window);
+        (at[0] - m.focus[0]).abs() < 1.2 * half && (at[1] - m.focus[1]).abs() < 1.2 * half
+    };
+    let shown = moments.iter().flat_map(|m| m.cells.iter().filter(move |c| near(m, c)));
+    let end = end_of_scale(shown);
+    let highest = moments
+        .iter()
+        .flat_map(|m| m.cells.iter().filter(move |c| near(m, c)))
+        .map(|c| c.von_mises)
+        .fold(0.0, f64::max);
+    let mut sheet = Sheet::new(20.0 + (side + 10.0) * moments.len() as f64, side + top + 60.0);
+    for (n, moment) in moments.iter().enumerate() {
+        let left = 10.0 + (side + 10.0) * n as f64;
+        let scale = 0.5 * side / half;
+        let place = |c: &[f64; 2]| {
+            let [x, y] = window.place(c[0], c[1]);
+            [
+                left + 0.5 * side + scale * (x - moment.focus[0]),
+                top + 0.5 * side - scale * (y - moment.focus[1]),
+            ]
+        };
+        let words = format!("{:.2} ms: {}", 1e3 * moment.time_s, moment.title);
+        sheet.text([left, 22.0], 14.0, Anchor::Start, "#000", &words);
+        sheet.clipped(&format!("stress-{n}"), [left, top], [side, side], |sheet| {
+            for cell in moment.cells.iter().filter(|c| near(moment, c)) {
+                let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
+                let [r, g, b] = shade_rgb(cell.von_mises / end);
+                sheet.path(
+                    &corners,
+                    true,
+                    &format!("fill:#{r:02x}{g:02x}{b:02x};stroke:#fff;stroke-width:0.3"),
+                );
+            }
+        });
+        super::scale_bar(&mut sheet, [left + 8.0, top + side - 12.0], 1e-3, scale, "1 mm");
+    }
+    scale_of_colours(&mut sheet, [10.0, side + top + 14.0], end);
+    let mut picture = Picture::new("stress", "Stress under a roller and at the exit edge", sheet);
+    picture.caption = format!(
+        "Under a loaded roller the stress is highest below the surface, as Hertz has it; where the roller climbs out it gathers at the edge. Highest here: {:.2} GPa.",
+        1e-9 * highest
+    );
+    picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this model, and a sharp edge has as much stress as its elements resolve.".into();
+    picture
+}
+
+/// A strip of the scale with its ends in words.
+fn scale_of_colours(sheet: &mut Sheet, at: [f64; 2], end: f64) {
+    for n in 0..60 {
+        let [r, g, b] = shade_rgb(f64::from(n) / 59.0);
+        let x = at[0] + 4.0 * f64::from(n);
+        let cell = [[x, at[1]], [x + 4.3, at[1]], [x + 4.3, at[1] + 12.0], [x, at[1] + 12.0]];
+        sheet.path(&cell, true, &format!("fill:#{r:02x}{g:02x}{b:02x}"));
+    }
+    sheet.text([at[0], at[1] + 27.0], 12.0, Anchor::Start, "#000", "0");
+    let words = format!("{:.2} GPa and more, von Mises", 1e-9 * end);
+    sheet.text([at[0] + 246.0, at[1] + 11.0], 12.0, Anchor::Start, "#000", &words);
+}
+
+fn moving(findings: &Findings, window: &Window, all: &[(f64, Vec<Cell>)]) -> Result<Picture, Error> {
+    let end = end_of_scale(all.iter().flat_map(|f| &f.1));
+    let half = 0.97 * window.half;
+    let scale = 0.5 * f64::from(SIDE) / half;
+    let place = |c: &[f64; 2]| {
+        let [x, y] = window.place(c[0], c[1]);
+        [0.5 * f64::from(SIDE) + scale * x, 0.5 * f64::from(SIDE) - scale * y]
+    };
+    let (first, last) = (all[0].0, all[all.len() - 1].0);
+    let canvases: Vec<Canvas> = all
+        .iter()
+        .map(|(time, cells)| {
+            let mut canvas = Canvas::new(SIDE, SIDE);
+            for cell in cells {
+                let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
+                canvas.fill(&corners, cell.von_mises / end);
+            }
+            // Time runs along the lower edge.
+            let bar = f64::from(SIDE) * (time - first) / (last - first).max(f64::MIN_POSITIVE);
+            for row in 1..4 {
+                let y = f64::from(SIDE) - f64::from(row);
+                canvas.line([0.0, y], [bar, y]);
+            }
+            canvas
+        })
+        .collect();
+    let bytes = gif("crossing", &canvases, HUNDREDTHS)?;
+    // Paper cannot move: it gets the middle of the crossing.
+    let mut sheet = Sheet::new(f64::from(SIDE), f64::from(SIDE) + 40.0);
+    let (time, middle) = &all[all.len() / 2];
+    sheet.clipped("crossing-window", [0.0, 0.0], [f64::from(SIDE); 2], |sheet| {
+        for cell in middle {
+            let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
+            let [r, g, b] = shade_rgb(cell.von_mises / end);
+            sheet.path(&corners, true, &format!("fill:#{r:02x}{g:02x}{b:02x}"));
+        }
+    });
+    scale_of_colours(&mut sheet, [8.0, f64::from(SIDE) + 8.0], end);
+    let mut picture = Picture::new("crossing", "A roller crosses the defect", sheet);
+    picture.dense = true;
+    picture.animation = Some(bytes);
+    let roller = findings.summary.events.first().map_or(String::new(), |e| format!(" {}", e.roller));
+    picture.caption = format!(
+        "Roller{roller} unloads over the leading edge, its neighbours take its load, and it is caught again by the trailing edge; watch the stress run into the rings."
+    );
+    picture.note = format!(
+        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {:.2} GPa von Mises and more. On paper: {:.1} ms.",
+        all.len(),
+        1e3 * first,
+        1e3 * last,
+        0.01 * f64::from(HUNDREDTHS) * (all.len() - 1) as f64 / (last - first).max(f64::MIN_POSITIVE),
+        1e-9 * end,
+        1e3 * time
+    );
+    Ok(picture)
+}

@@ -1,0 +1,200 @@
+//! Sections that are tables with a conclusion: the paper's numbers, the ledger of lines, readings, the spall.
+
+use maud::{Markup, html};
+use stribeck_bearing::run_dir::Run;
+
+use super::figures::spoken;
+use super::tables::cell;
+use crate::artefacts::Family;
+use crate::summary::Summary;
+
+/// Quantity, paper, ours, difference, why.
+pub(super) fn paper(summary: &Summary) -> Markup {
+    let mut part = "";
+    let rows: Vec<(bool, &crate::paper::Row)> = summary
+        .paper
+        .iter()
+        .map(|row| {
+            let first = row.part != part;
+            part = &row.part;
+            (first, row)
+        })
+        .collect();
+    html! {
+        div class="scroll" {
+            table class="numbers" {
+                thead { tr { th { "Quantity" } th class="n" { "Paper" } th class="n" { "Ours" } th class="n" { "Difference" } th { "Why" } } }
+                tbody {
+                    @for (first, row) in rows {
+                        @if first { tr class="group" { td colspan="5" { (row.part) } } }
+                        tr {
+                            td { (row.quantity) }
+                            td class="n" { (row.paper) }
+                            td class="n wrap" { (row.ours) }
+                            td class="n" { (row.difference) }
+                            td class="why" { (row.why) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn family(family: Family) -> (&'static str, &'static str) {
+    match family {
+        Family::Mesh => ("mesh", "Facets passing contacts: artefacts of the mesh"),
+        Family::Beat => ("mesh", "Beats of the facet lines: artefacts too"),
+        Family::Defect => ("defect", "Rollers passing the defect: physics"),
+        Family::Ring => ("ring", "Bending modes of the free outer ring: physics"),
+    }
+}
+
+/// Every line of the leading sensor's spectrum.
+pub(super) fn artefacts(summary: &Summary) -> Markup {
+    if summary.artefacts.is_empty() {
+        return html! { p { "The record is too short for a spectrum." } };
+    }
+    let mut last = None;
+    let rows: Vec<_> = summary
+        .artefacts
+        .iter()
+        .map(|a| {
+            let first = last != Some(a.family);
+            last = Some(a.family);
+            (first, a)
+        })
+        .collect();
+    let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
+    html! {
+        p {
+            "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”. A line counts as measured when it stands 10 dB above its \
+             surroundings within reach of its prediction. Beats are differences, so they are no lines of their own."
+        }
+        div class="scroll" {
+            table class="ledger" {
+                thead {
+                    tr {
+                        th { "Line" } th class="n" { "Predicted Hz" } th class="n" { "From the motion Hz" } th class="n" { "Measured Hz" }
+                        th class="n" { "Level g" } th { "Verdict" }
+                    }
+                }
+                tbody {
+                    @for (first, a) in rows {
+                        @if first { tr class={ "group " (family(a.family).0) } { td colspan="6" { (family(a.family).1) } } }
+                        tr {
+                            td { (spoken(&a.name)) @if matches!(a.family, Family::Mesh | Family::Defect) { " ×" (a.harmonic) } }
+                            td class="n" { (format!("{:.1}", a.predicted_hz)) }
+                            (cell(hz(a.from_motion_hz)))
+                            (cell(hz(a.measured_hz)))
+                            (cell(a.level_g.map(|g| format!("{g:.2}"))))
+                            td class="why" { (a.verdict) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The two readings of the paper that its own numbers do not carry.
+pub(super) fn readings(summary: &Summary) -> Markup {
+    let line = |name: &str| {
+        summary
+            .artefacts
+            .iter()
+            .find(|a| a.family == Family::Mesh && a.name == name && a.harmonic == 1)
+            .map(|a| a.predicted_hz)
+    };
+    let hz = |v: Option<f64>| v.map(|v| format!("{v:.0} Hz"));
+    let (vertices, inner) = (line("roller_vertices"), line("inner_race_nodes"));
+    let printed = crate::paper::EQUATION_2_HZ.1;
+    let near = summary.tones.iter().filter(|t| t.harmonic == 1).filter_map(|t| t.measured_hz);
+    let nearest = near.min_by(|a, b| (a - printed).abs().total_cmp(&(b - printed).abs()));
+    html! {
+        h3 { "The inner raceway: two formulas" }
+        table {
+            thead { tr { th { "Formula" } th class="n" { "Gives" } th { "Evidence in this run" } } }
+            tbody {
+                tr {
+                    td { "Paper, equation (2): π f_c D_i / ℓ, the cage's speed" } td class="n" { (format!("{printed:.0} Hz")) }
+                    td { "the measured facet line nearest to it, at any sensor: " (hz(nearest).unwrap_or("none".into())) }
+                }
+                tr {
+                    td { "Speed of the contact along the ring: π (f_s − f_c) D_i / ℓ" } (cell(hz(inner)))
+                    td { "vertices pass the inner raceway at the spin's rate, as at the outer one: " (hz(vertices).unwrap_or("–".into())) }
+                }
+            }
+        }
+        @if let Some(r) = &summary.cursor {
+            h3 { "4545 Hz" }
+            p {
+                "A cursor between two sampled peaks reads a whole number of samples: " (format!("{:.0}, {:.0} or {:.0} Hz", r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1))
+                ". " (format!("{:.0} %", 100.0 * r.share_in_tone)) " of the periods of a pure 4671 Hz tone are " (r.samples) " samples long, so the reading \
+                 needs no second tone. The paper's own sum of two tones swells on a carrier of " (format!("{:.0} Hz", r.equation_3_carrier_hz)) "; "
+                (format!("{:.0} %", 100.0 * r.equation_3_common.1)) " of its gaps are " (r.equation_3_common.0) " samples, "
+                (format!("{:.0} %", 100.0 * r.share_in_equation_3)) " read 4545 Hz."
+            }
+        }
+    }
+}
+
+/// The defect's family in the envelope.
+pub(super) fn envelope(summary: &Summary) -> Markup {
+    let Some(envelope) = &summary.envelope else {
+        let why = summary.notes.iter().find(|n| n.starts_with("no envelope spectrum"));
+        return html! { p class="hint" { (why.map_or("No envelope spectrum was made.", String::as_str)) "; fixtures/scenes/long.ron is long enough." } };
+    };
+    html! {
+        table class="pairs" {
+            thead { tr { th { "Envelope line" } th class="n" { "Predicted Hz" } th class="n" { "Measured Hz" } th class="n" { "Above surroundings dB" } } }
+            tbody {
+                @for line in &envelope.lines {
+                    tr {
+                        td { "BPFO ×" (line.harmonic) }
+                        td class="n" { (format!("{:.2}", line.predicted_hz)) }
+                        (cell(line.measured_hz.map(|hz| format!("{hz:.2}"))))
+                        (cell(line.prominence_db.map(|db| format!("{db:.1}").replace('-', "−"))))
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Length of the defect from the event times, beside the truth.
+pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
+    let Some(truth) = run.scene.defect.as_ref().map(|d| d.length_mm) else {
+        return html! { p { "The raceway is sound." } };
+    };
+    let off = |found: Option<f64>, truth: f64| found.map(|t| format!("{:+.3}", t - truth).replace('-', "−"));
+    html! {
+        div class="scroll" {
+            table {
+                thead {
+                    tr {
+                        th { "Roller" } th class="n" { "#1 off ms" } th class="n" { "#4 off ms" } th class="n" { "Estimated mm" } th class="n" { "True mm" }
+                        th class="n" { "Difference" }
+                    }
+                }
+                tbody {
+                    @for e in &summary.events {
+                        tr {
+                            td { (e.roller) }
+                            (cell(off(e.entry_ms, e.expected_entry_ms)))
+                            (cell(off(e.exit_ms, e.expected_exit_ms)))
+                            (cell(e.spall_mm.map(|mm| format!("{mm:.2}"))))
+                            td class="n" { (truth) }
+                            (cell(e.spall_mm.map(|mm| format!("{:+.1} %", 100.0 * (mm / truth - 1.0)).replace('-', "−"))))
+                        }
+                    }
+                }
+            }
+        }
+        p class="hint" {
+            "Off: event against the centre of the roller over the edge without slip. The estimate adds to the way between the two events how \
+             far behind an edge a roller of this load still carries half of it, once for each edge; it uses the speed without slip and \
+             not the place of the roller."
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Bending modes of a free thin ring: where structural resonances are to be expected.
+//!
+//! Source: A. E. H. Love, *A Treatise on the Mathematical Theory of Elasticity*, §293, in plane strain. The bearing's ring
+//! sits in its adapter and on its rollers, and is not thin: its own frequencies differ, so these are places to look at.
+
+use std::f64::consts::PI;
+
+use stribeck_bearing::scene::Scene;
+
+/// Frequency [Hz] of the in-plane bending mode with `n` waves around a free ring, n ≥ 2.
+///
+/// Mean radius and radial thickness in [m], Young's modulus in [Pa], density in [kg/m³].
+pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisson: f64, density: f64) -> f64 {
+    let n = f64::from(n);
+    // I/A of a rectangle is h²/12; a ring that is long out of the plane bends with E/(1 − ν²).
+    let stiffness = modulus / (1.0 - poisson * poisson) * thickness * thickness / 12.0;
+    n * (n * n - 1.0) / (2.0 * PI * radius * radius) * (stiffness / (density * (n * n + 1.0))).sqrt()
+}
+
+/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz].
+pub fn outer_ring_modes(scene: &Scene, last: u32) -> Vec<(u32, f64)> {
+    let (b, m) = (&scene.bearing, &scene.material);
+    let thickness = 1e-3 * b.outer_ring_thickness_mm;
+    let radius = 0.5e-3 * b.outer_race_diameter_mm + 0.5 * thickness;
+    let modulus = 1e9 * m.youngs_modulus_gpa;
+    let mode = |n| (n, bending_mode_hz(n, radius, thickness, modulus, m.poissons_ratio, m.density_kg_m3));
+    (2..=last).map(mode).collect()
+}
+
+/// Wavelength of bending waves in a bar as thick as the outer ring at `frequency_hz`, in elements: the paper's "elements
+/// per wavelength". c_B = √(1.8 c_L h f) with the plate speed c_L.
+pub fn elements_per_wavelength(scene: &Scene, frequency_hz: f64) -> f64 {
+    let m = &scene.material;
+    let plate = (1e9 * m.youngs_modulus_gpa / (m.density_kg_m3 * (1.0 - m.poissons_ratio.powi(2)))).sqrt();
+    let bending = (1.8 * plate * 1e-3 * scene.bearing.outer_ring_thickness_mm * frequency_hz).sqrt();
+    bending / frequency_hz / (1e-3 * scene.mesh.size_mm)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_modes_and_waves_of_the_paper_ring() {
+        let scene = Scene::default();
+        // Love's formula evaluated by hand for R = 105 mm, h = 10 mm, plane strain [Hz].
+        for ((n, hz), expected) in
+            outer_ring_modes(&scene, 5).into_iter().zip([592.0, 1673.0, 3209.0, 5189.0])
+        {
+            assert!((hz / expected - 1.0).abs() < 1e-3, "n = {n}: {hz}");
+        }
+        // The paper says 97.
+        let waves = elements_per_wavelength(&scene, 40_000.0);
+        assert!((waves - 97.6).abs() < 0.1, "{waves}");
+    }
+}

@@ -1,0 +1,30 @@
+//! One line of any signal.
+
+use stribeck_dsp::{Welch, WelchOptions, Window};
+
+/// Amplitude of the line within one resolution of `frequency_hz`, over the whole record with a Hann window; `None` for a
+/// record that cannot hold it.
+pub fn amplitude(signal: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<f64> {
+    if signal.len() < 16 {
+        return None;
+    }
+    let options =
+        WelchOptions { window: Window::Hann, nfft: 4 * signal.len(), ..WelchOptions::new(signal.len()) };
+    let spectrum = Welch::new(sample_rate_hz, signal.len(), &options).ok()?.estimate(signal).ok()?;
+    let reach = spectrum.resolution().resolution_hz;
+    let peak = spectrum.peak(frequency_hz - reach, frequency_hz + reach).ok()?;
+    Some(spectrum.sinusoid(&peak).ok()?.amplitude)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_amplitude_of_a_cosine_between_two_bins() {
+        let tone = |n: usize| 3.0 + 2.0 * (std::f64::consts::TAU * 4671.5 * n as f64 * 1e-5).cos();
+        let signal: Vec<f64> = (0..1200).map(tone).collect();
+        assert!((amplitude(&signal, 1e5, 4680.0).unwrap() - 2.0).abs() < 0.02);
+        assert_eq!(amplitude(&signal[..10], 1e5, 4680.0), None);
+    }
+}

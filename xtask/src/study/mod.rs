@@ -1,0 +1,36 @@
+//! `cargo xtask study`: one question, many runs, one table.
+//!
+//! A study is a list of variants: a scene and what is changed in it. Runs are kept in `runs/study/STUDY/VARIANT`; those
+//! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
+//! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
+
+mod paper;
+mod runner;
+mod table;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+
+pub(crate) use runner::{Finished, Flags, Runner, Variant};
+pub(crate) use table::{Column, Sheet};
+
+/// Flags of `study`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    #[command(subcommand)]
+    study: Study,
+}
+
+/// What is asked.
+#[derive(Debug, clap::Subcommand)]
+enum Study {
+    /// Which reading of the paper agrees with it best, and whether its hypothesis holds
+    Paper(paper::Options),
+}
+
+pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+    match &options.study {
+        Study::Paper(options) => paper::run(options),
+    }
+}

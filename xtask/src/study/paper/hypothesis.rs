@@ -1,0 +1,175 @@
+//! What follows from the paper's hypothesis, that polygonised rollers make the tone: where it must stand and how strong it
+//! must be when facets, speed, load and orientation change.
+
+use anyhow::Result;
+use stribeck_analysis::load;
+use stribeck_analysis::lumped::Lumped;
+use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
+use stribeck_analysis::record::Record;
+use stribeck_analysis::signal;
+use stribeck_bearing::run_dir::Run;
+
+use super::super::table::{number, quantity_by};
+use super::super::{Column, Finished, Sheet, Variant};
+use super::{LEAN, SHORT, roller_line};
+
+/// Raceways with counts of their own, so that their lines stand 900 Hz and more away from those of the rollers.
+const RACES: [&str; 2] = ["mesh.outer_facets=1000", "mesh.inner_facets=820"];
+/// The stiff contact: it smooths the facets least, so the line is clearest.
+const STIFF: &str = "contact.penalty_scale=1.0";
+
+pub(super) fn variants() -> Vec<Variant> {
+    let variant = |name: &str, set: &[&str]| {
+        let all = SHORT.iter().chain(&RACES).chain([&STIFF]).chain(set);
+        Variant::new(format!("facets-{name}"), LEAN, &all.copied().collect::<Vec<_>>())
+    };
+    let facets = |n: &str| format!("mesh.roller_facets={n}");
+    let mut all: Vec<Variant> =
+        ["56", "112", "113", "120", "224"].iter().map(|n| variant(n, &[&facets(n)])).collect();
+    all.extend([
+        variant("112-rotated", &["mesh.roller_copies=rotated"]),
+        variant("113-rotated", &["mesh.roller_facets=113", "mesh.roller_copies=rotated"]),
+        variant("112-250rpm", &["operation.speed_rpm=250.0"]),
+        variant("112-1000rpm", &["operation.speed_rpm=1000.0"]),
+        variant("112-25kN", &["operation.load_n=25000.0"]),
+        variant("112-100kN", &["operation.load_n=100000.0"]),
+    ]);
+    all
+}
+
+const COLUMNS: [Column; 9] = [
+    Column { name: "N_v", decimals: 0, of: |run| Some(run.scene.mesh.roller_facets as f64) },
+    Column { name: "N_v × spin Hz", decimals: 0, of: |run| lumped(run).map(|l| l.frequency_hz) },
+    Column { name: "measured Hz", decimals: 0, of: |run| roller_line(run).and_then(|t| t.measured_hz) },
+    Column { name: "off, resolutions", decimals: 2, of: off },
+    Column { name: "side g", decimals: 1, of: |run| sensor_level(run, "side") },
+    Column { name: "loudest g", decimals: 1, of: |run| roller_line(run).and_then(|t| t.level_g) },
+    Column { name: "sum of forces N", decimals: 0, of: force_line },
+    Column { name: "lumped g", decimals: 1, of: |run| lumped(run).map(|l| l.level_g) },
+    Column { name: "phases", decimals: 2, of: |run| lumped(run).map(|l| l.phases) },
+];
+
+fn lumped(run: &Finished) -> Option<Lumped> {
+    Lumped::of(&run.scene).ok()
+}
+
+/// Distance of the measured line from its prediction by the recorded motion, in resolutions.
+fn off(run: &Finished) -> Option<f64> {
+    let line = roller_line(run)?;
+    let resolution = run.numbers()?.spectrum.as_ref()?.resolution_hz;
+    Some((line.measured_hz? - line.predicted_hz) / resolution)
+}
+
+/// Level of the roller line at one sensor.
+fn sensor_level(run: &Finished, sensor: &str) -> Option<f64> {
+    let tones = &run.numbers()?.tones;
+    tones.iter().find(|t| t.sensor == sensor && t.name == "roller_vertices" && t.harmonic == 1)?.level_g
+}
+
+/// Amplitude of the roller line in the vertical force of all rollers [N].
+fn force_line(run: &Finished) -> Option<f64> {
+    let read = Run::read(&run.folder).ok()?;
+    let record = Record::new(&read);
+    signal::amplitude(&load::vertical_sum(&record), record.sample_rate_hz(), lumped(run)?.frequency_hz)
+}
+
+/// Table, pictures, conclusions.
+pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
+    sheet.heading("Experiments on the hypothesis");
+    sheet.say(
+        "Here the raceways have 1000 and 820 facets, whose lines stand near 3754 Hz, so that what stands at N_v × spin comes \
+         from the rollers alone, and the contact is stiff (E/h), which smooths the facets least. *Off* is measured against \
+         predicted without slip, in resolutions of the record. *Lumped* is the acceleration of a rigid ring on springs that \
+         follow the polygons (`crates/analysis/src/lumped.rs`): its phases and its smoothing by the contact's width, without the \
+         ring's own dynamics. *Sum of forces* is the line in the vertical force of all rollers, which knows no transfer path.",
+    );
+    sheet.runs("hypothesis", &runs.iter().collect::<Vec<_>>(), &COLUMNS);
+    conclusions(sheet, runs);
+    if runs.len() > 2 {
+        sheet.picture(&frequencies(runs))?;
+        sheet.picture(&levels(runs))?;
+    }
+    Ok(())
+}
+
+/// What the table says, from its numbers.
+fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
+    let found: Vec<(&Finished, f64)> = runs.iter().filter_map(|r| Some((r, off(r)?))).collect();
+    let inside = found.iter().filter(|f| f.1.abs() <= 1.0).count();
+    let worst = found.iter().map(|f| f.1.abs()).fold(0.0, f64::max);
+    sheet.say(&format!(
+        "Of {} runs with a line above the background, {inside} have it within one resolution of N_v × spin (the farthest is {} off); {} show none.",
+        found.len(),
+        number(worst, 2),
+        runs.len() - found.len()
+    ));
+    let by = |name: &str| runs.iter().find(|r| r.variant.name == format!("facets-{name}"));
+    let ratio = |a: &str, b: &str, of: fn(&Finished) -> Option<f64>| Some(of(by(a)?)? / of(by(b)?)?);
+    let says = [
+        ("rotated against translated copies, N_v = 112", "112-rotated", "112"),
+        ("N_v = 113 against 112, translated", "113", "112"),
+        ("N_v = 113 against 112, rotated", "113-rotated", "112-rotated"),
+        ("N_v = 120 against 112, translated", "120", "112"),
+        ("N_v = 56 against 112", "56", "112"),
+        ("N_v = 224 against 112", "224", "112"),
+        ("1000 against 500 rpm", "112-1000rpm", "112"),
+        ("250 against 500 rpm", "112-250rpm", "112"),
+        ("100 against 50 kN", "112-100kN", "112"),
+        ("25 against 50 kN", "112-25kN", "112"),
+    ];
+    let cell = |v: Option<f64>| v.map_or("–".to_owned(), |v| format!("× {v:.2}"));
+    let rows: Vec<Vec<String>> = says
+        .iter()
+        .filter(|(_, a, b)| by(a).is_some() && by(b).is_some())
+        .map(|(words, a, b)| {
+            vec![
+                (*words).to_owned(),
+                cell(ratio(a, b, force_line)),
+                cell(ratio(a, b, |r| roller_line(r)?.level_g)),
+                cell(ratio(a, b, |r| lumped(r).map(|l| l.level_g))),
+            ]
+        })
+        .collect();
+    sheet.table(&["level of", "sum of forces", "loudest sensor", "lumped"], &rows);
+}
+
+fn frequencies(runs: &[Finished]) -> Figure {
+    let mut points: Vec<(f64, f64)> =
+        runs.iter().filter_map(|r| Some((lumped(r)?.frequency_hz, quantity_by(&COLUMNS[2], r)))).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+    let axis = |label: &str| Axis::si(label, "Hz");
+    Figure::new("frequency", "The roller line follows N_v × spin", axis("N_v × spin, without slip"), axis("Measured"))
+        .with(Series::listed("equal", Colour::Grey, x.clone(), x.clone()))
+        .with(Series::listed("measured, clearest sensor", Colour::Blue, x, y).as_points())
+        .caption("Measured against predicted frequency over facets, speed, load and orientation; the grey line is no fit.")
+}
+
+fn levels(runs: &[Finished]) -> Figure {
+    let decibels = |v: f64| 20.0 * v.log10();
+    let mut points: Vec<(f64, f64, f64)> = runs
+        .iter()
+        .filter_map(|r| {
+            Some((
+                lumped(r)?.level_g,
+                force_line(r)?,
+                roller_line(r).and_then(|t| t.level_g).unwrap_or(f64::NAN),
+            ))
+        })
+        .filter(|p| p.0 > 0.01)
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let x: Vec<f64> = points.iter().map(|p| decibels(p.0)).collect();
+    let sensor = points.iter().map(|p| decibels(p.2)).collect();
+    let force = points.iter().map(|p| decibels(p.1 / 1000.0)).collect();
+    Figure::new(
+        "level",
+        "Its level against the lumped prediction",
+        Axis::plain("Lumped prediction", "dB re 1 g"),
+        Axis::plain("Measured", "dB re 1 g; dB re 1 kN"),
+    )
+    .with(Series::listed("equal", Colour::Grey, x.clone(), x.clone()))
+    .with(Series::listed("loudest sensor", Colour::Blue, x.clone(), sensor).as_points())
+    .with(Series::listed("sum of forces", Colour::Orange, x, force).as_points())
+    .caption("A slope of one means that phases, speed and contact width act as the lumped model says; odd counts, for which it predicts nothing, are left out.")
+}

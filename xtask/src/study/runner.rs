@@ -1,0 +1,213 @@
+//! Runs the variants of a study, each once.
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, Result, bail};
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::summary::Summary;
+use stribeck_bearing::run_dir::{Run, RunDir};
+use stribeck_bearing::run_info::{RunInfo, Status};
+use stribeck_bearing::scene::Scene;
+
+use crate::engine::{self, Progress};
+use crate::progress::{Meter, clock};
+use crate::{simulate, workspace};
+
+/// What every study takes.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct Flags {
+    /// Worker threads [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Runs only variants whose name contains this; may be repeated. The others are shown when they have been run
+    #[arg(long, value_name = "TEXT")]
+    only: Vec<String>,
+    /// Runs nothing: makes the tables from what has been run
+    #[arg(long)]
+    tables_only: bool,
+}
+
+/// A scene and what is changed in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Variant {
+    /// Name of its folder: letters, digits, `-` and `_`.
+    pub(crate) name: String,
+    /// Scene file, below the repository's root.
+    pub(crate) scene: &'static str,
+    /// Overrides, as `--set` takes them.
+    pub(crate) set: Vec<String>,
+}
+
+/// A variant that has been run, or could not be.
+#[derive(Debug)]
+pub(crate) struct Finished {
+    /// What was asked for.
+    pub(crate) variant: Variant,
+    /// Its folder.
+    pub(crate) folder: PathBuf,
+    /// The scene that it stands for.
+    pub(crate) scene: Scene,
+    /// Its numbers, or why there are none.
+    pub(crate) summary: Result<Summary, String>,
+    /// What its run says of itself.
+    pub(crate) info: Option<RunInfo>,
+}
+
+/// Runs variants into `runs/study/STUDY`.
+pub(crate) struct Runner {
+    folder: PathBuf,
+    threads: usize,
+    flags: Flags,
+    interrupted: Arc<AtomicBool>,
+}
+
+impl Variant {
+    /// A variant of `scene` under the overrides `set`.
+    pub(crate) fn new(name: impl Into<String>, scene: &'static str, set: &[&str]) -> Self {
+        Self { name: name.into(), scene, set: set.iter().map(|s| (*s).to_owned()).collect() }
+    }
+
+    /// The same with one override more.
+    pub(crate) fn with(mut self, set: impl Into<String>) -> Self {
+        self.set.push(set.into());
+        self
+    }
+
+    fn scene(&self) -> Result<Scene> {
+        let file = workspace::locate(Path::new(self.scene));
+        let mut scene = Scene::read_with(&file, &self.set)
+            .with_context(|| format!("variant `{}` is not a scene", self.name))?;
+        scene.name.clone_from(&self.name);
+        Ok(scene)
+    }
+}
+
+impl Finished {
+    /// The numbers of a complete run.
+    pub(crate) fn numbers(&self) -> Option<&Summary> {
+        self.summary.as_ref().ok()
+    }
+}
+
+impl Runner {
+    /// A runner for the study of this name. It listens for Ctrl-C, so there is one a process.
+    ///
+    /// # Errors
+    /// When Ctrl-C cannot be listened for.
+    pub(crate) fn new(study: &str, flags: &Flags) -> Result<Self> {
+        Ok(Self {
+            folder: workspace::runs().join("study").join(study),
+            threads: flags.threads.map_or_else(simulate::available_threads, usize::from),
+            flags: flags.clone(),
+            interrupted: simulate::listen_for_interrupt()?,
+        })
+    }
+
+    /// Runs every variant that has not been run and returns all that have been, in their order. A variant that fails
+    /// says why in its place and does not end the study.
+    ///
+    /// # Errors
+    /// When a variant is not a scene, or at Ctrl-C; what has been run is kept.
+    pub(crate) fn run(&self, variants: &[Variant]) -> Result<Vec<Finished>> {
+        self.run_with(&self.flags, variants)
+    }
+
+    fn run_with(&self, flags: &Flags, variants: &[Variant]) -> Result<Vec<Finished>> {
+        let mut all = Vec::new();
+        for (number, variant) in variants.iter().enumerate() {
+            let scene = variant.scene()?;
+            let folder = self.folder.join(&variant.name);
+            let wanted =
+                flags.only.is_empty() || flags.only.iter().any(|text| variant.name.contains(text.as_str()));
+            let mut failed = None;
+            match state_of(&folder, &scene) {
+                State::Done => {}
+                _ if !wanted || flags.tables_only => continue,
+                state => {
+                    eprintln!("{} of {}: {}", number + 1, variants.len(), variant.name);
+                    if let Err(error) = self.run_one(&scene, &folder, state) {
+                        eprintln!("{}: {error:#}", variant.name);
+                        failed = Some(format!("{error:#}"));
+                    }
+                    if self.interrupted.load(Ordering::Relaxed) {
+                        bail!("interrupted; the same command goes on from here");
+                    }
+                }
+            }
+            all.push(finished(variant.clone(), folder, scene, failed));
+        }
+        Ok(all)
+    }
+
+    /// As [`Runner::run`]; when not `wanted`, nothing is run and what has been run is returned.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub(crate) fn run_if(&self, wanted: bool, variants: &[Variant]) -> Result<Vec<Finished>> {
+        if wanted {
+            return self.run(variants);
+        }
+        self.run_with(&Flags { tables_only: true, ..self.flags.clone() }, variants)
+    }
+
+    fn run_one(&self, scene: &Scene, folder: &Path, state: State) -> Result<()> {
+        let mut meter = Meter::new(scene.solver.duration_ms);
+        let mut watch = |progress: &Progress| {
+            meter.show(progress);
+            if self.interrupted.load(Ordering::Relaxed) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        let info = match state {
+            State::Begun => engine::resume(&RunDir::reopen(folder)?, self.threads, &mut watch),
+            _ => engine::simulate(scene, &RunDir::create(folder)?, self.threads, &mut watch),
+        };
+        meter.finish();
+        let info = info?;
+        eprintln!("  {:?} after {}", info.status, clock(info.wall_s + info.setup_s));
+        Ok(())
+    }
+}
+
+/// How far a variant is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// Not run, or run from another scene.
+    New,
+    /// Ended early; can be continued.
+    Begun,
+    /// At its end, or diverged.
+    Done,
+}
+
+fn state_of(folder: &Path, scene: &Scene) -> State {
+    let Ok(run) = RunDir::open(folder).and_then(|dir| dir.read_info().map(|info| (dir, info))) else {
+        return State::New;
+    };
+    let (dir, info) = run;
+    match info.status {
+        _ if info.scene_hash != scene.hash() => State::New,
+        Status::Complete | Status::Diverged => State::Done,
+        Status::Running | Status::Interrupted if dir.checkpoint().exists() => State::Begun,
+        _ => State::New,
+    }
+}
+
+/// Reads a run again and draws its conclusions anew, so that a table is never older than the analysis.
+fn finished(variant: Variant, folder: PathBuf, scene: Scene, failed: Option<String>) -> Finished {
+    let run = match failed {
+        Some(why) => Err(why),
+        None => Run::read(&folder).map_err(|error| error.to_string()),
+    };
+    let info = run.as_ref().ok().map(|run| run.info.clone());
+    let summary = run.and_then(|run| match run.info.status {
+        Status::Complete => Findings::of(&run).map(|f| f.summary).map_err(|error| error.to_string()),
+        _ => Err(run.info.stop_reason.unwrap_or_else(|| "did not complete".to_owned())),
+    });
+    Finished { variant, folder, scene, summary, info }
+}
