@@ -1,6 +1,6 @@
 //! What contact refuses, and what it says.
 
-use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Surface};
+use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Sides, Surface};
 
 #[track_caller]
 fn says<T>(result: Result<T, Error>, words: &[&str]) {
@@ -42,7 +42,7 @@ fn invariant_pairs_must_exist_and_have_points() {
         let surface =
             |slots: [u32; 2]| Surface::new("side", slots.to_vec(), false, &x, &y).expect("one facet");
         let surfaces = vec![surface([0, 1]), surface([3, 2])];
-        let pair = PairSpec { first, second, law, method };
+        let pair = PairSpec { first, second, law, method, sides: Sides::Both };
         Contacts::new(surfaces, &[pair], thickness, &x[..positions], &y[..positions])
     };
     assert!(made([0, 1], Method::Collocated, 0.01, 4).is_ok());
