@@ -344,7 +344,8 @@ impl Assembly {
             second: 3,
             law: seat,
             method: Method::Integrated { points },
-            sides: Sides::Both,
+            // The facets of ring and seat lie on each other: either side sees the same gap.
+            sides: Sides::First,
         });
         Ok((pairs, roller_pairs))
     }

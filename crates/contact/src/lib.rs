@@ -94,6 +94,7 @@ mod law;
 mod pass;
 mod points;
 mod projection;
+mod row;
 mod search;
 mod shape;
 mod smooth;

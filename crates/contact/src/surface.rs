@@ -28,6 +28,8 @@ pub struct Surface {
     pub(crate) rise: Vec<Rise>,
     /// True for a vertex where two smoothed facets join without a kink.
     pub(crate) smooth: Vec<bool>,
+    /// True when every facet is its chord, and hangs on its own two nodes.
+    flat: bool,
     /// How the curve hangs on its nodes; `None` when each facet hangs on its own two.
     pub(crate) spline: Option<Spline>,
 }
@@ -124,6 +126,7 @@ impl Surface {
             beside_corner,
             rise: vec![[0.0; 2]; facets],
             smooth: vec![false; n],
+            flat: true,
             spline: None,
         })
     }
@@ -137,6 +140,7 @@ impl Surface {
         let at = Vertices { slots: &self.slots, closed: self.closed, x, y };
         self.spline = None;
         self.rise = rises(smoothing, &at, &self.corner);
+        self.flat = self.rise.iter().all(|r| *r == [0.0; 2]);
         if self.rise.iter().zip(&self.length).any(|(r, l)| !(r[0].abs().max(r[1].abs()) < 0.5 * l)) {
             let reason = "is too coarse to be smoothed: its curve would leave a chord by more than 27°";
             return Err(Error::BadSurface { name: self.name, reason });
@@ -170,6 +174,7 @@ impl Surface {
     /// [`smoothed`](Self::smoothed), in the same positions.
     pub fn splined(mut self, x: &[f64], y: &[f64]) -> Self {
         self.spline = Some(Spline::new(&self, x, y));
+        self.flat = false;
         self.smooth = self.corner.iter().map(|corner| !corner).collect();
         self
     }
@@ -177,6 +182,11 @@ impl Surface {
     /// Number of facets.
     pub fn facets(&self) -> usize {
         self.length.len()
+    }
+
+    /// Whether every facet is its chord, and hangs on its own two nodes.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.flat
     }
 
     /// Mean facet length [m].

@@ -99,7 +99,7 @@ pub mod field;
 pub mod force;
 mod gather;
 pub mod integrators;
-mod lanes;
+pub mod lanes;
 pub mod layout;
 pub mod material;
 pub mod model;
