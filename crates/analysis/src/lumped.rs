@@ -138,9 +138,10 @@ mod tests {
     #[test]
     fn analytic_phases_follow_copies_and_parity() {
         let of = |facets, copies| Lumped::of(&scene(facets, copies)).unwrap();
-        // Copies in one orientation: 112 facets make three groups that partly cancel, 120 = 5·24 are all in step.
+        // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded rollers not all of
+        // it), 120 = 5·24 are all in step.
         let (three, all) = (of(112, RollerCopies::Translated), of(120, RollerCopies::Translated));
-        assert!(three.phases < 0.4, "{three:?}");
+        assert!(three.phases < 0.5, "{three:?}");
         assert!((all.phases - 1.0).abs() < 1e-9, "{all:?}");
         assert!((of(112, RollerCopies::Rotated).phases - 1.0).abs() < 1e-12);
         assert!(of(113, RollerCopies::Translated).level_g < 1e-9);

@@ -58,8 +58,7 @@ const COLUMNS: [Column; 8] = [
 ];
 
 /// Mean distance of tone, impulse, between and notched level from the paper's, in octaves: 1 is a factor of two. A tone
-/// that does not stand out counts with the highest level that it can have, that of the line 10 dB above the background: as
-/// its level is not known, it is left out and the run pays one octave for it.
+/// that does not stand out has no level; it counts one octave.
 fn misfit(run: &Finished) -> Option<f64> {
     let levels = &run.numbers()?.levels;
     let octaves = |ours: f64, paper: f64| (ours / paper).log2().abs();
