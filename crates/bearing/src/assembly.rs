@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
 use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
 
@@ -11,7 +11,7 @@ use crate::{
     grading,
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
-    scene::{ContactMethod, RollerCopies, Scene},
+    scene::{ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, RollerCopies, Scene},
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
@@ -19,6 +19,10 @@ const CAGE_ELEMENT_MM: f64 = 2.0;
 
 /// Integration points on a facet of the adapter's seat: two conforming surfaces need fewer than a line contact.
 const SEAT_POINTS: usize = 2;
+
+/// Places of the raceways among the contact surfaces; the outer ring's back and the seat have the other two of four.
+const OUTER_RACEWAY: usize = 0;
+const INNER_RACEWAY: usize = 2;
 
 /// A scene made into bodies, in mesh numbers.
 #[derive(Debug)]
@@ -231,19 +235,38 @@ impl Assembly {
         let body =
             |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
         let (x, y) = (&dynamics.state.x, &dynamics.state.y);
+        let centres: Vec<[f64; 2]> = self
+            .rollers
+            .iter()
+            .map(|r| slot(&r.mark("centre").expect("a disc marks its centre")) as usize)
+            .map(|n| [x[n], y[n]])
+            .collect();
         let names = ["outer raceway", "outer ring's back", "inner raceway", "adapter seat"];
         let surfaces = touching
             .iter()
             .enumerate()
             .map(|(i, s)| {
                 let name = names.get(i).map_or_else(|| format!("surface {i}"), |n| (*n).to_owned());
-                Surface::new(name, slots(s), s.closed, x, y)
+                let surface = Surface::new(name, slots(s), s.closed, x, y)?;
+                let centre = match i.checked_sub(names.len()) {
+                    None => Some([0.0; 2]),
+                    Some(roller) if roller < centres.len() => Some(centres[roller]),
+                    _ => None,
+                };
+                let surface = surface.smoothed(smoothing(scene.contact.surface, centre), x, y)?;
+                // Nothing travels over the seat, and the cage touches with its corners.
+                let rolls =
+                    i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
+                Ok::<_, Error>(match scene.contact.interpolation {
+                    ContactInterpolation::Spline if rolls => surface.splined(x, y),
+                    _ => surface,
+                })
             })
             .collect::<Result<Vec<_>, _>>()?;
 
         let (pairs, roller_pairs) = self.pairs(scene, first_piece)?;
         let seat_pair = pairs.len() - 1;
-        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y);
+        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y)?;
         contacts.set_parallel(threads > 1);
 
         let rollers = self
@@ -280,11 +303,15 @@ impl Assembly {
         let base = Law::penalty(c.penalty_scale * steel.youngs_modulus() / size)?;
         // A surface layer is half an element deep.
         let base = base.with_damping(c.damping_ratio, 0.5 * steel.density() * size)?;
-        let rolling = base.with_friction(c.friction)?;
+        let rolling = base.with_friction(c.friction)?.with_onset(1e-6 * c.onset_um)?;
         let seat = base.with_friction(c.seat_friction)?;
         let method = |points| match c.method {
             ContactMethod::Collocated => Method::Collocated,
             ContactMethod::Integrated => Method::Integrated { points },
+        };
+        let sides = match c.passes {
+            ContactPasses::Two => Sides::Both,
+            ContactPasses::One => Sides::First,
         };
         let mut pairs = Vec::new();
         let mut roller_pairs = Vec::new();
@@ -292,12 +319,18 @@ impl Assembly {
         for i in 0..n {
             let first = 4 + i;
             let mut pair = |second| {
-                pairs.push(PairSpec { first, second, law: rolling, method: method(c.points_per_facet) });
+                pairs.push(PairSpec {
+                    first,
+                    second,
+                    law: rolling,
+                    method: method(c.points_per_facet),
+                    sides,
+                });
                 pairs.len() - 1
             };
             roller_pairs.push(RollerPairs {
-                outer: pair(0),
-                inner: pair(2),
+                outer: pair(OUTER_RACEWAY),
+                inner: pair(INNER_RACEWAY),
                 cage: self
                     .cage
                     .as_ref()
@@ -306,8 +339,23 @@ impl Assembly {
         }
         // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
         let points = SEAT_POINTS;
-        pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points } });
+        pairs.push(PairSpec {
+            first: 1,
+            second: 3,
+            law: seat,
+            method: Method::Integrated { points },
+            sides: Sides::Both,
+        });
         Ok((pairs, roller_pairs))
+    }
+}
+
+/// What the polyline of a body about `centre` stands for; bodies without one, the pieces of the cage, keep their corners.
+fn smoothing(surface: ContactSurface, centre: Option<[f64; 2]>) -> Smoothing {
+    match (surface, centre) {
+        (ContactSurface::Arc, Some(centre)) => Smoothing::Arc { centre },
+        (ContactSurface::Nagata, Some(_)) => Smoothing::Nagata,
+        _ => Smoothing::Facet,
     }
 }
 

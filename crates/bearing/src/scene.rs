@@ -28,6 +28,8 @@ pub struct Scene {
     pub solver: SolverScene,
     /// What is recorded.
     pub output: OutputScene,
+    /// What is watched.
+    pub guards: GuardsScene,
 }
 
 /// Rings and rolling elements (paper, Table 1).
@@ -158,16 +160,57 @@ pub struct OperationScene {
 pub struct ContactScene {
     /// Where the penalty acts.
     pub method: ContactMethod,
+    /// What the facets of raceways and rollers stand for.
+    pub surface: ContactSurface,
+    /// How the surfaces of raceways and rollers move with their nodes.
+    pub interpolation: ContactInterpolation,
     /// Integration points on a facet (`integrated` only).
     pub points_per_facet: usize,
+    /// Whose points are evaluated where rollers touch.
+    pub passes: ContactPasses,
     /// Penalty stiffness as a multiple of E / element size [-].
     pub penalty_scale: f64,
+    /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a parabola, beyond
+    /// it in proportion. Zero for a sharp corner.
+    pub onset_um: f64,
     /// Normal contact damping as a fraction of critical [-].
     pub damping_ratio: f64,
     /// Coulomb coefficient of rollers on raceways and cage [-].
     pub friction: f64,
     /// Coulomb coefficient of the adapter on the outer ring [-].
     pub seat_friction: f64,
+}
+
+/// What the facets of raceways and rollers stand for. Corners (walls of the defect, cage) stay sharp in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactSurface {
+    /// Themselves: contact is with the chords.
+    Facet,
+    /// Arcs about the centre of the ring or roller.
+    Arc,
+    /// Nagata patches, from the directions of neighbouring facets alone.
+    Nagata,
+}
+
+/// How a contact surface moves with its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactInterpolation {
+    /// Every facet with its own two nodes.
+    Linear,
+    /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where nodes are.
+    Spline,
+}
+
+/// Whose points are evaluated where rollers touch; the seat takes both sides in any case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactPasses {
+    /// Those of both bodies, each with half of the stiffness.
+    Two,
+    /// Those of the roller alone: half the work, for points that stand closer than the features of a raceway.
+    One,
 }
 
 /// Where the contact penalty acts.
@@ -257,6 +300,26 @@ pub struct SensorScene {
     pub angle_deg: f64,
 }
 
+/// What is watched at every sample, and when a run is warned of or stopped (`guards.rs`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuardsScene {
+    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%].
+    pub energy_warning_percent: f64,
+    /// … and above which it stops [%].
+    pub energy_stop_percent: f64,
+    /// Hourglass energy over strain energy above which the run carries a warning [%].
+    pub hourglass_warning_percent: f64,
+    /// Penetration over the element size above which the run carries a warning [%].
+    pub penetration_warning_percent: f64,
+    /// … and above which it stops [%]; at 200 % contact takes a point for one on the far side of a body and lets go.
+    pub penetration_stop_percent: f64,
+    /// Area of an element over its area at rest below which the run stops [%].
+    pub area_stop_percent: f64,
+    /// Time for which no roller may carry anything before the run carries a warning [ms].
+    pub unsupported_warning_ms: f64,
+}
+
 impl Default for Scene {
     fn default() -> Self {
         Self {
@@ -271,6 +334,7 @@ impl Default for Scene {
             contact: ContactScene::default(),
             solver: SolverScene::default(),
             output: OutputScene::default(),
+            guards: GuardsScene::default(),
         }
     }
 }
@@ -343,8 +407,12 @@ impl Default for ContactScene {
     fn default() -> Self {
         Self {
             method: ContactMethod::Integrated,
+            surface: ContactSurface::Facet,
+            interpolation: ContactInterpolation::Linear,
             points_per_facet: 16,
+            passes: ContactPasses::Two,
             penalty_scale: 0.05,
+            onset_um: 0.0,
             damping_ratio: 0.1,
             friction: 0.005,
             seat_friction: 0.1,
@@ -377,6 +445,20 @@ impl Default for OutputScene {
                 sensor("bottom", 270.0),
             ],
             frames: Some(FramesScene::default()),
+        }
+    }
+}
+
+impl Default for GuardsScene {
+    fn default() -> Self {
+        Self {
+            energy_warning_percent: 0.5,
+            energy_stop_percent: 25.0,
+            hourglass_warning_percent: 10.0,
+            penetration_warning_percent: 10.0,
+            penetration_stop_percent: 100.0,
+            area_stop_percent: 20.0,
+            unsupported_warning_ms: 0.5,
         }
     }
 }

@@ -280,6 +280,41 @@ fn analytic_what_cannot_go_on_says_why() {
     assert!(!nothing.0.exists(), "a refused resume made a folder");
 }
 
+/// Clocks that are set back, jump ahead or stand still change times in `run.json` and nothing else: checkpoints are still
+/// written, and no time runs backwards.
+#[test]
+fn invariant_a_clock_that_jumps_changes_no_sample() {
+    let whole = Folder::new();
+    start(&coarse(1.25), 1, &whole, &mut until(0));
+    for jump in [-1e9, 1e9, f64::NAN, 0.0] {
+        let folder = Folder::new();
+        let calls = std::cell::Cell::new(0);
+        let clock = || {
+            calls.set(calls.get() + 1);
+            // Every third look at the clock finds it somewhere else.
+            f64::from(calls.get()) + if calls.get() % 3 == 0 { jump } else { 0.0 }
+        };
+        let host = Host { wall_s: &clock, cpu_s: &clock, ..host(1) };
+        let dir = RunDir::create(&folder.0).expect("the folder is new");
+        let mut saved = Vec::new();
+        let info = simulate(&coarse(1.25), &dir, &host, &mut |progress| {
+            if progress.phase == "run" {
+                saved.push(
+                    fs::metadata(folder.file("checkpoint")).and_then(|m| m.modified()).expect("there is one"),
+                );
+            }
+            ControlFlow::Continue(())
+        })
+        .expect("the scene is sound");
+        assert_eq!(info.status, Status::Complete);
+        assert!(info.wall_s >= 0.0 && info.cpu_s >= 0.0, "{} s, {} s", info.wall_s, info.cpu_s);
+        assert_same_files(&whole, &folder, &format!("clock jumps by {jump} s"));
+        if jump < 0.0 {
+            assert!(saved.last() > saved.first(), "no checkpoint was written after the clock was set back");
+        }
+    }
+}
+
 /// Where no checkpoint can be written the run goes on and says so, once.
 #[test]
 fn invariant_a_checkpoint_that_cannot_be_written_costs_a_warning() {

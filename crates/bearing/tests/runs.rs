@@ -1,5 +1,8 @@
 //! Whole runs of coarse bearings: the physics they must show and the promises a run makes.
 
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
+
 use std::{
     ops::ControlFlow,
     path::PathBuf,
@@ -108,11 +111,19 @@ fn analytic_bearing_rolls_and_carries_its_load() {
     let end = run.trace.len() - 1;
     let cage_hz = -angle[end] / (std::f64::consts::TAU * column(&run, "time_s")[end]);
     let expected = Kinematics::of(&scene).cage_hz;
-    assert!((cage_hz / expected - 1.0).abs() < TOLERANCE, "cage {cage_hz} Hz, expected {expected} Hz");
+    let source = "f_s D_i/(D_i + D_o), no slip: paper, equation 24";
+    ledger::compare("coarse bearing, cage", source, "Hz", cage_hz, expected, TOLERANCE);
 
     let carried = support_n(&run).iter().sum::<f64>() / run.trace.len() as f64;
-    let off = carried / info.expected_support_n - 1.0;
-    assert!(off.abs() < TOLERANCE, "rollers carry {carried} N of {} N", info.expected_support_n);
+    let source = "load and weight of adapter and outer ring";
+    ledger::compare(
+        "coarse bearing, force of all rollers",
+        source,
+        "N",
+        carried,
+        info.expected_support_n,
+        TOLERANCE,
+    );
 }
 
 /// The preload leaves equilibrium: before the first roller reaches the defect the vertical force through the rollers

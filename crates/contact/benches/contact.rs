@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_mesh::{Annulus, Disc, Mesh, Placed};
 use stribeck_solver::{Dynamics, Elastic, Force, Model, state::NodeForces};
 
@@ -66,9 +66,9 @@ fn scene(method: Method) -> (Dynamics, Contacts) {
     let law = Law::penalty(200e9 / SIZE).and_then(|law| law.with_damping(0.1, 0.5 * 7850.0 * SIZE));
     let law = law.and_then(|law| law.with_friction(0.005)).expect("a possible law");
     let pairs: Vec<PairSpec> = (0..DISCS)
-        .flat_map(|i| [0, 1].map(|second| PairSpec { first: 2 + i, second, law, method }))
+        .flat_map(|i| [0, 1].map(|second| PairSpec { first: 2 + i, second, law, method, sides: Sides::Both }))
         .collect();
-    let contacts = Contacts::new(surfaces.collect(), &pairs, 0.02, &x, &y);
+    let contacts = Contacts::new(surfaces.collect(), &pairs, 0.02, &x, &y).expect("surfaces that exist");
     (d, contacts)
 }
 

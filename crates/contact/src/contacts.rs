@@ -1,6 +1,5 @@
 //! All contacts of a model: one more force on nodes.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use stribeck_solver::{
     Force,
@@ -9,11 +8,14 @@ use stribeck_solver::{
 };
 
 use crate::{
+    error::Error,
     law::Law,
-    pass::{Memory, Pass, Sum, Weights},
+    pass::{Memory, Pass, Weights},
     points::{Method, Points},
     search::Tree,
+    shape::Push,
     surface::Surface,
+    touch::Sum,
 };
 
 /// Two surfaces that may touch.
@@ -27,6 +29,17 @@ pub struct PairSpec {
     pub law: Law,
     /// Where it acts.
     pub method: Method,
+    /// Whose points are evaluated.
+    pub sides: Sides,
+}
+
+/// Whose points a pair evaluates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// Those of either surface against the other, each with half of the stiffness.
+    Both,
+    /// Those of the first surface alone. Half the work; its points must be closer than the other's features.
+    First,
 }
 
 /// What one pair does now.
@@ -74,8 +87,9 @@ pub struct Contacts {
 #[derive(Debug)]
 struct Pair {
     spec: PairSpec,
-    passes: [Pass; 2],
-    push: Vec<(u32, [f64; 2])>,
+    /// The first surface's points against the second, then, if wanted, the other way round.
+    passes: Vec<Pass>,
+    push: Vec<Push>,
     found: Vec<(u32, u32)>,
     sum: [Sum; 2],
 }
@@ -93,14 +107,29 @@ const LEAST_SPEED: f64 = 2.0;
 /// the mean; no other spacing gives more.
 const CLUSTERING: f64 = 1.125;
 
+/// The square of the gap's gradient exceeds one by at most this times the square of a curve's slope: once for the normal,
+/// half for the turn of the curve that the foot lies on, as much for that of the point.
+const STEEPER: f64 = 2.0;
+
 impl Contacts {
     /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
-    pub fn new(surfaces: Vec<Surface>, pairs: &[PairSpec], thickness: f64, x: &[f64], y: &[f64]) -> Self {
+    ///
+    /// # Errors
+    /// When a pair names a surface that is not there or one twice, a surface a slot that is not there, a method no points
+    /// or too many, or the thickness is not positive.
+    pub fn new(
+        surfaces: Vec<Surface>,
+        pairs: &[PairSpec],
+        thickness: f64,
+        x: &[f64],
+        y: &[f64],
+    ) -> Result<Self, Error> {
+        check(&surfaces, pairs, thickness, x.len().min(y.len()))?;
         let shortest =
             surfaces.iter().flat_map(|s| &s.length).copied().fold(f64::INFINITY, f64::min).min(1.0);
         let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
         let skin = 0.4 * mean.max(shortest);
-        let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin)).collect();
+        let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin + s.largest_sag())).collect();
         let pairs = pairs
             .iter()
             .map(|spec| {
@@ -110,14 +139,17 @@ impl Contacts {
                 };
                 Pair {
                     spec: *spec,
-                    passes: [pass(spec.first, spec.second), pass(spec.second, spec.first)],
+                    passes: match spec.sides {
+                        Sides::Both => vec![pass(spec.first, spec.second), pass(spec.second, spec.first)],
+                        Sides::First => vec![pass(spec.first, spec.second)],
+                    },
                     push: Vec::new(),
                     found: Vec::new(),
                     sum: [Sum::default(); 2],
                 }
             })
             .collect();
-        Self {
+        Ok(Self {
             surfaces,
             trees,
             pairs,
@@ -127,7 +159,7 @@ impl Contacts {
             preload: None,
             parallel: false,
             energy: Energy::default(),
-        }
+        })
     }
 
     /// Evaluates pairs in parallel from now on; the result is the same to the bit.
@@ -176,7 +208,7 @@ impl Contacts {
             return false;
         }
         for (pass, memory) in self.pairs.iter_mut().flat_map(|p| &mut p.passes).zip(state.passes) {
-            pass.memory = memory;
+            pass.remember(memory);
         }
         self.search = state.search;
         self.energy.friction = state.friction;
@@ -191,19 +223,23 @@ impl Contacts {
     fn search(&mut self, at: &Moment<'_>) {
         let grow = 0.5 * self.skin;
         for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
-            tree.update(surface, at.x, at.y, grow);
+            tree.update(surface, at.x, at.y, grow + surface.largest_sag());
         }
         let Self { trees, surfaces, pairs, .. } = self;
         for pair in pairs.iter_mut() {
             trees[pair.spec.first].pairs(&trees[pair.spec.second], &mut pair.found);
-            let [first, second] = &mut pair.passes;
-            first.take(pair.found.iter().copied(), surfaces, at.x, at.y);
-            pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
-            pair.found.sort_unstable();
-            second.take(pair.found.iter().copied(), surfaces, at.x, at.y);
+            for pass in &mut pair.passes {
+                if pass.secondary != pair.spec.first {
+                    pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
+                    pair.found.sort_unstable();
+                }
+                pass.take(pair.found.iter().copied(), surfaces, at);
+            }
+            pair.push.clear();
+            pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
         }
-        let speed = |&n: &u32| at.vx[n as usize].hypot(at.vy[n as usize]);
-        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(speed).fold(0.0, f64::max);
+        let square = |&n: &u32| at.vx[n as usize] * at.vx[n as usize] + at.vy[n as usize] * at.vy[n as usize];
+        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(square).fold(0.0, f64::max).sqrt();
         // Two points may approach each other, each at the highest speed.
         let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
@@ -215,10 +251,68 @@ impl Contacts {
     }
 }
 
-/// Each of the two passes carries half of the stiffness.
+impl Pair {
+    /// About how much there is to do, judged by the step before.
+    fn work(&self) -> usize {
+        1 + self.push.len()
+    }
+}
+
+/// Less work than this is not worth another thread: a fork and join takes as long as some hundred pushes.
+const LEAST_WORK: usize = 400;
+
+/// Evaluates pairs on several threads, about equal work on each.
+fn share_out<F: Fn(&mut Pair) + Sync>(pairs: &mut [Pair], work: usize, threads: usize, evaluate: &F) {
+    if threads < 2 || pairs.len() < 2 || work < 2 * LEAST_WORK {
+        pairs.iter_mut().for_each(evaluate);
+        return;
+    }
+    let (mut cut, mut before) = (0, 0);
+    while cut + 1 < pairs.len() && (cut == 0 || 2 * before + pairs[cut].work() <= work) {
+        before += pairs[cut].work();
+        cut += 1;
+    }
+    let (first, second) = pairs.split_at_mut(cut);
+    let half = threads / 2;
+    micropool::join(
+        || share_out(first, before, half, evaluate),
+        || share_out(second, work - before, threads - half, evaluate),
+    );
+}
+
+/// Checks what the fields allow but contact cannot do.
+fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize) -> Result<(), Error> {
+    if !(thickness > 0.0 && thickness.is_finite()) {
+        return Err(Error::OutOfRange { field: "thickness [m]", value: thickness, allowed: "positive" });
+    }
+    for surface in surfaces {
+        if surface.slots.iter().any(|&s| s as usize >= slots) {
+            let reason = "lists a slot for which there is no position";
+            return Err(Error::BadSurface { name: surface.name.clone(), reason });
+        }
+    }
+    for (pair, spec) in pairs.iter().enumerate() {
+        let bad = |reason| Err(Error::BadPair { pair, reason });
+        if spec.first.max(spec.second) >= surfaces.len() {
+            return bad("names a surface that is not in the list");
+        }
+        if spec.first == spec.second {
+            return bad("names one surface twice; a body does not touch itself");
+        }
+        if let Method::Integrated { points } = spec.method
+            && !(1..=Method::MOST_POINTS).contains(&points)
+        {
+            return bad("needs 1 to 32 integration points on a facet");
+        }
+    }
+    Ok(())
+}
+
+/// Two passes carry half of the stiffness each.
 fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
     let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
-    Weights { law, thickness: 0.5 * thickness, fastest, softness: preload.unwrap_or(0.0) }
+    let share = if spec.sides == Sides::Both { 0.5 } else { 1.0 };
+    Weights { law, thickness: share * thickness, fastest, softness: preload.unwrap_or(0.0) }
 }
 
 impl Force for Contacts {
@@ -234,11 +328,9 @@ impl Force for Contacts {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
             }
         };
-        if self.parallel {
-            pairs.par_iter_mut().for_each(evaluate);
-        } else {
-            pairs.iter_mut().for_each(evaluate);
-        }
+        let threads = if self.parallel { micropool::num_threads() + 1 } else { 1 };
+        let work = pairs.iter().map(Pair::work).sum();
+        share_out(pairs, work, threads, &evaluate);
         self.energy.stored = 0.0;
         for pair in &self.pairs {
             for &(slot, [fx, fy]) in &pair.push {
@@ -265,22 +357,28 @@ impl Force for Contacts {
             let law = &pair.spec.law;
             let lagged = if dt > 0.0 { 2.0 * law.damping / dt } else { 0.0 };
             let k = (law.stiffness + lagged) * self.thickness;
-            let [first, second] = &pair.passes;
-            for (as_secondary, as_primary) in [(first, second), (second, first)] {
-                let surface = &self.surfaces[as_secondary.secondary];
-                let weights = as_secondary.points.on_nodes(surface);
-                let other = as_primary.points.largest_weight();
-                for ((&slot, weight), length) in surface.slots.iter().zip(weights).zip(surface.tributary()) {
-                    // Points of the other surface are dealt out over this one's nodes as they fall.
-                    let dealt = CLUSTERING * length.max(other);
-                    own[slot as usize] = own[slot as usize].max(k * (weight + dealt));
+            // The gap's gradient is a little longer than one where a curve leaves its chord (THEORY §4.4).
+            let steepest = [pair.spec.first, pair.spec.second].map(|s| self.surfaces[s].steepest());
+            let k = k * (1.0 + STEEPER * (steepest[0] * steepest[0] + steepest[1] * steepest[1]));
+            let share = if pair.spec.sides == Sides::Both { 1.0 } else { 2.0 };
+            let points = |surface| pair.passes.iter().find(|p| p.secondary == surface).map(|p| &p.points);
+            for (this, that) in [(pair.spec.first, pair.spec.second), (pair.spec.second, pair.spec.first)] {
+                let surface = &self.surfaces[this];
+                let held = points(this).map(|p| p.on_nodes(surface));
+                // Points of the other surface are dealt out over this one's nodes as they fall.
+                let other = points(that).map(Points::largest_weight);
+                let uneven = surface.unevenness();
+                for (v, (&slot, length)) in surface.slots.iter().zip(surface.tributary()).enumerate() {
+                    let dealt = other.map_or(0.0, |other| CLUSTERING * length.max(other) * uneven[v]);
+                    let weight = held.as_ref().map_or(0.0, |held| held[v]);
+                    own[slot as usize] = own[slot as usize].max(share * k * (weight + dealt));
                 }
             }
         }
         bound.iter_mut().zip(own).for_each(|(b, k)| *b += k);
     }
 
-    fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne)) {
+    fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne<'_>)) {
         for pair in &self.pairs {
             for pass in &pair.passes {
                 pass.tangent(&self.surfaces, x, y, &self.weights(&pair.spec), visit);

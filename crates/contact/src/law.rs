@@ -11,6 +11,9 @@ pub struct Law {
     pub damping: f64,
     /// Coulomb coefficient [-]; zero for none.
     pub friction: f64,
+    /// Gap at which contact sets in [m]: from there to as deep a penetration the pressure rises as a parabola, beyond it
+    /// with the penalty stiffness. Zero for a sharp corner.
+    pub onset: f64,
     /// Tangential stiffness while sticking, as a share of the normal one [-].
     pub tangential: f64,
 }
@@ -26,7 +29,7 @@ impl Law {
     /// When the stiffness is not positive.
     pub fn penalty(stiffness: f64) -> Result<Self, Error> {
         check("penalty stiffness [Pa/m]", stiffness, stiffness > 0.0, "positive")?;
-        Ok(Self { stiffness, damping: 0.0, friction: 0.0, tangential: TANGENTIAL })
+        Ok(Self { stiffness, damping: 0.0, friction: 0.0, onset: 0.0, tangential: TANGENTIAL })
     }
 
     /// Adds damping as a fraction of critical, for surface layers of `mass` [kg/m²] on each side.
@@ -39,6 +42,31 @@ impl Law {
         // Two equal masses on one spring: the reduced mass is half of one.
         self.damping = 2.0 * ratio * (self.stiffness * 0.5 * mass).sqrt();
         Ok(self)
+    }
+
+    /// Rounds the corner of the law over gaps of up to `onset` [m] to either side.
+    ///
+    /// # Errors
+    /// When it is negative.
+    pub fn with_onset(mut self, onset: f64) -> Result<Self, Error> {
+        check("contact onset [m]", onset, onset >= 0.0, "zero or positive")?;
+        self.onset = onset;
+        Ok(self)
+    }
+
+    /// Effective penetration [m], its fall with the gap [-] and its work, all per stiffness (THEORY §4.2).
+    #[inline(always)]
+    pub(crate) fn depth(&self, gap: f64) -> [f64; 3] {
+        let e = self.onset;
+        if gap <= -e {
+            return [-gap, 1.0, 0.5 * gap * gap + e * e / 6.0];
+        }
+        let t = e - gap;
+        if t <= 0.0 {
+            return [0.0; 3];
+        }
+        let per = 0.25 / e;
+        [per * t * t, 2.0 * per * t, per * t * t * t / 3.0]
     }
 
     /// Adds Coulomb friction.

@@ -18,7 +18,7 @@
 //! after 2L/c; the momentum goes over whole.
 //!
 //! ```
-//! use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+//! use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 //! use stribeck_mesh::{Mesh, Rectangle};
 //! use stribeck_solver::{Dynamics, Elastic, Model, Motion};
 //!
@@ -46,8 +46,8 @@
 //! ];
 //! // As stiff as one cell.
 //! let law = Law::penalty(steel.plane_strain_modulus() * columns as f64 / length)?;
-//! let pair = PairSpec { first: 0, second: 1, law, method: Method::Collocated };
-//! let mut contacts = Contacts::new(surfaces, &[pair], thickness, x, y);
+//! let pair = PairSpec { first: 0, second: 1, law, method: Method::Collocated, sides: Sides::Both };
+//! let mut contacts = Contacts::new(surfaces, &[pair], thickness, x, y)?;
 //!
 //! let critical = dynamics.critical_time_step(&[&contacts], 0.0);
 //! dynamics.set_time_step(0.5 * critical.time_step)?;
@@ -79,8 +79,9 @@
 //! |---|---|
 //! | What is a surface, what acts between two? | `surface.rs`, `law.rs` |
 //! | What is the gap, at corners and ends too? | `projection.rs` |
+//! | Which curve does a polyline stand for? | `smooth.rs` |
 //! | Where does the law act? | `points.rs` |
-//! | What does one pass do, in contact and out of it? | `pass.rs` |
+//! | What does one pass do, in contact and out of it? | `pass.rs`, `touch.rs` |
 //! | Who is near whom? | `search.rs` |
 //! | How does it all become one force? | `contacts.rs` |
 
@@ -94,11 +95,16 @@ mod pass;
 mod points;
 mod projection;
 mod search;
+mod shape;
+mod smooth;
+mod spline;
 mod surface;
+mod touch;
 
-pub use contacts::{ContactState, Contacts, PairSpec, Resultant};
+pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
 pub use law::Law;
 pub use points::Method;
 pub use projection::{Projection, project};
+pub use smooth::Smoothing;
 pub use surface::Surface;

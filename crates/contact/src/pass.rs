@@ -6,8 +6,11 @@ use stribeck_solver::{force::RankOne, state::Moment};
 use crate::{
     law::Law,
     points::Points,
-    projection::{Projection, distance, project},
+    projection::{Frame, distance},
+    shape::{Push, Shape, Side},
+    spline::Patch,
     surface::Surface,
+    touch::{History, Slide, Sum, touch},
 };
 
 /// One pass of a pair.
@@ -19,6 +22,8 @@ pub(crate) struct Pass {
     pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
     deepest: f64,
+    /// No candidate wakes before this step.
+    asleep: u64,
 }
 
 /// What a pass remembers from step to step.
@@ -26,6 +31,10 @@ pub(crate) struct Pass {
 pub(crate) struct Memory {
     /// Facet of the primary surface on which each point was last found.
     nearest: Vec<u32>,
+    /// Step of the last search.
+    searched: u64,
+    /// Steps after the search before which each point cannot touch.
+    doze: Vec<u16>,
     candidates: Vec<Candidate>,
     /// What points in contact remember; empty without damping and friction.
     history: Vec<History>,
@@ -39,29 +48,8 @@ struct Candidate {
     wake: u64,
 }
 
-/// What a point in contact remembers of the step before.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct History {
-    /// Elastic part of the tangential displacement [m].
-    slip: f64,
-    /// Damping force [N].
-    damping: f64,
-}
-
-/// Sums over one pass.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Sum {
-    /// Force on the secondary body [N].
-    pub(crate) force: [f64; 2],
-    /// Elastic energy [J].
-    pub(crate) stored: f64,
-    /// Heat of friction in the last step [J].
-    pub(crate) friction: f64,
-    /// Heat of damping in the last step [J].
-    pub(crate) damping: f64,
-    /// Deepest penetration [m].
-    pub(crate) penetration: f64,
-}
+/// Most nodes that a facet hangs on.
+const MOST_NODES: usize = 6;
 
 /// Which laws act: the static preload takes the penalty alone.
 #[derive(Debug, Clone, Copy)]
@@ -81,14 +69,15 @@ impl Weights {
     #[inline(always)]
     fn reach(&self) -> f64 {
         // Beyond 30 softnesses the rounded law is below 1e-13 of one softness of penetration.
-        30.0 * self.softness
+        if self.softness > 0.0 { 30.0 * self.softness } else { self.law.onset }
     }
 
     /// Effective penetration [m] and its slope [-] at a gap (THEORY §3.2).
     fn rounded(&self, gap: f64) -> [f64; 2] {
         let e = self.softness;
         if e == 0.0 {
-            return [-gap, 1.0];
+            let [depth, slope, _] = self.law.depth(gap);
+            return [depth, slope];
         }
         let t = -gap / e;
         let depth = if t > 30.0 { -gap } else { e * t.exp().ln_1p() };
@@ -111,11 +100,14 @@ impl Pass {
             primary,
             memory: Memory {
                 nearest: vec![0; n],
+                searched: 0,
+                doze: vec![0; n],
                 candidates: Vec::new(),
                 history: vec![History::default(); if remembers { n } else { 0 }],
             },
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
+            asleep: 0,
         }
     }
 
@@ -123,9 +115,15 @@ impl Pass {
     pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
         let (own, secondary, primary) = (&self.memory, &surfaces[self.secondary], &surfaces[self.primary]);
         memory.nearest.len() == own.nearest.len()
+            && memory.doze.len() == own.doze.len()
             && memory.history.len() == own.history.len()
             && memory.nearest.iter().all(|&facet| (facet as usize) < primary.facets())
             && memory.candidates.iter().all(|c| (c.facet as usize) < secondary.facets())
+    }
+
+    /// Goes on from a memory.
+    pub(crate) fn remember(&mut self, memory: Memory) {
+        (self.memory, self.asleep) = (memory, 0);
     }
 
     /// Takes new candidates from pairs (secondary facet, primary facet), ascending.
@@ -133,24 +131,29 @@ impl Pass {
         &mut self,
         pairs: impl Iterator<Item = (u32, u32)>,
         surfaces: &[Surface],
-        x: &[f64],
-        y: &[f64],
+        at: &Moment<'_>,
     ) {
+        let (x, y) = (at.x, at.y);
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let Memory { nearest, candidates, .. } = &mut self.memory;
+        let Memory { nearest, searched, doze, candidates, .. } = &mut self.memory;
+        *searched = at.step;
         candidates.clear();
+        self.asleep = 0;
         let mut best: [f64; 64] = [f64::INFINITY; 64];
         let mut last = None;
         for (f, g) in pairs {
             let range = self.points.of_facet(f as usize);
             if last != Some(f) {
                 candidates.push(Candidate { facet: f, wake: 0 });
+                doze[range.clone()].fill(0);
                 best = [f64::INFINITY; 64];
                 last = Some(f);
             }
-            let (a, b) = secondary.ends(f as usize);
+            let own = Frame::new(secondary, x, y, f as usize);
             for (k, i) in range.enumerate() {
-                let d = distance(primary, x, y, between(x, y, a, b, self.points.place[i]), g as usize);
+                // On the chord: near enough to begin a walk.
+                let p = own.spot(self.points.place[i], 0.0).at;
+                let d = distance(primary, x, y, p, g as usize);
                 let best = &mut best[k.min(63)];
                 if d < *best {
                     *best = d;
@@ -160,210 +163,188 @@ impl Pass {
         }
     }
 
-    /// Evaluates the pass: pushes (slot, force x, force y) and sums.
+    /// Pushes that one evaluation makes at most, until the next candidates are taken.
+    pub(crate) fn most_pushes(&self) -> usize {
+        let points = |c: &Candidate| self.points.of_facet(c.facet as usize).len();
+        self.memory.candidates.iter().map(|c| MOST_NODES * (1 + points(c))).sum()
+    }
+
+    /// Evaluates the pass: pushes forces and sums.
     pub(crate) fn evaluate(
         &mut self,
         surfaces: &[Surface],
         at: &Moment<'_>,
         w: &Weights,
-        push: &mut Vec<(u32, [f64; 2])>,
+        push: &mut Vec<Push>,
     ) -> Sum {
-        let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
+        if at.step < self.asleep {
+            return Sum::default();
+        }
+        // Which curves meet is asked once a pass; the loop over points is compiled for each.
+        match [self.secondary, self.primary].map(|s| surfaces[s].spline.is_some()) {
+            [false, false] => self.evaluate_as::<Frame, Frame>(surfaces, at, w, push),
+            [false, true] => self.evaluate_as::<Frame, Patch>(surfaces, at, w, push),
+            [true, false] => self.evaluate_as::<Patch, Frame>(surfaces, at, w, push),
+            [true, true] => self.evaluate_as::<Patch, Patch>(surfaces, at, w, push),
+        }
+    }
+
+    fn evaluate_as<S: Shape, P: Shape>(
+        &mut self,
+        surfaces: &[Surface],
+        at: &Moment<'_>,
+        w: &Weights,
+        push: &mut Vec<Push>,
+    ) -> Sum {
         let mut sum = Sum::default();
+        let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let reach = w.reach();
-        let Memory { nearest, candidates, history } = &mut self.memory;
+        let mut first_awake = u64::MAX;
+        let Memory { nearest, searched, doze, candidates, history } = &mut self.memory;
+        let now = u16::try_from(at.step.saturating_sub(*searched)).unwrap_or(u16::MAX);
+        let closing = w.fastest * at.dt;
+        // Consecutive points mostly share a primary facet: its forces wait until another one comes.
+        let mut other: Option<Side<P>> = None;
+        let mut shape: Option<P> = None;
         for candidate in candidates {
             if at.step < candidate.wake {
+                first_awake = first_awake.min(candidate.wake);
                 continue;
             }
             let facet = candidate.facet as usize;
-            let (a, b) = secondary.ends(facet);
-            let mut force_a = [0.0; 2];
-            let mut force_b = [0.0; 2];
-            let mut nearest_gap = f64::INFINITY;
+            let mut own = Side::<S>::new(S::new(secondary, at.x, at.y, facet), secondary, at);
+            let mut soonest = u16::MAX;
             let mut touched = false;
             for i in self.points.of_facet(facet) {
-                let place = self.points.place[i];
-                let p = between(at.x, at.y, a, b, place);
-                let found = project(primary, at.x, at.y, p, nearest[i] as usize);
-                if let Some(found) = &found {
-                    nearest[i] = found.facet as u32;
+                if doze[i] > now {
+                    soonest = soonest.min(doze[i]);
+                    continue;
                 }
-                let contact = found.filter(|f| f.gap < reach && f.gap > -self.deepest);
-                let mut none = History::default();
-                let history = history.get_mut(i).unwrap_or(&mut none);
-                let Some(projection) = contact else {
-                    nearest_gap = nearest_gap.min(found.map_or(f64::INFINITY, |f| f.gap.abs()));
-                    if *history != History::default() {
+                let spot = own.shape.spot(self.points.place[i], self.points.height[i]);
+                let start = nearest[i] as usize;
+                let shape = match &mut shape {
+                    Some(shape) if shape.facet() == start => shape,
+                    shape => shape.insert(P::new(primary, at.x, at.y, start)),
+                };
+                let found = shape.project(primary, at.x, at.y, spot.at);
+                nearest[i] = shape.facet() as u32;
+                let gap = found.map_or(f64::INFINITY, |f| f.gap);
+                let Some(to) = found.filter(|f| f.gap < reach && f.gap > -self.deepest) else {
+                    // Points off both ends of an open surface report an infinite gap; the next search wakes them.
+                    let steps = ((gap - reach).abs() / closing) as u16;
+                    doze[i] = now.saturating_add(steps);
+                    soonest = soonest.min(doze[i]);
+                    if let Some(history) = history.get_mut(i).filter(|h| !h.is_empty()) {
                         touched = true;
-                        let relative = found
-                            .map(|f| relative_velocity(secondary, primary, at, facet, place, &f))
-                            .unwrap_or_default();
-                        let normal = found.map_or([0.0, 0.0], |f| f.normal);
-                        let stiffness = w.law.stiffness * self.points.weight[i] * w.thickness;
-                        release(history, relative, normal, stiffness, &w.law, at.dt, &mut sum);
+                        let side = Side::new(*shape, primary, at);
+                        let slide = found.map_or(Slide::default(), |to| side.slide(own.velocity(&spot), &to));
+                        history.release(self.points.weight[i] * w.thickness, &w.law, at.dt, slide, &mut sum);
                     }
                     continue;
                 };
                 touched = true;
+                let other = match &mut other {
+                    Some(side) if side.shape.facet() == to.facet => side,
+                    last => {
+                        if let Some(side) = last {
+                            side.flush(primary, push);
+                        }
+                        last.insert(Side::new(*shape, primary, at))
+                    }
+                };
                 let area = self.points.weight[i] * w.thickness;
-                let f = contact_force(
-                    secondary,
-                    primary,
-                    at,
-                    facet,
-                    place,
-                    &projection,
-                    w,
-                    area,
-                    history,
-                    &mut sum,
-                );
-                let (c, d) = primary.ends(projection.facet);
-                force_a = [force_a[0] + (1.0 - place) * f[0], force_a[1] + (1.0 - place) * f[1]];
-                force_b = [force_b[0] + place * f[0], force_b[1] + place * f[1]];
-                let s = projection.place;
-                push.push((c as u32, [-(1.0 - s) * f[0], -(1.0 - s) * f[1]]));
-                push.push((d as u32, [-s * f[0], -s * f[1]]));
+                let [pressure, shear] = if w.softness > 0.0 {
+                    [w.law.stiffness * area * w.rounded(gap)[0], 0.0]
+                } else {
+                    match history.get_mut(i) {
+                        Some(history) => {
+                            let slide = other.slide(own.velocity(&spot), &to);
+                            touch(gap, area, &w.law, at.dt, slide, history, &mut sum)
+                        }
+                        None => {
+                            let [depth, _, work] = w.law.depth(gap);
+                            sum.stored += w.law.stiffness * area * work;
+                            sum.penetration = sum.penetration.max(depth);
+                            [w.law.stiffness * area * depth, 0.0]
+                        }
+                    }
+                };
+                let [nx, ny] = to.normal;
+                let f = [pressure * nx - shear * ny, pressure * ny + shear * nx];
+                own.push_point(&spot, f);
+                other.push_foot(&to, f, pressure, shear);
             }
             if touched {
-                push.push((a as u32, force_a));
-                push.push((b as u32, force_b));
-                sum.force =
-                    [sum.force[0] + (force_a[0] + force_b[0]), sum.force[1] + (force_a[1] + force_b[1])];
-            } else if nearest_gap > 0.0 && w.fastest > 0.0 {
-                // Points off both ends of an open surface report an infinite gap; the next search wakes them.
-                let steps = nearest_gap / (w.fastest * at.dt);
-                candidate.wake = at.step.saturating_add(steps as u64);
+                own.flush(secondary, push);
+                sum.force = [sum.force[0] + own.force[0], sum.force[1] + own.force[1]];
+                first_awake = 0;
+            } else {
+                candidate.wake = *searched + u64::from(soonest);
+                first_awake = first_awake.min(candidate.wake);
             }
         }
+        if let Some(side) = &other {
+            side.flush(primary, push);
+        }
+        self.asleep = first_awake;
         sum
     }
 
-    /// Visits the tangent of the points that penetrate at positions `x`, `y`.
+    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; what the
+    /// gradient itself changes by is left out.
     pub(crate) fn tangent(
         &self,
         surfaces: &[Surface],
         x: &[f64],
         y: &[f64],
         w: &Weights,
-        visit: &mut dyn FnMut(RankOne),
+        visit: &mut dyn FnMut(RankOne<'_>),
+    ) {
+        match [self.secondary, self.primary].map(|s| surfaces[s].spline.is_some()) {
+            [false, false] => self.tangent_as::<Frame, Frame>(surfaces, x, y, w, visit),
+            [false, true] => self.tangent_as::<Frame, Patch>(surfaces, x, y, w, visit),
+            [true, false] => self.tangent_as::<Patch, Frame>(surfaces, x, y, w, visit),
+            [true, true] => self.tangent_as::<Patch, Patch>(surfaces, x, y, w, visit),
+        }
+    }
+
+    fn tangent_as<S: Shape, P: Shape>(
+        &self,
+        surfaces: &[Surface],
+        x: &[f64],
+        y: &[f64],
+        w: &Weights,
+        visit: &mut dyn FnMut(RankOne<'_>),
     ) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
+        let at = Moment { step: 0, time: 0.0, dt: 0.0, x, y, vx: x, vy: y };
+        let (mut gradient, mut nodes, mut direction) = (Vec::new(), Vec::new(), Vec::new());
         for candidate in &self.memory.candidates {
             let facet = candidate.facet as usize;
-            let (a, b) = secondary.ends(facet);
+            let shape = S::new(secondary, x, y, facet);
             for i in self.points.of_facet(facet) {
-                let place = self.points.place[i];
-                let p = between(x, y, a, b, place);
-                let Some(f) = project(primary, x, y, p, self.memory.nearest[i] as usize) else { continue };
-                if f.gap >= w.reach() || f.gap <= -self.deepest {
-                    continue;
-                }
-                let [_, slope] = w.rounded(f.gap);
-                let (c, d) = primary.ends(f.facet);
-                let [nx, ny] = f.normal;
-                let n = [1.0 - place, place, -(1.0 - f.place), -f.place];
+                let spot = shape.spot(self.points.place[i], self.points.height[i]);
+                let mut foot = P::new(primary, x, y, self.memory.nearest[i] as usize);
+                let found = foot.project(primary, x, y, spot.at);
+                let Some(to) = found.filter(|f| f.gap < w.reach() && f.gap > -self.deepest) else { continue };
+                let [_, slope] = w.rounded(to.gap);
+                // The gap's gradient is the force that a unit pressure makes.
+                gradient.clear();
+                let (mut own, mut other) = (Side::new(shape, secondary, &at), Side::new(foot, primary, &at));
+                own.push_point(&spot, to.normal);
+                other.push_foot(&to, to.normal, 1.0, 0.0);
+                own.flush(secondary, &mut gradient);
+                other.flush(primary, &mut gradient);
+                nodes.clear();
+                nodes.extend(gradient.iter().map(|(slot, _)| *slot));
+                direction.clear();
+                direction.extend(gradient.iter().flat_map(|(_, g)| *g));
                 visit(RankOne {
-                    nodes: [a as u32, b as u32, c as u32, d as u32],
-                    direction: std::array::from_fn(|k| n[k / 2] * if k % 2 == 0 { nx } else { ny }),
+                    nodes: &nodes,
+                    direction: &direction,
                     stiffness: slope * w.law.stiffness * self.points.weight[i] * w.thickness,
                 });
             }
         }
     }
-}
-
-#[inline(always)]
-fn between(v: &[f64], w: &[f64], a: usize, b: usize, place: f64) -> [f64; 2] {
-    [v[a] + place * (v[b] - v[a]), w[a] + place * (w[b] - w[a])]
-}
-
-/// Velocity of the secondary point relative to its foot on the primary surface [m/s].
-#[inline(always)]
-fn relative_velocity(
-    secondary: &Surface,
-    primary: &Surface,
-    at: &Moment<'_>,
-    facet: usize,
-    place: f64,
-    to: &Projection,
-) -> [f64; 2] {
-    let (a, b) = secondary.ends(facet);
-    let (c, d) = primary.ends(to.facet);
-    let u = between(at.vx, at.vy, a, b, place);
-    let v = between(at.vx, at.vy, c, d, to.place);
-    [u[0] - v[0], u[1] - v[1]]
-}
-
-/// Force on the secondary point [N]; updates its history.
-#[inline(always)]
-#[allow(clippy::too_many_arguments)] // one point's whole situation
-fn contact_force(
-    secondary: &Surface,
-    primary: &Surface,
-    at: &Moment<'_>,
-    facet: usize,
-    place: f64,
-    to: &Projection,
-    w: &Weights,
-    area: f64,
-    history: &mut History,
-    sum: &mut Sum,
-) -> [f64; 2] {
-    let [nx, ny] = to.normal;
-    let law = &w.law;
-    let stiffness = law.stiffness * area;
-    if w.softness > 0.0 {
-        let [depth, _] = w.rounded(to.gap);
-        return [stiffness * depth * nx, stiffness * depth * ny];
-    }
-    let elastic = -stiffness * to.gap;
-    sum.stored -= 0.5 * elastic * to.gap;
-    sum.penetration = sum.penetration.max(-to.gap);
-    if law.damping == 0.0 && law.friction == 0.0 {
-        return [elastic * nx, elastic * ny];
-    }
-    let v = relative_velocity(secondary, primary, at, facet, place, to);
-    let approach = v[0] * nx + v[1] * ny;
-    // Damping never pulls: the sum of both stays a pressure.
-    let damping = (-law.damping * area * approach).max(-elastic);
-    // Work of a force over a step is the mean of its two ends times the displacement (THEORY §2.5).
-    sum.damping -= 0.5 * (history.damping + damping) * approach * at.dt;
-    history.damping = damping;
-    let normal = elastic + damping;
-    if law.friction == 0.0 {
-        return [normal * nx, normal * ny];
-    }
-    let (tx, ty) = (-ny, nx);
-    let moved = (v[0] * tx + v[1] * ty) * at.dt;
-    let tangential = law.tangential * stiffness;
-    let limit = law.friction * elastic / tangential;
-    let before = history.slip;
-    let after = (before + moved).clamp(-limit, limit);
-    history.slip = after;
-    let stored = 0.5 * tangential * after * after;
-    sum.stored += stored;
-    sum.friction +=
-        0.5 * tangential * (before + after) * moved - (stored - 0.5 * tangential * before * before);
-    let shear = -tangential * after;
-    [normal * nx + shear * tx, normal * ny + shear * ty]
-}
-
-/// A point lost contact: settles the last half step of its history and forgets it.
-fn release(
-    history: &mut History,
-    v: [f64; 2],
-    normal: [f64; 2],
-    stiffness: f64,
-    law: &Law,
-    dt: f64,
-    sum: &mut Sum,
-) {
-    let approach = v[0] * normal[0] + v[1] * normal[1];
-    let moved = (v[1] * normal[0] - v[0] * normal[1]) * dt;
-    let tangential = law.tangential * stiffness;
-    sum.damping -= 0.5 * history.damping * approach * dt;
-    sum.friction += 0.5 * tangential * history.slip * (moved + history.slip);
-    *history = History::default();
 }

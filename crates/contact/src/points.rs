@@ -14,11 +14,18 @@ pub enum Method {
     },
 }
 
+impl Method {
+    /// Most points on a facet: a point on every thirtieth of a facet sees nothing new.
+    pub const MOST_POINTS: usize = 32;
+}
+
 /// Contact points, facet by facet.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
     pub(crate) place: Vec<f64>,
+    /// Height of the curve above the chord there [m].
+    pub(crate) height: Vec<f64>,
     /// Length of surface that the point stands for [m].
     pub(crate) weight: Vec<f64>,
     /// First point of each facet; one more entry than facets.
@@ -27,7 +34,7 @@ pub(crate) struct Points {
 
 impl Points {
     pub(crate) fn new(surface: &Surface, method: Method) -> Self {
-        let mut points = Self { place: Vec::new(), weight: Vec::new(), first: vec![0] };
+        let mut points = Self { place: Vec::new(), height: Vec::new(), weight: Vec::new(), first: vec![0] };
         let tributary = surface.tributary();
         for f in 0..surface.facets() {
             match method {
@@ -48,6 +55,8 @@ impl Points {
                 };
                 points.push(1.0, weight);
             }
+            let new = points.height.len()..points.place.len();
+            points.height.extend(points.place[new].iter().map(|&s| surface.height(f, s)));
             points.first.push(points.place.len() as u32);
         }
         points
@@ -62,17 +71,18 @@ impl Points {
         self.place.len()
     }
 
-    /// Length of surface that the points deal out to each node [m].
+    /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.
     pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
-        let mut share = vec![0.0; surface.slots.len()];
+        let mut dealt = vec![0.0; surface.slots.len()];
         for f in 0..surface.facets() {
-            let next = if f + 1 == share.len() { 0 } else { f + 1 };
             for i in self.of_facet(f) {
-                share[f] += (1.0 - self.place[i]) * self.weight[i];
-                share[next] += self.place[i] * self.weight[i];
+                // (Σ s u)² ≤ Σ|s| · Σ |s| u².
+                let shares = surface.shares(f, self.place[i]);
+                let sum: f64 = shares.iter().map(|(_, s)| s.abs()).sum();
+                shares.iter().for_each(|(v, s)| dealt[*v] += sum * s.abs() * self.weight[i]);
             }
         }
-        share
+        dealt
     }
 
     /// Longest length of surface that one point stands for [m].

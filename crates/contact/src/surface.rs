@@ -1,6 +1,10 @@
-//! A boundary polyline that can touch others.
+//! A boundary polyline that can touch others, and the curve that it stands for.
 
-use crate::error::Error;
+use crate::{
+    error::Error,
+    smooth::{KINK, Rise, Smoothing, height, rises},
+    spline::Spline,
+};
 
 /// Vertices that turn by more than this are corners: they get a contact point of their own [rad].
 const CORNER_ANGLE: f64 = 0.35;
@@ -18,10 +22,67 @@ pub struct Surface {
     pub(crate) length: Vec<f64>,
     /// True for a vertex where the surface turns by a corner in the reference positions.
     pub(crate) corner: Vec<bool>,
+    /// True for a facet with a corner at either end.
+    pub(crate) beside_corner: Vec<bool>,
+    /// How each facet's curve stands off its chord [m].
+    pub(crate) rise: Vec<Rise>,
+    /// True for a vertex where two smoothed facets join without a kink.
+    pub(crate) smooth: Vec<bool>,
+    /// How the curve hangs on its nodes; `None` when each facet hangs on its own two.
+    pub(crate) spline: Option<Spline>,
+}
+
+/// Vertices of a polyline in given positions.
+pub(crate) struct Vertices<'a> {
+    slots: &'a [u32],
+    closed: bool,
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl Vertices<'_> {
+    pub(crate) fn facets(&self) -> usize {
+        if self.closed { self.slots.len() } else { self.slots.len() - 1 }
+    }
+
+    /// Numbers of the two vertices of a facet.
+    pub(crate) fn vertices(&self, f: usize) -> (usize, usize) {
+        (f, if f + 1 == self.slots.len() { 0 } else { f + 1 })
+    }
+
+    /// Positions of the two ends of a facet [m].
+    pub(crate) fn ends(&self, f: usize) -> ([f64; 2], [f64; 2]) {
+        let at = |v: usize| {
+            let slot = self.slots[v] as usize;
+            [self.x[slot], self.y[slot]]
+        };
+        let (a, b) = self.vertices(f);
+        (at(a), at(b))
+    }
+
+    pub(crate) fn before(&self, f: usize) -> Option<usize> {
+        neighbour(self.facets(), self.closed, f, false)
+    }
+
+    pub(crate) fn after(&self, f: usize) -> Option<usize> {
+        neighbour(self.facets(), self.closed, f, true)
+    }
+}
+
+#[inline(always)]
+fn neighbour(facets: usize, closed: bool, facet: usize, forward: bool) -> Option<usize> {
+    let last = facets - 1;
+    match (forward, closed) {
+        (true, _) if facet < last => Some(facet + 1),
+        (false, _) if facet > 0 => Some(facet - 1),
+        (true, true) => Some(0),
+        (false, true) => Some(last),
+        _ => None,
+    }
 }
 
 impl Surface {
-    /// From slots and reference positions [m] by slot.
+    /// From slots and reference positions [m] by slot; contact is with the chords.
     ///
     /// # Errors
     /// When there is no facet or one has no length.
@@ -37,26 +98,80 @@ impl Surface {
         if n < 2 || (closed && n < 3) {
             return Err(Error::BadSurface { name, reason: "needs at least one facet, three when closed" });
         }
-        let facets = if closed { n } else { n - 1 };
+        if slots.iter().any(|&s| s as usize >= x.len().min(y.len())) {
+            return Err(Error::BadSurface { name, reason: "lists a slot for which there is no position" });
+        }
+        let at = Vertices { slots: &slots, closed, x, y };
         let along = |f: usize| {
-            let (a, b) = (slots[f] as usize, slots[(f + 1) % n] as usize);
-            [x[b] - x[a], y[b] - y[a]]
+            let ([ax, ay], [bx, by]) = at.ends(f);
+            [bx - ax, by - ay]
         };
-        let length: Vec<f64> = (0..facets).map(|f| along(f)[0].hypot(along(f)[1])).collect();
+        let length: Vec<f64> = (0..at.facets()).map(|f| along(f)[0].hypot(along(f)[1])).collect();
         if !length.iter().all(|&l| l > 0.0 && l.is_finite()) {
             return Err(Error::BadSurface { name, reason: "has a facet of no length" });
         }
-        let corner = (0..n)
+        let corner: Vec<bool> =
+            turns(&at, |f| [along(f); 2]).iter().map(|turn| turn.abs() > CORNER_ANGLE).collect();
+        let facets = at.facets();
+        let beside_corner =
+            (0..facets).map(|f| at.vertices(f)).map(|(a, b)| corner[a] || corner[b]).collect();
+        Ok(Self {
+            name,
+            slots,
+            closed,
+            length,
+            corner,
+            beside_corner,
+            rise: vec![[0.0; 2]; facets],
+            smooth: vec![false; n],
+            spline: None,
+        })
+    }
+
+    /// The same polyline, standing for a smooth curve through its vertices in the reference positions `x`, `y` [m] by
+    /// slot. The curve then moves and turns with each facet's two ends.
+    ///
+    /// # Errors
+    /// When the curve leaves a facet by more than half its length: the polyline is too coarse for it.
+    pub fn smoothed(mut self, smoothing: Smoothing, x: &[f64], y: &[f64]) -> Result<Self, Error> {
+        let at = Vertices { slots: &self.slots, closed: self.closed, x, y };
+        self.spline = None;
+        self.rise = rises(smoothing, &at, &self.corner);
+        if self.rise.iter().zip(&self.length).any(|(r, l)| !(r[0].abs().max(r[1].abs()) < 0.5 * l)) {
+            let reason = "is too coarse to be smoothed: its curve would leave a chord by more than 27°";
+            return Err(Error::BadSurface { name: self.name, reason });
+        }
+        let ends = |f: usize| {
+            let ([ax, ay], [bx, by]) = at.ends(f);
+            let (tx, ty) = (bx - ax, by - ay);
+            // The normal points right: n L = (ty, −tx).
+            let along = |rise: f64| {
+                let r = rise / self.length[f];
+                [tx + r * ty, ty - r * tx]
+            };
+            self.rise[f].map(along)
+        };
+        let kinks = turns(&at, ends);
+        let curved = |f: usize| self.rise[f] != [0.0; 2];
+        self.smooth = (0..self.slots.len())
             .map(|v| {
-                if !closed && (v == 0 || v == n - 1) {
-                    return true;
-                }
-                let (p, q) = (along((v + facets - 1) % facets), along(v % facets));
-                let turn = (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);
-                turn.abs() > CORNER_ANGLE
+                let (before, after) = match v {
+                    0 if self.closed => (self.slots.len() - 1, 0),
+                    v if !self.closed && (v == 0 || v == self.slots.len() - 1) => return false,
+                    v => (v - 1, v),
+                };
+                curved(before) && curved(after) && kinks[v].abs() < KINK
             })
             .collect();
-        Ok(Self { name, slots, closed, length, corner })
+        Ok(self)
+    }
+
+    /// The same curve, moving as a spline of its nodes instead of facet by facet; to be asked for after
+    /// [`smoothed`](Self::smoothed), in the same positions.
+    pub fn splined(mut self, x: &[f64], y: &[f64]) -> Self {
+        self.spline = Some(Spline::new(&self, x, y));
+        self.smooth = self.corner.iter().map(|corner| !corner).collect();
+        self
     }
 
     /// Number of facets.
@@ -69,31 +184,68 @@ impl Surface {
         self.length.iter().sum::<f64>() / self.facets() as f64
     }
 
+    /// Largest height of the curve above or below its chords [m].
+    pub fn largest_sag(&self) -> f64 {
+        let middle = |r: &Rise| height(*r, 0.5).abs();
+        let spline = self.spline.as_ref().map_or(0.0, Spline::largest_height);
+        self.rise.iter().map(middle).fold(spline, f64::max)
+    }
+
+    /// Steepest slope of the curve against its chords [-].
+    pub(crate) fn steepest(&self) -> f64 {
+        let slope = |(r, l): (&Rise, &f64)| r[0].abs().max(r[1].abs()) / l;
+        self.rise.iter().zip(&self.length).map(slope).fold(0.0, f64::max)
+    }
+
+    /// Height of the curve at a place of a facet, above what moves with the nodes [m].
+    pub(crate) fn height(&self, facet: usize, place: f64) -> f64 {
+        match &self.spline {
+            Some(spline) => spline.height(facet, place),
+            None => height(self.rise[facet], place),
+        }
+    }
+
+    /// Vertices that a point hangs on, with their shares.
+    pub(crate) fn shares(&self, facet: usize, place: f64) -> [(usize, f64); 6] {
+        match &self.spline {
+            Some(spline) => spline.shares(facet, place),
+            None => {
+                let (a, b) = (facet, self.second(facet));
+                [(a, 1.0 - place), (b, place), (a, 0.0), (a, 0.0), (a, 0.0), (a, 0.0)]
+            }
+        }
+    }
+
+    /// What shares of both signs add to a bound on forces dealt out to each vertex [-]: one, but beside corners of a
+    /// spline.
+    pub(crate) fn unevenness(&self) -> Vec<f64> {
+        let mut most = vec![1.0_f64; self.slots.len()];
+        for f in (0..self.facets()).filter(|_| self.spline.is_some()) {
+            for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let shares = self.shares(f, s);
+                let sum: f64 = shares.iter().map(|(_, s)| s.abs()).sum();
+                shares.iter().for_each(|&(v, _)| most[v] = most[v].max(sum * sum));
+            }
+        }
+        most
+    }
+
     /// Slots of the two ends of a facet.
     #[inline(always)]
     pub(crate) fn ends(&self, facet: usize) -> (usize, usize) {
-        let next = if facet + 1 == self.slots.len() { 0 } else { facet + 1 };
-        (self.slots[facet] as usize, self.slots[next] as usize)
+        (self.slots[facet] as usize, self.slots[self.second(facet)] as usize)
+    }
+
+    /// Number of the second vertex of a facet; the first has the facet's number.
+    #[inline(always)]
+    pub(crate) fn second(&self, facet: usize) -> usize {
+        if facet + 1 == self.slots.len() { 0 } else { facet + 1 }
     }
 
     /// The facet after (`+1`) or before (`−1`), if there is one.
     #[inline(always)]
     pub(crate) fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
-        let last = self.facets() - 1;
-        match (forward, self.closed) {
-            (true, _) if facet < last => Some(facet + 1),
-            (false, _) if facet > 0 => Some(facet - 1),
-            (true, true) => Some(0),
-            (false, true) => Some(last),
-            _ => None,
-        }
-    }
-
-    /// True when either end of the facet is a corner.
-    #[inline(always)]
-    pub(crate) fn meets_corner(&self, facet: usize) -> bool {
-        let next = if facet + 1 == self.slots.len() { 0 } else { facet + 1 };
-        self.corner[facet] || self.corner[next]
+        neighbour(self.facets(), self.closed, facet, forward)
     }
 
     /// Length that belongs to each vertex [m]: half of each facet that meets there.
@@ -101,9 +253,22 @@ impl Surface {
         let mut v = vec![0.0; self.slots.len()];
         for (f, l) in self.length.iter().enumerate() {
             v[f] += 0.5 * l;
-            let next = if f + 1 == v.len() { 0 } else { f + 1 };
-            v[next] += 0.5 * l;
+            v[self.second(f)] += 0.5 * l;
         }
         v
     }
+}
+
+/// Angle by which each vertex turns [rad], from the directions in which facets begin and end; π at open ends.
+fn turns(at: &Vertices<'_>, directions: impl Fn(usize) -> [[f64; 2]; 2]) -> Vec<f64> {
+    let (n, facets) = (at.slots.len(), at.facets());
+    (0..n)
+        .map(|v| {
+            if !at.closed && (v == 0 || v == n - 1) {
+                return std::f64::consts::PI;
+            }
+            let (p, q) = (directions((v + facets - 1) % facets)[1], directions(v % facets)[0]);
+            (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1])
+        })
+        .collect()
 }

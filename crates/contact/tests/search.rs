@@ -6,10 +6,9 @@ use std::f64::consts::TAU;
 
 use common::*;
 use proptest::{prelude::*, test_runner::RngSeed};
-use stribeck_contact::{ContactState, Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{ContactState, Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_solver::{
     Dynamics, Force,
-    force::RankOne,
     snapshot::Snapshot,
     state::{Moment, NodeForces},
 };
@@ -58,8 +57,9 @@ impl Shapes {
             let slots = self.nodes(i).map(|n| n as u32).collect();
             Surface::new(format!("polygon {i}"), slots, true, &self.x, &self.y).expect("a polygon")
         };
-        let pair = PairSpec { first: 0, second: 1, law, method };
+        let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
         Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
+            .expect("two surfaces")
     }
 
     fn moment(&self, step: u64, dt: f64) -> Moment<'_> {
@@ -184,19 +184,22 @@ proptest! {
         shapes.forces(&mut contacts, 0, 1e-4);
         let mut bound = vec![0.0; shapes.x.len()];
         contacts.stiffness_bound(0.0, &mut bound);
-        let mut pieces: Vec<RankOne> = Vec::new();
-        contacts.tangent(&shapes.x, &shapes.y, &mut |r| pieces.push(r));
+        let mut pieces = Vec::new();
+        contacts.tangent(&shapes.x, &shapes.y, &mut |r| {
+            pieces.push((r.nodes.to_vec(), r.direction.to_vec(), r.stiffness));
+        });
         let mut noise = Noise(seed);
         let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.next(), noise.next()]).collect();
         // Power iteration on bound⁻¹ K finds the worst displacement.
         for _ in 0..60 {
             let mut force = vec![[0.0; 2]; u.len()];
             let mut twice = 0.0;
-            for r in &pieces {
-                let stretch: f64 = (0..8).map(|i| r.direction[i] * u[r.nodes[i / 2] as usize][i % 2]).sum();
-                twice += r.stiffness * stretch * stretch;
-                for i in 0..8 {
-                    force[r.nodes[i / 2] as usize][i % 2] += r.stiffness * stretch * r.direction[i];
+            for (nodes, direction, stiffness) in &pieces {
+                let along = |i: usize| direction[i] * u[nodes[i / 2] as usize][i % 2];
+                let stretch: f64 = (0..direction.len()).map(along).sum();
+                twice += stiffness * stretch * stretch;
+                for i in 0..direction.len() {
+                    force[nodes[i / 2] as usize][i % 2] += stiffness * stretch * direction[i];
                 }
             }
             let limit: f64 = u.iter().zip(&bound).map(|(u, b)| b * (u[0] * u[0] + u[1] * u[1])).sum();
@@ -305,7 +308,7 @@ fn invariant_parallel_pairs_give_the_same_bits() {
     for threads in [2, 4] {
         let (mut e, mut parallel) = tumbling();
         parallel.set_parallel(true);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
         pool.install(|| run(&mut e, &mut parallel, 1500));
         assert!(checkpoint(&d, &contacts) == checkpoint(&e, &parallel), "{threads} threads");
         assert_eq!(energy, parallel.energy());

@@ -258,7 +258,7 @@ impl Dynamics {
 
     /// One step: everything pushes, every tile sums its elements and moves its nodes (THEORY §2.3).
     ///
-    /// With more than one thread, call it from within a rayon pool of that size.
+    /// With more than one thread, call it from within a pool of that size (`micropool`, whose caller is one of the threads).
     pub fn step(&mut self, forces: &mut [&mut dyn Force]) {
         let mut pushed = std::mem::take(&mut self.forces);
         for force in forces {
@@ -442,16 +442,16 @@ fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>],
     match tiles {
         [] => Energies::default(),
         [tile] => {
-            let worker = rayon::current_thread_index().unwrap_or(0) % scratch.len();
-            let mut scratch = scratch[worker].lock().unwrap_or_else(|e| e.into_inner());
-            sweep(tile, fields, &mut scratch, drive)
+            // There are as many scratches as threads: one of them is free.
+            let mut free = scratch.iter().cycle().find_map(|s| s.try_lock().ok()).expect("an endless search");
+            sweep(tile, fields, &mut free, drive)
         }
         _ => {
             let (left, right) = tiles.split_at(tiles.len() / 2);
             let cut = right[0].slots.start - left[0].slots.start;
             let (a, b) = fields.split_at(cut);
             let (p, q) = if scratch.len() > 1 {
-                rayon::join(|| sweep_all(left, a, scratch, drive), || sweep_all(right, b, scratch, drive))
+                micropool::join(|| sweep_all(left, a, scratch, drive), || sweep_all(right, b, scratch, drive))
             } else {
                 (sweep_all(left, a, scratch, drive), sweep_all(right, b, scratch, drive))
             };

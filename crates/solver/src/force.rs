@@ -2,13 +2,13 @@
 
 use crate::state::{Energy, Moment, NodeForces};
 
-/// One rank-one piece of a tangent stiffness, k · d dᵀ over up to four nodes.
+/// One rank-one piece of a tangent stiffness, k · d dᵀ over a few nodes.
 #[derive(Debug, Clone, Copy)]
-pub struct RankOne {
-    /// Slots.
-    pub nodes: [u32; 4],
-    /// Direction, (x, y) of each node in turn; zeros for nodes that are not used.
-    pub direction: [f64; 8],
+pub struct RankOne<'a> {
+    /// Slots; one may stand here more than once.
+    pub nodes: &'a [u32],
+    /// Direction, (x, y) of each node in turn.
+    pub direction: &'a [f64],
     /// Stiffness [N/m].
     pub stiffness: f64,
 }
@@ -28,7 +28,7 @@ pub trait Force {
     fn stiffness_bound(&self, _dt: f64, _bound: &mut [f64]) {}
 
     /// Visits the tangent stiffness at positions `x`, `y` [m], those last given to `accumulate`.
-    fn tangent(&self, _x: &[f64], _y: &[f64], _visit: &mut dyn FnMut(RankOne)) {}
+    fn tangent(&self, _x: &[f64], _y: &[f64], _visit: &mut dyn FnMut(RankOne<'_>)) {}
 }
 
 /// Constant forces on nodes.

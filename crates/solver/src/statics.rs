@@ -472,7 +472,7 @@ impl Unknowns {
         let mut triplets = Vec::new();
         for f in forces {
             f.tangent(&d.state.x, &d.state.y, &mut |r| {
-                self.rank_one(&r.nodes, &r.direction, r.stiffness, &mut triplets);
+                self.rank_one(r.nodes, r.direction, r.stiffness, &mut triplets);
             });
         }
         for (_, slots) in &statics.bodies {

@@ -58,7 +58,7 @@ fn checkpoint(d: &Dynamics) -> String {
 }
 
 fn run_on(threads: usize, steps: usize) -> String {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
     pool.install(|| {
         let (mut d, mut load) = ready_to_run(threads);
         run(&mut d, &mut [&mut load], steps);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use serde::Serialize;
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_mesh::{Disc, Mesh, Placed, Rectangle};
 use stribeck_solver::{Dynamics, Elastic, Force, Model, Motion};
 
@@ -165,6 +165,6 @@ fn contacts(d: &Dynamics, touching: [&stribeck_mesh::Surface; 3], penalty: f64) 
         surfaces.push(Surface::new(name, slots, surface.closed, x, y)?);
     }
     let law = Law::penalty(penalty)?;
-    let pair = |second| PairSpec { first: 0, second, law, method: Method::Collocated };
-    Ok(Contacts::new(surfaces, &[pair(1), pair(2)], THICKNESS, x, y))
+    let pair = |second| PairSpec { first: 0, second, law, method: Method::Collocated, sides: Sides::Both };
+    Ok(Contacts::new(surfaces, &[pair(1), pair(2)], THICKNESS, x, y)?)
 }

@@ -4,9 +4,13 @@
 //! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
 //! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 
+mod kills;
 mod paper;
+mod rig;
 mod runner;
+mod stability;
 mod table;
+mod work_precision;
 
 use std::process::ExitCode;
 
@@ -27,10 +31,20 @@ pub(crate) struct Options {
 enum Study {
     /// Which reading of the paper agrees with it best, and whether its hypothesis holds
     Paper(paper::Options),
+    /// Runs killed at random moments and continued: the same bytes
+    Kills(kills::Options),
+    /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
+    Stability(stability::Options),
+    /// Error against work: elements, integrators, contacts, meshes
+    #[command(name = "work_precision")]
+    WorkPrecision(work_precision::Options),
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     match &options.study {
         Study::Paper(options) => paper::run(options),
+        Study::Kills(options) => kills::run(options),
+        Study::Stability(options) => stability::run(options),
+        Study::WorkPrecision(options) => work_precision::run(options),
     }
 }

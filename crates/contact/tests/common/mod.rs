@@ -1,7 +1,7 @@
 //! Models and measurements that several test files share.
 #![allow(dead_code, reason = "each test file uses its own part of it")]
 
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_mesh::{Disc, Mesh, Part, Rectangle};
 use stribeck_solver::{
     Dynamics, Elastic, Force, Model,
@@ -48,7 +48,12 @@ impl Scene {
 
     /// Lets the surfaces of two bodies touch.
     pub(crate) fn pair(&mut self, first: usize, second: usize, law: Law, method: Method) {
-        self.pairs.push(PairSpec { first, second, law, method });
+        self.pairs.push(PairSpec { first, second, law, method, sides: Sides::Both });
+    }
+
+    /// Surfaces in the order of the bodies.
+    pub(crate) fn surfaces(&self) -> &[(String, stribeck_mesh::Surface)] {
+        &self.surfaces
     }
 
     /// The model, still to be changed.
@@ -67,7 +72,8 @@ impl Scene {
                 Surface::new(name, slots, s.closed, &d.state.x, &d.state.y).expect("a surface with facets")
             })
             .collect();
-        let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y);
+        let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y)
+            .expect("surfaces and pairs that exist");
         (d, contacts)
     }
 }
