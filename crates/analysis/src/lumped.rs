@@ -124,6 +124,9 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.roller_facets = facets;
         scene.mesh.roller_copies = copies;
+        // Narrow contacts: where they are wider than a facet, the factor g changes its sign from roller to roller.
+        scene.operation.load_n = 2000.0;
+        scene.contact.penalty_scale = 1.0;
         scene
     }
 

@@ -279,7 +279,7 @@ fn invariant_the_ledger_tells_mesh_from_physics() {
     assert_eq!(counts, [18, 3, 6, 5]);
     let tone = of(Family::Mesh).next().expect("the roller vertices");
     assert!((tone.measured_hz.expect("a line") - TONE_HZ).abs() < 2.0, "{tone:?}");
-    assert!(of(Family::Defect).all(|a| a.measured_hz.is_none() && a.verdict.contains("merge")));
+    assert!(of(Family::Defect).all(|a| a.measured_hz.is_none() && a.verdict.contains("ten are needed")));
     assert!(summary.artefacts.iter().all(|a| !a.verdict.is_empty()));
 }
 
