@@ -188,10 +188,12 @@ impl Guards {
 
     fn penetration(&self, info: &mut RunInfo, machine: &Machine) -> Option<String> {
         let deepest =
-            machine.contacts.resultants().enumerate().map(|(pair, r)| (pair, r.penetration)).max_by(|a, b| {
-                // The first of equals.
-                a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))
-            });
+            machine.contacts.resultants().enumerate().map(|(pair, r)| (pair, r.penetration)).max_by(
+                |a, b| {
+                    // The first of equals.
+                    a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))
+                },
+            );
         let (pair, depth) = deepest?;
         let share = depth / self.size;
         let warning = 0.01 * self.limits.penetration_warning_percent;
@@ -253,7 +255,8 @@ impl Guards {
     fn support(&self, info: &mut RunInfo, machine: &Machine) {
         let force: Vec<[f64; 2]> = machine.contacts.resultants().map(|r| r.force).collect();
         let enough = CARRIES * info.expected_support_n;
-        let carried = machine.roller_pairs.iter().map(|p| force[p.outer]).any(|[fx, fy]| fx.hypot(fy) > enough);
+        let carried =
+            machine.roller_pairs.iter().map(|p| force[p.outer]).any(|[fx, fy]| fx.hypot(fy) > enough);
         let seen = &mut info.guards;
         seen.unsupported_samples = if carried { 0 } else { seen.unsupported_samples + 1 };
         let time = seen.unsupported_samples as f64 * info.interval_s;

@@ -63,11 +63,7 @@ fn clearance_mm(scene: &Scene) -> f64 {
 }
 
 /// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came only near.
-pub(crate) fn preload(
-    machine: &mut Machine,
-    scene: &Scene,
-    k: &Kinematics,
-) -> Result<Option<String>, Error> {
+pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<Option<String>, Error> {
     let mut undecided = vec![Undecided { slots: machine.outer.clone(), along: None, rotation: true }];
     for (i, roller) in machine.rollers.iter().enumerate() {
         let (s, c) = roller_angle(scene, i).sin_cos();

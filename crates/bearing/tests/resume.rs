@@ -299,7 +299,9 @@ fn invariant_a_clock_that_jumps_changes_no_sample() {
         let mut saved = Vec::new();
         let info = simulate(&coarse(1.25), &dir, &host, &mut |progress| {
             if progress.phase == "run" {
-                saved.push(fs::metadata(folder.file("checkpoint")).and_then(|m| m.modified()).expect("there is one"));
+                saved.push(
+                    fs::metadata(folder.file("checkpoint")).and_then(|m| m.modified()).expect("there is one"),
+                );
             }
             ControlFlow::Continue(())
         })

@@ -116,7 +116,14 @@ fn analytic_bearing_rolls_and_carries_its_load() {
 
     let carried = support_n(&run).iter().sum::<f64>() / run.trace.len() as f64;
     let source = "load and weight of adapter and outer ring";
-    ledger::compare("coarse bearing, force of all rollers", source, "N", carried, info.expected_support_n, TOLERANCE);
+    ledger::compare(
+        "coarse bearing, force of all rollers",
+        source,
+        "N",
+        carried,
+        info.expected_support_n,
+        TOLERANCE,
+    );
 }
 
 /// The preload leaves equilibrium: before the first roller reaches the defect the vertical force through the rollers

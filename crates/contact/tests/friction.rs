@@ -128,7 +128,14 @@ fn analytic_block_slides_above_the_angle_of_friction() {
         let found = (s.velocity()[0] - v) / (s.d.state.time - t);
         let how = if method == Method::Collocated { "collocated" } else { "integrated" };
         let source = "g (sin α − µ cos α)";
-        ledger::compare(&format!("block on a slope, acceleration, {how}"), source, "m/s²", found, expected, 0.005);
+        ledger::compare(
+            &format!("block on a slope, acceleration, {how}"),
+            source,
+            "m/s²",
+            found,
+            expected,
+            0.005,
+        );
     }
 }
 

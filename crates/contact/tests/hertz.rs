@@ -93,7 +93,14 @@ fn converges_hertz_half_width_and_pressure() {
         let errors = found.map(|f| (f[i] - exact[i]).abs() / exact[i]);
         let source = "Hertz: Johnson 1985, §4.2";
         let unit = ["m", "Pa"][i];
-        ledger::compare(&format!("line contact, {what}, integrated"), source, unit, found[2][i], exact[i], ceiling);
+        ledger::compare(
+            &format!("line contact, {what}, integrated"),
+            source,
+            unit,
+            found[2][i],
+            exact[i],
+            ceiling,
+        );
         assert!(errors[2] < 0.5 * errors[0], "{what} converges: {errors:?}");
     }
 }

@@ -39,7 +39,8 @@ fn invariant_pairs_must_exist_and_have_points() {
     let (x, y) = ([0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]);
     let law = Law::penalty(1e14).expect("a positive stiffness");
     let made = |[first, second]: [usize; 2], method, thickness, positions: usize| {
-        let surface = |slots: [u32; 2]| Surface::new("side", slots.to_vec(), false, &x, &y).expect("one facet");
+        let surface =
+            |slots: [u32; 2]| Surface::new("side", slots.to_vec(), false, &x, &y).expect("one facet");
         let surfaces = vec![surface([0, 1]), surface([3, 2])];
         let pair = PairSpec { first, second, law, method };
         Contacts::new(surfaces, &[pair], thickness, &x[..positions], &y[..positions])

@@ -59,7 +59,8 @@ impl Shapes {
             Surface::new(format!("polygon {i}"), slots, true, &self.x, &self.y).expect("a polygon")
         };
         let pair = PairSpec { first: 0, second: 1, law, method };
-        Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y).expect("two surfaces")
+        Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
+            .expect("two surfaces")
     }
 
     fn moment(&self, step: u64, dt: f64) -> Moment<'_> {

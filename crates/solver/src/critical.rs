@@ -142,7 +142,8 @@ impl<'a> Operator<'a> {
         }
         for (spring, places) in &self.springs {
             let component = |k: usize| places[k / 2].map(|i| (i + (k % 2) * n, mass[self.free[i]].sqrt()));
-            let parts = || (0..8).filter_map(|k| component(k).map(|(at, root)| (at, spring.direction[k] / root)));
+            let parts =
+                || (0..8).filter_map(|k| component(k).map(|(at, root)| (at, spring.direction[k] / root)));
             let stretch: f64 = parts().map(|(at, d)| d * v[at]).sum();
             parts().for_each(|(at, d)| out[at] += spring.stiffness * d * stretch);
         }

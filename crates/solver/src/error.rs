@@ -27,7 +27,9 @@ pub enum Error {
         area: f64,
     },
     /// The ranges of a body do not follow those of the one before it, or leave the mesh.
-    #[error("body `{body}`: its nodes and elements must follow those of the body before it and lie in the mesh")]
+    #[error(
+        "body `{body}`: its nodes and elements must follow those of the body before it and lie in the mesh"
+    )]
     BadBody {
         /// Body name.
         body: String,

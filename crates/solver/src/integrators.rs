@@ -62,8 +62,7 @@ impl Scheme {
             let ([a, c], [b, d]) = (column(1.0, 0.0), column(0.0, 1.0));
             let (half, determinant) = (0.5 * (a + d), a * d - b * c);
             let inside = half * half - determinant;
-            let radius =
-                if inside > 0.0 { half.abs() + inside.sqrt() } else { determinant.max(0.0).sqrt() };
+            let radius = if inside > 0.0 { half.abs() + inside.sqrt() } else { determinant.max(0.0).sqrt() };
             radius <= 1.0 + 1e-9
         };
         // The first loss of stability: schemes of several stages may be stable again beyond it.
@@ -80,12 +79,7 @@ impl Scheme {
     }
 
     /// One step of `dt` [s].
-    pub fn step(
-        &self,
-        t: &mut Trajectory,
-        dt: f64,
-        accelerate: &mut dyn FnMut(&[f64], &[f64], &mut [f64]),
-    ) {
+    pub fn step(&self, t: &mut Trajectory, dt: f64, accelerate: &mut dyn FnMut(&[f64], &[f64], &mut [f64])) {
         match *self {
             Self::CentralDifference => {
                 for i in 0..t.x.len() {

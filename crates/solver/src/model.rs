@@ -149,9 +149,11 @@ impl Model {
         check_count("ordinates of the mesh", mesh.y.len(), mesh.x.len(), "as many as abscissae")?;
         let (mut nodes, mut quads, mut triangles) = (0, 0, 0);
         for body in &mesh.bodies {
-            let starts = [(body.nodes.start, nodes), (body.quads.start, quads), (body.triangles.start, triangles)];
+            let starts =
+                [(body.nodes.start, nodes), (body.quads.start, quads), (body.triangles.start, triangles)];
             let ends = [body.nodes.end, body.quads.end, body.triangles.end];
-            let follows = starts.iter().zip(ends).all(|((start, before), end)| start == before && end >= *start);
+            let follows =
+                starts.iter().zip(ends).all(|((start, before), end)| start == before && end >= *start);
             [nodes, quads, triangles] = ends;
             let lengths = [mesh.x.len(), mesh.quads.len(), mesh.triangles.len()];
             if !follows || ends.iter().zip(lengths).any(|(end, length)| *end > length) {

@@ -283,9 +283,8 @@ fn single_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> 
         [-(f[0][0] * t[0] + f[0][1] * t[1]), -(f[1][0] * t[0] + f[1][1] * t[1])]
     };
     let (g1, g2, s1, s2) = (along(b1), along(b2), s(q.s1), s(q.s2));
-    let hourglass = |z: [f64; 4], i: usize| {
-        s(k.hourglass) * (s((z[0] + z[2]) - (z[1] + z[3])) - s1 * p[i] - s2 * r[i])
-    };
+    let hourglass =
+        |z: [f64; 4], i: usize| s(k.hourglass) * (s((z[0] + z[2]) - (z[1] + z[3])) - s1 * p[i] - s2 * r[i]);
     let w = [hourglass(x, 0), hourglass(y, 1)];
     let t1 = [g1[0] + s1 * w[0], g1[1] + s1 * w[1]];
     let t2 = [g2[0] + s2 * w[0], g2[1] + s2 * w[1]];
@@ -299,7 +298,13 @@ fn single_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> 
 }
 
 /// Viscous forces on the first two shape functions: the pressure b ρ c √A tr D on the present sides of the element.
-fn viscous(at: [[f64; 2]; 2], rate: [[f64; 2]; 2], b: [[f64; 2]; 2], volume: f64, viscosity: f64) -> [[f64; 2]; 2] {
+fn viscous(
+    at: [[f64; 2]; 2],
+    rate: [[f64; 2]; 2],
+    b: [[f64; 2]; 2],
+    volume: f64,
+    viscosity: f64,
+) -> [[f64; 2]; 2] {
     let gradient = |p: [f64; 2], r: [f64; 2]| {
         [
             [p[0] * b[0][0] + r[0] * b[1][0], p[0] * b[0][1] + r[0] * b[1][1]],

@@ -39,7 +39,14 @@ fn analytic_speed_of_a_pressure_wave() {
     }
     // A wave of 40 cells runs (k h)²/24 = 0.1 % slow, less what the time step gives back.
     let source = "√((λ + 2µ)/ρ): Achenbach 1973, §1.3";
-    ledger::compare("speed of a pressure wave of 40 cells", source, "m/s", (moment / sum - start) / d.state.time, c, 1e-3);
+    ledger::compare(
+        "speed of a pressure wave of 40 cells",
+        source,
+        "m/s",
+        (moment / sum - start) / d.state.time,
+        c,
+        1e-3,
+    );
     assert_close(sum * cell, height * width * PI.sqrt(), 1e-3, "area of the pulse");
 }
 
@@ -145,7 +152,14 @@ fn analytic_rigid_block_under_a_couple() {
     assert!(angle > 1e-3 && angle < 0.02, "{angle} rad");
     // The lever shortens as cos θ.
     let source = "θ = M t²/(2 I), lumped masses";
-    ledger::compare("rigid block under a couple, angle", source, "rad", d.rigid[0].angle, angle, angle * angle);
+    ledger::compare(
+        "rigid block under a couple, angle",
+        source,
+        "rad",
+        d.rigid[0].angle,
+        angle,
+        angle * angle,
+    );
     assert!((d.rigid[0].centre[0] - 0.5 * a).abs() < 1e-15 && (d.rigid[0].centre[1] - 0.5 * b).abs() < 1e-15);
     // Work = kinetic energy.
     assert_close(couple_work(&mut d, &mut couple), 1.0, 1e-9, "work / energy");

@@ -58,7 +58,14 @@ fn converges_lame_thick_cylinder() {
             assert!((1.8..2.3).contains(&order), "{what}: order {order}, errors {errors:?}");
         }
         let source = "Lamé: Timoshenko and Goodier 1970, §28";
-        ledger::compare(&format!("thick cylinder under pressure, {what}"), source, "m", found[2][i], exact(r), 3e-3);
+        ledger::compare(
+            &format!("thick cylinder under pressure, {what}"),
+            source,
+            "m",
+            found[2][i],
+            exact(r),
+            3e-3,
+        );
     }
 }
 

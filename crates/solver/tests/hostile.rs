@@ -42,7 +42,12 @@ fn mesh() -> impl Strategy<Value = Mesh> {
             } else {
                 mesh.bodies = bodies
                     .into_iter()
-                    .map(|(a, b, c, d, e, f)| Body { name: "body".into(), nodes: a..b, quads: c..d, triangles: e..f })
+                    .map(|(a, b, c, d, e, f)| Body {
+                        name: "body".into(),
+                        nodes: a..b,
+                        quads: c..d,
+                        triangles: e..f,
+                    })
                     .collect();
             }
             mesh

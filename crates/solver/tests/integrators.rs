@@ -27,7 +27,8 @@ fn swing(scheme: Scheme, dt: f64, steps: usize) -> Trajectory {
 #[test]
 fn converges_integrators_with_their_order() {
     for (scheme, expected) in SCHEMES.into_iter().zip([2.0, 1.0, 2.0]) {
-        let errors = [40, 80, 160].map(|steps| (swing(scheme, 5.0 / steps as f64, steps).x[0] - 5_f64.cos()).abs());
+        let errors =
+            [40, 80, 160].map(|steps| (swing(scheme, 5.0 / steps as f64, steps).x[0] - 5_f64.cos()).abs());
         for order in orders(&errors) {
             assert!((order - expected).abs() < 0.15, "{scheme:?}: order {order}, errors {errors:?}");
         }
@@ -39,9 +40,23 @@ fn analytic_limits_of_the_integrators() {
     // Central differences: 2. Tchamwa–Wielgosz: trace 2 − φΩ² and determinant 1 − (φ − 1)Ω² of its step give
     // Ω = 2/√(2φ − 1). Noh–Bathe with p = 1/2 is two steps of central differences: 4; an uneven split shortens that a little.
     let [central, tchamwa, noh] = SCHEMES.map(|s| s.limit());
-    ledger::compare("limit Ω of central differences", "ωΔt = 2: Belytschko, Liu and Moran 2000, §6.6", "-", central, 2.0, 1e-6);
+    ledger::compare(
+        "limit Ω of central differences",
+        "ωΔt = 2: Belytschko, Liu and Moran 2000, §6.6",
+        "-",
+        central,
+        2.0,
+        1e-6,
+    );
     let exact = 2.0 / (2.0 * 1.03 - 1.0_f64).sqrt();
-    ledger::compare("limit Ω of Tchamwa–Wielgosz, φ = 1.03", "2/√(2φ − 1), from trace and determinant", "-", tchamwa, exact, 1e-6);
+    ledger::compare(
+        "limit Ω of Tchamwa–Wielgosz, φ = 1.03",
+        "2/√(2φ − 1), from trace and determinant",
+        "-",
+        tchamwa,
+        exact,
+        1e-6,
+    );
     assert_close(Scheme::NohBathe { p: 0.5 }.limit(), 4.0, 1e-6, "Noh–Bathe, even split");
     assert!(noh > 3.5 && noh < 4.0, "Noh–Bathe: {noh}");
 }
@@ -72,7 +87,8 @@ fn patch_the_plain_path_is_the_kernel() {
         let mut plain = Reference::new(&model, Choice::default()).expect("a model of elastic bodies");
         let mut noise = Noise(5);
         let v: Vec<f64> = plain.rest().iter().map(|_| noise.next()).collect();
-        let mut t = Trajectory::start(plain.rest().to_vec(), v.clone(), &mut |x, v, a| plain.accelerate(x, v, a));
+        let mut t =
+            Trajectory::start(plain.rest().to_vec(), v.clone(), &mut |x, v, a| plain.accelerate(x, v, a));
         for n in 0..model.mesh.x.len() {
             let s = slot(&d, n);
             // The kernel's velocities belong to half a step earlier; at rest nothing accelerates.
@@ -110,7 +126,8 @@ fn standing_wave(columns: usize, choice: Choice, scheme: Scheme, factor: f64) ->
     (0..steps as usize).for_each(|_| scheme.step(&mut t, dt, &mut |x, v, a| plain.accelerate(x, v, a)));
     let exact = (1.3 * 2.0 * PI).cos();
     let nodes = rest.len() / 2;
-    let square: f64 = (0..nodes).map(|n| (t.x[2 * n] - rest[2 * n] - exact * shape(rest[2 * n])).powi(2)).sum();
+    let square: f64 =
+        (0..nodes).map(|n| (t.x[2 * n] - rest[2 * n] - exact * shape(rest[2 * n])).powi(2)).sum();
     (square / nodes as f64).sqrt() / amplitude
 }
 
@@ -145,7 +162,8 @@ fn invariant_full_integration_is_rotation_invariant_and_has_no_soft_mode() {
     let model = body(&rectangle(1e-3, 1e-3, 1, 1));
     let force = |rule, change: &dyn Fn([f64; 2], usize) -> [f64; 2]| {
         let mut plain = Reference::new(&model, Choice { rule, ..Choice::default() }).expect("one square");
-        let x: Vec<f64> = plain.rest().chunks(2).enumerate().flat_map(|(n, p)| change([p[0], p[1]], n)).collect();
+        let x: Vec<f64> =
+            plain.rest().chunks(2).enumerate().flat_map(|(n, p)| change([p[0], p[1]], n)).collect();
         let mut a = vec![0.0; x.len()];
         plain.accelerate(&x, &vec![0.0; x.len()], &mut a);
         a.iter().fold(0.0_f64, |m, a| m.max(a.abs()))

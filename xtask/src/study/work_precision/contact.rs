@@ -109,7 +109,7 @@ fn pressed(columns: usize, method: Method, scale: f64, uniform: bool) -> Result<
     rig.push(&top, [0.0, -line_load * THICKNESS]);
     rig.settle(1e-5 * line_load * THICKNESS)?;
     let n = rig.dynamics.state.x.len();
-    let mut force = NodeForces { fx: vec![0.0; n], fy: vec![0.0; n] };
+    let mut force = NodeForces { fx: vec![0.0; n].into(), fy: vec![0.0; n].into() };
     rig.contacts.accumulate(rig.dynamics.moment(), &mut force);
     let (mut sum, mut moment) = (0.0, 0.0);
     for &s in &rig.bodies[lower] {
