@@ -22,6 +22,9 @@ const TOLERANCE: f64 = 1e-7;
 /// unbalanced on the worst node, the run starts all the same, with a warning.
 const ENOUGH: f64 = 1e-4;
 
+/// The same for a stage before the last.
+const ON_THE_WAY: f64 = 1e-2;
+
 /// Most iterations of the preload.
 const ITERATIONS: usize = 80;
 
@@ -87,7 +90,7 @@ pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> R
     };
     // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between them.
     let mut solver = Equilibrator::new(&machine.dynamics)?;
-    let enough = ENOUGH * scene.operation.load_n.max(1.0);
+    let load = scene.operation.load_n.max(1.0);
     let mut warning = None;
     // Rollers in a wide clearance feel its sides from farther away.
     let wide = (1e-3 * clearance_mm(scene) / CLEARANCE).max(1.0);
@@ -98,9 +101,9 @@ pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> R
         let forces: &mut [&mut dyn Force] = &mut [&mut machine.load, &mut machine.contacts];
         match solver.equilibrate(&mut machine.dynamics, forces, &statics) {
             Ok(_) => warning = None,
-            // A stage on the way may fail as long as a later one finds the way.
+            // A stage on the way may end a little short: the next one goes on from there.
             Err(stribeck_solver::Error::NoEquilibrium { residual_n, .. })
-                if residual_n.is_finite() && (softness > 0.0 || residual_n <= enough) =>
+                if residual_n <= load * if softness > 0.0 { ON_THE_WAY } else { ENOUGH } =>
             {
                 warning = Some(format!(
                     "the preload left a force of {residual_n:.2e} N unbalanced, {:.1e} of the load: the start rings a little. A softer \

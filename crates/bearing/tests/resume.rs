@@ -7,6 +7,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
+use proptest::prelude::*;
 use stribeck_bearing::{
     error::Error,
     run_dir::RunDir,
@@ -224,6 +225,38 @@ fn invariant_a_damaged_checkpoint_is_refused_and_never_panics() {
         let words = refusal(&folder);
         assert!(words.contains("checkpoint") && words.contains("start it anew"), "byte {at}: {words}");
     }
+}
+
+/// Damage under a length and a checksum that fit: what is wrong is found deeper, and gets an answer too. A failure shrinks
+/// to the fewest bytes.
+#[test]
+fn invariant_a_forged_checkpoint_gets_an_answer() {
+    let folder = broken_off();
+    let whole = folder.bytes("checkpoint");
+    let dir = RunDir::open(&folder.0).expect("a run");
+    let damage = (0..whole.len() - HEADER, proptest::collection::vec(any::<u8>(), 0..12), 0_usize..20);
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) };
+    let mut runner = proptest::test_runner::TestRunner::new(config);
+    let done = runner.run(&proptest::collection::vec(damage, 1..4), |damage| {
+        let mut content = whole[HEADER..].to_vec();
+        for (at, bytes, cut) in damage {
+            // Lengths of lists stand near the front; damage there matters most.
+            let at = if cut % 2 == 0 { at } else { at % 400 }.min(content.len());
+            let end = (at + cut).min(content.len());
+            content.splice(at..end, bytes);
+        }
+        let mut forged = whole[..HEADER - 12].to_vec();
+        forged.extend((content.len() as u64).to_le_bytes());
+        forged.extend(crc32fast::hash(&content).to_le_bytes());
+        forged.extend(content);
+        fs::write(folder.file("checkpoint"), forged).expect("writable");
+        if let Err(error) = stribeck_bearing::simulation::saved_until(&dir) {
+            let words = error.to_string();
+            prop_assert!(words.contains("checkpoint") && words.contains("start it anew"), "{}", words);
+        }
+        Ok(())
+    });
+    done.expect("an answer to every one");
 }
 
 /// Every reason has its own words, and says what to do.

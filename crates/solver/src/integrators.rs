@@ -22,6 +22,9 @@ pub enum Scheme {
     },
 }
 
+/// Gets positions and velocities and fills in accelerations.
+pub type Accelerate<'a> = dyn FnMut(&[f64], &[f64], &mut [f64]) + 'a;
+
 /// Positions, velocities and accelerations at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
@@ -37,7 +40,7 @@ pub struct Trajectory {
 
 impl Trajectory {
     /// From positions and velocities; `accelerate` gets (x, v, a) and fills a.
-    pub fn start(x: Vec<f64>, v: Vec<f64>, accelerate: &mut dyn FnMut(&[f64], &[f64], &mut [f64])) -> Self {
+    pub fn start(x: Vec<f64>, v: Vec<f64>, accelerate: &mut Accelerate<'_>) -> Self {
         let mut a = vec![0.0; x.len()];
         accelerate(&x, &v, &mut a);
         Self { time: 0.0, x, v, a }
@@ -79,7 +82,7 @@ impl Scheme {
     }
 
     /// One step of `dt` [s].
-    pub fn step(&self, t: &mut Trajectory, dt: f64, accelerate: &mut dyn FnMut(&[f64], &[f64], &mut [f64])) {
+    pub fn step(&self, t: &mut Trajectory, dt: f64, accelerate: &mut Accelerate<'_>) {
         match *self {
             Self::CentralDifference => {
                 for i in 0..t.x.len() {
@@ -102,7 +105,7 @@ impl Scheme {
     }
 }
 
-fn noh_bathe(p: f64, t: &mut Trajectory, dt: f64, accelerate: &mut dyn FnMut(&[f64], &[f64], &mut [f64])) {
+fn noh_bathe(p: f64, t: &mut Trajectory, dt: f64, accelerate: &mut Accelerate<'_>) {
     let (first, second) = (p * dt, (1.0 - p) * dt);
     let q1 = (1.0 - 2.0 * p) / (2.0 * p * (1.0 - p));
     let q2 = 0.5 - p * q1;

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 pub(super) const FOLDER: &str = "STRIBECK_LEDGER";
 
 /// A number may differ from the document's by this share of its row's tolerance: other processors round otherwise.
-const ROUNDING: f64 = 0.05;
+const ROUNDING: f64 = 0.3;
 
 /// … or by this share of itself, the last digit shown.
 const SHOWN: f64 = 2e-4;

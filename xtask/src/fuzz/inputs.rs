@@ -30,7 +30,7 @@ pub(crate) const KINDS: [Kind; 7] = [
     Kind { name: "checkpoint", weight: 10, attempt: checkpoint },
     Kind { name: "run-info", weight: 5, attempt: run_info },
     Kind { name: "mesh", weight: 40, attempt: mesh },
-    Kind { name: "shape", weight: 20, attempt: shape },
+    Kind { name: "shape", weight: 4, attempt: shape },
 ];
 
 /// Bytes before the content of a checkpoint; length and checksum are the last twelve.

@@ -70,7 +70,7 @@ const ROWS: &[Row] = &[
     ]),
     ("rollers-200-sudden", "200 rollers of 2.5 mm, load at once", &[
         "bearing.rollers=200", "bearing.roller_diameter_mm=2.5", "bearing.inner_race_diameter_mm=194.96", "solver.start=sudden",
-        "cage=None", "mesh.roller_facets=24", "mesh.size_mm=1.0", "solver.duration_ms=0.1",
+        "cage=None", "mesh.roller_facets=24", "mesh.size_mm=1.0", "solver.duration_ms=0.3",
     ]),
     ("thin-sudden", "thickness 0.1 mm, load at once", &["bearing.thickness_mm=0.1", "solver.start=sudden"]),
     ("rubber-sudden", "E = 1 MPa, load at once", &["material.youngs_modulus_gpa=0.001", "solver.start=sudden", "solver.duration_ms=20.0"]),
