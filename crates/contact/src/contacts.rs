@@ -254,11 +254,11 @@ impl Contacts {
 impl Pair {
     /// About how much there is to do, judged by the step before.
     fn work(&self) -> usize {
-        1 + self.push.len()
+        1 + self.passes.iter().map(|pass| pass.work).sum::<usize>()
     }
 }
 
-/// Less work than this is not worth another thread: a fork and join takes as long as some hundred pushes.
+/// Less work than this is not worth another thread: a fork and join takes some microseconds.
 const LEAST_WORK: usize = 400;
 
 /// Evaluates pairs on several threads, about equal work on each.

@@ -26,6 +26,8 @@ pub(crate) struct Pass {
     deepest: f64,
     /// No candidate wakes before this step.
     asleep: u64,
+    /// About how long the last evaluation took, in units of some ten nanoseconds.
+    pub(crate) work: usize,
 }
 
 /// What a pass remembers from step to step.
@@ -135,6 +137,7 @@ impl Pass {
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
             asleep: 0,
+            work: 0,
         }
     }
 
@@ -204,6 +207,7 @@ impl Pass {
         w: &Weights,
         push: &mut Vec<Push>,
     ) -> Sum {
+        self.work = 0;
         if at.step < self.asleep {
             return Sum::default();
         }
@@ -242,6 +246,7 @@ impl Pass {
             let mut soonest = u16::MAX;
             let mut touched = false;
             let range = self.points.of_facet(facet);
+            self.work += 4 + range.len() / 4;
             let mut done = [false; MOST_POINTS];
             if together && range.len() <= MOST_POINTS {
                 let mut row = Row { points: &self.points, range: range.clone(), nearest, doze, now, history };
@@ -255,6 +260,7 @@ impl Pass {
                     soonest = soonest.min(doze[i]);
                     continue;
                 }
+                self.work += 4;
                 let spot = own.shape.spot(self.points.place[i], self.points.height[i]);
                 let start = nearest[i] as usize;
                 let shape = match &mut shape {
