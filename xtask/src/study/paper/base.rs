@@ -25,6 +25,7 @@ pub(super) fn variants() -> Vec<Variant> {
     };
     vec![
         short("default", &[]),
+        short("thickness-5", &["bearing.thickness_mm=5.0"]),
         short("thickness-10", &["bearing.thickness_mm=10.0"]),
         short("thickness-20", &["bearing.thickness_mm=20.0"]),
         short("thickness-50", &["bearing.thickness_mm=50.0"]),
