@@ -178,7 +178,7 @@ impl DiscInRing {
     }
 
     fn forces(&self, contacts: &mut Contacts, x: &[f64], y: &[f64]) -> NodeForces {
-        let mut force = NodeForces { fx: vec![0.0; x.len()], fy: vec![0.0; x.len()] };
+        let mut force = NodeForces { fx: vec![0.0; x.len()].into(), fy: vec![0.0; x.len()].into() };
         // Step 0 each time: every evaluation searches anew.
         contacts.set_preload(None);
         let at = Moment { step: 0, time: 0.0, dt: 1e-4, x, y, vx: &self.vx, vy: &self.vy };

@@ -4,6 +4,7 @@
 //! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
 //! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 
+mod noise;
 mod paper;
 mod runner;
 mod table;
@@ -27,10 +28,13 @@ pub(crate) struct Options {
 enum Study {
     /// Which reading of the paper agrees with it best, and whether its hypothesis holds
     Paper(paper::Options),
+    /// Where contact noise comes from and what each cure takes away
+    Noise(noise::Options),
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     match &options.study {
         Study::Paper(options) => paper::run(options),
+        Study::Noise(options) => noise::run(options),
     }
 }
