@@ -7,6 +7,7 @@ mod compare;
 mod engine;
 mod fuzz;
 mod host;
+mod plan;
 mod progress;
 mod report;
 mod simulate;
@@ -31,6 +32,8 @@ enum Command {
     Simulate(simulate::Options),
     /// Writes the report of a run again.
     Report(report::Options),
+    /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
+    Plan(plan::Options),
     /// Answers a question by many runs: tables and pictures in docs/results
     Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
@@ -46,6 +49,7 @@ fn main() -> ExitCode {
     let done = match cli.command {
         Command::Simulate(options) => simulate::run(&options),
         Command::Report(options) => report::run(&options),
+        Command::Plan(options) => plan::run(&options),
         Command::Study(options) => study::run(&options),
         Command::Compare(options) => compare::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),

@@ -40,6 +40,8 @@ pub mod kinematics;
 pub mod levels;
 pub mod load;
 pub mod lumped;
+pub mod noise;
+pub mod plan;
 pub mod reading;
 pub mod ring;
 pub mod signal;

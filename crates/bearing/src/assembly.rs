@@ -3,7 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
-use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock};
+use stribeck_mesh::{
+    Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
+};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
 
 use crate::{
@@ -205,6 +207,20 @@ impl Assembly {
             outer_facets: surface(&self.outer, "inner").facets(),
             inner_facets: surface(&self.inner, "outer").facets(),
         }
+    }
+
+    /// Critical time step of the stiffest element by itself [s]: an estimate before anything is laid out.
+    pub fn element_time_step_s(&self, scene: &Scene) -> f64 {
+        let mesh = &self.model.mesh;
+        let nu = scene.material.poissons_ratio;
+        let corner = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
+        // A rigid cage has no elastic elements.
+        let elastic =
+            |n: u32| self.cage.as_ref().is_none_or(|c| !mesh.bodies[c.body].nodes.contains(&(n as usize)));
+        let quads = mesh.quads.iter().filter(|q| elastic(q[0]));
+        let quads = quads.map(|q| characteristic_length(&q.map(corner), nu));
+        let triangles = mesh.triangles.iter().map(|t| characteristic_length(&t.map(corner), nu));
+        quads.chain(triangles).fold(f64::INFINITY, f64::min) / self.model.materials[0].dilatational_speed()
     }
 
     /// Lays everything out for `threads` workers.

@@ -5,6 +5,7 @@
 //! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 
 mod kills;
+mod noise;
 mod paper;
 mod rig;
 mod runner;
@@ -38,6 +39,8 @@ enum Study {
     /// Error against work: elements, integrators, contacts, meshes
     #[command(name = "work_precision")]
     WorkPrecision(work_precision::Options),
+    /// Where contact noise comes from and what each cure takes away
+    Noise(noise::Options),
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
@@ -46,5 +49,6 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         Study::Kills(options) => kills::run(options),
         Study::Stability(options) => stability::run(options),
         Study::WorkPrecision(options) => work_precision::run(options),
+        Study::Noise(options) => noise::run(options),
     }
 }

@@ -1,7 +1,7 @@
 //! Models and measurements that several test files share.
 #![allow(dead_code, reason = "each test file uses its own part of it")]
 
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
 use stribeck_mesh::{Disc, Mesh, Part, Rectangle};
 use stribeck_solver::{
     Dynamics, Elastic, Force, Model,
@@ -51,11 +51,6 @@ impl Scene {
         self.pairs.push(PairSpec { first, second, law, method, sides: Sides::Both });
     }
 
-    /// Surfaces in the order of the bodies.
-    pub(crate) fn surfaces(&self) -> &[(String, stribeck_mesh::Surface)] {
-        &self.surfaces
-    }
-
     /// The model, still to be changed.
     pub(crate) fn model(&self) -> Model {
         Model::new(self.mesh.clone(), steel(), THICKNESS).expect("a positive thickness")
@@ -74,6 +69,29 @@ impl Scene {
             .collect();
         let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y)
             .expect("surfaces and pairs that exist");
+        (d, contacts)
+    }
+
+    /// The same with curves instead of polylines, which move as splines of their nodes where that is asked for, and the
+    /// points of the first surface of each pair alone.
+    pub(crate) fn lay_out_smooth(&self, model: &Model, curves: &[(Smoothing, bool)]) -> (Dynamics, Contacts) {
+        let d = Dynamics::new(model, &vec![true; model.mesh.x.len()], 1).expect("a model that can run");
+        let (x, y) = (&d.state.x, &d.state.y);
+        let surfaces = self
+            .surfaces
+            .iter()
+            .zip(curves)
+            .map(|((name, s), (smoothing, spline))| {
+                let slots = slots(&d, s.nodes.iter().map(|&n| n as usize));
+                let surface = Surface::new(name, slots, s.closed, x, y).expect("a surface with facets");
+                let surface = surface.smoothed(*smoothing, x, y).expect("fine enough facets");
+                if *spline { surface.splined(x, y) } else { surface }
+            })
+            .collect();
+        let one_pass = |pair: &PairSpec| PairSpec { sides: Sides::First, ..*pair };
+        let pairs: Vec<PairSpec> = self.pairs.iter().map(one_pass).collect();
+        let contacts =
+            Contacts::new(surfaces, &pairs, THICKNESS, x, y).expect("surfaces and pairs that exist");
         (d, contacts)
     }
 }

@@ -1,0 +1,122 @@
+//! How much of a record is contact noise: the line of the roller vertices and the level where no roller meets the defect.
+
+use crate::levels::{STANDARD_GRAVITY, impulse_span, level, quiet_spans};
+use crate::record::Record;
+use crate::signal::amplitude;
+
+/// Levels of one sensor, of the vector of both components.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Noise {
+    /// Amplitude of the facet line in the longest stretch without an event [g].
+    pub line_g: f64,
+    /// The same at twice the frequency [g].
+    pub second_g: f64,
+    /// Root mean square in that stretch [g].
+    pub quiet_rms_g: f64,
+    /// Largest magnitude within 1 ms of the first exit, vertical [g].
+    pub impulse_g: f64,
+    /// Energy of that impulse, ∫ a² dt [g² ms].
+    pub impulse_g2_ms: f64,
+}
+
+/// Measures `sensor` where `passages` (entry, exit) [s] are over, about the line `facet_hz`. `None` when the record holds no
+/// such stretch.
+pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet_hz: f64) -> Option<Noise> {
+    let (time, rate) = (record.time_s(), record.sample_rate_hz());
+    let components = [record.acceleration_g(sensor, "ax")?, record.acceleration_g(sensor, "ay")?];
+    let quiet = quiet_spans(time, passages, 0.0).into_iter().max_by_key(ExactSizeIterator::len)?;
+    let both = |of: &dyn Fn(&[f64]) -> Option<f64>| -> Option<f64> {
+        let [x, y] = [of(&components[0][quiet.clone()])?, of(&components[1][quiet.clone()])?];
+        Some(x.hypot(y))
+    };
+    let rms = |signal: &[f64]| {
+        let mean = signal.iter().sum::<f64>() / signal.len() as f64;
+        let centred: Vec<f64> = signal.iter().map(|v| v - mean).collect();
+        level(&centred, &[0..centred.len()]).map(|l| l.rms)
+    };
+    let exit = passages.first()?.1;
+    let at_exit = impulse_span(time, exit);
+    let vertical = components[1].get(at_exit)?;
+    Some(Noise {
+        line_g: both(&|s| amplitude(s, rate, facet_hz))?,
+        second_g: both(&|s| amplitude(s, rate, 2.0 * facet_hz))?,
+        quiet_rms_g: both(&rms)?,
+        impulse_g: vertical.iter().fold(0.0, |m: f64, a| m.max(a.abs())),
+        impulse_g2_ms: 1e3 * record.interval_s() * vertical.iter().map(|a| a * a).sum::<f64>(),
+    })
+}
+
+/// Ripple of a roller's force in a span of samples: its rms about a cubic in time, over its mean [-].
+pub fn force_ripple(force: &[f64]) -> Option<f64> {
+    const TERMS: usize = 4;
+    if force.len() < 4 * TERMS {
+        return None;
+    }
+    // Legendre's polynomials made orthogonal over the samples, one after the other.
+    let n = force.len();
+    let mut rest = force.to_vec();
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for k in 0..TERMS {
+        let mut p: Vec<f64> =
+            (0..n).map(|i| (2.0 * i as f64 / (n - 1) as f64 - 1.0).powi(k as i32)).collect();
+        for q in &basis {
+            let along: f64 = p.iter().zip(q).map(|(a, b)| a * b).sum();
+            p.iter_mut().zip(q).for_each(|(a, b)| *a -= along * b);
+        }
+        let norm = p.iter().map(|a| a * a).sum::<f64>().sqrt();
+        p.iter_mut().for_each(|a| *a /= norm);
+        let along: f64 = rest.iter().zip(&p).map(|(a, b)| a * b).sum();
+        rest.iter_mut().zip(&p).for_each(|(a, b)| *a -= along * b);
+        basis.push(p);
+    }
+    let mean = force.iter().sum::<f64>() / n as f64;
+    let rms = (rest.iter().map(|a| a * a).sum::<f64>() / n as f64).sqrt();
+    (mean != 0.0).then(|| rms / mean.abs())
+}
+
+/// Amplitude spectrum [g] of a signal [m/s²] at the frequencies given, Hann window.
+pub fn spectrum_g(signal: &[f64], sample_rate_hz: f64, frequencies_hz: &[f64]) -> Vec<f64> {
+    let n = signal.len();
+    let mean = signal.iter().sum::<f64>() / n as f64;
+    let tau = std::f64::consts::TAU;
+    let window = |i: usize| 1.0 - (tau * i as f64 / n as f64).cos();
+    frequencies_hz
+        .iter()
+        .map(|hz| {
+            let (mut c, mut s) = (0.0, 0.0);
+            for (i, v) in signal.iter().enumerate() {
+                let (sin, cos) = (tau * hz * i as f64 / sample_rate_hz).sin_cos();
+                let v = window(i) * (v - mean);
+                (c, s) = (c + v * cos, s + v * sin);
+            }
+            2.0 * c.hypot(s) / n as f64 / STANDARD_GRAVITY
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_ripple_leaves_a_cubic_alone_and_finds_a_sine() {
+        let cubic = |t: f64| 1000.0 + 50.0 * t - 30.0 * t * t + 20.0 * t * t * t;
+        let force = |ripple: f64| -> Vec<f64> {
+            (0..500).map(|i| cubic(i as f64 / 500.0) + ripple * (0.9 * i as f64).sin()).collect()
+        };
+        assert!(force_ripple(&force(0.0)).unwrap() < 1e-12);
+        let mean = 1000.0 + 25.0 - 10.0 + 5.0;
+        // Whole periods but for a fraction: half a per cent.
+        assert!((force_ripple(&force(10.0)).unwrap() * mean / 10.0 * 2f64.sqrt() - 1.0).abs() < 0.02);
+        assert_eq!(force_ripple(&[1.0; 3]), None);
+    }
+
+    #[test]
+    fn analytic_spectrum_of_a_sine() {
+        let sine: Vec<f64> = (0..1000)
+            .map(|i| 3.0 * STANDARD_GRAVITY * (std::f64::consts::TAU * 0.05 * i as f64).sin())
+            .collect();
+        let found = spectrum_g(&sine, 1e5, &[5000.0, 20_000.0]);
+        assert!((found[0] - 3.0).abs() < 1e-9 && found[1] < 1e-9, "{found:?}");
+    }
+}

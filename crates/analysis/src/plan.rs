@@ -1,0 +1,189 @@
+//! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is, what it costs,
+//! and how long a record must be. A second of work; nothing is simulated.
+
+use std::f64::consts::PI;
+
+use stribeck_bearing::assembly::Assembly;
+use stribeck_bearing::kinematics::Kinematics;
+use stribeck_bearing::scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene};
+use stribeck_bearing::static_load;
+
+use crate::lumped::Lumped;
+use crate::prediction::Prediction;
+
+/// What to expect of a scene.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Predicted lines: name and frequency [Hz].
+    pub lines: Vec<(String, f64)>,
+    /// The lumped model of the strongest of them on chords.
+    pub lumped: Lumped,
+    /// Sag of a roller's facets, of the outer and of the inner raceway's [m].
+    pub sag_m: [f64; 3],
+    /// Largest static force on a roller [N] and Hertz half-width under it at the outer raceway [m].
+    pub load_n: f64,
+    /// See `load_n`.
+    pub half_width_m: f64,
+    /// Length of a roller's facets [m].
+    pub facet_m: f64,
+    /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may differ by a
+    /// fifth either way.
+    pub elements: usize,
+    /// See `elements`.
+    pub time_step_s: f64,
+    /// Steps of the whole run.
+    pub steps: f64,
+    /// Elements in a Rayleigh wave at the half of the sampling rate [-].
+    pub elements_per_wavelength: f64,
+    /// Resolution of a spectrum of the whole record [Hz].
+    pub resolution_hz: f64,
+    /// Record that separates the closest two of the lines, Hann window [s]; `None` when they coincide.
+    pub separating_s: Option<f64>,
+    /// Records for ten periods of the defect, the least for an envelope [s].
+    pub envelope_s: f64,
+    /// What to change, each with its reason.
+    pub advice: Vec<String>,
+}
+
+/// Rayleigh waves run at this share of shear waves (ν = 0.3).
+const RAYLEIGH: f64 = 0.9274;
+
+/// A Hann window separates lines that are this many resolutions apart.
+const HANN_WIDTHS: f64 = 2.0;
+
+impl Plan {
+    /// Meshes the scene and says what to expect.
+    ///
+    /// # Errors
+    /// When the scene cannot be meshed or has no static load distribution.
+    pub fn of(scene: &Scene) -> Result<Self, stribeck_bearing::error::Error> {
+        let assembly = Assembly::new(scene)?;
+        let info = assembly.mesh_info();
+        let prediction = Prediction::of(scene, &info);
+        let lumped = Lumped::of(scene)?;
+        let kinematics = Kinematics::of(scene);
+        let (b, m) = (&scene.bearing, &scene.material);
+        let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());
+        let radius = 0.5e-3 * b.roller_diameter_mm;
+        let (outer, inner) = (0.5e-3 * b.outer_race_diameter_mm, 0.5e-3 * b.inner_race_diameter_mm);
+        let load_n = static_load::at_start(scene)?.max_roller_n();
+        let modulus = 1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 - m.poissons_ratio.powi(2)));
+        let effective = 1.0 / (1.0 / radius - 1.0 / outer);
+        let half_width_m = (4.0 * load_n / (1e-3 * b.thickness_mm) * effective / (PI * modulus)).sqrt();
+
+        let critical = assembly.element_time_step_s(scene);
+        let duration_s = 1e-3 * scene.solver.duration_ms;
+        let interval_s = 1e-6 * scene.output.interval_us;
+        let per_sample = (interval_s / (scene.solver.time_step_factor * critical)).ceil().max(1.0);
+        let shear = (1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 + m.poissons_ratio)) / m.density_kg_m3).sqrt();
+        let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
+        hz.sort_by(f64::total_cmp);
+        let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let facets = info.roller_facets as f64;
+        let mut plan = Self {
+            lines: prediction.facet_lines.clone(),
+            lumped,
+            sag_m: [
+                sag(radius, facets),
+                sag(outer, info.outer_facets as f64),
+                sag(inner, info.inner_facets as f64),
+            ],
+            load_n,
+            half_width_m,
+            facet_m: 2.0 * PI * radius / facets,
+            elements: info.quads + info.triangles,
+            time_step_s: interval_s / per_sample,
+            steps: per_sample * (duration_s / interval_s).round(),
+            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / (1e-3 * scene.mesh.size_mm),
+            resolution_hz: 1.0 / duration_s,
+            separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
+            envelope_s: 10.0 / kinematics.bpfo_hz,
+            advice: Vec::new(),
+        };
+        plan.advise(scene);
+        Ok(plan)
+    }
+
+    /// What the study of contact noise has shown to help (docs/results/noise.md).
+    fn advise(&mut self, scene: &Scene) {
+        let c = &scene.contact;
+        let mut say = |text: String| self.advice.push(text);
+        if c.surface == ContactSurface::Facet {
+            say("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
+        }
+        if c.interpolation == ContactInterpolation::Linear && c.penalty_scale > 0.2 {
+            say(format!(
+                "`contact.interpolation=spline`: with a contact as stiff as elements (penalty_scale {}) a load between \
+                 two nodes sinks in less than one at a node, and arcs alone leave a third of the tone",
+                c.penalty_scale
+            ));
+        }
+        if c.method == ContactMethod::Collocated {
+            say("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
+        }
+        if c.method == ContactMethod::Integrated
+            && c.points_per_facet < 8
+            && c.surface != ContactSurface::Facet
+        {
+            say(format!(
+                "`contact.points_per_facet=12`: {} points a facet pass the contact at {:.1} kHz",
+                c.points_per_facet,
+                1e-3 * c.points_per_facet as f64 * self.lumped.frequency_hz
+            ));
+        }
+        let facets = scene.mesh.roller_facets;
+        if c.surface == ContactSurface::Facet {
+            if facets % 2 == 0 {
+                say(format!(
+                    "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
+                    facets + 1
+                ));
+            }
+            if scene.mesh.roller_copies == RollerCopies::Rotated || facets % scene.bearing.rollers == 0 {
+                say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
+            }
+            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.bearing.roller_diameter_mm * 2e3 {
+                say(format!(
+                    "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
+                    1e3 * self.facet_m,
+                    2e3 * self.half_width_m
+                ));
+            }
+        }
+        if self.elements_per_wavelength < 8.0 {
+            say(format!(
+                "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not read the top of the spectrum",
+                self.elements_per_wavelength
+            ));
+        }
+        if let Some(needed) = self.separating_s.filter(|s| 1e3 * s > scene.solver.duration_ms) {
+            say(format!(
+                "the closest lines merge in {:.0} ms; {:.0} ms separate them",
+                scene.solver.duration_ms,
+                1e3 * needed
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_plan_of_the_paper() {
+        let mut scene = Scene::default();
+        scene.mesh.size_mm = 2.0;
+        scene.mesh.roller_facets = 112;
+        let plan = Plan::of(&scene).expect("a scene that can be meshed");
+        // 3.54 µm of sag and 4671.5 Hz at 112 facets, whatever the rest of the mesh.
+        assert!((plan.sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");
+        assert!((plan.lumped.frequency_hz - 4671.7).abs() < 1.0);
+        assert!((plan.resolution_hz - 33.3).abs() < 0.1);
+        assert!(plan.advice.iter().any(|a| a.contains("surface=arc")), "{:?}", plan.advice);
+        scene.contact.surface = ContactSurface::Arc;
+        scene.contact.interpolation = ContactInterpolation::Spline;
+        let smooth = Plan::of(&scene).expect("a scene that can be meshed");
+        assert!(smooth.advice.iter().all(|a| !a.contains("contact.")), "{:?}", smooth.advice);
+    }
+}
