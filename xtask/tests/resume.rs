@@ -144,14 +144,14 @@ fn invariant_a_folder_that_cannot_be_written_is_said_at_once() {
 }
 
 #[test]
-fn invariant_a_terminated_run_can_go_on() {
+fn invariant_an_interrupted_process_can_go_on() {
     let folder = Folder::new("term");
     let [whole, ended] = ["whole", "ended"].map(|name| folder.run(name));
     assert!(simulate(&whole, "1").status().expect("it starts").success());
     let child = simulate(&ended, "1").spawn().expect("it starts");
     wait_until_under_way(&ended);
-    // What a batch system sends before it kills.
-    let sent = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().expect("kill is there");
+    // What Ctrl-C sends.
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
     assert!(sent.success());
     let status = child.wait_with_output().expect("it ends").status;
     assert_eq!(status.code(), Some(130), "it ends as an interrupted program does");

@@ -142,6 +142,7 @@ pub fn resume(
     let scene = Scene::read(dir.scene())?;
     may_go_on(dir)?;
     let mut saved = Checkpoint::read(&dir.checkpoint(), &scene.hash())?;
+    check_counts(dir, &scene, &saved.info)?;
     let mut progress = Progress::begin();
     let _ = watch(&progress);
     let assembly = Assembly::new(&scene)?;
@@ -181,8 +182,30 @@ pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
     let scene = Scene::read(dir.scene())?;
     may_go_on(dir)?;
     let info = Checkpoint::read(&dir.checkpoint(), &scene.hash())?.info;
+    check_counts(dir, &scene, &info)?;
     Ok(info.samples as f64 * info.interval_s)
 }
+
+/// Whether steps and samples of a checkpoint are those of its scene: forged ones could ask for any number of steps.
+fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
+    let interval = 1e-6 * scene.output.interval_us;
+    let per_sample = (info.interval_s / info.time_step_s).round();
+    let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0);
+    let fits = info.interval_s == interval
+        && (1.0..=MOST_STEPS).contains(&per_sample)
+        && info.steps_planned as f64 == samples * per_sample
+        && info.steps as f64 == info.samples as f64 * per_sample
+        && info.samples as f64 <= samples;
+    if fits {
+        return Ok(());
+    }
+    let reason = "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise start it anew from its \
+                  `scene.ron`; its samples stay readable until then";
+    Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
+}
+
+/// More steps in a sample than any scene has: a second in steps of a nanosecond.
+const MOST_STEPS: f64 = 1e9;
 
 /// Whether the run in `dir` ended before its time, but not by itself.
 fn may_go_on(dir: &RunDir) -> Result<(), Error> {
