@@ -141,7 +141,8 @@ impl Surface {
         self.spline = None;
         self.rise = rises(smoothing, &at, &self.corner);
         self.flat = self.rise.iter().all(|r| *r == [0.0; 2]);
-        if self.rise.iter().zip(&self.length).any(|(r, l)| !(r[0].abs().max(r[1].abs()) < 0.5 * l)) {
+        let steep = |(r, l): (&Rise, &f64)| r.iter().any(|r| r.is_nan() || r.abs() >= 0.5 * l);
+        if self.rise.iter().zip(&self.length).any(steep) {
             let reason = "is too coarse to be smoothed: its curve would leave a chord by more than 27°";
             return Err(Error::BadSurface { name: self.name, reason });
         }

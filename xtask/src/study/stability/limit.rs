@@ -141,7 +141,7 @@ pub(super) fn chapter() -> Result<Chapter> {
     factors.sort_by(f64::total_cmp);
     let mut curve = |name: &str, colour, bench: &mut Bench, limit: f64| -> Result<()> {
         let grown =
-            factors.iter().map(|f| bench.growth(f * limit, 2000).map(|g| g.min(1e30).max(1e-3).log10()));
+            factors.iter().map(|f| bench.growth(f * limit, 2000).map(|g| g.clamp(1e-3, 1e30).log10()));
         let series = Series::listed(name, colour, factors.clone(), grown.collect::<Result<_>>()?);
         figure.series.push(series);
         Ok(())
