@@ -360,8 +360,7 @@ impl Assembly {
             second: 3,
             law: seat,
             method: Method::Integrated { points },
-            // The facets of ring and seat lie on each other: either side sees the same gap.
-            sides: Sides::First,
+            sides: Sides::Both,
         });
         Ok((pairs, roller_pairs))
     }
