@@ -57,7 +57,8 @@ pub fn force_ripple(force: &[f64]) -> Option<f64> {
     let mut rest = force.to_vec();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for k in 0..TERMS {
-        let mut p: Vec<f64> = (0..n).map(|i| (2.0 * i as f64 / (n - 1) as f64 - 1.0).powi(k as i32)).collect();
+        let mut p: Vec<f64> =
+            (0..n).map(|i| (2.0 * i as f64 / (n - 1) as f64 - 1.0).powi(k as i32)).collect();
         for q in &basis {
             let along: f64 = p.iter().zip(q).map(|(a, b)| a * b).sum();
             p.iter_mut().zip(q).for_each(|(a, b)| *a -= along * b);
@@ -112,8 +113,9 @@ mod tests {
 
     #[test]
     fn analytic_spectrum_of_a_sine() {
-        let sine: Vec<f64> =
-            (0..1000).map(|i| 3.0 * STANDARD_GRAVITY * (std::f64::consts::TAU * 0.05 * i as f64).sin()).collect();
+        let sine: Vec<f64> = (0..1000)
+            .map(|i| 3.0 * STANDARD_GRAVITY * (std::f64::consts::TAU * 0.05 * i as f64).sin())
+            .collect();
         let found = spectrum_g(&sine, 1e5, &[5000.0, 20_000.0]);
         assert!((found[0] - 3.0).abs() < 1e-9 && found[1] < 1e-9, "{found:?}");
     }

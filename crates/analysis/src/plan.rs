@@ -121,7 +121,10 @@ impl Plan {
         if c.method == ContactMethod::Collocated {
             say("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
         }
-        if c.method == ContactMethod::Integrated && c.points_per_facet < 8 && c.surface != ContactSurface::Facet {
+        if c.method == ContactMethod::Integrated
+            && c.points_per_facet < 8
+            && c.surface != ContactSurface::Facet
+        {
             say(format!(
                 "`contact.points_per_facet=12`: {} points a facet pass the contact at {:.1} kHz",
                 c.points_per_facet,
@@ -131,7 +134,10 @@ impl Plan {
         let facets = scene.mesh.roller_facets;
         if c.surface == ContactSurface::Facet {
             if facets % 2 == 0 {
-                say(format!("on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental", facets + 1));
+                say(format!(
+                    "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
+                    facets + 1
+                ));
             }
             if scene.mesh.roller_copies == RollerCopies::Rotated || facets % scene.bearing.rollers == 0 {
                 say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
@@ -145,10 +151,17 @@ impl Plan {
             }
         }
         if self.elements_per_wavelength < 8.0 {
-            say(format!("{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not read the top of the spectrum", self.elements_per_wavelength));
+            say(format!(
+                "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not read the top of the spectrum",
+                self.elements_per_wavelength
+            ));
         }
         if let Some(needed) = self.separating_s.filter(|s| 1e3 * s > scene.solver.duration_ms) {
-            say(format!("the closest lines merge in {:.0} ms; {:.0} ms separate them", scene.solver.duration_ms, 1e3 * needed));
+            say(format!(
+                "the closest lines merge in {:.0} ms; {:.0} ms separate them",
+                scene.solver.duration_ms,
+                1e3 * needed
+            ));
         }
     }
 }

@@ -3,7 +3,9 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
-use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length};
+use stribeck_mesh::{
+    Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
+};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
 
 use crate::{
@@ -213,7 +215,8 @@ impl Assembly {
         let nu = scene.material.poissons_ratio;
         let corner = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
         // A rigid cage has no elastic elements.
-        let elastic = |n: u32| self.cage.as_ref().is_none_or(|c| !mesh.bodies[c.body].nodes.contains(&(n as usize)));
+        let elastic =
+            |n: u32| self.cage.as_ref().is_none_or(|c| !mesh.bodies[c.body].nodes.contains(&(n as usize)));
         let quads = mesh.quads.iter().filter(|q| elastic(q[0]));
         let quads = quads.map(|q| characteristic_length(&q.map(corner), nu));
         let triangles = mesh.triangles.iter().map(|t| characteristic_length(&t.map(corner), nu));
@@ -268,7 +271,8 @@ impl Assembly {
                 };
                 let surface = surface.smoothed(smoothing(scene.contact.surface, centre), x, y)?;
                 // Nothing travels over the seat, and the cage touches with its corners.
-                let rolls = i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
+                let rolls =
+                    i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
                 Ok::<_, Error>(match scene.contact.interpolation {
                     ContactInterpolation::Spline if rolls => surface.splined(x, y),
                     _ => surface,
@@ -331,7 +335,13 @@ impl Assembly {
         for i in 0..n {
             let first = 4 + i;
             let mut pair = |second| {
-                pairs.push(PairSpec { first, second, law: rolling, method: method(c.points_per_facet), sides });
+                pairs.push(PairSpec {
+                    first,
+                    second,
+                    law: rolling,
+                    method: method(c.points_per_facet),
+                    sides,
+                });
                 pairs.len() - 1
             };
             roller_pairs.push(RollerPairs {
@@ -345,7 +355,13 @@ impl Assembly {
         }
         // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
         let points = SEAT_POINTS;
-        pairs.push(PairSpec { first: 1, second: 3, law: seat, method: Method::Integrated { points }, sides: Sides::Both });
+        pairs.push(PairSpec {
+            first: 1,
+            second: 3,
+            law: seat,
+            method: Method::Integrated { points },
+            sides: Sides::Both,
+        });
         Ok((pairs, roller_pairs))
     }
 }

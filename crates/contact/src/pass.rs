@@ -237,8 +237,7 @@ impl Pass {
                     if let Some(history) = history.get_mut(i).filter(|h| !h.is_empty()) {
                         touched = true;
                         let side = Side::new(*shape, primary, at);
-                        let slide =
-                            found.map_or(Slide::default(), |to| side.slide(own.velocity(&spot), &to));
+                        let slide = found.map_or(Slide::default(), |to| side.slide(own.velocity(&spot), &to));
                         history.release(self.points.weight[i] * w.thickness, &w.law, at.dt, slide, &mut sum);
                     }
                     continue;
@@ -331,8 +330,7 @@ impl Pass {
                 let [_, slope] = w.rounded(to.gap);
                 // The gap's gradient is the force that a unit pressure makes.
                 gradient.clear();
-                let (mut own, mut other) =
-                    (Side::new(shape, secondary, &at), Side::new(foot, primary, &at));
+                let (mut own, mut other) = (Side::new(shape, secondary, &at), Side::new(foot, primary, &at));
                 own.push_point(&spot, to.normal);
                 other.push_foot(&to, to.normal, 1.0, 0.0);
                 own.flush(secondary, &mut gradient);

@@ -251,8 +251,7 @@ fn at_vertex(
     let distance = (r[0] * r[0] + r[1] * r[1]).sqrt();
     let mean = [frame.normal[0] + second.normal[0], frame.normal[1] + second.normal[1]];
     let sign = if r[0] * mean[0] + r[1] * mean[1] < 0.0 { -1.0 } else { 1.0 };
-    let normal =
-        if distance > 0.0 { [sign * r[0] / distance, sign * r[1] / distance] } else { frame.normal };
+    let normal = if distance > 0.0 { [sign * r[0] / distance, sign * r[1] / distance] } else { frame.normal };
     let place = if forward { 1.0 } else { 0.0 };
     Some(Projection { gap: sign * distance, normal, place, turn: 0.0, height: 0.0, ..frame.above(p, place) })
 }

@@ -110,7 +110,8 @@ impl Surface {
         let corner: Vec<bool> =
             turns(&at, |f| [along(f); 2]).iter().map(|turn| turn.abs() > CORNER_ANGLE).collect();
         let facets = at.facets();
-        let beside_corner = (0..facets).map(|f| at.vertices(f)).map(|(a, b)| corner[a] || corner[b]).collect();
+        let beside_corner =
+            (0..facets).map(|f| at.vertices(f)).map(|(a, b)| corner[a] || corner[b]).collect();
         Ok(Self {
             name,
             slots,

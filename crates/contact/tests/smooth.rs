@@ -196,7 +196,9 @@ fn curves() -> impl Strategy<Value = DiscInRing> {
     let smoothing = (smoothing, any::<bool>());
     let method = prop_oneof![Just(Method::Collocated), Just(Method::Integrated { points: 5 })];
     (30..60_usize, 60..90_usize, smoothing.clone(), smoothing, method, 0.0..TAU, 1e-3..6e-3_f64, 0..1000_u64)
-        .prop_map(|(m, n, a, b, method, turn, deep, seed)| DiscInRing::new([m, n], [a, b], method, turn, deep, seed))
+        .prop_map(|(m, n, a, b, method, turn, deep, seed)| {
+            DiscInRing::new([m, n], [a, b], method, turn, deep, seed)
+        })
 }
 
 /// The same cases every time, so that a failure is not a matter of luck; `PROPTEST_CASES` tries more of them.

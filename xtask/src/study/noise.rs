@@ -42,20 +42,26 @@ fn variants() -> [Vec<Variant>; 3] {
         list.iter().map(variant).collect()
     };
     [
-        of(LEAN, &[
-            ("collocated", &["contact.method=collocated"]),
-            ("paper", &[]),
-            ("arc", &[ARC]),
-            ("arc-spline", &[ARC, SPLINE]),
-            ("smooth", &[ARC, SPLINE, POINTS, ONSET]),
-            ("nagata-smooth", &[NAGATA, SPLINE, POINTS, ONSET]),
-        ]),
-        of(LEAN, &[
-            ("stiff", &[STIFF]),
-            ("stiff-arc", &[ARC, STIFF]),
-            ("stiff-spline", &[ARC, STIFF, SPLINE]),
-            ("stiff-smooth", &[ARC, STIFF, SPLINE, POINTS, STIFF_ONSET]),
-        ]),
+        of(
+            LEAN,
+            &[
+                ("collocated", &["contact.method=collocated"]),
+                ("paper", &[]),
+                ("arc", &[ARC]),
+                ("arc-spline", &[ARC, SPLINE]),
+                ("smooth", &[ARC, SPLINE, POINTS, ONSET]),
+                ("nagata-smooth", &[NAGATA, SPLINE, POINTS, ONSET]),
+            ],
+        ),
+        of(
+            LEAN,
+            &[
+                ("stiff", &[STIFF]),
+                ("stiff-arc", &[ARC, STIFF]),
+                ("stiff-spline", &[ARC, STIFF, SPLINE]),
+                ("stiff-smooth", &[ARC, STIFF, SPLINE, POINTS, STIFF_ONSET]),
+            ],
+        ),
         of(UNIFORM, &[("uniform-paper", &[]), ("uniform-smooth", &[ARC, SPLINE, POINTS, ONSET])]),
     ]
 }
@@ -87,8 +93,13 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         sheet.runs(&format!("{table}-effects"), &rows, &EFFECTS);
         ends.extend(runs);
     }
-    let find = |name: &str| ends.iter().find(|r| r.variant.name == name).and_then(|r| Run::read(&r.folder).ok());
-    for (id, first, last) in [("soft", "paper", "smooth"), ("stiff", "stiff", "stiff-smooth"), ("uniform", "uniform-paper", "uniform-smooth")] {
+    let find =
+        |name: &str| ends.iter().find(|r| r.variant.name == name).and_then(|r| Run::read(&r.folder).ok());
+    for (id, first, last) in [
+        ("soft", "paper", "smooth"),
+        ("stiff", "stiff", "stiff-smooth"),
+        ("uniform", "uniform-paper", "uniform-smooth"),
+    ] {
         if let (Some(first), Some(last)) = (find(first), find(last)) {
             pictures(&mut sheet, id, &first, &last)?;
         }
@@ -125,13 +136,24 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
     ] {
         figure = figure.with(Series::sampled(words, colour, 0.0, 50.0, values));
     }
-    sheet.picture(&figure.caption(format!("a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge.")))?;
-    let mut figure =
-        Figure::new(&format!("{id}-forces"), "Force of roller 2 on the outer ring", Axis::si("Time", "s"), Axis::plain("Force", "N"));
-    for (record, words, colour) in [(&a, &first.scene.name, Colour::Grey), (&b, &last.scene.name, Colour::Blue)] {
+    sheet.picture(
+        &figure.caption(format!(
+            "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge."
+        )),
+    )?;
+    let mut figure = Figure::new(
+        &format!("{id}-forces"),
+        "Force of roller 2 on the outer ring",
+        Axis::si("Time", "s"),
+        Axis::plain("Force", "N"),
+    );
+    for (record, words, colour) in
+        [(&a, &first.scene.name, Colour::Grey), (&b, &last.scene.name, Colour::Blue)]
+    {
         let Some(roller) = record.roller(2) else { return Ok(()) };
         let from = record.time_s().first().copied().unwrap_or(0.0);
-        figure = figure.with(Series::sampled(words, colour, from, record.interval_s(), roller.outer_normal()));
+        figure =
+            figure.with(Series::sampled(words, colour, from, record.interval_s(), roller.outer_normal()));
     }
     sheet.picture(&figure)
 }
@@ -173,7 +195,11 @@ const EFFECTS: [Column; 8] = [
     Column { name: "impulse g² ms", decimals: 0, of: |r| noise(r, 0).map(|n| n.impulse_g2_ms) },
     Column { name: "spall mm", decimals: 2, of: |r| r.numbers()?.events.first()?.spall_mm },
     Column { name: "ripple %", decimals: 3, of: ripple_percent },
-    Column { name: "energy error %", decimals: 3, of: |r| r.info.as_ref().map(|i| 100.0 * i.energy.max_relative_error) },
+    Column {
+        name: "energy error %",
+        decimals: 3,
+        of: |r| r.info.as_ref().map(|i| 100.0 * i.energy.max_relative_error),
+    },
     Column { name: "time step ns", decimals: 1, of: |r| r.info.as_ref().map(|i| 1e9 * i.time_step_s) },
     Column {
         name: "cpu ns",
