@@ -4,6 +4,7 @@ mod documents;
 mod layers;
 mod markdown;
 mod sources;
+mod validation;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -23,13 +24,14 @@ pub(crate) struct Options {
 /// One check: its name, and what is wrong (nothing, when all is well).
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
-const CHECKS: [Check; 6] = [
+const CHECKS: [Check; 7] = [
     ("crates depend on each other in one direction", layers::check),
     ("only bearing and above know bearings", sources::check_words),
     ("ARCHITECTURE names every crate", documents::check_architecture),
     ("THEORY has every section that code cites", documents::check_citations),
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
     ("commands in the documents exist", documents::check_commands),
+    ("VALIDATION says what the tests say", validation::check),
 ];
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
@@ -47,12 +49,18 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         }
     }
     if !options.quick {
+        let ledger = fresh_folder(&root.join("target/ledger"))?;
         for arguments in cargo_steps(&layers::crates(&root)?) {
             let name = format!("cargo {}", arguments.join(" "));
             println!("run    {name}");
-            if !cargo(&root, &arguments)? {
+            if !cargo(&root, &arguments, &ledger)? {
                 failed.push(name);
             }
+        }
+        let complaints = validation::renew(&root, &ledger)?;
+        complaints.iter().for_each(|complaint| println!("         {complaint}"));
+        if !complaints.is_empty() {
+            failed.push("VALIDATION was out of date and has been written anew".into());
         }
     }
     ensure!(failed.is_empty(), "{} of the checks failed: {}", failed.len(), failed.join("; "));
@@ -73,13 +81,21 @@ fn cargo_steps(crates: &[String]) -> Vec<Vec<String>> {
     steps
 }
 
+/// An empty folder at `path`.
+fn fresh_folder(path: &Path) -> Result<std::path::PathBuf> {
+    std::fs::remove_dir_all(path).ok();
+    std::fs::create_dir_all(path).with_context(|| format!("cannot create {}", path.display()))?;
+    Ok(path.to_owned())
+}
+
 /// Runs cargo in the workspace; true when it is content.
-fn cargo(root: &Path, arguments: &[String]) -> Result<bool> {
+fn cargo(root: &Path, arguments: &[String], ledger: &Path) -> Result<bool> {
     let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let status = Command::new(program)
         .args(arguments)
         .current_dir(root)
         .env("RUSTDOCFLAGS", "-D warnings")
+        .env(validation::FOLDER, ledger)
         .status()
         .context("cannot start cargo")?;
     Ok(status.success())

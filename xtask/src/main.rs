@@ -5,6 +5,7 @@
 mod ci;
 mod compare;
 mod engine;
+mod fuzz;
 mod host;
 mod plan;
 mod progress;
@@ -37,6 +38,8 @@ enum Command {
     Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
     Compare(compare::Options),
+    /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
+    Fuzz(fuzz::Options),
     /// Checks format, lints, tests and documents.
     Ci(ci::Options),
 }
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         Command::Plan(options) => plan::run(&options),
         Command::Study(options) => study::run(&options),
         Command::Compare(options) => compare::run(&options),
+        Command::Fuzz(options) => fuzz::run(&options),
         Command::Ci(options) => ci::run(&options),
     };
     match done {

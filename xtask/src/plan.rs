@@ -24,7 +24,7 @@ pub(crate) struct Options {
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
-    let scene = Scene::read_with(&workspace::locate(&options.scene), &options.overrides)?;
+    let scene = Scene::read_with(workspace::locate(&options.scene), &options.overrides)?;
     let plan = Plan::of(&scene)?;
     let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
     println!("{}", scene.name);

@@ -66,15 +66,19 @@ fn words(output: &Output) -> String {
 /// Starts a run in `out` and kills it as `kill -9` does, once it is under way.
 fn start_and_kill(out: &Path) {
     let mut child = simulate(out, "2").spawn().expect("it starts");
-    let began = Instant::now();
-    while fs::metadata(out.join("trace.npy")).map_or(0, |about| about.len()) < UNDER_WAY {
-        assert!(began.elapsed() < PATIENCE, "the run does not come on");
-        assert!(child.try_wait().expect("it can be asked").is_none(), "the run ended too early to be killed");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_until_under_way(out);
+    assert!(child.try_wait().expect("it can be asked").is_none(), "the run ended too early to be killed");
     child.kill().expect("it was running");
     child.wait().expect("it is dead");
     assert!(out.join("checkpoint").exists());
+}
+
+fn wait_until_under_way(run: &Path) {
+    let began = Instant::now();
+    while fs::metadata(run.join("trace.npy")).map_or(0, |about| about.len()) < UNDER_WAY {
+        assert!(began.elapsed() < PATIENCE, "the run does not come on");
+        std::thread::sleep(Duration::from_millis(5));
+    }
 }
 
 fn assert_same_files(whole: &Path, pieces: &Path) {
@@ -114,6 +118,48 @@ fn invariant_killed_runs_and_full_disks_lose_nothing() {
 
     let again = resume(&killed, "1");
     assert!(!again.status.success() && words(&again).contains("it is complete"), "{}", words(&again));
+}
+
+#[test]
+fn invariant_random_kills_leave_runs_that_end_with_the_same_bytes() {
+    // Five here; `cargo xtask study kills` does a hundred.
+    let output = Command::new(env!("CARGO_BIN_EXE_xtask"))
+        .args(["study", "kills", "--kills", "5", "--duration-ms", "0.6", "--no-page"])
+        .output()
+        .expect("it starts");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success() && said.contains("5 kills"), "{said}{}", words(&output));
+}
+
+#[test]
+fn invariant_a_folder_that_cannot_be_written_is_said_at_once() {
+    // The kernel's own folder takes no files, not even from root.
+    let output =
+        simulate(Path::new("/proc/stribeck"), "1").stderr(Stdio::piped()).output().expect("it starts");
+    let said = words(&output);
+    assert!(!output.status.success(), "{said}");
+    for word in ["/proc/stribeck", "Nothing was changed", "--out"] {
+        assert!(said.contains(word), "`{word}` is missing in: {said}");
+    }
+}
+
+#[test]
+fn invariant_an_interrupted_process_can_go_on() {
+    let folder = Folder::new("term");
+    let [whole, ended] = ["whole", "ended"].map(|name| folder.run(name));
+    assert!(simulate(&whole, "1").status().expect("it starts").success());
+    let child = simulate(&ended, "1").spawn().expect("it starts");
+    wait_until_under_way(&ended);
+    // What Ctrl-C sends.
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
+    assert!(sent.success());
+    let status = child.wait_with_output().expect("it ends").status;
+    assert_eq!(status.code(), Some(130), "it ends as an interrupted program does");
+    let info = fs::read_to_string(ended.join("run.json")).expect("readable");
+    assert!(info.contains("\"status\": \"interrupted\"") && ended.join("checkpoint").exists(), "{info}");
+    let finished = resume(&ended, "2");
+    assert!(finished.status.success(), "{}", words(&finished));
+    assert_same_files(&whole, &ended);
 }
 
 #[test]

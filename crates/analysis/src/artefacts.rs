@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::scene::Scene;
-use stribeck_dsp::Spectrum;
+use stribeck_dsp::{PeriodCount, Spectrum};
 
 use crate::Error;
 use crate::kinematics::KinematicsFinding;
@@ -86,6 +86,12 @@ pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<
     lines
 }
 
+/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples are not told from
+/// whatever else is there.
+pub fn shows_family(density: &Spectrum, fundamental_hz: f64) -> bool {
+    density.resolution().segment_s * fundamental_hz >= PeriodCount::ENOUGH
+}
+
 fn beats(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum) -> Vec<Artefact> {
     let lines = &prediction.facet_lines;
     let resolution = density.resolution();
@@ -131,14 +137,15 @@ fn defect(
 ) -> Result<Vec<Artefact>, Error> {
     let lines = defect_lines(prediction, motion);
     let resolution = density.resolution();
-    let split = resolution.width_6db_hz < prediction.kinematics.bpfo_hz;
+    let split = shows_family(density, prediction.kinematics.bpfo_hz);
     let tones = if split { tones::measure(sensor, &lines, density)? } else { Vec::new() };
     let entry = |line: &Line| {
         let tone = tones.iter().find(|t| t.harmonic == line.harmonic);
         let verdict = match tone {
             None => format!(
-                "a record of {:.3} s cannot show it: lines closer than {:.0} Hz merge",
-                resolution.record_s, resolution.width_6db_hz
+                "a record of {:.3} s holds {:.1} of its periods, ten are needed",
+                resolution.record_s,
+                resolution.record_s * prediction.kinematics.bpfo_hz
             ),
             Some(tone) if tone.measured_hz.is_some() => "physics: rollers pass the defect".to_owned(),
             Some(_) => {

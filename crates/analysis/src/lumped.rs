@@ -124,6 +124,9 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.roller_facets = facets;
         scene.mesh.roller_copies = copies;
+        // Narrow contacts: where they are wider than a facet, the factor g changes its sign from roller to roller.
+        scene.operation.load_n = 2000.0;
+        scene.contact.penalty_scale = 1.0;
         scene
     }
 
@@ -138,9 +141,10 @@ mod tests {
     #[test]
     fn analytic_phases_follow_copies_and_parity() {
         let of = |facets, copies| Lumped::of(&scene(facets, copies)).unwrap();
-        // Copies in one orientation: 112 facets make three groups that partly cancel, 120 = 5·24 are all in step.
+        // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded rollers not all of
+        // it), 120 = 5·24 are all in step.
         let (three, all) = (of(112, RollerCopies::Translated), of(120, RollerCopies::Translated));
-        assert!(three.phases < 0.4, "{three:?}");
+        assert!(three.phases < 0.5, "{three:?}");
         assert!((all.phases - 1.0).abs() < 1e-9, "{all:?}");
         assert!((of(112, RollerCopies::Rotated).phases - 1.0).abs() < 1e-12);
         assert!(of(113, RollerCopies::Translated).level_g < 1e-9);

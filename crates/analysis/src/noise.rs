@@ -32,7 +32,7 @@ pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet
     let rms = |signal: &[f64]| {
         let mean = signal.iter().sum::<f64>() / signal.len() as f64;
         let centred: Vec<f64> = signal.iter().map(|v| v - mean).collect();
-        level(&centred, &[0..centred.len()]).map(|l| l.rms)
+        level(&centred, std::slice::from_ref(&(0..centred.len()))).map(|l| l.rms)
     };
     let exit = passages.first()?.1;
     let at_exit = impulse_span(time, exit);

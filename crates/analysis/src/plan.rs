@@ -133,13 +133,15 @@ impl Plan {
         }
         let facets = scene.mesh.roller_facets;
         if c.surface == ContactSurface::Facet {
-            if facets % 2 == 0 {
+            if facets.is_multiple_of(2) {
                 say(format!(
                     "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
                     facets + 1
                 ));
             }
-            if scene.mesh.roller_copies == RollerCopies::Rotated || facets % scene.bearing.rollers == 0 {
+            if scene.mesh.roller_copies == RollerCopies::Rotated
+                || facets.is_multiple_of(scene.bearing.rollers)
+            {
                 say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
             }
             if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.bearing.roller_diameter_mm * 2e3 {

@@ -162,13 +162,24 @@ fn invariant_the_page_holds_every_figure_and_needs_no_network() {
         "acceleration-seat",
         "acceleration-bottom",
         "acceleration-instant",
+        "mesh",
+        "mesh-defect",
+        "roller",
+        "beat",
+        "beat-zoom",
         "spectrum",
+        "spectrum-notched",
         "spectrum-zoom",
         "spectrum-sensors",
+        "spectrum-low",
         "force-1",
         "force-2",
         "force-3",
         "load-distribution",
+        "load-polar",
+        "load-sum",
+        "spin",
+        "orbit",
         "energy",
         "energy-error",
     ] {
@@ -178,6 +189,8 @@ fn invariant_the_page_holds_every_figure_and_needs_no_network() {
             picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"),
             "{figure}.svg is broken"
         );
+        let pixels = fs::read(folder.0.join(format!("figures/{figure}.png"))).expect("a picture");
+        assert!(pixels.starts_with(b"\x89PNG"), "{figure}.png is broken");
     }
     // Addresses may be named (a namespace, a comment), never loaded.
     for loading in ["src=\"http", "href=\"http", "url(http", "@import", "fetch(", "<link rel=\"stylesheet\""]
@@ -185,6 +198,89 @@ fn invariant_the_page_holds_every_figure_and_needs_no_network() {
         assert!(!page.contains(loading), "the page loads something: {loading}");
     }
     assert!(!page.contains("role=\"alert\""), "a complete run has no banner");
+}
+
+#[test]
+fn invariant_every_number_of_the_paper_has_a_row_without_a_blank() {
+    let (folder, summary) = whole("paper");
+    let page = read(&folder.0, "report.html");
+    for row in &summary.paper {
+        for cell in [&row.quantity, &row.paper, &row.ours, &row.difference, &row.why] {
+            assert!(!cell.trim().is_empty(), "{row:?}");
+        }
+    }
+    // As the paper prints them, in the order in which it does.
+    let printed = [
+        "200 mm",
+        "163.96 mm",
+        "196 mm",
+        "18 mm",
+        "160 mm",
+        "40 mm",
+        "0.2 mm",
+        "7850 kg/m³",
+        "200 GPa",
+        "0.3",
+        "0.5 mm",
+        "97",
+        "5",
+        "113",
+        "15",
+        "4 °",
+        "15 °",
+        "50 kN",
+        "500 rpm",
+        "0.1",
+        "0.005",
+        "2 %",
+        "30 ms",
+        "0.01 ms",
+        "100 kHz",
+        "90.07 Hz",
+        "0.011 s",
+        "90.91 Hz",
+        "0.9 %",
+        "180 g",
+        "50 g",
+        "20 g",
+        "3 Hz",
+        "4671 Hz",
+        "23 kHz",
+        "4712 Hz",
+        "3864 Hz",
+        "0.8 %",
+        "4545 Hz",
+        "17 %",
+        "10–15 ms",
+        "5–16 ms, less 17–28 ms",
+        "25 dB",
+        "4 dB",
+        "4–6 kHz",
+        "≈ 5 ms",
+        "16–17 ms",
+        "≈ 28 ms",
+    ];
+    for number in printed {
+        assert!(summary.paper.iter().any(|row| row.paper == number), "{number} has no row");
+        assert!(page.contains(number), "{number} is not in the page");
+    }
+    let ours = |quantity: &str| &summary.paper.iter().find(|r| r.quantity == quantity).expect("a row").ours;
+    assert_eq!(ours("Taken at 4545 Hz"), "3.96 dB");
+    assert_eq!(ours("Elements per bending wavelength at 40 kHz"), "97.59");
+}
+
+#[test]
+fn invariant_the_ledger_tells_mesh_from_physics() {
+    use stribeck_analysis::artefacts::Family;
+    let (_, summary) = whole("ledger");
+    let of = |family| summary.artefacts.iter().filter(move |a| a.family == family);
+    // Six harmonics of three facet lines, three beats, six multiples of BPFO, five modes.
+    let counts = [Family::Mesh, Family::Beat, Family::Defect, Family::Ring].map(|f| of(f).count());
+    assert_eq!(counts, [18, 3, 6, 5]);
+    let tone = of(Family::Mesh).next().expect("the roller vertices");
+    assert!((tone.measured_hz.expect("a line") - TONE_HZ).abs() < 2.0, "{tone:?}");
+    assert!(of(Family::Defect).all(|a| a.measured_hz.is_none() && a.verdict.contains("ten are needed")));
+    assert!(summary.artefacts.iter().all(|a| !a.verdict.is_empty()));
 }
 
 #[test]

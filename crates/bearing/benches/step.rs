@@ -56,7 +56,7 @@ fn machine(scene: &Scene, threads: usize) -> (Machine, usize) {
 }
 
 /// Runs work inside a pool of that many threads, or right here for one.
-fn within<T: Send>(pool: Option<&rayon::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+fn within<T: Send>(pool: Option<&micropool::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
     match pool {
         Some(pool) => pool.install(work),
         None => work(),
@@ -75,7 +75,10 @@ fn step(criterion: &mut Criterion) {
             .measurement_time(Duration::from_secs(2));
         for threads in [1, 2] {
             let pool = (threads > 1).then(|| {
-                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started")
+                micropool::ThreadPoolBuilder::default()
+                    .num_threads(threads - 1)
+                    .idle_spin_cycles(20_000)
+                    .build()
             });
             let pool = pool.as_ref();
             let (mut m, elements) = machine(scene, threads);

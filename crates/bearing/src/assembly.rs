@@ -282,7 +282,7 @@ impl Assembly {
 
         let (pairs, roller_pairs) = self.pairs(scene, first_piece)?;
         let seat_pair = pairs.len() - 1;
-        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y);
+        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y)?;
         contacts.set_parallel(threads > 1);
 
         let rollers = self
@@ -360,7 +360,8 @@ impl Assembly {
             second: 3,
             law: seat,
             method: Method::Integrated { points },
-            sides: Sides::Both,
+            // The facets of ring and seat lie on each other: either side sees the same gap.
+            sides: Sides::First,
         });
         Ok((pairs, roller_pairs))
     }

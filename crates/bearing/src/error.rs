@@ -30,7 +30,7 @@ pub enum Error {
         /// How many were asked for.
         threads: usize,
         /// The system's answer.
-        source: rayon::ThreadPoolBuildError,
+        source: std::io::Error,
     },
 
     /// A number given to a function of this crate lies outside its range.

@@ -5,6 +5,7 @@ mod checkpoint;
 pub mod error;
 pub mod frames;
 mod grading;
+mod guards;
 pub mod kinematics;
 mod ledger;
 mod recorder;

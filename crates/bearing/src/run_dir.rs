@@ -406,6 +406,7 @@ mod tests {
             cpu_s: 2.0,
             setup_s: 0.5,
             energy: EnergyInfo { max_relative_error: 1e-3, peak_strain_j: 2.0 },
+            guards: crate::run_info::GuardInfo::default(),
             expected_support_n: 50_100.0,
             resumed_at_s: vec![1e-5],
             warnings: vec!["one".into()],

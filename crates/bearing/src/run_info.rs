@@ -45,6 +45,9 @@ pub struct RunInfo {
     pub resumed_at_s: Vec<f64>,
     /// Energy verdict.
     pub energy: EnergyInfo,
+    /// The worst that the other guards have seen.
+    #[serde(default)]
+    pub guards: GuardInfo,
     /// Vertical force that the rollers must carry: load plus the weight of adapter and outer ring [N].
     pub expected_support_n: f64,
     /// Warnings, in the order in which they arose.
@@ -61,7 +64,7 @@ pub enum Status {
     Complete,
     /// Interrupted by the user.
     Interrupted,
-    /// Stopped by a guard: energy, NaN, lost contact.
+    /// Stopped by a guard: energy, NaN, penetration, distortion, a body out of its place.
     Diverged,
 }
 
@@ -91,6 +94,41 @@ pub struct EnergyInfo {
     /// Peak strain energy [J]; infinite likewise.
     #[serde(deserialize_with = "null_is_infinite")]
     pub peak_strain_j: f64,
+}
+
+/// The worst that the guards have seen (`guards.rs`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct GuardInfo {
+    /// The imbalance of energy has been warned of.
+    pub energy_warned: bool,
+    /// Largest hourglass energy over strain energy [-].
+    pub hourglass_share: f64,
+    /// Deepest penetration over the element size [-].
+    pub penetration_share: f64,
+    /// Least area of an element over its area at rest [-]; infinite (`null` in the file) before it was looked at.
+    #[serde(deserialize_with = "null_is_infinite")]
+    pub least_area: f64,
+    /// Largest strain for which the critical time step has been computed again [-].
+    pub strain_checked: f64,
+    /// Samples in a row, up to the last one, at which no roller carried anything.
+    pub unsupported_samples: usize,
+    /// Longest such time [s].
+    pub longest_unsupported_s: f64,
+}
+
+impl Default for GuardInfo {
+    fn default() -> Self {
+        Self {
+            energy_warned: false,
+            hourglass_share: 0.0,
+            penetration_share: 0.0,
+            least_area: f64::INFINITY,
+            strain_checked: 0.0,
+            unsupported_samples: 0,
+            longest_unsupported_s: 0.0,
+        }
+    }
 }
 
 /// JSON knows no infinity: it is written as `null`. The binary checkpoint knows it.

@@ -28,6 +28,8 @@ pub struct Scene {
     pub solver: SolverScene,
     /// What is recorded.
     pub output: OutputScene,
+    /// What is watched.
+    pub guards: GuardsScene,
 }
 
 /// Rings and rolling elements (paper, Table 1).
@@ -298,6 +300,26 @@ pub struct SensorScene {
     pub angle_deg: f64,
 }
 
+/// What is watched at every sample, and when a run is warned of or stopped (`guards.rs`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct GuardsScene {
+    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%].
+    pub energy_warning_percent: f64,
+    /// … and above which it stops [%].
+    pub energy_stop_percent: f64,
+    /// Hourglass energy over strain energy above which the run carries a warning [%].
+    pub hourglass_warning_percent: f64,
+    /// Penetration over the element size above which the run carries a warning [%].
+    pub penetration_warning_percent: f64,
+    /// … and above which it stops [%]; at 200 % contact takes a point for one on the far side of a body and lets go.
+    pub penetration_stop_percent: f64,
+    /// Area of an element over its area at rest below which the run stops [%].
+    pub area_stop_percent: f64,
+    /// Time for which no roller may carry anything before the run carries a warning [ms].
+    pub unsupported_warning_ms: f64,
+}
+
 impl Default for Scene {
     fn default() -> Self {
         Self {
@@ -312,6 +334,7 @@ impl Default for Scene {
             contact: ContactScene::default(),
             solver: SolverScene::default(),
             output: OutputScene::default(),
+            guards: GuardsScene::default(),
         }
     }
 }
@@ -422,6 +445,20 @@ impl Default for OutputScene {
                 sensor("bottom", 270.0),
             ],
             frames: Some(FramesScene::default()),
+        }
+    }
+}
+
+impl Default for GuardsScene {
+    fn default() -> Self {
+        Self {
+            energy_warning_percent: 0.5,
+            energy_stop_percent: 25.0,
+            hourglass_warning_percent: 10.0,
+            penetration_warning_percent: 10.0,
+            penetration_stop_percent: 100.0,
+            area_stop_percent: 20.0,
+            unsupported_warning_ms: 0.5,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! One run: from a scene to a run directory.
 
-use std::{fs::File, io::BufWriter, ops::ControlFlow};
+use std::ops::ControlFlow;
 
 use stribeck_mesh::vtu;
 use stribeck_solver::{
@@ -12,8 +12,9 @@ use crate::{
     assembly::{Assembly, Machine},
     checkpoint::Checkpoint,
     error::Error,
-    run_dir::RunDir,
-    run_info::{EnergyInfo, RunInfo, Status},
+    guards::Guards,
+    run_dir::{RunDir, write_atomic},
+    run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
     start::{launch, preload},
     time_loop::Run,
@@ -81,9 +82,10 @@ pub fn simulate(
     progress.elements = mesh.quads + mesh.triangles;
     progress.phase = "preload";
     let _ = watch(&progress);
-    if scene.solver.start == Start::Preloaded {
-        preload(&mut machine, scene, &assembly.kinematics)?;
-    }
+    let preloaded = match scene.solver.start {
+        Start::Preloaded => preload(&mut machine, scene, &assembly.kinematics)?,
+        Start::Sudden => None,
+    };
     let critical = critical_time_step(&machine);
     let interval = 1e-6 * scene.output.interval_us;
     let steps_per_sample = (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
@@ -93,7 +95,7 @@ pub fn simulate(
     damp(scene, &mut machine)?;
 
     let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0) as usize;
-    let info = RunInfo {
+    let mut info = RunInfo {
         version: host.version.clone(),
         commit: host.commit.clone(),
         scene_hash: scene.hash(),
@@ -113,9 +115,12 @@ pub fn simulate(
         setup_s: (host.wall_s)() - started,
         resumed_at_s: Vec::new(),
         energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0 },
+        guards: GuardInfo::default(),
         expected_support_n: expected_support(scene, &machine),
         warnings: Vec::new(),
     };
+    info.warnings.extend(preloaded);
+    info.warnings.extend(Guards::before(scene, &assembly.model.materials[0], &info));
     dir.start(scene, &info)?;
     write_mesh(&assembly, &machine, dir)?;
     Run::start(scene, &assembly, machine, info, dir)?.finish(dir, host, progress, watch)
@@ -137,6 +142,7 @@ pub fn resume(
     let scene = Scene::read(dir.scene())?;
     may_go_on(dir)?;
     let mut saved = Checkpoint::read(&dir.checkpoint(), &scene.hash())?;
+    check_counts(dir, &scene, &saved.info)?;
     let mut progress = Progress::begin();
     let _ = watch(&progress);
     let assembly = Assembly::new(&scene)?;
@@ -167,6 +173,40 @@ pub fn resume(
     run.finish(dir, host, progress, watch)
 }
 
+/// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked without
+/// making the mesh is.
+///
+/// # Errors
+/// As [`resume`].
+pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
+    let scene = Scene::read(dir.scene())?;
+    may_go_on(dir)?;
+    let info = Checkpoint::read(&dir.checkpoint(), &scene.hash())?.info;
+    check_counts(dir, &scene, &info)?;
+    Ok(info.samples as f64 * info.interval_s)
+}
+
+/// Whether steps and samples of a checkpoint are those of its scene: forged ones could ask for any number of steps.
+fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
+    let interval = 1e-6 * scene.output.interval_us;
+    let per_sample = (info.interval_s / info.time_step_s).round();
+    let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0);
+    let fits = info.interval_s == interval
+        && (1.0..=MOST_STEPS).contains(&per_sample)
+        && info.steps_planned as f64 == samples * per_sample
+        && info.steps as f64 == info.samples as f64 * per_sample
+        && info.samples as f64 <= samples;
+    if fits {
+        return Ok(());
+    }
+    let reason = "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise start it anew from its \
+                  `scene.ron`; its samples stay readable until then";
+    Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
+}
+
+/// More steps in a sample than any scene has: a second in steps of a nanosecond.
+const MOST_STEPS: f64 = 1e9;
+
 /// Whether the run in `dir` ended before its time, but not by itself.
 fn may_go_on(dir: &RunDir) -> Result<(), Error> {
     let reason = match dir.read_info()?.status {
@@ -180,7 +220,7 @@ fn may_go_on(dir: &RunDir) -> Result<(), Error> {
 }
 
 /// Critical time step with contact; its damping acts half a step late and counts with the step it is used at.
-fn critical_time_step(machine: &Machine) -> f64 {
+pub(crate) fn critical_time_step(machine: &Machine) -> f64 {
     let forces: [&dyn Force; 1] = [&machine.contacts];
     let first = machine.dynamics.critical_time_step(&forces, 0.0).time_step;
     machine.dynamics.critical_time_step(&forces, 0.9 * first).time_step
@@ -220,14 +260,7 @@ fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<()
     }
     let moved: Vec<[f64; 3]> =
         (0..mesh.x.len()).map(|n| [mesh.x[n] - reference.0[n], mesh.y[n] - reference.1[n], 0.0]).collect();
-    let path = dir.mesh();
-    let io = |source| Error::Io {
-        action: "write",
-        path: path.clone(),
-        kept: "The mesh picture is missing; nothing else is lost".into(),
-        source,
-    };
-    let mut sink = BufWriter::new(File::create(&path).map_err(io)?);
-    vtu::write(&mut sink, &mesh, &[vtu::Field::vector("displacement_m", &moved)], &[])?;
-    Ok(())
+    let mut picture = Vec::new();
+    vtu::write(&mut picture, &mesh, &[vtu::Field::vector("displacement_m", &moved)], &[])?;
+    write_atomic(&dir.mesh(), &picture)
 }

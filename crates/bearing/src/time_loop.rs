@@ -9,6 +9,7 @@ use crate::{
     checkpoint::Checkpoint,
     error::Error,
     frames::Frames,
+    guards::Guards,
     ledger::{COLUMNS, Ledger, Reference},
     recorder::Recorder,
     run_dir::{RunDir, write_atomic},
@@ -18,14 +19,17 @@ use crate::{
     trace::TraceWriter,
 };
 
-/// A run stops when the imbalance of energy passes this share of the peak strain energy.
-const WORST_IMBALANCE: f64 = 0.25;
+/// Imbalance is never measured against less than this share of the kinetic energy.
+const ROUNDING: f64 = 1e-9;
 
 /// Checkpoint and `run.json` are written again after this many samples …
 const SAVE_EVERY: usize = 100;
 
 /// … but not so often that it would take more than this share of the time.
 const SAVE_SHARE: f64 = 0.005;
+
+/// Rounds of waiting until a thread that has nothing to do goes to sleep: about a millisecond.
+const SPINS_BEFORE_SLEEP: usize = 20_000;
 
 /// A run in its time loop.
 pub(crate) struct Run<'a> {
@@ -38,6 +42,7 @@ pub(crate) struct Run<'a> {
     frames: Option<Frames>,
     reference: Reference,
     before: Before,
+    guards: Guards,
 }
 
 /// Velocities before a step, for the kinetic energy at its start.
@@ -60,7 +65,10 @@ struct Saved {
 
 impl Saved {
     fn is_due(&self, sample: usize, wall_s: f64) -> bool {
-        sample - self.sample >= SAVE_EVERY && SAVE_SHARE * (wall_s - self.wall_s) >= self.cost_s
+        let passed = wall_s - self.wall_s;
+        // A clock that was set back, or that is none, must not put off saving.
+        let counts = passed >= 0.0 && self.cost_s >= 0.0;
+        sample - self.sample >= SAVE_EVERY && (!counts || SAVE_SHARE * passed >= self.cost_s)
     }
 }
 
@@ -80,6 +88,7 @@ impl<'a> Run<'a> {
             frames: Frames::of(scene, dir.frames()),
             reference: Reference::default(),
             before: Before::default(),
+            guards: Guards::new(scene, assembly, &machine),
             info,
             assembly,
             machine,
@@ -114,6 +123,7 @@ impl<'a> Run<'a> {
             frames: Frames::of(scene, dir.frames()),
             reference: saved.reference,
             before: Before::default(),
+            guards: Guards::new(scene, assembly, &machine),
             info: saved.info,
             assembly,
             machine,
@@ -153,14 +163,16 @@ impl<'a> Run<'a> {
             let state = &self.machine.dynamics.state;
             self.info.steps = state.step;
             self.info.samples = sample;
-            self.info.wall_s = earlier.0 + (host.wall_s)() - began;
-            self.info.cpu_s = earlier.1 + (host.cpu_s)();
+            // Clocks may jump; times that are written only grow.
+            self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
+            self.info.cpu_s = self.info.cpu_s.max(earlier.1 + (host.cpu_s)());
             progress.step = state.step;
             progress.time_s = state.time;
             progress.energy_error = error;
-            if error > WORST_IMBALANCE {
+            let stop = self.guards.look(&mut self.info, self.assembly, &self.machine, &ledger, error);
+            if stop.is_some() {
                 self.info.status = Status::Diverged;
-                self.info.stop_reason = Some(self.why_stopped(error));
+                self.info.stop_reason = stop;
                 break;
             }
             if watch(&progress).is_break() {
@@ -186,7 +198,8 @@ impl<'a> Run<'a> {
         self.trace.finish()?;
         self.energy.finish()?;
         dir.write_info(&self.info)?;
-        if self.info.status != Status::Interrupted {
+        // A stopped run keeps its last one: that is the state before things went wrong.
+        if self.info.status == Status::Complete {
             dir.remove_checkpoint();
         }
         Ok(self.info)
@@ -284,7 +297,9 @@ impl<'a> Run<'a> {
         let energy = &mut self.info.energy;
         energy.peak_strain_j = energy.peak_strain_j.max(l.strain);
         let imbalance = (l.balance() - self.reference.balance.unwrap_or(0.0)).abs();
-        let scale = if energy.peak_strain_j > 0.0 { energy.peak_strain_j } else { 1.0 };
+        // Where nothing is strained, the rounding of a large kinetic energy is no imbalance.
+        let scale = energy.peak_strain_j.max(ROUNDING * l.kinetic.abs());
+        let scale = if scale > 0.0 { scale } else { 1.0 };
         let error = if imbalance.is_finite() { imbalance / scale } else { f64::INFINITY };
         energy.max_relative_error = energy.max_relative_error.max(error);
         let time = self.machine.dynamics.state.time - self.machine.dynamics.time_step();
@@ -292,36 +307,35 @@ impl<'a> Run<'a> {
         self.trace.push(self.recorder.sample(&self.machine))?;
         Ok(error)
     }
-
-    fn why_stopped(&self, error: f64) -> String {
-        let d = &self.machine.dynamics;
-        let s = &d.state;
-        let speed = |n: usize| s.vx[n].hypot(s.vy[n]);
-        let worse = |a: usize, b: usize| if speed(a) >= speed(b) || speed(a).is_nan() { a } else { b };
-        let worst = (0..s.x.len()).filter(|&n| d.mass()[n] > 0.0).reduce(worse).unwrap_or(0);
-        let node = d.layout().node_of_slot[worst].unwrap_or(0) as usize;
-        let mesh = &self.assembly.model.mesh;
-        let body = mesh.bodies.iter().find(|b| b.nodes.contains(&node)).map_or("", |b| b.name.as_str());
-        format!(
-            "energy is out of balance by {:.1} % of the peak strain energy (limit {:.0} %) at step {}, t = {:.5} ms; the \
-             fastest node is in the {body} at x = {:.3} mm, y = {:.3} mm with {:.3e} m/s. Try a smaller \
-             `solver.time_step_factor`, a smaller `contact.penalty_scale`, or look for bodies that overlap",
-            100.0 * error,
-            100.0 * WORST_IMBALANCE,
-            s.step,
-            1e3 * s.time,
-            1e3 * s.x[worst],
-            1e3 * s.y[worst],
-            speed(worst),
-        )
-    }
 }
 
 /// A pool for the time loop; none for one thread.
-fn workers(threads: usize) -> Result<Option<rayon::ThreadPool>, Error> {
+///
+/// The thread that calls is one of them. The others wait awake between two forks, which are some ten microseconds apart:
+/// put to sleep, they would come back too late for every one of them.
+fn workers(threads: usize) -> Result<Option<micropool::ThreadPool>, Error> {
     if threads < 2 {
         return Ok(None);
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map(Some).map_err(|e| Error::Threads { threads, source: e })
+    try_threads(threads - 1).map_err(|source| Error::Threads { threads, source })?;
+    let pool = micropool::ThreadPoolBuilder::default().num_threads(threads - 1);
+    Ok(Some(pool.idle_spin_cycles(SPINS_BEFORE_SLEEP).build()))
+}
+
+/// Starts and ends so many threads at a time, because a pool cannot say that it got fewer.
+fn try_threads(threads: usize) -> std::io::Result<()> {
+    let gate = std::sync::Arc::new(std::sync::RwLock::new(()));
+    let closed = gate.write();
+    let started: Vec<_> = (0..threads)
+        .map(|_| {
+            let gate = gate.clone();
+            std::thread::Builder::new().spawn(move || drop(gate.read()))
+        })
+        .collect();
+    drop(closed);
+    started.into_iter().try_for_each(|thread| {
+        // A thread that only waits for a gate cannot fail.
+        let _ = thread?.join();
+        Ok(())
+    })
 }

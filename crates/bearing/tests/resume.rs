@@ -7,6 +7,7 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
+use proptest::prelude::*;
 use stribeck_bearing::{
     error::Error,
     run_dir::RunDir,
@@ -226,6 +227,38 @@ fn invariant_a_damaged_checkpoint_is_refused_and_never_panics() {
     }
 }
 
+/// Damage under a length and a checksum that fit: what is wrong is found deeper, and gets an answer too. A failure shrinks
+/// to the fewest bytes.
+#[test]
+fn invariant_a_forged_checkpoint_gets_an_answer() {
+    let folder = broken_off();
+    let whole = folder.bytes("checkpoint");
+    let dir = RunDir::open(&folder.0).expect("a run");
+    let damage = (0..whole.len() - HEADER, proptest::collection::vec(any::<u8>(), 0..12), 0_usize..20);
+    let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) };
+    let mut runner = proptest::test_runner::TestRunner::new(config);
+    let done = runner.run(&proptest::collection::vec(damage, 1..4), |damage| {
+        let mut content = whole[HEADER..].to_vec();
+        for (at, bytes, cut) in damage {
+            // Lengths of lists stand near the front; damage there matters most.
+            let at = if cut % 2 == 0 { at } else { at % 400 }.min(content.len());
+            let end = (at + cut).min(content.len());
+            content.splice(at..end, bytes);
+        }
+        let mut forged = whole[..HEADER - 12].to_vec();
+        forged.extend((content.len() as u64).to_le_bytes());
+        forged.extend(crc32fast::hash(&content).to_le_bytes());
+        forged.extend(content);
+        fs::write(folder.file("checkpoint"), forged).expect("writable");
+        if let Err(error) = stribeck_bearing::simulation::saved_until(&dir) {
+            let words = error.to_string();
+            prop_assert!(words.contains("checkpoint") && words.contains("start it anew"), "{}", words);
+        }
+        Ok(())
+    });
+    done.expect("an answer to every one");
+}
+
 /// Every reason has its own words, and says what to do.
 #[test]
 fn analytic_what_cannot_go_on_says_why() {
@@ -278,6 +311,41 @@ fn analytic_what_cannot_go_on_says_why() {
     let nothing = Folder::new();
     says(refusal(&nothing), &["is not a run", "scene.ron"]);
     assert!(!nothing.0.exists(), "a refused resume made a folder");
+}
+
+/// Clocks that are set back, jump ahead or stand still change times in `run.json` and nothing else: checkpoints are still
+/// written, and no time runs backwards.
+#[test]
+fn invariant_a_clock_that_jumps_changes_no_sample() {
+    let whole = Folder::new();
+    start(&coarse(1.25), 1, &whole, &mut until(0));
+    for jump in [-1e9, 1e9, f64::NAN, 0.0] {
+        let folder = Folder::new();
+        let calls = std::cell::Cell::new(0);
+        let clock = || {
+            calls.set(calls.get() + 1);
+            // Every third look at the clock finds it somewhere else.
+            f64::from(calls.get()) + if calls.get() % 3 == 0 { jump } else { 0.0 }
+        };
+        let host = Host { wall_s: &clock, cpu_s: &clock, ..host(1) };
+        let dir = RunDir::create(&folder.0).expect("the folder is new");
+        let mut saved = Vec::new();
+        let info = simulate(&coarse(1.25), &dir, &host, &mut |progress| {
+            if progress.phase == "run" {
+                saved.push(
+                    fs::metadata(folder.file("checkpoint")).and_then(|m| m.modified()).expect("there is one"),
+                );
+            }
+            ControlFlow::Continue(())
+        })
+        .expect("the scene is sound");
+        assert_eq!(info.status, Status::Complete);
+        assert!(info.wall_s >= 0.0 && info.cpu_s >= 0.0, "{} s, {} s", info.wall_s, info.cpu_s);
+        assert_same_files(&whole, &folder, &format!("clock jumps by {jump} s"));
+        if jump < 0.0 {
+            assert!(saved.last() > saved.first(), "no checkpoint was written after the clock was set back");
+        }
+    }
 }
 
 /// Where no checkpoint can be written the run goes on and says so, once.

@@ -68,7 +68,7 @@ fn scene(method: Method) -> (Dynamics, Contacts) {
     let pairs: Vec<PairSpec> = (0..DISCS)
         .flat_map(|i| [0, 1].map(|second| PairSpec { first: 2 + i, second, law, method, sides: Sides::Both }))
         .collect();
-    let contacts = Contacts::new(surfaces.collect(), &pairs, 0.02, &x, &y);
+    let contacts = Contacts::new(surfaces.collect(), &pairs, 0.02, &x, &y).expect("surfaces that exist");
     (d, contacts)
 }
 

@@ -8,6 +8,7 @@ use stribeck_solver::{
 };
 
 use crate::{
+    error::Error,
     law::Law,
     pass::{Memory, Pass, Weights},
     points::{Method, Points},
@@ -112,7 +113,18 @@ const STEEPER: f64 = 2.0;
 
 impl Contacts {
     /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
-    pub fn new(surfaces: Vec<Surface>, pairs: &[PairSpec], thickness: f64, x: &[f64], y: &[f64]) -> Self {
+    ///
+    /// # Errors
+    /// When a pair names a surface that is not there or one twice, a surface a slot that is not there, a method no points
+    /// or too many, or the thickness is not positive.
+    pub fn new(
+        surfaces: Vec<Surface>,
+        pairs: &[PairSpec],
+        thickness: f64,
+        x: &[f64],
+        y: &[f64],
+    ) -> Result<Self, Error> {
+        check(&surfaces, pairs, thickness, x.len().min(y.len()))?;
         let shortest =
             surfaces.iter().flat_map(|s| &s.length).copied().fold(f64::INFINITY, f64::min).min(1.0);
         let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
@@ -137,7 +149,7 @@ impl Contacts {
                 }
             })
             .collect();
-        Self {
+        Ok(Self {
             surfaces,
             trees,
             pairs,
@@ -147,7 +159,7 @@ impl Contacts {
             preload: None,
             parallel: false,
             energy: Energy::default(),
-        }
+        })
     }
 
     /// Evaluates pairs in parallel from now on; the result is the same to the bit.
@@ -242,11 +254,11 @@ impl Contacts {
 impl Pair {
     /// About how much there is to do, judged by the step before.
     fn work(&self) -> usize {
-        1 + self.push.len()
+        1 + self.passes.iter().map(|pass| pass.work).sum::<usize>()
     }
 }
 
-/// Less work than this is not worth another thread: a fork and join takes as long as some hundred pushes.
+/// Less work than this is not worth another thread: a fork and join takes some microseconds.
 const LEAST_WORK: usize = 400;
 
 /// Evaluates pairs on several threads, about equal work on each.
@@ -262,10 +274,38 @@ fn share_out<F: Fn(&mut Pair) + Sync>(pairs: &mut [Pair], work: usize, threads: 
     }
     let (first, second) = pairs.split_at_mut(cut);
     let half = threads / 2;
-    rayon::join(
+    micropool::join(
         || share_out(first, before, half, evaluate),
         || share_out(second, work - before, threads - half, evaluate),
     );
+}
+
+/// Checks what the fields allow but contact cannot do.
+fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize) -> Result<(), Error> {
+    if !(thickness > 0.0 && thickness.is_finite()) {
+        return Err(Error::OutOfRange { field: "thickness [m]", value: thickness, allowed: "positive" });
+    }
+    for surface in surfaces {
+        if surface.slots.iter().any(|&s| s as usize >= slots) {
+            let reason = "lists a slot for which there is no position";
+            return Err(Error::BadSurface { name: surface.name.clone(), reason });
+        }
+    }
+    for (pair, spec) in pairs.iter().enumerate() {
+        let bad = |reason| Err(Error::BadPair { pair, reason });
+        if spec.first.max(spec.second) >= surfaces.len() {
+            return bad("names a surface that is not in the list");
+        }
+        if spec.first == spec.second {
+            return bad("names one surface twice; a body does not touch itself");
+        }
+        if let Method::Integrated { points } = spec.method
+            && !(1..=Method::MOST_POINTS).contains(&points)
+        {
+            return bad("needs 1 to 32 integration points on a facet");
+        }
+    }
+    Ok(())
 }
 
 /// Two passes carry half of the stiffness each.
@@ -288,7 +328,7 @@ impl Force for Contacts {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
             }
         };
-        let threads = if self.parallel { rayon::current_num_threads() } else { 1 };
+        let threads = if self.parallel { micropool::num_threads() + 1 } else { 1 };
         let work = pairs.iter().map(Pair::work).sum();
         share_out(pairs, work, threads, &evaluate);
         self.energy.stored = 0.0;

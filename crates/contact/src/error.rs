@@ -14,6 +14,14 @@ pub enum Error {
         /// The values allowed, in words.
         allowed: &'static str,
     },
+    /// Two surfaces cannot be a pair.
+    #[error("contact pair {pair}: {reason}")]
+    BadPair {
+        /// Its place in the list.
+        pair: usize,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
     /// A surface has too few facets or one of no length.
     #[error("contact surface `{name}`: {reason}")]
     BadSurface {

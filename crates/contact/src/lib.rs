@@ -47,7 +47,7 @@
 //! // As stiff as one cell.
 //! let law = Law::penalty(steel.plane_strain_modulus() * columns as f64 / length)?;
 //! let pair = PairSpec { first: 0, second: 1, law, method: Method::Collocated, sides: Sides::Both };
-//! let mut contacts = Contacts::new(surfaces, &[pair], thickness, x, y);
+//! let mut contacts = Contacts::new(surfaces, &[pair], thickness, x, y)?;
 //!
 //! let critical = dynamics.critical_time_step(&[&contacts], 0.0);
 //! dynamics.set_time_step(0.5 * critical.time_step)?;
@@ -94,6 +94,7 @@ mod law;
 mod pass;
 mod points;
 mod projection;
+mod row;
 mod search;
 mod shape;
 mod smooth;

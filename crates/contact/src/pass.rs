@@ -1,5 +1,6 @@
 //! One pass: the points of a secondary surface against the facets of a primary one.
 
+use pulp::{Arch, Simd, WithSimd};
 use serde::{Deserialize, Serialize};
 use stribeck_solver::{force::RankOne, state::Moment};
 
@@ -7,10 +8,11 @@ use crate::{
     law::Law,
     points::Points,
     projection::{Frame, distance},
+    row::{MOST_POINTS, Row},
     shape::{Push, Shape, Side},
     spline::Patch,
     surface::Surface,
-    touch::{History, Slide, Sum, touch},
+    touch::{Histories, Slide, Sum, touch},
 };
 
 /// One pass of a pair.
@@ -24,6 +26,8 @@ pub(crate) struct Pass {
     deepest: f64,
     /// No candidate wakes before this step.
     asleep: u64,
+    /// About how long the last evaluation took, in units of some ten nanoseconds.
+    pub(crate) work: usize,
 }
 
 /// What a pass remembers from step to step.
@@ -36,8 +40,8 @@ pub(crate) struct Memory {
     /// Steps after the search before which each point cannot touch.
     doze: Vec<u16>,
     candidates: Vec<Candidate>,
-    /// What points in contact remember; empty without damping and friction.
-    history: Vec<History>,
+    /// What points in contact remember.
+    history: Histories,
 }
 
 /// A facet that may touch.
@@ -62,6 +66,31 @@ pub(crate) struct Weights {
     pub(crate) fastest: f64,
     /// Rounds the corner of the penalty law over about this gap [m]; zero for the law itself.
     pub(crate) softness: f64,
+}
+
+/// The evaluation of a pass, to be compiled for each instruction set.
+struct Evaluation<'a> {
+    pass: &'a mut Pass,
+    surfaces: &'a [Surface],
+    at: &'a Moment<'a>,
+    w: &'a Weights,
+    push: &'a mut Vec<Push>,
+}
+
+impl WithSimd for Evaluation<'_> {
+    type Output = Sum;
+
+    #[inline(always)]
+    fn with_simd<V: Simd>(self, simd: V) -> Sum {
+        let Self { pass, surfaces, at, w, push } = self;
+        // Which curves meet is asked once a pass; the loop over points is compiled for each.
+        match [pass.secondary, pass.primary].map(|s| surfaces[s].spline.is_some()) {
+            [false, false] => pass.evaluate_as::<V, Frame, Frame>(simd, surfaces, at, w, push),
+            [false, true] => pass.evaluate_as::<V, Frame, Patch>(simd, surfaces, at, w, push),
+            [true, false] => pass.evaluate_as::<V, Patch, Frame>(simd, surfaces, at, w, push),
+            [true, true] => pass.evaluate_as::<V, Patch, Patch>(simd, surfaces, at, w, push),
+        }
+    }
 }
 
 impl Weights {
@@ -103,11 +132,12 @@ impl Pass {
                 searched: 0,
                 doze: vec![0; n],
                 candidates: Vec::new(),
-                history: vec![History::default(); if remembers { n } else { 0 }],
+                history: Histories::new(if remembers { n } else { 0 }),
             },
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
             asleep: 0,
+            work: 0,
         }
     }
 
@@ -177,20 +207,17 @@ impl Pass {
         w: &Weights,
         push: &mut Vec<Push>,
     ) -> Sum {
+        self.work = 0;
         if at.step < self.asleep {
             return Sum::default();
         }
-        // Which curves meet is asked once a pass; the loop over points is compiled for each.
-        match [self.secondary, self.primary].map(|s| surfaces[s].spline.is_some()) {
-            [false, false] => self.evaluate_as::<Frame, Frame>(surfaces, at, w, push),
-            [false, true] => self.evaluate_as::<Frame, Patch>(surfaces, at, w, push),
-            [true, false] => self.evaluate_as::<Patch, Frame>(surfaces, at, w, push),
-            [true, true] => self.evaluate_as::<Patch, Patch>(surfaces, at, w, push),
-        }
+        Arch::new().dispatch(Evaluation { pass: self, surfaces, at, w, push })
     }
 
-    fn evaluate_as<S: Shape, P: Shape>(
+    #[inline(always)]
+    fn evaluate_as<V: Simd, S: Shape, P: Shape>(
         &mut self,
+        simd: V,
         surfaces: &[Surface],
         at: &Moment<'_>,
         w: &Weights,
@@ -205,6 +232,9 @@ impl Pass {
         let closing = w.fastest * at.dt;
         // Consecutive points mostly share a primary facet: its forces wait until another one comes.
         let mut other: Option<Side<P>> = None;
+        // Points on one chord against another chord, with the sharp law: many at a time.
+        let flat = secondary.is_flat() && primary.is_flat();
+        let together = flat && w.softness == 0.0 && w.law.onset == 0.0 && history.len() > 0;
         let mut shape: Option<P> = None;
         for candidate in candidates {
             if at.step < candidate.wake {
@@ -215,11 +245,22 @@ impl Pass {
             let mut own = Side::<S>::new(S::new(secondary, at.x, at.y, facet), secondary, at);
             let mut soonest = u16::MAX;
             let mut touched = false;
-            for i in self.points.of_facet(facet) {
+            let range = self.points.of_facet(facet);
+            self.work += 4 + range.len() / 4;
+            let mut done = [false; MOST_POINTS];
+            if together && range.len() <= MOST_POINTS {
+                let mut row = Row { points: &self.points, range: range.clone(), nearest, doze, now, history };
+                touched = row.touch(simd, &mut own, primary, at, w, self.deepest, &mut done, &mut sum, push);
+            }
+            for i in range.clone() {
+                if done.get(i - range.start) == Some(&true) {
+                    continue;
+                }
                 if doze[i] > now {
                     soonest = soonest.min(doze[i]);
                     continue;
                 }
+                self.work += 4;
                 let spot = own.shape.spot(self.points.place[i], self.points.height[i]);
                 let start = nearest[i] as usize;
                 let shape = match &mut shape {
@@ -234,11 +275,12 @@ impl Pass {
                     let steps = ((gap - reach).abs() / closing) as u16;
                     doze[i] = now.saturating_add(steps);
                     soonest = soonest.min(doze[i]);
-                    if let Some(history) = history.get_mut(i).filter(|h| !h.is_empty()) {
+                    if let Some(mut past) = history.get(i).filter(|h| !h.is_empty()) {
                         touched = true;
                         let side = Side::new(*shape, primary, at);
                         let slide = found.map_or(Slide::default(), |to| side.slide(own.velocity(&spot), &to));
-                        history.release(self.points.weight[i] * w.thickness, &w.law, at.dt, slide, &mut sum);
+                        past.release(self.points.weight[i] * w.thickness, &w.law, at.dt, slide, &mut sum);
+                        history.set(i, past);
                     }
                     continue;
                 };
@@ -256,10 +298,12 @@ impl Pass {
                 let [pressure, shear] = if w.softness > 0.0 {
                     [w.law.stiffness * area * w.rounded(gap)[0], 0.0]
                 } else {
-                    match history.get_mut(i) {
-                        Some(history) => {
+                    match history.get(i) {
+                        Some(mut past) => {
                             let slide = other.slide(own.velocity(&spot), &to);
-                            touch(gap, area, &w.law, at.dt, slide, history, &mut sum)
+                            let push = touch(gap, area, &w.law, at.dt, slide, &mut past, &mut sum);
+                            history.set(i, past);
+                            push
                         }
                         None => {
                             let [depth, _, work] = w.law.depth(gap);

@@ -14,6 +14,11 @@ pub enum Method {
     },
 }
 
+impl Method {
+    /// Most points on a facet: a point on every thirtieth of a facet sees nothing new.
+    pub const MOST_POINTS: usize = 32;
+}
+
 /// Contact points, facet by facet.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {

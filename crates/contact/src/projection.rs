@@ -31,7 +31,7 @@ pub struct Projection {
 
 /// A point at the distance d from a facet is compared with the neighbour where it stands closer to an end than this
 /// times d: the line that halves the angle at a joint leans by half the turn there, at most 0.175 at what is no corner.
-const NEAR_END: f64 = 0.25;
+pub(crate) const NEAR_END: f64 = 0.25;
 
 /// Walks at most this many facets from the starting one.
 const LONGEST_WALK: usize = 8;
@@ -75,6 +75,11 @@ impl Shape for Frame {
     #[inline(always)]
     fn facet(&self) -> usize {
         self.facet
+    }
+
+    #[inline(always)]
+    fn chord(&self) -> Option<&Frame> {
+        Some(self)
     }
 
     #[inline(always)]

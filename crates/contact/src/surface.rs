@@ -28,6 +28,8 @@ pub struct Surface {
     pub(crate) rise: Vec<Rise>,
     /// True for a vertex where two smoothed facets join without a kink.
     pub(crate) smooth: Vec<bool>,
+    /// True when every facet is its chord, and hangs on its own two nodes.
+    flat: bool,
     /// How the curve hangs on its nodes; `None` when each facet hangs on its own two.
     pub(crate) spline: Option<Spline>,
 }
@@ -98,6 +100,9 @@ impl Surface {
         if n < 2 || (closed && n < 3) {
             return Err(Error::BadSurface { name, reason: "needs at least one facet, three when closed" });
         }
+        if slots.iter().any(|&s| s as usize >= x.len().min(y.len())) {
+            return Err(Error::BadSurface { name, reason: "lists a slot for which there is no position" });
+        }
         let at = Vertices { slots: &slots, closed, x, y };
         let along = |f: usize| {
             let ([ax, ay], [bx, by]) = at.ends(f);
@@ -121,6 +126,7 @@ impl Surface {
             beside_corner,
             rise: vec![[0.0; 2]; facets],
             smooth: vec![false; n],
+            flat: true,
             spline: None,
         })
     }
@@ -134,7 +140,9 @@ impl Surface {
         let at = Vertices { slots: &self.slots, closed: self.closed, x, y };
         self.spline = None;
         self.rise = rises(smoothing, &at, &self.corner);
-        if self.rise.iter().zip(&self.length).any(|(r, l)| !(r[0].abs().max(r[1].abs()) < 0.5 * l)) {
+        self.flat = self.rise.iter().all(|r| *r == [0.0; 2]);
+        let steep = |(r, l): (&Rise, &f64)| r.iter().any(|r| r.is_nan() || r.abs() >= 0.5 * l);
+        if self.rise.iter().zip(&self.length).any(steep) {
             let reason = "is too coarse to be smoothed: its curve would leave a chord by more than 27°";
             return Err(Error::BadSurface { name: self.name, reason });
         }
@@ -167,6 +175,7 @@ impl Surface {
     /// [`smoothed`](Self::smoothed), in the same positions.
     pub fn splined(mut self, x: &[f64], y: &[f64]) -> Self {
         self.spline = Some(Spline::new(&self, x, y));
+        self.flat = false;
         self.smooth = self.corner.iter().map(|corner| !corner).collect();
         self
     }
@@ -174,6 +183,11 @@ impl Surface {
     /// Number of facets.
     pub fn facets(&self) -> usize {
         self.length.len()
+    }
+
+    /// Whether every facet is its chord, and hangs on its own two nodes.
+    pub(crate) fn is_flat(&self) -> bool {
+        self.flat
     }
 
     /// Mean facet length [m].

@@ -5,12 +5,41 @@ use serde::{Deserialize, Serialize};
 use crate::law::Law;
 
 /// What a point in contact remembers of the step before.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct History {
     /// Elastic part of the tangential displacement [m].
     slip: f64,
     /// Damping force [N].
     damping: f64,
+}
+
+/// Histories of all points of a pass, one array a field; empty without damping and friction.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Histories {
+    pub(crate) slip: Vec<f64>,
+    pub(crate) damping: Vec<f64>,
+}
+
+impl Histories {
+    /// Of `n` points without contact.
+    pub(crate) fn new(n: usize) -> Self {
+        Self { slip: vec![0.0; n], damping: vec![0.0; n] }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.slip.len().min(self.damping.len())
+    }
+
+    #[inline(always)]
+    pub(crate) fn get(&self, i: usize) -> Option<History> {
+        let (slip, damping) = (*self.slip.get(i)?, *self.damping.get(i)?);
+        Some(History { slip, damping })
+    }
+
+    #[inline(always)]
+    pub(crate) fn set(&mut self, i: usize, history: History) {
+        (self.slip[i], self.damping[i]) = (history.slip, history.damping);
+    }
 }
 
 /// Sums over one pass.

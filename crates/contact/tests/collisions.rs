@@ -1,6 +1,8 @@
 //! Bodies that hit each other: momentum, energy, the bar impact.
 
 mod common;
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
 
 use common::*;
 use stribeck_contact::{Contacts, Law, Method, Smoothing};
@@ -69,9 +71,27 @@ fn analytic_two_equal_bars() {
     for method in METHODS {
         let impact = bars(length, 200, speed, method);
         // The penalty spring and the dispersion of the front add about the time across two cells.
-        assert_close(impact.time, 2.0 * length / c, 0.015, "contact time");
+        let how = if method == Method::Collocated { "collocated" } else { "integrated" };
+        let source = "2L/c: Johnson 1985, §11.1";
+        ledger::compare(
+            &format!("two equal bars, contact time, {how}"),
+            source,
+            "s",
+            impact.time,
+            2.0 * length / c,
+            0.015,
+        );
         // The force rings by some per cent about its plateau; a third of the contact averages most of it.
-        assert_close(impact.force, steel().density() * c * speed, 0.01, "interface stress");
+        let stress = steel().density() * c * speed;
+        let source = "ρ c v: Goldsmith 1960, §3.3";
+        ledger::compare(
+            &format!("two equal bars, interface stress, {how}"),
+            source,
+            "Pa",
+            impact.force,
+            stress,
+            0.01,
+        );
         // A hundredth of the energy stays behind as ringing of cells.
         assert_close(impact.after[0], -speed, 0.01, "velocity of the left bar");
         assert_close(impact.after[1], speed, 0.01, "velocity of the right bar");

@@ -1,6 +1,8 @@
 //! Coulomb friction: sliding to a stop, sticking on a slope, from sliding to rolling; penalty and flight.
 
 mod common;
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
 
 use common::*;
 use stribeck_contact::{Contacts, Law, Method};
@@ -123,7 +125,17 @@ fn analytic_block_slides_above_the_angle_of_friction() {
         s.run(0.01);
         let (v, t) = (s.velocity()[0], s.d.state.time);
         s.run(span);
-        assert_close((s.velocity()[0] - v) / (s.d.state.time - t), expected, 0.005, "acceleration");
+        let found = (s.velocity()[0] - v) / (s.d.state.time - t);
+        let how = if method == Method::Collocated { "collocated" } else { "integrated" };
+        let source = "g (sin α − µ cos α)";
+        ledger::compare(
+            &format!("block on a slope, acceleration, {how}"),
+            source,
+            "m/s²",
+            found,
+            expected,
+            0.005,
+        );
     }
 }
 
@@ -152,7 +164,7 @@ fn analytic_from_sliding_to_rolling() {
     let (from, angle) = (s.centre()[0], s.d.rigid[0].angle);
     s.run(0.01);
     let (way, turn) = (s.centre()[0] - from, s.d.rigid[0].angle - angle);
-    assert_close(way / 0.01, expected, 0.01, "speed of rolling");
+    ledger::compare("from sliding to rolling, speed", "v₀ r²/(r² + I/m)", "m/s", way / 0.01, expected, 0.01);
     assert_close(-turn * radius, way, 0.01, "it rolls without slip, clockwise to the right");
 }
 
@@ -179,11 +191,11 @@ fn analytic_bouncing_disc() {
         assert!(s.d.state.time < 0.1, "it stopped bouncing: {lands:?}");
     }
     // Time is counted in steps, and each contact sets in within one.
-    assert_close(lands[0], (2.0 * height / G).sqrt(), 1e-3, "first fall");
+    ledger::compare("bouncing disc, first fall", "√(2h/g)", "s", lands[0], (2.0 * height / G).sqrt(), 1e-3);
     for (lift, land) in lifts.iter().zip(&lands[1..]) {
         assert_close(land - lift, 2.0 * (2.0 * height / G).sqrt(), 2e-3, "flight");
     }
-    assert_close(highest, height, 2e-3, "height of the rebound");
+    ledger::compare("bouncing disc, height of the rebound", "energy", "m", highest, height, 2e-3);
     // It bounces on a corner, an unstable place: rounding grows a thousandfold in each bounce, but to nothing yet.
     assert!(s.d.rigid[0].spin.abs() < 1e-3, "{:?}", s.d.rigid[0]);
 }

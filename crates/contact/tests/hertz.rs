@@ -4,6 +4,8 @@
 //! p(x) = p₀ √(1 − x²/b²) with p₀ = 2 w/(π b); for like bodies E* = E/(2(1 − ν²)).
 
 mod common;
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
 
 use common::*;
 use stribeck_contact::{Law, Method, Smoothing};
@@ -94,7 +96,16 @@ fn converges_hertz_half_width_and_pressure() {
     let found = [20, 40, 80].map(|columns| pressed(columns, Method::Integrated { points: 4 }, false));
     for (i, what, ceiling) in [(0, "half-width", 0.005), (1, "peak pressure", 0.01)] {
         let errors = found.map(|f| (f[i] - exact[i]).abs() / exact[i]);
-        assert!(errors[2] < ceiling, "{what}: {errors:?}");
+        let source = "Hertz: Johnson 1985, §4.2";
+        let unit = ["m", "Pa"][i];
+        ledger::compare(
+            &format!("line contact, {what}, integrated"),
+            source,
+            unit,
+            found[2][i],
+            exact[i],
+            ceiling,
+        );
         assert!(errors[2] < 0.5 * errors[0], "{what} converges: {errors:?}");
     }
 }
@@ -103,7 +114,8 @@ fn converges_hertz_half_width_and_pressure() {
 fn analytic_hertz_collocated() {
     let modulus = 0.5 * steel().plane_strain_modulus();
     let [half_width, pressure] = pressed(40, Method::Collocated, false);
-    assert_close(half_width, HALF_WIDTH, 0.02, "half-width");
+    let source = "Hertz: Johnson 1985, §4.2";
+    ledger::compare("line contact, half-width, collocated", source, "m", half_width, HALF_WIDTH, 0.02);
     assert_close(pressure, modulus * HALF_WIDTH / (2.0 * RADIUS), 0.05, "peak pressure");
 }
 

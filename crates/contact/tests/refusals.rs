@@ -1,6 +1,6 @@
 //! What contact refuses, and what it says.
 
-use stribeck_contact::{Error, Law, Surface};
+use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Sides, Surface};
 
 #[track_caller]
 fn says<T>(result: Result<T, Error>, words: &[&str]) {
@@ -32,6 +32,29 @@ fn analytic_damping_of_two_equal_layers() {
     // Two masses m/A on one spring k/A have the reduced mass m/2: critical damping 2 √(k m/2) per area.
     let law = Law::penalty(2e12).and_then(|l| l.with_damping(0.1, 4.0)).expect("a possible law");
     assert!((law.damping - 0.2 * (2e12_f64 * 2.0).sqrt()).abs() < 1e-6 * law.damping);
+}
+
+#[test]
+fn invariant_pairs_must_exist_and_have_points() {
+    let (x, y) = ([0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]);
+    let law = Law::penalty(1e14).expect("a positive stiffness");
+    let made = |[first, second]: [usize; 2], method, thickness, positions: usize| {
+        let surface =
+            |slots: [u32; 2]| Surface::new("side", slots.to_vec(), false, &x, &y).expect("one facet");
+        let surfaces = vec![surface([0, 1]), surface([3, 2])];
+        let pair = PairSpec { first, second, law, method, sides: Sides::Both };
+        Contacts::new(surfaces, &[pair], thickness, &x[..positions], &y[..positions])
+    };
+    assert!(made([0, 1], Method::Collocated, 0.01, 4).is_ok());
+    says(made([0, 2], Method::Collocated, 0.01, 4), &["contact pair 0", "not in the list"]);
+    says(made([1, 1], Method::Collocated, 0.01, 4), &["contact pair 0", "twice"]);
+    for points in [0, 33, usize::MAX] {
+        says(made([0, 1], Method::Integrated { points }, 0.01, 4), &["contact pair 0", "1 to 32"]);
+    }
+    for thickness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        says(made([0, 1], Method::Collocated, thickness, 4), &["thickness [m]", "positive"]);
+    }
+    says(made([0, 1], Method::Collocated, 0.01, 3), &["`side`", "no position"]);
 }
 
 #[test]

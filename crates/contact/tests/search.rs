@@ -59,6 +59,7 @@ impl Shapes {
         };
         let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
         Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
+            .expect("two surfaces")
     }
 
     fn moment(&self, step: u64, dt: f64) -> Moment<'_> {
@@ -307,7 +308,7 @@ fn invariant_parallel_pairs_give_the_same_bits() {
     for threads in [2, 4] {
         let (mut e, mut parallel) = tumbling();
         parallel.set_parallel(true);
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+        let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
         pool.install(|| run(&mut e, &mut parallel, 1500));
         assert!(checkpoint(&d, &contacts) == checkpoint(&e, &parallel), "{threads} threads");
         assert_eq!(energy, parallel.energy());

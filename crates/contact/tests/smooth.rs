@@ -174,11 +174,11 @@ impl DiscInRing {
 
     fn contacts(&self, law: Law) -> Contacts {
         let pair = PairSpec { first: 0, second: 1, law, method: self.method, sides: Sides::Both };
-        Contacts::new(self.surfaces.clone(), &[pair], THICKNESS, &self.x, &self.y)
+        Contacts::new(self.surfaces.clone(), &[pair], THICKNESS, &self.x, &self.y).expect("two surfaces")
     }
 
     fn forces(&self, contacts: &mut Contacts, x: &[f64], y: &[f64]) -> NodeForces {
-        let mut force = NodeForces { fx: vec![0.0; x.len()].into(), fy: vec![0.0; x.len()].into() };
+        let mut force = NodeForces::zeros(x.len());
         // Step 0 each time: every evaluation searches anew.
         contacts.set_preload(None);
         let at = Moment { step: 0, time: 0.0, dt: 1e-4, x, y, vx: &self.vx, vy: &self.vy };

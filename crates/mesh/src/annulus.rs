@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::error::{count, elements, finite, positive};
 use crate::groove::{self, Groove};
+use crate::relax::sound;
 use crate::rows::{self, NextRow};
 use crate::{Error, Part};
 
@@ -62,7 +63,7 @@ impl Annulus {
         if let Some(groove) = &self.groove {
             groove::cut(self, groove, &places, f64::INFINITY, &mut part)?;
         }
-        Ok(part)
+        sound("annulus", part)
     }
 
     /// Radius of a row [m]; rows between two layers have broken numbers.

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::error::{count, elements, finite, positive};
+use crate::relax::sound;
 use crate::rows::{self, NextRow};
 use crate::{Error, Part};
 
@@ -55,7 +56,7 @@ impl ArcBlock {
         }
         part.quads = rows::quads(0, rows, columns + 1, false, NextRow::Outwards);
         self.push_surfaces(&mut part);
-        Ok(part)
+        sound("arc block", part)
     }
 
     /// First and last angle of the piece at a radius [rad].

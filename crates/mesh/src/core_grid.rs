@@ -1,5 +1,8 @@
 //! The squares inside a disc.
 
+/// More rows than any disc that is allowed has.
+const MOST_ROWS: f64 = 1e5;
+
 /// The squares of a grid about the origin whose corners all lie within a circle.
 ///
 /// The set has the symmetry of the square; grid points are counted in sides from the origin.
@@ -14,7 +17,12 @@ impl CoreGrid {
     /// The squares within `radius` [m]; none if four do not fit.
     pub(crate) fn new(radius: f64, side: f64) -> Option<CoreGrid> {
         // In whole numbers, so that rounding cannot break the symmetry.
-        let squared = (radius / side).powi(2) as i64;
+        let ratio = radius / side;
+        // Dimensions near the smallest number make a ratio that is none.
+        if !(ratio > 0.0 && ratio < MOST_ROWS) {
+            return None;
+        }
+        let squared = ratio.powi(2) as i64;
         let half_width = |row: i64| (squared - (row + 1) * (row + 1)).max(0).isqrt();
         let half_widths: Vec<i64> = (0..).map(half_width).take_while(|w| *w > 0).collect();
         (!half_widths.is_empty()).then_some(CoreGrid { side, half_widths })

@@ -123,8 +123,10 @@ impl Disc {
         if let Some((element, area)) = inside_out(&part) {
             return Err(Error::Tangled { shape: SHAPE, element, area, advice: SIZE_ADVICE });
         }
-        let mut part = part.rotated(self.rotation);
-        self.place_rim(&mut part, self.rotation);
+        // Many turns are no more than the rest of one, and a large angle would swallow those of the columns.
+        let rotation = self.rotation % TAU;
+        let mut part = part.rotated(rotation);
+        self.place_rim(&mut part, rotation);
         Ok(part)
     }
 

@@ -6,6 +6,7 @@ use crate::annulus::{Annulus, Place};
 use crate::error::{count, elements};
 use crate::groove;
 use crate::relax::enough;
+use crate::relax::sound;
 use crate::{Error, Part};
 
 /// One of the two circles of an annulus.
@@ -142,7 +143,7 @@ impl Annulus {
             let layer = (self.outer_radius - self.inner_radius) / self.layers as f64;
             groove::cut(self, groove, &lattice.places, enough(facet.min(layer)), &mut part)?;
         }
-        Ok(part)
+        sound("annulus", part)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rectangles of equal cells.
 
 use crate::error::{count, elements, finite, positive};
+use crate::relax::sound;
 use crate::rows::{self, NextRow};
 use crate::{Error, Part};
 
@@ -47,7 +48,7 @@ impl Rectangle {
         }
         part.quads = rows::quads(0, self.rows, self.columns + 1, false, NextRow::Above);
         push_sides(&mut part, self.rows, self.columns, ["bottom", "right", "top", "left"]);
-        Ok(part)
+        sound(SHAPE, part)
     }
 }
 

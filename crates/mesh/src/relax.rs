@@ -2,6 +2,7 @@
 
 use crate::Part;
 use crate::characteristic::{characteristic_length, smallest_sine};
+use crate::error::Error;
 use crate::part::signed_area;
 
 /// Powers of the sum that stands for the smallest length, used one after the other. The larger the power, the
@@ -233,10 +234,22 @@ fn longest_edge(corners: &[[f64; 2]]) -> f64 {
     (0..n).map(edge).fold(0.0, f64::max)
 }
 
-/// The element whose smallest corner area is not positive, if there is one, and that area [m²].
+/// The element whose smallest corner area is not positive or infinite, if there is one, and that area [m²].
 /// Quadrilaterals are numbered first.
 pub(crate) fn inside_out(part: &Part) -> Option<(usize, f64)> {
     let quads = part.quads.iter().map(|q| smallest_corner_area(&part.corners(q)));
     let triangles = part.triangles.iter().map(|t| smallest_corner_area(&part.corners(t)));
-    quads.chain(triangles).enumerate().find(|(_, area)| area.is_nan() || *area <= 0.0)
+    quads.chain(triangles).enumerate().find(|(_, area)| !(area.is_finite() && *area > 0.0))
+}
+
+/// The part, when every element has a positive area: dimensions may each be possible and together be none, or so small or
+/// so large that their squares are no numbers any more.
+pub(crate) fn sound(shape: &'static str, part: Part) -> Result<Part, Error> {
+    match inside_out(&part) {
+        None => Ok(part),
+        Some((element, area)) => {
+            let advice = "check the dimensions against each other and their unit (metres)";
+            Err(Error::Tangled { shape, element, area, advice })
+        }
+    }
 }

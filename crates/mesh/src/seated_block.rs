@@ -2,6 +2,7 @@
 
 use crate::error::{count, elements, positive};
 use crate::rectangle::push_sides;
+use crate::relax::sound;
 use crate::rows::{self, NextRow};
 use crate::{Error, Part};
 
@@ -38,7 +39,7 @@ impl SeatedBlock {
         let seat_at = |x: f64| [x, (self.seat_radius * self.seat_radius - x * x).sqrt()];
         let abscissa = |column: usize| self.width * (column as f64 / self.columns as f64 - 0.5);
         let seat: Vec<[f64; 2]> = (0..=self.columns).map(|column| seat_at(abscissa(column))).collect();
-        Ok(self.over(&seat))
+        sound(SHAPE, self.over(&seat))
     }
 
     /// Makes a mesh whose seat is a given polyline, for example through the nodes of the body that sits in it.
@@ -79,7 +80,7 @@ impl SeatedBlock {
                 return refuse(*y, "below", top, "the seat lies under the top edge");
             }
         }
-        Ok(self.over(seat))
+        sound(SHAPE, self.over(seat))
     }
 
     /// Rows of nodes between a seat and the top edge.

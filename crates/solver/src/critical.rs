@@ -3,7 +3,7 @@
 use crate::{
     dynamics::Dynamics,
     element::{quad_forces, triangle_forces},
-    force::Force,
+    force::{Force, RankOne},
 };
 
 /// Result of the frequency iteration.
@@ -25,8 +25,12 @@ const ACCURACY: f64 = 2e-3;
 /// Most Lanczos iterations.
 const ITERATIONS: usize = 400;
 
-/// Displacement of a probe [m]: strains of about 1e-6, where the response is linear and rounding is 1e-8 of it.
-const PROBE: f64 = 1e-9;
+/// Displacement of a probe over the shortest edge: strains of about 1e-6, where the response is linear and rounding is
+/// 1e-8 of it.
+const PROBE: f64 = 2e-6;
+
+/// Far from the origin positions round to more than that; a probe is this many of their last digits at least.
+const DIGITS: f64 = 1e5;
 
 impl Dynamics {
     /// Elastic forces [N] of all elements at positions `x`, `y`, added to `fx`, `fy`.
@@ -62,12 +66,24 @@ impl Dynamics {
         forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
         let rigid = self.rigid_frequency_bound(&bound).sqrt();
         let free: Vec<usize> = self.elastic_slots();
-        let elastic = Operator { dynamics: self, bound, free }.largest();
+        let elastic = Operator::new(self, bound, free, Vec::new()).largest();
         // D couples no two bodies, so the larger of the two is that of the whole.
         if elastic.frequency >= rigid {
             return elastic;
         }
         Critical { time_step: 2.0 / rigid, frequency: rigid, residual: 0.0, ..elastic }
+    }
+
+    /// Critical time step of elements and of what the forces are as stiff as *now*, at the positions last given to them:
+    /// sharp, but good for this configuration alone. Damping and rigid bodies are left out.
+    pub fn present_critical_time_step(&self, forces: &[&dyn Force]) -> Critical {
+        let mut springs = Vec::new();
+        let (x, y) = (&self.state.x, &self.state.y);
+        forces.iter().for_each(|f| f.tangent(x, y, &mut |piece| springs.push(Spring::new(&piece))));
+        let mut operator = Operator::new(self, vec![0.0; self.state.x.len()], self.elastic_slots(), springs);
+        let n = operator.free.len();
+        operator.answers = (0..2 * n).map(|i| self.free_components(operator.free[i % n])[i / n]).collect();
+        operator.largest()
     }
 }
 
@@ -75,6 +91,26 @@ struct Operator<'a> {
     dynamics: &'a Dynamics,
     bound: Vec<f64>,
     free: Vec<usize>,
+    /// Whether each component answers to forces; held ones that are taken for free raise the bound a little.
+    answers: Vec<bool>,
+    /// Displacement of a probe [m].
+    probe: f64,
+    springs: Vec<Spring>,
+}
+
+/// A piece of stiffness.
+struct Spring {
+    /// Slots; in an operator places in `free`, none for those that do not answer to forces.
+    nodes: Vec<Option<usize>>,
+    direction: Vec<f64>,
+    stiffness: f64,
+}
+
+impl Spring {
+    fn new(piece: &RankOne<'_>) -> Self {
+        let nodes = piece.nodes.iter().map(|&n| Some(n as usize)).collect();
+        Self { nodes, direction: piece.direction.to_vec(), stiffness: piece.stiffness }
+    }
 }
 
 /// Positions and forces of a probe.
@@ -84,14 +120,23 @@ struct Field {
     y: Vec<f64>,
 }
 
-impl Operator<'_> {
+impl<'a> Operator<'a> {
+    fn new(dynamics: &'a Dynamics, bound: Vec<f64>, free: Vec<usize>, mut springs: Vec<Spring>) -> Self {
+        let mut place = vec![None; dynamics.state.x.len()];
+        free.iter().enumerate().for_each(|(i, &s)| place[s] = Some(i));
+        let nodes = springs.iter_mut().flat_map(|s| &mut s.nodes);
+        nodes.for_each(|n| *n = n.and_then(|slot| place[slot]));
+        let answers = vec![true; 2 * free.len()];
+        Self { dynamics, bound, free, answers, probe: probe(dynamics), springs }
+    }
+
     /// out = M⁻½ (K + D) M⁻½ v, with K from central differences of the elastic forces.
     fn apply(&self, v: &[f64], out: &mut [f64], at: &mut Field, force: &mut [Field; 2]) {
         let d = self.dynamics;
         let (mass, n) = (d.mass(), self.free.len());
         let largest = v.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
         let lightest = self.free.iter().map(|&s| mass[s]).fold(f64::INFINITY, f64::min);
-        let h = PROBE * lightest.sqrt() / largest;
+        let h = self.probe * lightest.sqrt() / largest;
         for (side, sign) in force.iter_mut().zip([1.0, -1.0]) {
             at.x.copy_from_slice(&d.state.x);
             at.y.copy_from_slice(&d.state.y);
@@ -111,6 +156,15 @@ impl Operator<'_> {
             out[i] = (minus.x[s] - plus.x[s]) / (2.0 * h * root) + diagonal * v[i];
             out[n + i] = (minus.y[s] - plus.y[s]) / (2.0 * h * root) + diagonal * v[n + i];
         }
+        for Spring { nodes, direction, stiffness } in &self.springs {
+            let component = |k: usize| nodes[k / 2].map(|i| (i + (k % 2) * n, mass[self.free[i]].sqrt()));
+            let each = 0..direction.len();
+            let parts =
+                || each.clone().filter_map(|k| component(k).map(|(at, root)| (at, direction[k] / root)));
+            let stretch: f64 = parts().map(|(at, d)| d * v[at]).sum();
+            parts().for_each(|(at, d)| out[at] += stiffness * d * stretch);
+        }
+        out.iter_mut().zip(&self.answers).filter(|(_, answers)| !**answers).for_each(|(o, _)| *o = 0.0);
     }
 
     fn largest(&self) -> Critical {
@@ -129,6 +183,7 @@ impl Operator<'_> {
                 (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
             })
             .collect();
+        v.iter_mut().zip(&self.answers).filter(|(_, answers)| !**answers).for_each(|(v, _)| *v = 0.0);
         normalise(&mut v);
         let (mut before, mut w) = (vec![0.0; n], vec![0.0; n]);
         let (mut alpha, mut beta) = (Vec::new(), Vec::new());
@@ -156,6 +211,23 @@ impl Operator<'_> {
         }
         critical
     }
+}
+
+/// Displacement [m] that shows the stiffness of the smallest element and drowns in no rounding.
+fn probe(dynamics: &Dynamics) -> f64 {
+    let (x, y) = (&dynamics.state.x, &dynamics.state.y);
+    let (mut shortest, mut farthest) = (f64::INFINITY, 0.0_f64);
+    let mut take = |corners: &[u32]| {
+        for (i, &a) in corners.iter().enumerate() {
+            let (a, b) = (a as usize, corners[(i + 1) % corners.len()] as usize);
+            shortest = shortest.min((x[b] - x[a]).hypot(y[b] - y[a]));
+            farthest = farthest.max(x[a].abs().max(y[a].abs()));
+        }
+    };
+    let elements = dynamics.elements();
+    elements.quads.iter().for_each(|(c, _)| take(c));
+    elements.triangles.iter().for_each(|(c, _)| take(c));
+    (PROBE * shortest).max(DIGITS * f64::EPSILON * farthest)
 }
 
 fn normalise(v: &mut [f64]) {

@@ -1,7 +1,5 @@
 //! The time loop's one step, and what is known about the model while it runs.
 
-use std::sync::Mutex;
-
 use serde::{Deserialize, Serialize};
 
 use crate::{
@@ -42,7 +40,9 @@ pub struct Dynamics {
     body_nodes: Vec<std::ops::Range<usize>>,
     elements: Elements,
     forces: NodeForces,
-    scratch: Vec<Mutex<Scratch>>,
+    scratch: Vec<Scratch>,
+    /// Energies of each tile in the last step.
+    counted: Vec<Energies>,
     time_step: f64,
     gravity: [f64; 2],
     parallel: bool,
@@ -169,14 +169,15 @@ impl Dynamics {
             heat: Accumulated::default(),
             damped: None,
             frames_placed: None,
-            tiles,
             rigid_bodies,
             mass,
             motion,
             body_nodes: model.mesh.bodies.iter().map(|b| b.nodes.clone()).collect(),
             elements,
             forces: NodeForces::zeros(n),
-            scratch: (0..threads.max(1)).map(|_| Mutex::new(Scratch::new(largest))).collect(),
+            scratch: (0..threads.max(1)).map(|_| Scratch::new(largest)).collect(),
+            counted: vec![Energies::default(); tiles.len()],
+            tiles,
             time_step: 0.0,
             gravity: model.gravity,
             parallel: threads > 1,
@@ -258,7 +259,7 @@ impl Dynamics {
 
     /// One step: everything pushes, every tile sums its elements and moves its nodes (THEORY §2.3).
     ///
-    /// With more than one thread, call it from within a rayon pool of that size.
+    /// With more than one thread, call it from within a pool of that size (`micropool`, whose caller is one of the threads).
     pub fn step(&mut self, forces: &mut [&mut dyn Force]) {
         let mut pushed = std::mem::take(&mut self.forces);
         for force in forces {
@@ -349,8 +350,10 @@ impl Dynamics {
         };
         let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
         let drive = Drive { dt: self.time_step, gravity: self.gravity, count_heat };
-        let scratch = if self.parallel { self.scratch.as_slice() } else { &self.scratch[..1] };
-        let Energies { work, heat } = sweep_all(&self.tiles, fields, scratch, drive);
+        let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
+        sweep_all(&self.tiles, fields, &mut self.counted, scratch, drive);
+        // In the order of the tiles, whatever thread each was on.
+        let Energies { work, heat } = self.counted.iter().fold(Energies::default(), |sum, &e| sum + e);
         self.drive.add(work);
         let before = self.heat.last;
         self.heat.add(if count_heat { heat } else { before });
@@ -437,27 +440,38 @@ fn pad(layout: &Layout, state: &mut State) {
     }
 }
 
-/// Sweeps tiles, halving the list while there are threads to share it; the sum of works has the order of the tree.
-fn sweep_all(tiles: &[Tile], fields: TileFields<'_>, scratch: &[Mutex<Scratch>], drive: Drive) -> Energies {
-    match tiles {
-        [] => Energies::default(),
-        [tile] => {
-            let worker = rayon::current_thread_index().unwrap_or(0) % scratch.len();
-            let mut scratch = scratch[worker].lock().unwrap_or_else(|e| e.into_inner());
-            sweep(tile, fields, &mut scratch, drive)
+/// Sweeps tiles, one run of neighbours on each thread, about equal work on each: a fork and join costs some microseconds.
+fn sweep_all(
+    tiles: &[Tile],
+    fields: TileFields<'_>,
+    counted: &mut [Energies],
+    scratch: &mut [Scratch],
+    drive: Drive,
+) {
+    let threads = scratch.len();
+    let work: usize = tiles.iter().map(|tile| tile.work).sum();
+    let mut before = 0;
+    let cut = tiles.iter().take_while(|tile| {
+        before += tile.work;
+        // Half of the last tile may be too much.
+        (2 * before - tile.work) * threads <= 2 * work * (threads / 2)
+    });
+    let cut = cut.count();
+    if threads < 2 || cut == 0 || cut == tiles.len() {
+        let mut rest = fields;
+        for (t, (tile, energies)) in tiles.iter().zip(counted).enumerate() {
+            let end = tiles.get(t + 1).map_or(rest.x.len(), |next| next.slots.start - tile.slots.start);
+            let (own, others) = rest.split_at(end);
+            *energies = sweep(tile, own, &mut scratch[0], drive);
+            rest = others;
         }
-        _ => {
-            let (left, right) = tiles.split_at(tiles.len() / 2);
-            let cut = right[0].slots.start - left[0].slots.start;
-            let (a, b) = fields.split_at(cut);
-            let (p, q) = if scratch.len() > 1 {
-                rayon::join(|| sweep_all(left, a, scratch, drive), || sweep_all(right, b, scratch, drive))
-            } else {
-                (sweep_all(left, a, scratch, drive), sweep_all(right, b, scratch, drive))
-            };
-            p + q
-        }
+        return;
     }
+    let (left, right) = tiles.split_at(cut);
+    let (a, b) = fields.split_at(right[0].slots.start - left[0].slots.start);
+    let (p, q) = counted.split_at_mut(cut);
+    let (here, there) = scratch.split_at_mut(threads / 2);
+    micropool::join(|| sweep_all(left, a, p, here, drive), || sweep_all(right, b, q, there, drive));
 }
 
 impl<'a> TileFields<'a> {

@@ -88,7 +88,7 @@ impl QuadReference {
     /// The signed area when it is not positive.
     pub fn new(corners: &[[f64; 2]; 4], thickness: f64) -> Result<Self, f64> {
         let area = area(corners);
-        if area.is_nan() || area <= 0.0 {
+        if !(area.is_finite() && area > 0.0) {
             return Err(area);
         }
         let c = own_frame(corners);
@@ -116,7 +116,7 @@ impl TriangleReference {
     /// The signed area when it is not positive.
     pub fn new(corners: &[[f64; 2]; 3], thickness: f64) -> Result<Self, f64> {
         let area = area(corners);
-        if area.is_nan() || area <= 0.0 {
+        if !(area.is_finite() && area > 0.0) {
             return Err(area);
         }
         let c = own_frame(corners);

@@ -26,6 +26,22 @@ pub enum Error {
         /// Signed area [m²].
         area: f64,
     },
+    /// The ranges of a body do not follow those of the one before it, or leave the mesh.
+    #[error(
+        "body `{body}`: its nodes and elements must follow those of the body before it and lie in the mesh"
+    )]
+    BadBody {
+        /// Body name.
+        body: String,
+    },
+    /// An element uses a node of another body, or one that is not there.
+    #[error("element {element} of body `{body}` uses a node that does not belong to that body")]
+    BadNode {
+        /// Body name.
+        body: String,
+        /// Element number within the mesh.
+        element: usize,
+    },
     /// A node carries no mass although it may move.
     #[error(
         "node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid (with at least one element)"

@@ -5,10 +5,10 @@ use std::ops::{Add, Mul, Neg, Sub};
 use pulp::Simd;
 
 /// Congruent bodies that share a tile; no instruction set takes more numbers at a time.
-pub(crate) const LANES: usize = 8;
+pub const LANES: usize = 8;
 
 /// What a kernel does with numbers.
-pub(crate) trait Number:
+pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     /// self · factor + term. Vectors round once, whatever the instruction set; a single number rounds twice.
@@ -33,7 +33,7 @@ impl Number for f64 {
 /// Numbers side by side, in registers of the instruction set `S`; in memory they begin a line of cache.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Vector<S: Simd> {
+pub struct Vector<S: Simd> {
     simd: S,
     lanes: S::f64s,
 }
@@ -54,35 +54,41 @@ static KEEP_LAST: [u64; LANES] = [0, 0, 0, 0, 0, 0, 0, u64::MAX];
 
 impl<S: Simd> Vector<S> {
     /// How many numbers.
-    pub(crate) const LEN: usize = S::F64_LANES;
+    pub const LEN: usize = S::F64_LANES;
 
     /// The same number in all lanes.
     #[inline(always)]
-    pub(crate) fn all(simd: S, value: f64) -> Self {
+    pub fn all(simd: S, value: f64) -> Self {
         Self { simd, lanes: simd.splat_f64s(value) }
     }
 
     /// The numbers from `at` on.
     #[inline(always)]
-    pub(crate) fn load(simd: S, from: &[f64], at: usize) -> Self {
+    pub fn load(simd: S, from: &[f64], at: usize) -> Self {
         Self { simd, lanes: S::as_simd_f64s(&from[at..at + Self::LEN]).0[0] }
+    }
+
+    /// The first `n` numbers from `at` on, and zeros.
+    #[inline(always)]
+    pub fn load_first(simd: S, n: usize, from: &[f64], at: usize) -> Self {
+        Self { simd, lanes: simd.partial_load_f64s(&from[at..at + n]) }
     }
 
     /// Writes the numbers from `at` on.
     #[inline(always)]
-    pub(crate) fn store(self, to: &mut [f64], at: usize) {
+    pub fn store(self, to: &mut [f64], at: usize) {
         S::as_mut_simd_f64s(&mut to[at..at + Self::LEN]).0[0] = self.lanes;
     }
 
     /// Writes the first `n` numbers from `at` on.
     #[inline(always)]
-    pub(crate) fn store_first(self, n: usize, to: &mut [f64], at: usize) {
+    pub fn store_first(self, n: usize, to: &mut [f64], at: usize) {
         self.simd.partial_store_f64s(&mut to[at..at + n], self.lanes);
     }
 
     /// The first `n` numbers, and zeros.
     #[inline(always)]
-    pub(crate) fn first(self, n: usize) -> Self {
+    pub fn first(self, n: usize) -> Self {
         let keep = S::as_simd_u64s(&KEEP[LANES - n..LANES - n + Self::LEN]).0[0];
         let bits = self.simd.and_u64s(self.simd.transmute_u64s_f64s(self.lanes), keep);
         Self { lanes: self.simd.transmute_f64s_u64s(bits), ..self }
@@ -90,7 +96,7 @@ impl<S: Simd> Vector<S> {
 
     /// Every number one lane up, the last of `before` in front.
     #[inline(always)]
-    pub(crate) fn shifted_in(self, before: Self) -> Self {
+    pub fn shifted_in(self, before: Self) -> Self {
         let simd = self.simd;
         let all_but_last = S::as_simd_u64s(&KEEP[LANES - Self::LEN + 1..LANES + 1]).0[0];
         let last = S::as_simd_u64s(&KEEP_LAST[LANES - Self::LEN..LANES]).0[0];
@@ -99,12 +105,40 @@ impl<S: Simd> Vector<S> {
         Self { lanes: simd.rotate_right_f64s(simd.transmute_f64s_u64s(joined), 1), ..self }
     }
 
+    /// The largest of all numbers.
+    #[inline(always)]
+    pub fn largest(self) -> f64 {
+        self.simd.reduce_max_f64s(self.lanes)
+    }
+
     /// The sum of all numbers.
     #[inline(always)]
-    pub(crate) fn sum(self) -> f64 {
+    pub fn sum(self) -> f64 {
         let mut each = [0.0; LANES];
         self.store(&mut each, 0);
         each.iter().sum()
+    }
+}
+
+impl<S: Simd> Vector<S> {
+    /// The smaller of two numbers, lane by lane.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self { lanes: self.simd.min_f64s(self.lanes, other.lanes), ..self }
+    }
+
+    /// The larger of two numbers, lane by lane.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self { lanes: self.simd.max_f64s(self.lanes, other.lanes), ..self }
+    }
+
+    /// `yes` where this is below `limit`, `no` elsewhere.
+    #[inline(always)]
+    pub fn choose_below(self, limit: Self, yes: Self, no: Self) -> Self {
+        let below = self.simd.less_than_f64s(self.lanes, limit.lanes);
+        let (yes, no) = (self.simd.transmute_u64s_f64s(yes.lanes), self.simd.transmute_u64s_f64s(no.lanes));
+        Self { lanes: self.simd.transmute_f64s_u64s(self.simd.select_u64s(below, yes, no)), ..self }
     }
 }
 

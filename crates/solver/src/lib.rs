@@ -82,23 +82,28 @@
 //! | What force does an element make? | `element.rs` |
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
 //! | How long may a step be? | `critical.rs` |
+//! | How distorted are the elements? | `distortion.rs` |
 //! | How is equilibrium found? | `statics.rs` |
+//! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
 mod advance;
 pub mod critical;
 pub mod damping;
+pub mod distortion;
 pub mod dynamics;
 pub mod element;
 mod error;
 pub mod field;
 pub mod force;
 mod gather;
-mod lanes;
+pub mod integrators;
+pub mod lanes;
 pub mod layout;
 pub mod material;
 pub mod model;
+pub mod reference;
 pub mod rigid;
 pub mod snapshot;
 pub mod state;

@@ -143,12 +143,41 @@ impl Model {
         Ok(mass)
     }
 
+    /// Checks that bodies follow each other and elements use nodes of their own body.
+    fn check_mesh(&self) -> Result<(), Error> {
+        let mesh = &self.mesh;
+        check_count("ordinates of the mesh", mesh.y.len(), mesh.x.len(), "as many as abscissae")?;
+        let (mut nodes, mut quads, mut triangles) = (0, 0, 0);
+        for body in &mesh.bodies {
+            let starts =
+                [(body.nodes.start, nodes), (body.quads.start, quads), (body.triangles.start, triangles)];
+            let ends = [body.nodes.end, body.quads.end, body.triangles.end];
+            let follows =
+                starts.iter().zip(ends).all(|((start, before), end)| start == before && end >= *start);
+            [nodes, quads, triangles] = ends;
+            let lengths = [mesh.x.len(), mesh.quads.len(), mesh.triangles.len()];
+            if !follows || ends.iter().zip(lengths).any(|(end, length)| *end > length) {
+                return Err(Error::BadBody { body: body.name.clone() });
+            }
+            let owns = |corners: &[u32]| corners.iter().all(|&n| body.nodes.contains(&(n as usize)));
+            let quad = body.quads.clone().find(|&e| !owns(&mesh.quads[e]));
+            let element = quad.or_else(|| body.triangles.clone().find(|&e| !owns(&mesh.triangles[e])));
+            if let Some(element) = element {
+                return Err(Error::BadNode { body: body.name.clone(), element });
+            }
+        }
+        check_count("nodes of all bodies", nodes, mesh.x.len(), "all nodes of the mesh")?;
+        check_count("quadrilaterals of all bodies", quads, mesh.quads.len(), "all of the mesh")?;
+        check_count("triangles of all bodies", triangles, mesh.triangles.len(), "all of the mesh")
+    }
+
     /// Checks numbers that the fields allow but the solver does not.
     pub(crate) fn check(&self) -> Result<(), Error> {
         let (bodies, nodes) = (self.mesh.bodies.len(), self.mesh.x.len());
         check_count("number of materials", self.materials.len(), bodies, "one for each body of the mesh")?;
         check_count("number of behaviours", self.behaviour.len(), bodies, "one for each body of the mesh")?;
         check_count("number of motions", self.motion.len(), nodes, "one for each node of the mesh")?;
+        self.check_mesh()?;
         check("thickness [m]", self.thickness, self.thickness > 0.0, "positive")?;
         check("hourglass scale", self.hourglass_scale, self.hourglass_scale >= 0.0, "zero or positive")?;
         check("gravity x [m/s²]", self.gravity[0], true, "finite")?;

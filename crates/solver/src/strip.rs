@@ -67,14 +67,17 @@ fn run<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
     let len = Vector::<S>::LEN;
     let mut right = [[Vector::all(simd, 0.0); 2]; 2];
     let [low, _, _, high] = strip.corners.map(|c| c as usize);
-    let last = strip.len - strip.len % len;
+    // Said once, so that the compiler need not ask in every group.
+    let elements = strip.len as u32 as usize;
+    let last = elements - elements % len;
+    assert!(low.max(high) + last + len < nodes.x.len(), "the last group of a strip lies within its tile");
     for e in (0..last).step_by(len) {
         let forces = references.forces(simd, nodes, [low, high], e, stiffness);
         let at = [low + e, high + e];
         right = group::<S, D, COMPLETES, false>(simd, forces, nodes, at, len, right, step, heat);
     }
     // What is left of the elements, and the node at the right end.
-    let rest = strip.len - last;
+    let rest = elements - last;
     let [f1, f2, f3, f4] = references.forces(simd, nodes, [low, high], last, stiffness);
     let forces = [first(f1, rest), first(f2, rest), first(f3, rest), first(f4, rest)];
     let at = [low + last, high + last];

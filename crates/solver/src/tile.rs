@@ -40,6 +40,8 @@ pub(crate) struct Tile {
     pub(crate) elastic: bool,
     /// Nodes that are complete after a strip, in strip order.
     pub(crate) finish: Vec<Finish>,
+    /// About how long a step takes, in arbitrary units.
+    pub(crate) work: usize,
     /// Own nodes that other forces may push.
     pub(crate) loaded: Vec<u32>,
     /// Time step over mass [s/kg]; zero for nodes without mass.
@@ -188,6 +190,7 @@ impl Tile {
             congruent: layout.congruent,
             elastic: true,
             finish: Vec::new(),
+            work: 0,
             loaded: (0..layout.own as u32).filter(|&n| loaded[n as usize]).collect(),
             step_over_mass: Field::default(),
             damping: None,
@@ -198,6 +201,9 @@ impl Tile {
             tile.add_strips(layout, quads);
         }
         tile.schedule(layout, motion);
+        let strips: usize = tile.strips.iter().map(|s| s.len).sum();
+        let congruent = LANES * (tile.quads_of_runs.len() + tile.triangles.len());
+        tile.work = 1 + 3 * strips + 2 * congruent + 12 * tile.quads.len();
         tile
     }
 

@@ -1,6 +1,8 @@
 //! Motion against closed forms: waves, vibration, free fall, rotation; and the order of the time step.
 
 mod common;
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
 
 use std::f64::consts::{PI, TAU};
 
@@ -36,7 +38,15 @@ fn analytic_speed_of_a_pressure_wave() {
         moment += u * model.mesh.x[n];
     }
     // A wave of 40 cells runs (k h)²/24 = 0.1 % slow, less what the time step gives back.
-    assert_close((moment / sum - start) / d.state.time, c, 1e-3, "wave speed");
+    let source = "√((λ + 2µ)/ρ): Achenbach 1973, §1.3";
+    ledger::compare(
+        "speed of a pressure wave of 40 cells",
+        source,
+        "m/s",
+        (moment / sum - start) / d.state.time,
+        c,
+        1e-3,
+    );
     assert_close(sum * cell, height * width * PI.sqrt(), 1e-3, "area of the pulse");
 }
 
@@ -87,7 +97,8 @@ fn analytic_bending_modes_of_a_free_ring() {
             })
             .collect();
         let found = frequency(&signal, every as f64 * d.time_step());
-        assert_close(found, expected, 0.01, &format!("ring mode {n}"));
+        let source = "Love 1927, §293; Code_Aster V2.03.109";
+        ledger::compare(&format!("ring, bending mode {n}"), source, "Hz", found, expected, 0.01);
     }
 }
 
@@ -140,7 +151,15 @@ fn analytic_rigid_block_under_a_couple() {
     let angle = 0.5 * force * a / inertia * t2;
     assert!(angle > 1e-3 && angle < 0.02, "{angle} rad");
     // The lever shortens as cos θ.
-    assert_close(d.rigid[0].angle, angle, angle * angle, "angle");
+    let source = "θ = M t²/(2 I), lumped masses";
+    ledger::compare(
+        "rigid block under a couple, angle",
+        source,
+        "rad",
+        d.rigid[0].angle,
+        angle,
+        angle * angle,
+    );
     assert!((d.rigid[0].centre[0] - 0.5 * a).abs() < 1e-15 && (d.rigid[0].centre[1] - 0.5 * b).abs() < 1e-15);
     // Work = kinetic energy.
     assert_close(couple_work(&mut d, &mut couple), 1.0, 1e-9, "work / energy");
@@ -201,6 +220,7 @@ fn analytic_driven_ring_turns_as_one() {
     run(&mut d, &mut [], 5000);
     let now = step_and_balance(&mut d, &mut []);
     // Centrifugal stretch of 1e-8 and its ringing are all that differs.
-    assert_close(now.kinetic, 0.5 * inertia * rate * rate, 1e-6, "kinetic energy");
+    let expected = 0.5 * inertia * rate * rate;
+    ledger::compare("driven ring, kinetic energy", "½ I ω²", "J", now.kinetic, expected, 1e-6);
     assert!(now.drive.abs() < 1e-6 * now.kinetic, "drive work {:e} J", now.drive);
 }

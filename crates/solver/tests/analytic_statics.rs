@@ -1,6 +1,8 @@
 //! Static equilibrium against closed forms: cantilever, thick cylinder under pressure, spinning ring.
 
 mod common;
+#[path = "../../../fixtures/tests/ledger.rs"]
+mod ledger;
 
 use common::*;
 use stribeck_mesh::Annulus;
@@ -55,7 +57,15 @@ fn converges_lame_thick_cylinder() {
         for order in orders(&errors) {
             assert!((1.8..2.3).contains(&order), "{what}: order {order}, errors {errors:?}");
         }
-        assert!(errors[2] < 3e-3, "{what}: {errors:?}");
+        let source = "Lamé: Timoshenko and Goodier 1970, §28";
+        ledger::compare(
+            &format!("thick cylinder under pressure, {what}"),
+            source,
+            "m",
+            found[2][i],
+            exact(r),
+            3e-3,
+        );
     }
 }
 
@@ -81,8 +91,10 @@ fn analytic_spinning_ring() {
     let acceleration: Vec<_> = (0..d.state.x.len()).map(inward).collect();
     equilibrate(&mut d, &mut [], acceleration, ROUNDING).expect("a balanced load");
     // Second order with 12 layers: see the thick cylinder.
-    assert_close(growth(&d, &model, 0, facets), exact(INNER), 4e-3, "growth of the bore");
-    assert_close(growth(&d, &model, layers * facets, facets), exact(OUTER), 4e-3, "growth of the rim");
+    let source = "Timoshenko and Goodier 1970, §32";
+    ledger::compare("spinning ring, bore", source, "m", growth(&d, &model, 0, facets), exact(INNER), 4e-3);
+    let rim = growth(&d, &model, layers * facets, facets);
+    ledger::compare("spinning ring, rim", source, "m", rim, exact(OUTER), 4e-3);
 }
 
 /// Tip deflection [m] of a clamped beam of `columns` × `rows` cells under the end load `p` [N].

@@ -74,20 +74,23 @@ fn analytic_mass_damping_decays_a_vibration() {
 fn conserves_the_ledger_of_mass_damping() {
     // What vibrates becomes heat, at every step and at every frequency that the mesh has.
     let mut d = ready(&disc_at(0.0, 0.0), 0.9);
-    damp(&mut d, 2e4, Frame::OwnMotion);
+    damp(&mut d, 1e3, Frame::OwnMotion);
     let mut noise = Noise(6);
     for n in massive(&d) {
         (d.state.vx[n], d.state.vy[n]) = (1e-3 * noise.next(), 1e-3 * noise.next());
     }
+    // Heat is counted in every fourth step: the first steps, while half of the energy goes from motion into strain, are
+    // too short for that.
+    run(&mut d, &mut [], 16);
     let [start, none] = step_and_count(&mut d);
     let mut heat = none;
     let mut worst = 0.0_f64;
-    for _ in 0..3000 {
+    for _ in 0..60_000 {
         let [mechanical, so_far] = step_and_count(&mut d);
         heat = so_far;
         worst = worst.max((mechanical + heat - start - none).abs());
     }
-    assert!(heat > 0.8 * start, "{heat} J of {start} J");
+    assert!(heat - none > 0.8 * start, "{heat} J of {start} J");
     // Heat is counted from the mean of two half steps, which is right on average over a period, not at each instant.
     assert!(worst < 5e-3 * start, "{:e} of the energy is missing", worst / start);
 }

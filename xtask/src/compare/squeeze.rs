@@ -166,5 +166,5 @@ fn contacts(d: &Dynamics, touching: [&stribeck_mesh::Surface; 3], penalty: f64) 
     }
     let law = Law::penalty(penalty)?;
     let pair = |second| PairSpec { first: 0, second, law, method: Method::Collocated, sides: Sides::Both };
-    Ok(Contacts::new(surfaces, &[pair(1), pair(2)], THICKNESS, x, y))
+    Ok(Contacts::new(surfaces, &[pair(1), pair(2)], THICKNESS, x, y)?)
 }

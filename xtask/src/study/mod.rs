@@ -4,10 +4,14 @@
 //! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
 //! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 
+mod kills;
 mod noise;
 mod paper;
+mod rig;
 mod runner;
+mod stability;
 mod table;
+mod work_precision;
 
 use std::process::ExitCode;
 
@@ -28,6 +32,13 @@ pub(crate) struct Options {
 enum Study {
     /// Which reading of the paper agrees with it best, and whether its hypothesis holds
     Paper(paper::Options),
+    /// Runs killed at random moments and continued: the same bytes
+    Kills(kills::Options),
+    /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
+    Stability(stability::Options),
+    /// Error against work: elements, integrators, contacts, meshes
+    #[command(name = "work_precision")]
+    WorkPrecision(work_precision::Options),
     /// Where contact noise comes from and what each cure takes away
     Noise(noise::Options),
 }
@@ -35,6 +46,9 @@ enum Study {
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     match &options.study {
         Study::Paper(options) => paper::run(options),
+        Study::Kills(options) => kills::run(options),
+        Study::Stability(options) => stability::run(options),
+        Study::WorkPrecision(options) => work_precision::run(options),
         Study::Noise(options) => noise::run(options),
     }
 }

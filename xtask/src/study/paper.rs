@@ -50,8 +50,25 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     base::write(&mut sheet, &base)?;
     let hypothesis = runner.run_if(wanted(Part::Hypothesis), &hypothesis::variants())?;
     hypothesis::write(&mut sheet, &hypothesis)?;
+    cost(&mut sheet, &base.iter().chain(&hypothesis).collect::<Vec<_>>());
     println!("{}", workspace::shown(&sheet.write()?));
     Ok(ExitCode::SUCCESS)
+}
+
+/// What all of it cost, and with which programs it was run.
+fn cost(sheet: &mut Sheet, runs: &[&Finished]) {
+    let infos: Vec<_> = runs.iter().filter_map(|r| r.info.as_ref()).collect();
+    let minutes = infos.iter().map(|i| i.wall_s + i.setup_s).sum::<f64>() / 60.0;
+    let mut commits: Vec<&str> = infos.iter().map(|i| i.commit.as_str()).collect();
+    commits.sort_unstable();
+    commits.dedup();
+    sheet.heading("Cost");
+    sheet.say(&format!(
+        "{} runs, {minutes:.0} min together on {}, commit {}.",
+        infos.len(),
+        infos.first().map_or("no machine", |i| i.machine.as_str()),
+        commits.join(", ")
+    ));
 }
 
 /// The strongest facet line at the leading sensor.

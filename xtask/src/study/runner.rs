@@ -30,6 +30,13 @@ pub(crate) struct Flags {
     tables_only: bool,
 }
 
+impl Flags {
+    /// Whether a variant of this name is to be run.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|text| name.contains(text.as_str()))
+    }
+}
+
 /// A scene and what is changed in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Variant {
@@ -120,8 +127,7 @@ impl Runner {
         for (number, variant) in variants.iter().enumerate() {
             let scene = variant.scene()?;
             let folder = self.folder.join(&variant.name);
-            let wanted =
-                flags.only.is_empty() || flags.only.iter().any(|text| variant.name.contains(text.as_str()));
+            let wanted = flags.wants(&variant.name);
             let mut failed = None;
             match state_of(&folder, &scene) {
                 State::Done => {}

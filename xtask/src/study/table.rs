@@ -69,6 +69,17 @@ impl Sheet {
         }
     }
 
+    /// Adds a number to the values alone; none is an empty field.
+    pub(crate) fn value(&mut self, table: &str, variant: &str, quantity: &str, value: Option<f64>) {
+        self.word(table, variant, quantity, &value.map_or(String::new(), |v| v.to_string()));
+    }
+
+    /// Adds a word to the values alone.
+    pub(crate) fn word(&mut self, table: &str, variant: &str, quantity: &str, word: &str) {
+        let [table, variant, quantity, word] = [table, variant, quantity, word].map(quoted);
+        let _ = writeln!(self.values, "{table},{variant},{quantity},{word}");
+    }
+
     /// Adds a table of words.
     pub(crate) fn table(&mut self, names: &[&str], rows: &[Vec<String>]) {
         let _ = write!(self.text, "\n| {} |\n|{}\n", names.join(" | "), "---|".repeat(names.len()));

@@ -325,7 +325,7 @@ fn events(source: &Source<'_>) -> Vec<Row> {
                 ms(event.entry_ms),
                 event.impact_ms.map_or("no touch of the floor".into(), |t| format!("{t:.2} ms")),
                 event.compensation_ms.map_or("no neighbour in the defect".into(), |t| {
-                    format!("{t:.2} ms (+{} %)", format!("{:.0}", 100.0 * (event.compensation_gain.unwrap_or(1.0) - 1.0)))
+                    format!("{t:.2} ms (+{:.0} %)", 100.0 * (event.compensation_gain.unwrap_or(1.0) - 1.0))
                 }),
                 ms(event.exit_ms)
             ),

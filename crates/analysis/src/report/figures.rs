@@ -17,7 +17,7 @@ use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
 /// A chart or a picture.
 #[derive(Debug)]
 pub(super) enum Item {
-    Chart(Figure),
+    Chart(Box<Figure>),
     Picture(Picture),
 }
 
@@ -106,7 +106,7 @@ impl Figures {
 }
 
 fn charts(figures: impl IntoIterator<Item = Figure>) -> impl Iterator<Item = Item> {
-    figures.into_iter().map(Item::Chart)
+    figures.into_iter().map(|figure| Item::Chart(Box::new(figure)))
 }
 
 fn drawn(pictures: Vec<Picture>) -> impl Iterator<Item = Item> {

@@ -89,7 +89,7 @@ impl Number {
 /// Every number of the scene. A test holds this list against the fields of [`Scene`].
 #[rustfmt::skip]
 fn numbers(scene: &Scene) -> Vec<Number> {
-    let Scene { bearing: b, adapter, material, mesh, operation, contact, solver, output, .. } = scene;
+    let Scene { bearing: b, adapter, material, mesh, operation, contact, solver, output, guards, .. } = scene;
     let mut list = Vec::new();
     let mut add = |path: &str, value: f64, range: Range, unit: &'static str| {
         list.push(Number { path: path.to_owned(), value, range, unit });
@@ -145,6 +145,13 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
     add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");
     add("output.interval_us", output.interval_us, within(0.01, 1e6), "µs");
+    add("guards.energy_warning_percent", guards.energy_warning_percent, positive(1e6), "%");
+    add("guards.energy_stop_percent", guards.energy_stop_percent, positive(1e6), "%");
+    add("guards.hourglass_warning_percent", guards.hourglass_warning_percent, positive(1e6), "%");
+    add("guards.penetration_warning_percent", guards.penetration_warning_percent, positive(200.0), "%");
+    add("guards.penetration_stop_percent", guards.penetration_stop_percent, positive(200.0), "%");
+    add("guards.area_stop_percent", guards.area_stop_percent, within(0.0, 99.0), "%");
+    add("guards.unsupported_warning_ms", guards.unsupported_warning_ms, positive(60_000.0), "ms");
     for (i, sensor) in output.sensors.iter().enumerate() {
         add(&format!("output.sensors[{i}].angle_deg"), sensor.angle_deg, within(-360.0, 360.0), "°");
     }

@@ -4,6 +4,8 @@
 //! \x93NUMPY 1 0 <length> {'descr': [('time_s', '<f8'), …], 'fortran_order': False, 'shape': (12,), }   …\n
 //! ```
 
+use std::collections::HashSet;
+
 /// First bytes of every `.npy` file.
 pub(crate) const MAGIC: &[u8; 6] = b"\x93NUMPY";
 /// Longest header that is read or written: some 20 000 channels.
@@ -18,12 +20,13 @@ pub(crate) fn check_names<S: AsRef<str>>(names: &[S]) -> Result<(), String> {
     if names.is_empty() {
         return Err("a trace needs one channel at least".to_owned());
     }
+    let mut seen = HashSet::with_capacity(names.len());
     for (i, name) in names.iter().map(AsRef::as_ref).enumerate() {
         let printable = name.bytes().all(|b| (b' '..=b'~').contains(&b) && b != b'\'' && b != b'\\');
         if name.is_empty() || !printable {
             return Err(format!("channel {i} is called {name:?}; names are printable ASCII without quotes"));
         }
-        if names[..i].iter().any(|other| other.as_ref() == name) {
+        if !seen.insert(name) {
             return Err(format!("two channels are called `{name}`; names must differ"));
         }
     }

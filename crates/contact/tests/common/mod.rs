@@ -67,7 +67,8 @@ impl Scene {
                 Surface::new(name, slots, s.closed, &d.state.x, &d.state.y).expect("a surface with facets")
             })
             .collect();
-        let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y);
+        let contacts = Contacts::new(surfaces, &self.pairs, THICKNESS, &d.state.x, &d.state.y)
+            .expect("surfaces and pairs that exist");
         (d, contacts)
     }
 
@@ -89,7 +90,8 @@ impl Scene {
             .collect();
         let one_pass = |pair: &PairSpec| PairSpec { sides: Sides::First, ..*pair };
         let pairs: Vec<PairSpec> = self.pairs.iter().map(one_pass).collect();
-        let contacts = Contacts::new(surfaces, &pairs, THICKNESS, x, y);
+        let contacts =
+            Contacts::new(surfaces, &pairs, THICKNESS, x, y).expect("surfaces and pairs that exist");
         (d, contacts)
     }
 }

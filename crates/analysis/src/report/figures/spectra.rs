@@ -5,6 +5,7 @@
 use stribeck_dsp::Spectrum;
 
 use super::{mark, spoken};
+use crate::artefacts;
 use crate::findings::Findings;
 use crate::paper;
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
@@ -118,12 +119,12 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
     let mut figure = over_frequency("spectrum-low", "Low frequencies: the defect and the ring", (0.0, top))
         .with(density("raw", Colour::Blue, raw));
-    let split = raw.resolution().width_6db_hz < findings.prediction.kinematics.bpfo_hz;
+    let split = artefacts::shows_family(raw, findings.prediction.kinematics.bpfo_hz);
     figure = figure
         .caption(if split {
             "Rollers pass the defect at BPFO, and its multiples stand apart."
         } else {
-            "BPFO and its multiples belong at the red lines, but this record is too short to split them."
+            "BPFO and its multiples belong at the red lines, but this record is too short to show them."
         })
         .note(format!("{LEGEND} {}", stated(raw)));
     figure.marks = physics_marks(findings, top);

@@ -20,6 +20,8 @@ const HUNDREDTHS: u16 = 9;
 /// A moment: what stands there, its cells, and the point to look at, in the window's own axes [m].
 struct Moment {
     title: String,
+    /// What stands at the focus, in words.
+    at: &'static str,
     time_s: f64,
     cells: Vec<Cell>,
     focus: [f64; 2],
@@ -58,7 +60,7 @@ fn moments(run: &Run, findings: &Findings, window: &Window, all: &[(f64, Vec<Cel
         let angle = roller.y[at].atan2(roller.x[at]).to_degrees();
         let force = roller.outer_normal()[at];
         let title = format!("roller {} carries {:.1} kN", event.roller, 1e-3 * force);
-        Some(Moment { title, time_s: *time, cells: cells.clone(), focus: on_race(angle) })
+        Some(Moment { title, at: "the contact", time_s: *time, cells: cells.clone(), focus: on_race(angle) })
     });
     moments.extend(loaded);
     let exit = findings.prediction.defect.zip(findings.summary.events.first()).and_then(|(edges, event)| {
@@ -70,7 +72,7 @@ fn moments(run: &Run, findings: &Findings, window: &Window, all: &[(f64, Vec<Cel
         let about = all.iter().filter(|f| (f.0 - exit_s).abs() <= half_ms);
         let (time_s, cells) = about.max_by(|a, b| highest(&a.1).total_cmp(&highest(&b.1)))?;
         let title = format!("roller {} at the exit edge", event.roller);
-        Some(Moment { title, time_s: *time_s, cells: cells.clone(), focus })
+        Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus })
     });
     moments.extend(exit);
     moments
@@ -102,11 +104,6 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
     };
     let shown = moments.iter().flat_map(|m| m.cells.iter().filter(move |c| near(m, c)));
     let end = end_of_scale(shown);
-    let highest = moments
-        .iter()
-        .flat_map(|m| m.cells.iter().filter(move |c| near(m, c)))
-        .map(|c| c.von_mises)
-        .fold(0.0, f64::max);
     let mut sheet = Sheet::new(20.0 + (side + 10.0) * moments.len() as f64, side + top + 60.0);
     for (n, moment) in moments.iter().enumerate() {
         let left = 10.0 + (side + 10.0) * n as f64;
@@ -135,10 +132,24 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
     }
     scale_of_colours(&mut sheet, [10.0, side + top + 14.0], end);
     let mut picture = Picture::new("stress", "Stress under a roller and at the exit edge", sheet);
-    picture.caption = format!(
-        "Under a loaded roller the stress is highest below the surface, as Hertz has it; where the roller climbs out it gathers at the edge. Highest here: {:.2} GPa.",
-        1e-9 * highest
-    );
+    // Where each moment has its highest stress, from the point that it looks at.
+    let places: Vec<String> = moments
+        .iter()
+        .filter_map(|m| {
+            let cells = m.cells.iter().filter(|c| near(m, c));
+            let cell = cells.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises))?;
+            let away = distance(centre(cell, window), m.focus);
+            Some(format!(
+                "at {:.2} ms {:.2} GPa, {:.2} mm away from {}",
+                1e3 * m.time_s,
+                1e-9 * cell.von_mises,
+                1e3 * away,
+                m.at
+            ))
+        })
+        .collect();
+    picture.caption =
+        format!("Load concentrates where roller and raceway meet: highest {}.", places.join("; "));
     picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this model, and a sharp edge has as much stress as its elements resolve.".into();
     picture
 }

@@ -1,0 +1,195 @@
+//! `docs/VALIDATION.md` from the rows that tests have written (`fixtures/tests/ledger.rs`).
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+
+/// Names the folder into which tests write their rows.
+pub(super) const FOLDER: &str = "STRIBECK_LEDGER";
+
+/// A number may differ from the document's by this share of its row's tolerance: other processors round otherwise.
+const ROUNDING: f64 = 0.3;
+
+/// … or by this share of itself, the last digit shown.
+const SHOWN: f64 = 2e-4;
+
+/// One comparison.
+#[derive(Debug, Clone, PartialEq)]
+struct Row {
+    package: String,
+    quantity: String,
+    unit: String,
+    source: String,
+    test: String,
+    ours: f64,
+    theirs: f64,
+    tolerance: f64,
+}
+
+/// Checks the document against the rows in the folder that the environment names; nothing to check without one.
+pub(super) fn check(root: &Path) -> Result<Vec<String>> {
+    match std::env::var_os(FOLDER) {
+        Some(folder) => compare(root, &PathBuf::from(folder)),
+        None => Ok(Vec::new()),
+    }
+}
+
+/// Writes the document anew when it differs from the rows in `folder` by more than rounding, and says so.
+pub(super) fn renew(root: &Path, folder: &Path) -> Result<Vec<String>> {
+    let complaints = compare(root, folder)?;
+    if !complaints.is_empty() {
+        std::fs::write(document(root), render(&read(folder)?)).context("cannot write docs/VALIDATION.md")?;
+    }
+    Ok(complaints)
+}
+
+fn document(root: &Path) -> PathBuf {
+    root.join("docs/VALIDATION.md")
+}
+
+fn compare(root: &Path, folder: &Path) -> Result<Vec<String>> {
+    let rows = read(folder)?;
+    ensure!(!rows.is_empty(), "the tests have written no rows into {}", folder.display());
+    let new = render(&rows);
+    let old = std::fs::read_to_string(document(root)).unwrap_or_default();
+    let mut complaints = Vec::new();
+    let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+    let (old, new) = (lines(&old), lines(&new));
+    if old.len() != new.len() {
+        complaints.push(format!("docs/VALIDATION.md has {} lines, the tests make {}", old.len(), new.len()));
+    }
+    let changed = old.iter().zip(&new).filter(|(a, b)| !same(a, b));
+    complaints.extend(changed.take(5).map(|(a, b)| {
+        format!("docs/VALIDATION.md says\n           {a}\n         and the tests\n           {b}")
+    }));
+    if !complaints.is_empty() {
+        complaints
+            .push("`cargo xtask ci` writes it anew; look at what has changed before you commit it".into());
+    }
+    Ok(complaints)
+}
+
+/// Whether two lines say the same; in rows of numbers, but for rounding.
+fn same(old: &str, new: &str) -> bool {
+    let cells = |line: &str| line.split('|').map(|c| c.trim().to_owned()).collect::<Vec<_>>();
+    let (a, b) = (cells(old), cells(new));
+    if a.len() != b.len() || a.len() < 8 {
+        return old == new;
+    }
+    // Cells: nothing, quantity, ours, theirs, unit, difference, tolerance, source, test, nothing. The difference follows.
+    let words = [1, 3, 4, 6, 7, 8].iter().all(|&i| a[i] == b[i]);
+    let number = |text: &str| text.parse::<f64>().ok();
+    let (Some(p), Some(q), Some(theirs)) = (number(&a[2]), number(&b[2]), number(&b[3])) else {
+        return a == b;
+    };
+    let tolerance = b[6].trim_end_matches('%').trim().parse::<f64>().unwrap_or(0.0) / 100.0;
+    words && (p - q).abs() <= (ROUNDING * tolerance).max(SHOWN) * theirs.abs()
+}
+
+fn read(folder: &Path) -> Result<Vec<Row>> {
+    let mut rows = Vec::new();
+    let entries = std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        rows.push(parse(text.trim_end()).with_context(|| format!("{} is no row", path.display()))?);
+    }
+    rows.sort_by(|a, b| (&a.package, &a.quantity).cmp(&(&b.package, &b.quantity)));
+    Ok(rows)
+}
+
+fn parse(line: &str) -> Option<Row> {
+    let cells: Vec<&str> = line.split('\t').collect();
+    let [package, quantity, unit, source, test, ours, theirs, tolerance] = cells.as_slice() else {
+        return None;
+    };
+    let word = |w: &&str| w.replace('|', "/");
+    Some(Row {
+        package: word(package),
+        quantity: word(quantity),
+        unit: word(unit),
+        source: word(source),
+        test: word(test),
+        ours: ours.parse().ok()?,
+        theirs: theirs.parse().ok()?,
+        tolerance: tolerance.parse().ok()?,
+    })
+}
+
+fn render(rows: &[Row]) -> String {
+    let mut text = String::from(
+        "# Validation\n\nWhat the tests compare with closed forms and with other programs. Written by `cargo xtask ci` from the tests \
+         themselves (`fixtures/tests/ledger.rs`), which fail beyond the tolerance. Whole problems solved by other codes are in \
+         [compare](results/compare.md), error against work in [work_precision](results/work_precision.md), extreme cases in \
+         [stability](results/stability.md).\n",
+    );
+    let mut package = "";
+    for row in rows {
+        if row.package != package {
+            package = &row.package;
+            let _ = write!(
+                text,
+                "\n## {}\n\n| quantity | ours | theirs | unit | difference | tolerance | source | test |\n|---|---|---|---|---|---|---|---|\n",
+                package.trim_start_matches("stribeck-")
+            );
+        }
+        let off = (row.ours / row.theirs - 1.0).abs();
+        let _ = writeln!(
+            text,
+            "| {} | {} | {} | {} | {} % | {} % | {} | `{}` |",
+            row.quantity,
+            digits(row.ours, 5),
+            digits(row.theirs, 5),
+            row.unit,
+            digits(100.0 * off, 2),
+            digits(100.0 * row.tolerance, 2),
+            row.source,
+            row.test
+        );
+    }
+    text
+}
+
+/// So many significant digits.
+fn digits(value: f64, count: usize) -> String {
+    if value == 0.0 {
+        return "0".into();
+    }
+    let size = value.abs().log10().floor();
+    if !(-4.0..6.0).contains(&size) {
+        return format!("{value:.*e}", count - 1);
+    }
+    let decimals = (count as f64 - 1.0 - size).max(0.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LINE: &str = "stribeck-solver\tspeed of a wave\tm/s\tAchenbach 1973, §1.3\tanalytic_speed\t5.8561234e3\t5.8560e3\t1e-3";
+
+    #[test]
+    fn analytic_rows_are_rendered_with_their_digits() {
+        let text = render(&[parse(LINE).expect("a row")]);
+        let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 % | 0.1 % | Achenbach 1973, §1.3 | `analytic_speed` |";
+        assert!(text.contains("## solver") && text.contains(row), "{text}");
+        assert_eq!([digits(0.0, 3), digits(1.5e-7, 3), digits(123_456.0, 2)], ["0", "1.50e-7", "123456"]);
+    }
+
+    #[test]
+    fn invariant_rounding_is_no_change_and_everything_else_is() {
+        let line = |ours: &str, word: &str| {
+            let row = LINE.replace("5.8561234e3", ours).replace("Achenbach", word);
+            render(&[parse(&row).expect("a row")]).lines().last().unwrap_or_default().to_owned()
+        };
+        let old = line("5.8561234e3", "Achenbach");
+        assert!(same(&old, &line("5.8562e3", "Achenbach")), "the last digit");
+        assert!(!same(&old, &line("5.8590e3", "Achenbach")), "half of the tolerance");
+        assert!(!same(&old, &line("5.8561234e3", "Timoshenko")), "another source");
+        assert_eq!(parse("too\tfew"), None);
+    }
+}

@@ -1,0 +1,189 @@
+//! Chance, and what it does to bytes and text.
+
+/// Repeatable numbers (splitmix64).
+pub(crate) struct Dice(u64);
+
+impl Dice {
+    /// The sequence of this number.
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d)
+    }
+
+    pub(crate) fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// 0 … n − 1; 0 for n = 0.
+    pub(crate) fn below(&mut self, n: usize) -> usize {
+        if n == 0 { 0 } else { (self.next() % n as u64) as usize }
+    }
+
+    /// 0 … 1.
+    pub(crate) fn share(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// True once in `n`.
+    pub(crate) fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+
+    pub(crate) fn pick<'a, T: ?Sized>(&mut self, from: &[&'a T]) -> &'a T {
+        from[self.below(from.len())]
+    }
+
+    /// A number of any size and kind.
+    pub(crate) fn number(&mut self) -> f64 {
+        const ODD: [f64; 12] = [
+            0.0,
+            -0.0,
+            -1.0,
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN_POSITIVE,
+            5e-324,
+            1e300,
+            -1e-300,
+            4_294_967_296.0,
+        ];
+        match self.below(4) {
+            0 => ODD[self.below(ODD.len())],
+            1 => f64::from_bits(self.next()),
+            2 => 10_f64.powf(40.0 * self.share() - 20.0),
+            _ => 200.0 * self.share() - 20.0,
+        }
+    }
+}
+
+/// Words that belong somewhere in a scene, or nowhere.
+const WORDS: [&str; 40] = [
+    "(",
+    ")",
+    "[",
+    "]",
+    "{",
+    "}",
+    ",",
+    ":",
+    "\"",
+    "'",
+    "//",
+    "/*",
+    "*/",
+    "Some(",
+    "None",
+    "true",
+    "false",
+    "NaN",
+    "inf",
+    "-inf",
+    "1e309",
+    "-1",
+    "0",
+    "1e-320",
+    "99999999999999999999999",
+    "0x10",
+    "1_000",
+    ".",
+    "..",
+    "-",
+    "é",
+    "\u{0}",
+    "\u{feff}",
+    "\t",
+    "\r\n",
+    "#![enable(implicit_some)]",
+    "bearing: (",
+    "mesh",
+    "r#\"",
+    "collocated",
+];
+
+/// Damages a text in some places; it stays text.
+pub(crate) fn text(original: &str, dice: &mut Dice) -> String {
+    let mut chars: Vec<char> = original.chars().collect();
+    for _ in 0..=dice.below(4) {
+        let at = dice.below(chars.len());
+        let end = (at + dice.below(30)).min(chars.len());
+        match dice.below(8) {
+            0 => chars.truncate(at),
+            1 => drop(chars.drain(at..end)),
+            2 => {
+                let copy = chars[at..end].to_vec();
+                let to = dice.below(chars.len());
+                chars.splice(to..to, copy);
+            }
+            3 => {
+                let word = dice.pick(&WORDS);
+                chars.splice(at..at, word.chars());
+            }
+            4 => {
+                let depth = 1 + dice.below(2000);
+                let open = dice.pick(&["(", "[", "{", "Some("]);
+                chars.splice(at..at, open.repeat(depth).chars());
+            }
+            5 | 6 => number(&mut chars, dice),
+            _ => {
+                if let Some(c) = chars.get_mut(at) {
+                    *c = char::from_u32(dice.below(0x300) as u32).unwrap_or('?');
+                }
+            }
+        }
+    }
+    chars.into_iter().collect()
+}
+
+/// Replaces one of the numbers in a text.
+fn number(chars: &mut Vec<char>, dice: &mut Dice) {
+    let starts: Vec<usize> = (1..chars.len())
+        .filter(|&i| chars[i].is_ascii_digit() && matches!(chars[i - 1], ' ' | '(' | '-'))
+        .collect();
+    if starts.is_empty() {
+        return;
+    }
+    let start = starts[dice.below(starts.len())];
+    let length = chars[start..].iter().take_while(|c| c.is_ascii_alphanumeric() || **c == '.').count();
+    let value = dice.number();
+    let written = match dice.below(3) {
+        0 => format!("{value:e}"),
+        1 => format!("{value:?}"),
+        _ => dice.pick(&WORDS).to_owned(),
+    };
+    chars.splice(start..start + length, written.chars());
+}
+
+/// Damages bytes in some places.
+pub(crate) fn bytes(original: &[u8], dice: &mut Dice) -> Vec<u8> {
+    let mut bytes = original.to_vec();
+    for _ in 0..=dice.below(3) {
+        let at = dice.below(bytes.len());
+        let end = (at + dice.below(40)).min(bytes.len());
+        match dice.below(6) {
+            0 => bytes.truncate(at),
+            1 => drop(bytes.drain(at..end)),
+            2 => {
+                let copy = bytes[at..end].to_vec();
+                bytes.splice(at..at, copy);
+            }
+            3 => {
+                let value = dice.next().to_le_bytes();
+                bytes.splice(at..end.min(at + 8), value);
+            }
+            4 => {
+                let value = [0xff, 0x7f, 0x80, 0x00][dice.below(4)];
+                bytes[at..end].fill(value);
+            }
+            _ => {
+                if let Some(b) = bytes.get_mut(at) {
+                    *b ^= 1 << dice.below(8);
+                }
+            }
+        }
+    }
+    bytes
+}
