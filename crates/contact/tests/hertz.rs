@@ -123,12 +123,12 @@ fn analytic_hertz_collocated() {
 fn converges_hertz_on_splines() {
     let modulus = 0.5 * steel().plane_strain_modulus();
     let exact = [HALF_WIDTH, modulus * HALF_WIDTH / (2.0 * RADIUS)];
-    // 3, 6 and 12 cells in a half-width. The penalty, as soft as a layer of cells, makes the order one.
+    // 3, 6 and 12 cells in a half-width. The penalty, as soft as a layer of cells, makes the order of the half-width one at
+    // least. In the peak pressure penalty and spline err with opposite signs: it approaches Hertz's, but not as a power.
     let found = [20, 40, 80].map(|columns| pressed(columns, Method::Integrated { points: 12 }, true));
-    for (i, what) in [(0, "half-width"), (1, "peak pressure")] {
-        let errors = found.map(|f| (f[i] - exact[i]).abs() / exact[i]);
-        assert!(errors[2] < 0.04, "{what}: {errors:?}");
-        let order = (errors[0] / errors[2]).log2() / 2.0;
-        assert!(order > 0.9, "{what}: {errors:?}, order {order}");
-    }
+    let errors = |i: usize| found.map(|f| (f[i] - exact[i]).abs() / exact[i]);
+    let (half_width, pressure) = (errors(0), errors(1));
+    let order = (half_width[0] / half_width[2]).log2() / 2.0;
+    assert!(order > 0.9 && half_width[2] < 0.04, "half-width: {half_width:?}, order {order}");
+    assert!(pressure[2] < 0.5 * pressure[1] && pressure[2] < 0.03, "peak pressure: {pressure:?}");
 }
