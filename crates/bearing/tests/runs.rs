@@ -210,8 +210,8 @@ fn invariant_interrupted_run_keeps_its_samples() {
 /// physics shows here, a change of rounding does not. `STRIBECK_BLESS=1 cargo test …` writes the file anew.
 #[test]
 fn golden_coarse_bearing() {
-    // The system's sine and cosine may round differently on another machine; nothing else does, because this run starts
-    // without the preload, whose factorisation does. A change of the physics shows in the first digits.
+    // Sums over wide and narrow vectors and the system's sine and cosine round differently on another machine, far below
+    // this; the preload, whose factorisation does too, is left out. A change of the physics shows in the first digits.
     const TOLERANCE: f64 = 1e-6;
     const CHANNELS: [&str; 6] = [
         "sensor.side.ay_m_s2",
