@@ -19,7 +19,7 @@ pub(crate) struct Options {
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     overrides: Vec<String>,
     /// Processor time for one element and one step [ns], for the estimate of cost
-    #[arg(long, default_value_t = 2.5)]
+    #[arg(long, default_value_t = 3.5)]
     ns_per_element_step: f64,
 }
 
@@ -40,12 +40,13 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         1e3 * plan.facet_m
     );
     println!(
-        "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the rollers {:.2})",
+        "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the rollers {:.2}); \
+         docs/results/noise.md has two to five times as much in the paper's scene",
         plan.lumped.level_g, plan.lumped.frequency_hz, plan.lumped.smoothing, plan.lumped.phases
     );
     let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
     println!(
-        "  {} elements, steps of about {:.0} ns, {:.0} of them: about {cost:.0} s of processor time at {} ns per element-step",
+        "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s of processor time at {} ns per element-step",
         plan.elements,
         1e9 * plan.time_step_s,
         plan.steps,
