@@ -10,7 +10,7 @@ use stribeck_solver::{
 use crate::{
     error::Error,
     law::Law,
-    pass::{Memory, Pass, Weights},
+    pass::{LEAST_SPEED, Memory, Pass, SPEED_MARGIN, Weights},
     points::{Method, Points},
     search::Tree,
     shape::Push,
@@ -96,12 +96,6 @@ struct Pair {
 
 /// Longest time between two searches, in steps: speeds may change meanwhile.
 const LONGEST_REST: f64 = 400.0;
-
-/// Speeds are allowed for with this margin between searches.
-const SPEED_MARGIN: f64 = 2.0;
-
-/// Least speed allowed for between searches [m/s]: what an impact may give to a surface at rest.
-const LEAST_SPEED: f64 = 2.0;
 
 /// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much more than
 /// the mean; no other spacing gives more.
@@ -312,7 +306,8 @@ fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize)
 fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
     let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
     let share = if spec.sides == Sides::Both { 0.5 } else { 1.0 };
-    Weights { law, thickness: share * thickness, fastest, softness: preload.unwrap_or(0.0) }
+    let softness = preload.unwrap_or(0.0);
+    Weights { law, thickness: share * thickness, fastest, softness }
 }
 
 impl Force for Contacts {

@@ -88,9 +88,12 @@
 // Units stand in brackets, as in "gap [m]", and are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod band;
 mod contacts;
 mod error;
+mod evaluation;
 mod law;
+mod meeting;
 mod pass;
 mod points;
 mod projection;

@@ -1,18 +1,18 @@
 //! One pass: the points of a secondary surface against the facets of a primary one.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use serde::{Deserialize, Serialize};
-use stribeck_solver::{force::RankOne, state::Moment};
+use stribeck_solver::{force::RankOne, lanes::LANES, state::Moment};
 
 use crate::{
+    evaluation::Evaluation,
     law::Law,
     points::Points,
     projection::{Frame, distance},
-    row::{MOST_POINTS, Row},
     shape::{Push, Shape, Side},
     spline::Patch,
     surface::Surface,
-    touch::{Histories, Slide, Sum, touch},
+    touch::{Histories, Slide, Sum},
 };
 
 /// One pass of a pair.
@@ -23,9 +23,7 @@ pub(crate) struct Pass {
     pub(crate) points: Points,
     pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
-    deepest: f64,
-    /// No candidate wakes before this step.
-    asleep: u64,
+    pub(crate) deepest: f64,
     /// About how long the last evaluation took, in units of some ten nanoseconds.
     pub(crate) work: usize,
 }
@@ -34,23 +32,42 @@ pub(crate) struct Pass {
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Memory {
     /// Facet of the primary surface on which each point was last found.
-    nearest: Vec<u32>,
+    pub(crate) nearest: Vec<u32>,
     /// Step of the last search.
-    searched: u64,
+    pub(crate) searched: u64,
     /// Steps after the search before which each point cannot touch.
-    doze: Vec<u16>,
-    candidates: Vec<Candidate>,
+    pub(crate) doze: Vec<f64>,
+    /// Fastest that a point of the pass opened or closed of late [m/s].
+    pub(crate) pace: f64,
+    pub(crate) candidates: Vec<Candidate>,
+    /// None of them wakes before this step.
+    pub(crate) asleep: u64,
     /// What points in contact remember.
-    history: Histories,
+    pub(crate) history: Histories,
 }
 
 /// A facet that may touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Candidate {
-    facet: u32,
+pub(crate) struct Candidate {
+    pub(crate) facet: u32,
     /// Not before this step.
-    wake: u64,
+    pub(crate) wake: u64,
 }
+
+/// Speeds are allowed for with this margin until the next look.
+pub(crate) const SPEED_MARGIN: f64 = 2.0;
+
+/// Least speed allowed for until then [m/s]: what an impact may give to a surface at rest.
+pub(crate) const LEAST_SPEED: f64 = 2.0;
+
+/// A point allows for this part of the fastest approach too: bodies turn by less than a tenth while it dozes.
+const FASTEST_OVER: f64 = 16.0;
+
+/// What is left of a pass's pace from one evaluation to the next.
+pub(crate) const PACE_KEPT: f64 = 0.99;
+
+/// Steps that a point without a foot dozes: longer than any time between two searches.
+pub(crate) const NEVER: f64 = 1e9;
 
 /// Most nodes that a facet hangs on.
 const MOST_NODES: usize = 6;
@@ -68,41 +85,24 @@ pub(crate) struct Weights {
     pub(crate) softness: f64,
 }
 
-/// The evaluation of a pass, to be compiled for each instruction set.
-struct Evaluation<'a> {
-    pass: &'a mut Pass,
-    surfaces: &'a [Surface],
-    at: &'a Moment<'a>,
-    w: &'a Weights,
-    push: &'a mut Vec<Push>,
-}
-
-impl WithSimd for Evaluation<'_> {
-    type Output = Sum;
-
-    #[inline(always)]
-    fn with_simd<V: Simd>(self, simd: V) -> Sum {
-        let Self { pass, surfaces, at, w, push } = self;
-        // Which curves meet is asked once a pass; the loop over points is compiled for each.
-        match [pass.secondary, pass.primary].map(|s| surfaces[s].spline.is_some()) {
-            [false, false] => pass.evaluate_as::<V, Frame, Frame>(simd, surfaces, at, w, push),
-            [false, true] => pass.evaluate_as::<V, Frame, Patch>(simd, surfaces, at, w, push),
-            [true, false] => pass.evaluate_as::<V, Patch, Frame>(simd, surfaces, at, w, push),
-            [true, true] => pass.evaluate_as::<V, Patch, Patch>(simd, surfaces, at, w, push),
-        }
-    }
-}
-
 impl Weights {
     /// Larger gaps than this carry nothing [m].
     #[inline(always)]
-    fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         // Beyond 30 softnesses the rounded law is below 1e-13 of one softness of penetration.
         if self.softness > 0.0 { 30.0 * self.softness } else { self.law.onset }
     }
 
+    /// Steps that a point with this gap, sliding so, stays away for certain in a pass of this pace (THEORY §4.1).
+    #[inline(always)]
+    pub(crate) fn steps_apart(&self, gap: f64, sliding: f64, pace: f64, dt: f64) -> f64 {
+        let least = LEAST_SPEED.max(self.fastest / FASTEST_OVER);
+        let closing = SPEED_MARGIN * (pace + sliding.abs()) + least;
+        ((gap - self.reach()).abs() / (closing.min(self.fastest) * dt)).floor().min(NEVER)
+    }
+
     /// Effective penetration [m] and its slope [-] at a gap (THEORY §3.2).
-    fn rounded(&self, gap: f64) -> [f64; 2] {
+    pub(crate) fn rounded(&self, gap: f64) -> [f64; 2] {
         let e = self.softness;
         if e == 0.0 {
             let [depth, slope, _] = self.law.depth(gap);
@@ -130,13 +130,14 @@ impl Pass {
             memory: Memory {
                 nearest: vec![0; n],
                 searched: 0,
-                doze: vec![0; n],
+                doze: vec![0.0; n + LANES],
+                pace: 0.0,
                 candidates: Vec::new(),
-                history: Histories::new(if remembers { n } else { 0 }),
+                asleep: 0,
+                history: if remembers { Histories::new(n) } else { Histories::default() },
             },
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
-            asleep: 0,
             work: 0,
         }
     }
@@ -146,14 +147,18 @@ impl Pass {
         let (own, secondary, primary) = (&self.memory, &surfaces[self.secondary], &surfaces[self.primary]);
         memory.nearest.len() == own.nearest.len()
             && memory.doze.len() == own.doze.len()
-            && memory.history.len() == own.history.len()
+            && if own.history.is_empty() {
+                memory.history.is_empty()
+            } else {
+                memory.history.serve(self.points.len())
+            }
             && memory.nearest.iter().all(|&facet| (facet as usize) < primary.facets())
             && memory.candidates.iter().all(|c| (c.facet as usize) < secondary.facets())
     }
 
     /// Goes on from a memory.
     pub(crate) fn remember(&mut self, memory: Memory) {
-        (self.memory, self.asleep) = (memory, 0);
+        self.memory = memory;
     }
 
     /// Takes new candidates from pairs (secondary facet, primary facet), ascending.
@@ -165,17 +170,17 @@ impl Pass {
     ) {
         let (x, y) = (at.x, at.y);
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let Memory { nearest, searched, doze, candidates, .. } = &mut self.memory;
+        let Memory { nearest, searched, doze, candidates, asleep, .. } = &mut self.memory;
         *searched = at.step;
         candidates.clear();
-        self.asleep = 0;
+        *asleep = 0;
         let mut best: [f64; 64] = [f64::INFINITY; 64];
         let mut last = None;
         for (f, g) in pairs {
             let range = self.points.of_facet(f as usize);
             if last != Some(f) {
                 candidates.push(Candidate { facet: f, wake: 0 });
-                doze[range.clone()].fill(0);
+                doze[range.clone()].fill(0.0);
                 best = [f64::INFINITY; 64];
                 last = Some(f);
             }
@@ -208,130 +213,10 @@ impl Pass {
         push: &mut Vec<Push>,
     ) -> Sum {
         self.work = 0;
-        if at.step < self.asleep {
+        if at.step < self.memory.asleep {
             return Sum::default();
         }
         Arch::new().dispatch(Evaluation { pass: self, surfaces, at, w, push })
-    }
-
-    #[inline(always)]
-    fn evaluate_as<V: Simd, S: Shape, P: Shape>(
-        &mut self,
-        simd: V,
-        surfaces: &[Surface],
-        at: &Moment<'_>,
-        w: &Weights,
-        push: &mut Vec<Push>,
-    ) -> Sum {
-        let mut sum = Sum::default();
-        let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let reach = w.reach();
-        let mut first_awake = u64::MAX;
-        let Memory { nearest, searched, doze, candidates, history } = &mut self.memory;
-        let now = u16::try_from(at.step.saturating_sub(*searched)).unwrap_or(u16::MAX);
-        let closing = w.fastest * at.dt;
-        // Consecutive points mostly share a primary facet: its forces wait until another one comes.
-        let mut other: Option<Side<P>> = None;
-        // Points on one chord against another chord, with the sharp law: many at a time.
-        let flat = secondary.is_flat() && primary.is_flat();
-        let together = flat && w.softness == 0.0 && w.law.onset == 0.0 && history.len() > 0;
-        let mut shape: Option<P> = None;
-        for candidate in candidates {
-            if at.step < candidate.wake {
-                first_awake = first_awake.min(candidate.wake);
-                continue;
-            }
-            let facet = candidate.facet as usize;
-            let mut own = Side::<S>::new(S::new(secondary, at.x, at.y, facet), secondary, at);
-            let mut soonest = u16::MAX;
-            let mut touched = false;
-            let range = self.points.of_facet(facet);
-            self.work += 4 + range.len() / 4;
-            let mut done = [false; MOST_POINTS];
-            if together && range.len() <= MOST_POINTS {
-                let mut row = Row { points: &self.points, range: range.clone(), nearest, doze, now, history };
-                touched = row.touch(simd, &mut own, primary, at, w, self.deepest, &mut done, &mut sum, push);
-            }
-            for i in range.clone() {
-                if done.get(i - range.start) == Some(&true) {
-                    continue;
-                }
-                if doze[i] > now {
-                    soonest = soonest.min(doze[i]);
-                    continue;
-                }
-                self.work += 4;
-                let spot = own.shape.spot(self.points.place[i], self.points.height[i]);
-                let start = nearest[i] as usize;
-                let shape = match &mut shape {
-                    Some(shape) if shape.facet() == start => shape,
-                    shape => shape.insert(P::new(primary, at.x, at.y, start)),
-                };
-                let found = shape.project(primary, at.x, at.y, spot.at);
-                nearest[i] = shape.facet() as u32;
-                let gap = found.map_or(f64::INFINITY, |f| f.gap);
-                let Some(to) = found.filter(|f| f.gap < reach && f.gap > -self.deepest) else {
-                    // Points off both ends of an open surface report an infinite gap; the next search wakes them.
-                    let steps = ((gap - reach).abs() / closing) as u16;
-                    doze[i] = now.saturating_add(steps);
-                    soonest = soonest.min(doze[i]);
-                    if let Some(mut past) = history.get(i).filter(|h| !h.is_empty()) {
-                        touched = true;
-                        let side = Side::new(*shape, primary, at);
-                        let slide = found.map_or(Slide::default(), |to| side.slide(own.velocity(&spot), &to));
-                        past.release(self.points.weight[i] * w.thickness, &w.law, at.dt, slide, &mut sum);
-                        history.set(i, past);
-                    }
-                    continue;
-                };
-                touched = true;
-                let other = match &mut other {
-                    Some(side) if side.shape.facet() == to.facet => side,
-                    last => {
-                        if let Some(side) = last {
-                            side.flush(primary, push);
-                        }
-                        last.insert(Side::new(*shape, primary, at))
-                    }
-                };
-                let area = self.points.weight[i] * w.thickness;
-                let [pressure, shear] = if w.softness > 0.0 {
-                    [w.law.stiffness * area * w.rounded(gap)[0], 0.0]
-                } else {
-                    match history.get(i) {
-                        Some(mut past) => {
-                            let slide = other.slide(own.velocity(&spot), &to);
-                            let push = touch(gap, area, &w.law, at.dt, slide, &mut past, &mut sum);
-                            history.set(i, past);
-                            push
-                        }
-                        None => {
-                            let [depth, _, work] = w.law.depth(gap);
-                            sum.stored += w.law.stiffness * area * work;
-                            sum.penetration = sum.penetration.max(depth);
-                            [w.law.stiffness * area * depth, 0.0]
-                        }
-                    }
-                };
-                let [nx, ny] = to.normal;
-                let f = [pressure * nx - shear * ny, pressure * ny + shear * nx];
-                own.push_point(&spot, f);
-                other.push_foot(&to, f, pressure, shear);
-            }
-            if touched {
-                own.flush(secondary, push);
-                sum.force = [sum.force[0] + own.force[0], sum.force[1] + own.force[1]];
-                first_awake = 0;
-            } else {
-                candidate.wake = *searched + u64::from(soonest);
-                first_awake = first_awake.min(candidate.wake);
-            }
-        }
-        if let Some(side) = &other {
-            side.flush(primary, push);
-        }
-        self.asleep = first_awake;
-        sum
     }
 
     /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; what the

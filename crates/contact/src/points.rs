@@ -1,5 +1,7 @@
 //! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
 
+use stribeck_solver::lanes::LANES;
+
 use crate::surface::Surface;
 
 /// Where the penalty acts.
@@ -19,7 +21,7 @@ impl Method {
     pub const MOST_POINTS: usize = 32;
 }
 
-/// Contact points, facet by facet.
+/// Contact points, facet by facet. Behind the last one each field has room for a vector that reads on.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
@@ -30,11 +32,14 @@ pub(crate) struct Points {
     pub(crate) weight: Vec<f64>,
     /// First point of each facet; one more entry than facets.
     pub(crate) first: Vec<u32>,
+    /// Most points of one facet.
+    pub(crate) most: usize,
 }
 
 impl Points {
     pub(crate) fn new(surface: &Surface, method: Method) -> Self {
-        let mut points = Self { place: Vec::new(), height: Vec::new(), weight: Vec::new(), first: vec![0] };
+        let mut points =
+            Self { place: Vec::new(), height: Vec::new(), weight: Vec::new(), first: vec![0], most: 0 };
         let tributary = surface.tributary();
         for f in 0..surface.facets() {
             match method {
@@ -59,6 +64,11 @@ impl Points {
             points.height.extend(points.place[new].iter().map(|&s| surface.height(f, s)));
             points.first.push(points.place.len() as u32);
         }
+        points.most = points.first.windows(2).map(|w| (w[1] - w[0]) as usize).max().unwrap_or(0);
+        let padded = points.place.len() + LANES;
+        for field in [&mut points.place, &mut points.height, &mut points.weight] {
+            field.resize(padded, 0.0);
+        }
         points
     }
 
@@ -68,7 +78,7 @@ impl Points {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.place.len()
+        self.first.last().map_or(0, |&end| end as usize)
     }
 
     /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.

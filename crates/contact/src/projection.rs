@@ -78,11 +78,6 @@ impl Shape for Frame {
     }
 
     #[inline(always)]
-    fn chord(&self) -> Option<&Frame> {
-        Some(self)
-    }
-
-    #[inline(always)]
     fn spot(&self, place: f64, height: f64) -> Spot {
         let Self { origin: [ax, ay], along: [tx, ty], normal, inverse, .. } = *self;
         let at = [ax + place * tx + height * normal[0], ay + place * ty + height * normal[1]];

@@ -7,7 +7,7 @@
 use stribeck_solver::state::Moment;
 
 use crate::{
-    projection::{Foot, Frame, Projection},
+    projection::{Foot, Projection},
     surface::Surface,
     touch::Slide,
 };
@@ -42,9 +42,6 @@ pub(crate) trait Shape: Copy {
 
     fn facet(&self) -> usize;
 
-    /// The chord, where that is the polynomial.
-    fn chord(&self) -> Option<&Frame>;
-
     fn spot(&self, place: f64, height: f64) -> Spot;
 
     /// Projects `p`, walking on to the facet where its foot is; `None` beyond the ends of an open surface.
@@ -73,8 +70,6 @@ pub(crate) trait Coefficients {
     fn slope(&self, s: f64) -> [f64; 2];
     /// Adds a force that acts on the value, and one that acts on the slope at `s`.
     fn add(&mut self, s: f64, on_value: [f64; 2], on_slope: [f64; 2]);
-    /// Adds the sums of many forces on values, as they are and times their places; only for chords.
-    fn add_sums(&mut self, forces: [f64; 2], with_places: [f64; 2]);
 }
 
 impl<const K: usize> Coefficients for Poly<K> {
@@ -100,14 +95,6 @@ impl<const K: usize> Coefficients for Poly<K> {
             v = [v[0] * s + k as f64 * self.0[k][0], v[1] * s + k as f64 * self.0[k][1]];
         }
         v
-    }
-
-    #[inline(always)]
-    fn add_sums(&mut self, forces: [f64; 2], with_places: [f64; 2]) {
-        for k in 0..2 {
-            self.0[0][k] += forces[k];
-            self.0[1][k] += with_places[k];
-        }
     }
 
     #[inline(always)]
@@ -165,20 +152,6 @@ impl<S: Shape> Side<S> {
             opening: nx * (v[0] - u[0]) + ny * (v[1] - u[1]) - to.turn * swing,
             along: nx * (v[1] - foot[1]) - ny * (v[0] - foot[0]),
         }
-    }
-
-    /// Values of a chord's motion at its first node and their change to the second [m/s].
-    #[inline(always)]
-    pub(crate) fn linear_motion(&self) -> [[f64; 2]; 2] {
-        [self.velocity.value(0.0), self.velocity.slope(0.0)]
-    }
-
-    /// Adds forces on many points of a chord: their sum, and the sum of each times its place.
-    #[inline(always)]
-    pub(crate) fn push_sums(&mut self, forces: [f64; 2], with_places: [f64; 2]) {
-        self.forces.add_sums(forces, with_places);
-        self.force = [self.force[0] + forces[0], self.force[1] + forces[1]];
-        self.used = true;
     }
 
     /// Adds a force on a point.

@@ -250,11 +250,6 @@ impl Shape for Patch {
     }
 
     #[inline(always)]
-    fn chord(&self) -> Option<&Frame> {
-        None
-    }
-
-    #[inline(always)]
     fn spot(&self, place: f64, height: f64) -> Spot {
         let (c, d) = (self.curve.value(place), self.curve.slope(place));
         let inverse = 1.0 / (d[0] * d[0] + d[1] * d[1]).sqrt();

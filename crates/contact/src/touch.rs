@@ -1,6 +1,7 @@
 //! What acts at one point in contact, and what it remembers (THEORY §4.2–4.3).
 
 use serde::{Deserialize, Serialize};
+use stribeck_solver::lanes::LANES;
 
 use crate::law::Law;
 
@@ -13,7 +14,8 @@ pub(crate) struct History {
     damping: f64,
 }
 
-/// Histories of all points of a pass, one array a field; empty without damping and friction.
+/// Histories of all points of a pass, one array a field, padded as [`Points`](crate::points::Points) are; empty without
+/// damping and friction.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Histories {
     pub(crate) slip: Vec<f64>,
@@ -23,11 +25,17 @@ pub(crate) struct Histories {
 impl Histories {
     /// Of `n` points without contact.
     pub(crate) fn new(n: usize) -> Self {
-        Self { slip: vec![0.0; n], damping: vec![0.0; n] }
+        Self { slip: vec![0.0; n + LANES], damping: vec![0.0; n + LANES] }
     }
 
-    pub(crate) fn len(&self) -> usize {
-        self.slip.len().min(self.damping.len())
+    /// Whether there is one for each of `n` points.
+    pub(crate) fn serve(&self, n: usize) -> bool {
+        self.slip.len() == n + LANES && self.damping.len() == n + LANES
+    }
+
+    /// Whether nothing is remembered.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.slip.is_empty() && self.damping.is_empty()
     }
 
     #[inline(always)]
@@ -36,6 +44,7 @@ impl Histories {
         Some(History { slip, damping })
     }
 
+    /// See [`Histories::get`].
     #[inline(always)]
     pub(crate) fn set(&mut self, i: usize, history: History) {
         (self.slip[i], self.damping[i]) = (history.slip, history.damping);

@@ -1,6 +1,6 @@
 //! Numbers that a kernel computes with: one at a time, or as many side by side as one instruction takes.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
 
@@ -105,6 +105,20 @@ impl<S: Simd> Vector<S> {
         Self { lanes: simd.rotate_right_f64s(simd.transmute_f64s_u64s(joined), 1), ..self }
     }
 
+    /// Of numbers that are zero or one: bit l is set where number l is one.
+    #[inline(always)]
+    pub fn bits(self) -> u64 {
+        const WEIGHTS: [f64; LANES] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+        let weights = Self::load(self.simd, &WEIGHTS, 0);
+        self.simd.reduce_sum_f64s((self * weights).lanes) as u64
+    }
+
+    /// The smallest of all numbers.
+    #[inline(always)]
+    pub fn smallest(self) -> f64 {
+        self.simd.reduce_min_f64s(self.lanes)
+    }
+
     /// The largest of all numbers.
     #[inline(always)]
     pub fn largest(self) -> f64 {
@@ -121,6 +135,12 @@ impl<S: Simd> Vector<S> {
 }
 
 impl<S: Simd> Vector<S> {
+    /// The square root of each number.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self { lanes: self.simd.sqrt_f64s(self.lanes), ..self }
+    }
+
     /// The smaller of two numbers, lane by lane.
     #[inline(always)]
     pub fn min(self, other: Self) -> Self {
@@ -163,6 +183,14 @@ impl<S: Simd> Mul for Vector<S> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self { lanes: self.simd.mul_f64s(self.lanes, other.lanes), ..self }
+    }
+}
+
+impl<S: Simd> Div for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self { lanes: self.simd.div_f64s(self.lanes, other.lanes), ..self }
     }
 }
 

@@ -1,0 +1,145 @@
+//! Many facets with few points each, as in a seat: a facet in each lane.
+//!
+//! What lies near the end of the other chord, near a corner, or does not touch is left over.
+
+use pulp::Simd;
+use stribeck_solver::{
+    lanes::{LANES, Number, Vector},
+    state::Moment,
+};
+
+use crate::{
+    meeting::{Account, Chord, Laws, Meeting, Spots, ends},
+    points::Points,
+    row::Outcome,
+    shape::Push,
+    surface::Surface,
+    touch::Histories,
+};
+
+/// Facets with more points than this fill vectors of their own.
+pub(crate) const MOST_POINTS: usize = 4;
+
+/// Some facets of a pass, at most as many as there are lanes.
+pub(crate) struct Band<'a> {
+    pub(crate) secondary: &'a Surface,
+    pub(crate) points: &'a Points,
+    /// Facets; those that sleep are passed over.
+    pub(crate) facets: [usize; LANES],
+    pub(crate) awake: [bool; LANES],
+    /// Of all points of the pass: where they were found last, until when they doze, what they remember.
+    pub(crate) nearest: &'a [u32],
+    pub(crate) doze: &'a [f64],
+    pub(crate) history: &'a mut Histories,
+}
+
+impl Band<'_> {
+    /// Evaluates the points that certainly touch and pushes their forces.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // the facets' whole situation
+    pub(crate) fn touch<V: Simd, const MEMORY: bool>(
+        self,
+        simd: V,
+        laws: &Laws<V>,
+        now: f64,
+        primary: &Surface,
+        at: &Moment<'_>,
+        account: &mut Account<V>,
+        push: &mut Vec<Push>,
+    ) -> [Outcome; LANES] {
+        let Self { secondary, points, facets, awake, nearest, doze, history } = self;
+        let mut outcomes = [Outcome::default(); LANES];
+        let mut own = [[0.0; LANES]; 8];
+        let mut nodes = [(0, 0); LANES];
+        for l in 0..Vector::<V>::LEN {
+            nodes[l] = secondary.ends(facets[l]);
+            let e = ends(at, nodes[l]);
+            for k in 0..8 {
+                own[k][l] = e[k];
+            }
+        }
+        let chord = Chord::each(simd, &own);
+        let zero = Vector::all(simd, 0.0);
+        let (mut force, mut with_place) = ([zero; 2], [zero; 2]);
+        let mut any = false;
+        for k in 0..points.most {
+            let mut other = [[0.0; LANES]; 8];
+            let mut feet = [(0, 0); LANES];
+            let [mut open, mut place, mut weight, mut slip, mut damping] = [[0.0; LANES]; 5];
+            for l in 0..Vector::<V>::LEN {
+                let range = points.of_facet(facets[l]);
+                let there = k < range.len();
+                // Lanes without a point go along with the facet's first one, closed.
+                let i = if there { range.start + k } else { range.start };
+                let facet = nearest[i] as usize;
+                if awake[l] && there && doze[i] <= now {
+                    outcomes[l].left |= 1 << k;
+                    open[l] = if primary.beside_corner[facet] { 0.0 } else { 1.0 };
+                }
+                (place[l], weight[l]) = (points.place[i], points.weight[i]);
+                if MEMORY {
+                    (slip[l], damping[l]) = (history.slip[i], history.damping[i]);
+                }
+                feet[l] = primary.ends(facet);
+                let e = ends(at, feet[l]);
+                for k in 0..8 {
+                    other[k][l] = e[k];
+                }
+            }
+            let spots = Spots {
+                open: Vector::load(simd, &open, 0),
+                place: Vector::load(simd, &place, 0),
+                weight: Vector::load(simd, &weight, 0),
+                slip: Vector::load(simd, &slip, 0),
+                damping: Vector::load(simd, &damping, 0),
+            };
+            let meeting = Meeting::new(laws, &chord, &Chord::each(simd, &other));
+            let acting = meeting.act::<MEMORY>(laws, &spots, account);
+            let on = acting.on.bits();
+            if on == 0 {
+                continue;
+            }
+            any = true;
+            let [fx, fy] = acting.force;
+            force = [force[0] + fx, force[1] + fy];
+            let [wx, wy] = with_place;
+            with_place = [fx.times_plus(spots.place, wx), fy.times_plus(spots.place, wy)];
+            acting.slip.store(&mut slip, 0);
+            acting.damping.store(&mut damping, 0);
+            let (second_x, second_y) = (fx * acting.foot, fy * acting.foot);
+            let [mut first_fx, mut first_fy, mut second_fx, mut second_fy] = [[0.0; LANES]; 4];
+            (second_x - fx).store(&mut first_fx, 0);
+            (second_y - fy).store(&mut first_fy, 0);
+            (-second_x).store(&mut second_fx, 0);
+            (-second_y).store(&mut second_fy, 0);
+            for l in 0..Vector::<V>::LEN {
+                if on >> l & 1 == 0 {
+                    continue;
+                }
+                let i = points.of_facet(facets[l]).start + k;
+                if MEMORY {
+                    (history.slip[i], history.damping[i]) = (slip[l], damping[l]);
+                }
+                outcomes[l].touched = true;
+                outcomes[l].left &= !(1 << k);
+                push.push((feet[l].0 as u32, [first_fx[l], first_fy[l]]));
+                push.push((feet[l].1 as u32, [second_fx[l], second_fy[l]]));
+            }
+        }
+        if any {
+            let [mut fx, mut fy, mut sx, mut sy] = [[0.0; LANES]; 4];
+            force[0].store(&mut fx, 0);
+            force[1].store(&mut fy, 0);
+            with_place[0].store(&mut sx, 0);
+            with_place[1].store(&mut sy, 0);
+            for l in 0..Vector::<V>::LEN {
+                if outcomes[l].touched {
+                    outcomes[l].force = [fx[l], fy[l]];
+                    push.push((nodes[l].0 as u32, [fx[l] - sx[l], fy[l] - sy[l]]));
+                    push.push((nodes[l].1 as u32, [sx[l], sy[l]]));
+                }
+            }
+        }
+        outcomes
+    }
+}
