@@ -24,12 +24,12 @@ pub(crate) const MOST_POINTS: usize = 4;
 pub(crate) struct Band<'a> {
     pub(crate) secondary: &'a Surface,
     pub(crate) points: &'a Points,
-    /// Facets; those that sleep are passed over.
+    /// Facets, and bits of those that are awake.
     pub(crate) facets: [usize; LANES],
-    pub(crate) awake: [bool; LANES],
+    pub(crate) awake: u64,
     /// Of all points of the pass: where they were found last, until when they doze, what they remember.
     pub(crate) nearest: &'a [u32],
-    pub(crate) doze: &'a [f64],
+    pub(crate) doze: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
 }
 
@@ -72,7 +72,7 @@ impl Band<'_> {
                 // Lanes without a point go along with the facet's first one, closed.
                 let i = if there { range.start + k } else { range.start };
                 let facet = nearest[i] as usize;
-                if awake[l] && there && doze[i] <= now {
+                if awake >> l & 1 == 1 && there && doze[i] < now + 1.0 {
                     outcomes[l].left |= 1 << k;
                     open[l] = if primary.beside_corner[facet] { 0.0 } else { 1.0 };
                 }
@@ -95,7 +95,15 @@ impl Band<'_> {
             };
             let meeting = Meeting::new(laws, &chord, &Chord::each(simd, &other));
             let acting = meeting.act::<MEMORY>(laws, &spots, account);
-            let on = acting.on.bits();
+            let (on, apart) = (acting.on.bits(), acting.apart.bits());
+            if apart != 0 {
+                let mut dozes = [0.0; LANES];
+                acting.doze.store(&mut dozes, 0);
+                for l in (0..Vector::<V>::LEN).filter(|l| apart >> l & 1 == 1) {
+                    doze[points.of_facet(facets[l]).start + k] = dozes[l];
+                    outcomes[l].left &= !(1 << k);
+                }
+            }
             if on == 0 {
                 continue;
             }

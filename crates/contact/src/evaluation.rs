@@ -56,7 +56,7 @@ impl Evaluation<'_> {
         // Points on chords against chords, with the sharp law: many at a time.
         let flat = secondary.is_flat() && primary.is_flat();
         let together = flat && w.softness == 0.0 && w.law.onset == 0.0;
-        let laws = Laws::new(simd, w, at.dt, pass.deepest);
+        let laws = Laws::new(simd, w, at.dt, pass.deepest, now, PACE_KEPT * *pace);
         let mut account = Account::new(simd);
         let mut first_awake = u64::MAX;
         let (mut sum, mut work) = (Sum::default(), 0);
@@ -75,12 +75,9 @@ impl Evaluation<'_> {
             other: None,
         };
         for group in candidates.chunks_mut(lanes) {
-            let mut awake = [false; LANES];
-            for (awake, c) in awake.iter_mut().zip(group.iter()) {
-                *awake = at.step >= c.wake;
-            }
+            let awake = group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
             let mut outcomes = [Outcome::default(); LANES];
-            if awake == [false; LANES] {
+            if awake == 0 {
                 group.iter().for_each(|c| first_awake = first_awake.min(c.wake));
                 continue;
             }
@@ -97,13 +94,13 @@ impl Evaluation<'_> {
                 outcomes[0] = row.touch::<V, MEMORY>(simd, &laws, now, own, primary, at, &mut account, push);
                 work += 4 + points.most / 4;
             } else {
-                let awake = points.of_facet(facet).enumerate().filter(|(_, i)| doze[*i] <= now);
+                let awake = points.of_facet(facet).enumerate().filter(|(_, i)| doze[*i] < now + 1.0);
                 outcomes[0].left = awake.fold(0, |bits, (k, _)| bits | 1 << k);
                 work += 4;
             }
             for (l, candidate) in group.iter_mut().enumerate() {
                 let outcome = &mut outcomes[l];
-                if awake[l] {
+                if awake >> l & 1 == 1 {
                     if outcome.left != 0 {
                         work += 4 * outcome.left.count_ones() as usize;
                         let own = S::new(secondary, at.x, at.y, candidate.facet as usize);

@@ -10,7 +10,11 @@ use stribeck_solver::{
     state::Moment,
 };
 
-use crate::{pass::Weights, projection::NEAR_END, touch::Sum};
+use crate::{
+    pass::{NEVER, SPEED_MARGIN, Weights},
+    projection::NEAR_END,
+    touch::Sum,
+};
 
 /// Numbers of the moment that belong to one chord: the x, y, v_x, v_y of its first node and of its second.
 pub(crate) type Ends = [f64; 8];
@@ -57,6 +61,13 @@ pub(crate) struct Laws<V: Simd> {
     dashpot: Vector<V>,
     tangential: Vector<V>,
     ratio: Vector<V>,
+    /// Now, in steps since the search, and what points that stay apart count on (`Weights::steps_apart`).
+    now: Vector<V>,
+    never: Vector<V>,
+    pace: Vector<V>,
+    margin: Vector<V>,
+    least: Vector<V>,
+    fastest: Vector<V>,
 }
 
 /// Points that may touch: 1 in `open` where they do.
@@ -76,6 +87,9 @@ pub(crate) struct Acting<V: Simd> {
     /// 1 where the point certainly touches this chord, 0 elsewhere: there forces are zero and memories as they were.
     pub(crate) on: Vector<V>,
     pub(crate) force: [Vector<V>; 2],
+    /// 1 where the point certainly stands off this chord, and has nothing to settle; until then it dozes.
+    pub(crate) apart: Vector<V>,
+    pub(crate) doze: Vector<V>,
     /// Place on the other chord.
     pub(crate) foot: Vector<V>,
     pub(crate) slip: Vector<V>,
@@ -126,7 +140,7 @@ impl<V: Simd> Chord<V> {
 
 impl<V: Simd> Laws<V> {
     #[inline(always)]
-    pub(crate) fn new(simd: V, w: &Weights, dt: f64, deepest: f64) -> Self {
+    pub(crate) fn new(simd: V, w: &Weights, dt: f64, deepest: f64, now: f64, pace: f64) -> Self {
         let law = &w.law;
         Self {
             zero: Vector::all(simd, 0.0),
@@ -140,6 +154,12 @@ impl<V: Simd> Laws<V> {
             dashpot: Vector::all(simd, law.damping * w.thickness),
             tangential: Vector::all(simd, law.tangential),
             ratio: Vector::all(simd, law.friction / law.tangential),
+            now: Vector::all(simd, now),
+            never: Vector::all(simd, NEVER),
+            pace: Vector::all(simd, pace),
+            margin: Vector::all(simd, SPEED_MARGIN),
+            least: Vector::all(simd, w.least_speed()),
+            fastest: Vector::all(simd, w.fastest),
         }
     }
 }
@@ -198,23 +218,38 @@ impl<V: Simd> Meeting<V> {
         let foot = r[0].times_plus(self.other[0], r[1] * self.other[1]);
         let gap = r[0].times_plus(nx, r[1] * ny);
         let depth = -gap;
-        // As in `Shape::holds`; only points in contact, whose gap is negative, matter.
-        let margin = laws.near_end * depth * self.inverse;
+        // As in `Shape::holds`.
+        let margin = laws.near_end * depth.max(gap) * self.inverse;
         let within = margin.choose_below(foot, foot.choose_below(one - margin, at.open, zero), zero);
         let on = gap.choose_below(zero, depth.choose_below(laws.deepest, within, zero), zero);
-        let k = laws.stiffness * weight;
-        let elastic = k * depth;
-        account.penetration = account.penetration.max(on * depth);
         let (v, u) = (along(&self.own_motion, s), along(&self.other_motion, foot));
         let relative = [v[0] - u[0], v[1] - u[1]];
         let opening = relative[0].times_plus(nx, relative[1] * ny);
-        account.pace = account.pace.max(on * opening.max(-opening));
+        let sliding = relative[1] * nx - relative[0] * ny;
+        // As in `Weights::steps_apart`; a point that remembers something settles it first.
+        let pace = within * opening.max(-opening);
+        let still = at.slip * at.slip + at.damping * at.damping;
+        let apart = zero.choose_below(still, zero, gap.choose_below(zero, zero, within));
+        let approach = laws.pace.max(pace) + sliding.max(-sliding);
+        let closing = approach.times_plus(laws.margin, laws.least).min(laws.fastest);
+        let doze = (laws.now + gap / (closing * laws.dt)).min(laws.never);
+        account.pace = account.pace.max(pace);
+        let k = laws.stiffness * weight;
+        let elastic = k * depth;
+        account.penetration = account.penetration.max(on * depth);
         if !MEMORY {
             account.stored = on.times_plus(half * elastic * depth, account.stored);
             let pressure = on * elastic;
-            return Acting { on, force: [pressure * nx, pressure * ny], foot, slip: zero, damping: zero };
+            return Acting {
+                on,
+                apart,
+                doze,
+                force: [pressure * nx, pressure * ny],
+                foot,
+                slip: zero,
+                damping: zero,
+            };
         }
-        let sliding = relative[1] * nx - relative[0] * ny;
         let damping = (-(laws.dashpot * weight * opening)).max(-elastic);
         let damping_heat = -(laws.half_dt * (at.damping + damping) * opening);
         let kt = laws.tangential * k;
@@ -230,6 +265,8 @@ impl<V: Simd> Meeting<V> {
         Acting {
             on,
             force: [on * (normal * nx - shear * ny), on * (normal * ny + shear * nx)],
+            apart,
+            doze,
             foot,
             slip: zero.choose_below(on, slip, at.slip),
             damping: zero.choose_below(on, damping, at.damping),

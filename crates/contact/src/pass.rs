@@ -12,7 +12,7 @@ use crate::{
     shape::{Push, Shape, Side},
     spline::Patch,
     surface::Surface,
-    touch::{Histories, Slide, Sum},
+    touch::{Histories, Sum},
 };
 
 /// One pass of a pair.
@@ -35,7 +35,7 @@ pub(crate) struct Memory {
     pub(crate) nearest: Vec<u32>,
     /// Step of the last search.
     pub(crate) searched: u64,
-    /// Steps after the search before which each point cannot touch.
+    /// Steps after the search before which each point cannot touch; it wakes in the step that holds the last of them.
     pub(crate) doze: Vec<f64>,
     /// Fastest that a point of the pass opened or closed of late [m/s].
     pub(crate) pace: f64,
@@ -96,9 +96,13 @@ impl Weights {
     /// Steps that a point with this gap, sliding so, stays away for certain in a pass of this pace (THEORY §4.1).
     #[inline(always)]
     pub(crate) fn steps_apart(&self, gap: f64, sliding: f64, pace: f64, dt: f64) -> f64 {
-        let least = LEAST_SPEED.max(self.fastest / FASTEST_OVER);
-        let closing = SPEED_MARGIN * (pace + sliding.abs()) + least;
-        ((gap - self.reach()).abs() / (closing.min(self.fastest) * dt)).floor().min(NEVER)
+        let closing = SPEED_MARGIN * (pace + sliding.abs()) + self.least_speed();
+        ((gap - self.reach()).abs() / (closing.min(self.fastest) * dt)).min(NEVER)
+    }
+
+    /// Approach allowed for however slow a point is [m/s].
+    pub(crate) fn least_speed(&self) -> f64 {
+        LEAST_SPEED.max(self.fastest / FASTEST_OVER)
     }
 
     /// Effective penetration [m] and its slope [-] at a gap (THEORY §3.2).

@@ -27,7 +27,7 @@ pub(crate) struct Row<'a> {
     pub(crate) range: Range<usize>,
     /// Of all points of the pass: where they were found last, until when they doze, what they remember.
     pub(crate) nearest: &'a [u32],
-    pub(crate) doze: &'a [f64],
+    pub(crate) doze: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
 }
 
@@ -64,7 +64,7 @@ impl Row<'_> {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         for start in (0..n).step_by(len) {
             let dozes = Vector::load(simd, doze, range.start + start);
-            let awake = dozes.choose_below(Vector::all(simd, now + 0.5), one, zero).first(len.min(n - start));
+            let awake = dozes.choose_below(Vector::all(simd, now + 1.0), one, zero).first(len.min(n - start));
             awake.store(&mut open, start);
             outcome.left |= awake.bits() << start;
         }
@@ -79,11 +79,15 @@ impl Row<'_> {
                 continue;
             }
             tried = Some(facet);
+            // Feet follow one another: where first and last are on one facet, all are.
+            if untried != 0 && nearest[range.start + untried.ilog2() as usize] as usize == facet {
+                untried = 0;
+            }
             let (a, b) = primary.ends(facet);
             let meeting = Meeting::new(laws, &chord, &Chord::all(simd, &ends(at, (a, b))));
             let mut force = [zero; 2];
             let (mut with_place, mut with_foot) = ([zero; 2], [zero; 2]);
-            let mut touches = 0;
+            let (mut touches, mut done) = (false, 0);
             for start in (k / len * len..n).step_by(len) {
                 let i = range.start + start;
                 let spots = Spots {
@@ -94,12 +98,17 @@ impl Row<'_> {
                     damping: if MEMORY { Vector::load(simd, &history.damping, i) } else { zero },
                 };
                 let acting = meeting.act::<MEMORY>(laws, &spots, account);
-                let on = acting.on.bits() << start;
+                let (on, apart) = (acting.on.bits() << start, acting.apart.bits() << start);
+                if apart != 0 {
+                    let dozes = Vector::load(simd, doze, i);
+                    zero.choose_below(acting.apart, acting.doze, dozes).store(doze, i);
+                }
+                done |= on | apart;
+                (spots.open - acting.on - acting.apart).store(&mut open, start);
                 if on == 0 {
                     continue;
                 }
-                touches |= on;
-                (spots.open - acting.on).store(&mut open, start);
+                touches = true;
                 if MEMORY {
                     acting.slip.store(&mut history.slip, i);
                     acting.damping.store(&mut history.damping, i);
@@ -111,12 +120,12 @@ impl Row<'_> {
                 let [wx, wy] = with_foot;
                 with_foot = [fx.times_plus(acting.foot, wx), fy.times_plus(acting.foot, wy)];
             }
-            if touches == 0 {
+            outcome.left &= !done;
+            untried &= !done;
+            if !touches {
                 continue;
             }
             outcome.touched = true;
-            outcome.left &= !touches;
-            untried &= !touches;
             let [fx, fy] = [force[0].sum(), force[1].sum()];
             let [sx, sy] = [with_place[0].sum(), with_place[1].sum()];
             let [tx, ty] = [with_foot[0].sum(), with_foot[1].sum()];
