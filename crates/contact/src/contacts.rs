@@ -5,6 +5,7 @@ use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
+    threads::share_out,
 };
 
 use crate::{
@@ -219,8 +220,9 @@ impl Contacts {
         for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
             tree.update(surface, at.x, at.y, grow + surface.largest_sag());
         }
+        let threads = self.threads();
         let Self { trees, surfaces, pairs, .. } = self;
-        for pair in pairs.iter_mut() {
+        let find = |pair: &mut Pair| {
             trees[pair.spec.first].pairs(&trees[pair.spec.second], &mut pair.found);
             for pass in &mut pair.passes {
                 if pass.secondary != pair.spec.first {
@@ -231,13 +233,19 @@ impl Contacts {
             }
             pair.push.clear();
             pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
-        }
+        };
+        share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
         let square = |&n: &u32| at.vx[n as usize] * at.vx[n as usize] + at.vy[n as usize] * at.vy[n as usize];
         let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(square).fold(0.0, f64::max).sqrt();
         // Two points may approach each other, each at the highest speed.
         let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
         self.search = Schedule { next: at.step + rest.clamp(1.0, LONGEST_REST) as u64, fastest };
+    }
+
+    /// Threads to share pairs out over.
+    fn threads(&self) -> usize {
+        if self.parallel { micropool::num_threads() + 1 } else { 1 }
     }
 
     fn weights(&self, spec: &PairSpec) -> Weights {
@@ -254,25 +262,6 @@ impl Pair {
 
 /// Less work than this is not worth another thread: a fork and join takes some microseconds.
 const LEAST_WORK: usize = 400;
-
-/// Evaluates pairs on several threads, about equal work on each.
-fn share_out<F: Fn(&mut Pair) + Sync>(pairs: &mut [Pair], work: usize, threads: usize, evaluate: &F) {
-    if threads < 2 || pairs.len() < 2 || work < 2 * LEAST_WORK {
-        pairs.iter_mut().for_each(evaluate);
-        return;
-    }
-    let (mut cut, mut before) = (0, 0);
-    while cut + 1 < pairs.len() && (cut == 0 || 2 * before + pairs[cut].work() <= work) {
-        before += pairs[cut].work();
-        cut += 1;
-    }
-    let (first, second) = pairs.split_at_mut(cut);
-    let half = threads / 2;
-    micropool::join(
-        || share_out(first, before, half, evaluate),
-        || share_out(second, work - before, threads - half, evaluate),
-    );
-}
 
 /// Checks what the fields allow but contact cannot do.
 fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize) -> Result<(), Error> {
@@ -315,6 +304,7 @@ impl Force for Contacts {
         if at.step >= self.search.next || self.preload.is_some() {
             self.search(&at);
         }
+        let threads = self.threads();
         let Self { surfaces, pairs, thickness, search, preload, .. } = self;
         let evaluate = |pair: &mut Pair| {
             let w = weights(&pair.spec, *thickness, search.fastest, *preload);
@@ -323,9 +313,7 @@ impl Force for Contacts {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
             }
         };
-        let threads = if self.parallel { micropool::num_threads() + 1 } else { 1 };
-        let work = pairs.iter().map(Pair::work).sum();
-        share_out(pairs, work, threads, &evaluate);
+        share_out(pairs, threads, LEAST_WORK, &Pair::work, &evaluate);
         self.energy.stored = 0.0;
         for pair in &self.pairs {
             for &(slot, [fx, fy]) in &pair.push {

@@ -87,12 +87,12 @@ impl Evaluation<'_> {
                 facets.iter_mut().zip(group.iter()).for_each(|(f, c)| *f = c.facet as usize);
                 let band = Band { secondary, points, facets, awake, nearest, doze, history };
                 outcomes = band.touch::<V, MEMORY>(simd, &laws, now, primary, at, &mut account, push);
-                work += 2 * points.most;
+                work += 15 * points.most;
             } else if together {
                 let row = Row { points, range: points.of_facet(facet), nearest, doze, history };
                 let own = secondary.ends(facet);
                 outcomes[0] = row.touch::<V, MEMORY>(simd, &laws, now, own, primary, at, &mut account, push);
-                work += 4 + points.most / 4;
+                work += if outcomes[0].touched { 20 } else { 10 };
             } else {
                 let awake = points.of_facet(facet).enumerate().filter(|(_, i)| doze[*i] < now + 1.0);
                 outcomes[0].left = awake.fold(0, |bits, (k, _)| bits | 1 << k);
@@ -102,7 +102,7 @@ impl Evaluation<'_> {
                 let outcome = &mut outcomes[l];
                 if awake >> l & 1 == 1 {
                     if outcome.left != 0 {
-                        work += 4 * outcome.left.count_ones() as usize;
+                        work += 5 * outcome.left.count_ones() as usize;
                         let own = S::new(secondary, at.x, at.y, candidate.facet as usize);
                         singles.touch(own, outcome, nearest, doze, history, &mut sum, push);
                     }

@@ -87,16 +87,17 @@ impl LaneFrames {
         Self { frames, ..Self::REST }
     }
 
+    /// Whether one of them asks how its body moves.
+    pub(crate) fn follow(&self) -> bool {
+        self.frames.iter().any(|&frame| frame != Frame::Rest)
+    }
+
     /// Places the frame of a lane by the present motion of its body.
-    pub(crate) fn place(&mut self, lane: usize, own: impl FnOnce() -> RigidMotion) {
+    pub(crate) fn place(&mut self, lane: usize, own: RigidMotion) {
         let frame = match self.frames[lane] {
             Frame::Rest => PlacedFrame::default(),
-            Frame::OwnMotion => {
-                let own = own();
-                PlacedFrame { centre: own.centre, velocity: own.velocity, spin: own.spin }
-            }
+            Frame::OwnMotion => PlacedFrame { centre: own.centre, velocity: own.velocity, spin: own.spin },
             Frame::Track => {
-                let own = own();
                 let [x, y] = own.centre;
                 let square = (x * x + y * y).max(f64::MIN_POSITIVE);
                 let outwards = (own.velocity[0] * x + own.velocity[1] * y) / square;

@@ -15,11 +15,15 @@ use crate::{
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
     sweep::{Drive, Energies, Scratch, TileFields, sweep},
+    threads::{cut, from_both_ends, share_out},
     tile::{Tile, TileDamping},
 };
 
 /// The heat of mass damping is counted in every so manyth step: it costs as much as damping itself.
 const HEAT_EVERY: u64 = 4;
+
+/// Nodes or elements that are worth another thread, for sums that are taken now and then.
+const LEAST_WORK: usize = 4000;
 
 /// A model in motion.
 #[derive(Debug)]
@@ -56,6 +60,8 @@ pub struct Dynamics {
 pub(crate) struct DampedBody {
     pub(crate) places: Vec<(usize, usize)>,
     slots: Vec<u32>,
+    /// Its motion when the frames were last placed here.
+    motion: RigidMotion,
 }
 
 /// Energy counted step by step [J].
@@ -303,7 +309,8 @@ impl Dynamics {
                 let at = bodies.iter().position(|(body, _)| *body == b).unwrap_or_else(|| {
                     let nodes = self.body_nodes[b].clone();
                     let slots = nodes.map(|n| self.layout.slot_of_node[n]).collect();
-                    bodies.push((b, DampedBody { places: Vec::new(), slots }));
+                    bodies
+                        .push((b, DampedBody { places: Vec::new(), slots, motion: RigidMotion::default() }));
                     bodies.len() - 1
                 });
                 bodies[at].1.places.push((t, lane));
@@ -316,7 +323,7 @@ impl Dynamics {
 
     /// Places the damping frames now and then, and moves them on in between.
     fn place_damping_frames(&mut self) {
-        let Some(damped) = &self.damped else { return };
+        let Some(mut damped) = self.damped.take() else { return };
         let step = self.state.step;
         let due = |placed: u64| step < placed || step - placed >= PLACE_EVERY;
         let place = step.is_multiple_of(PLACE_EVERY) || self.frames_placed.is_none_or(due);
@@ -324,11 +331,18 @@ impl Dynamics {
         self.frames_placed = Some(placed);
         let mut tiles = std::mem::take(&mut self.tiles);
         if place {
-            for body in damped {
-                let own = std::cell::LazyCell::new(|| self.rigid_motion(&body.slots));
+            let moving = |body: &DampedBody| {
+                let frames = |&(tile, _): &(usize, usize)| tiles[tile].damping.as_ref().map(|d| &d.frames);
+                body.places.iter().filter_map(frames).any(LaneFrames::follow)
+            };
+            if damped.iter().any(moving) {
+                let find = |body: &mut DampedBody| body.motion = self.rigid_motion(&body.slots);
+                share_out(&mut damped, self.threads(), LEAST_WORK, &|body| body.slots.len(), &find);
+            }
+            for body in &damped {
                 for &(tile, lane) in &body.places {
                     if let Some(d) = &mut tiles[tile].damping {
-                        d.frames.place(lane, || *own);
+                        d.frames.place(lane, body.motion);
                     }
                 }
             }
@@ -336,7 +350,7 @@ impl Dynamics {
         for d in tiles.iter_mut().filter_map(|t| t.damping.as_mut()) {
             d.frames.advance((step - placed) as f64 * self.time_step);
         }
-        self.tiles = tiles;
+        (self.tiles, self.damped) = (tiles, Some(damped));
     }
 
     fn sweep_tiles(&mut self) {
@@ -351,7 +365,7 @@ impl Dynamics {
         let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
         let drive = Drive { dt: self.time_step, gravity: self.gravity, count_heat };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        sweep_all(&self.tiles, fields, &mut self.counted, scratch, drive);
+        sweep_all(Runs { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
         // In the order of the tiles, whatever thread each was on.
         let Energies { work, heat } = self.counted.iter().fold(Energies::default(), |sum, &e| sum + e);
         self.drive.add(work);
@@ -363,24 +377,37 @@ impl Dynamics {
         }
     }
 
-    /// Strain and hourglass energy of the present positions [J].
+    /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from within the pool.
     pub fn elastic_energy(&self) -> ElasticEnergy {
-        let (x, y) = (&self.state.x, &self.state.y);
+        let mut bodies: Vec<_> = self.elements.bodies.iter().map(|b| (b, ElasticEnergy::default())).collect();
+        let elements = |(body, _): &(&ElasticBody, _)| body.quads.len() + body.triangles.len();
+        let find = |(body, energy): &mut (&ElasticBody, _)| *energy = self.energy_of(body);
+        share_out(&mut bodies, self.threads(), LEAST_WORK, &elements, &find);
+        let sum = |a: ElasticEnergy, b: &ElasticEnergy| ElasticEnergy {
+            strain: a.strain + b.strain,
+            hourglass: a.hourglass + b.hourglass,
+        };
+        bodies.iter().map(|(_, energy)| energy).fold(ElasticEnergy::default(), sum)
+    }
+
+    fn energy_of(&self, body: &ElasticBody) -> ElasticEnergy {
+        let (x, y, k) = (&self.state.x, &self.state.y, &body.stiffness);
         let mut sum = ElasticEnergy::default();
-        for body in &self.elements.bodies {
-            let k = &body.stiffness;
-            for (c, reference) in &self.elements.quads[body.quads.clone()] {
-                let [strain, hourglass] =
-                    quad_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
-                sum.strain += strain;
-                sum.hourglass += hourglass;
-            }
-            for (c, reference) in &self.elements.triangles[body.triangles.clone()] {
-                sum.strain +=
-                    triangle_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
-            }
+        for (c, reference) in &self.elements.quads[body.quads.clone()] {
+            let [strain, hourglass] =
+                quad_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
+            sum.strain += strain;
+            sum.hourglass += hourglass;
+        }
+        for (c, reference) in &self.elements.triangles[body.triangles.clone()] {
+            sum.strain += triangle_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
         }
         sum
+    }
+
+    /// Threads that take part.
+    fn threads(&self) -> usize {
+        if self.parallel { self.scratch.len() } else { 1 }
     }
 
     /// Kinetic energy [J] at the positions before the last step, given the velocities and rigid states before it:
@@ -440,38 +467,77 @@ fn pad(layout: &Layout, state: &mut State) {
     }
 }
 
-/// Sweeps tiles, one run of neighbours on each thread, about equal work on each: a fork and join costs some microseconds.
-fn sweep_all(
-    tiles: &[Tile],
-    fields: TileFields<'_>,
-    counted: &mut [Energies],
-    scratch: &mut [Scratch],
-    drive: Drive,
-) {
-    let threads = scratch.len();
-    let work: usize = tiles.iter().map(|tile| tile.work).sum();
-    let mut before = 0;
-    let cut = tiles.iter().take_while(|tile| {
-        before += tile.work;
-        // Half of the last tile may be too much.
-        (2 * before - tile.work) * threads <= 2 * work * (threads / 2)
-    });
-    let cut = cut.count();
-    if threads < 2 || cut == 0 || cut == tiles.len() {
-        let mut rest = fields;
-        for (t, (tile, energies)) in tiles.iter().zip(counted).enumerate() {
-            let end = tiles.get(t + 1).map_or(rest.x.len(), |next| next.slots.start - tile.slots.start);
-            let (own, others) = rest.split_at(end);
-            *energies = sweep(tile, own, &mut scratch[0], drive);
-            rest = others;
-        }
-        return;
+/// Tiles, their parts of the fields and where their energies go, from either end.
+struct Runs<'a> {
+    tiles: &'a [Tile],
+    fields: TileFields<'a>,
+    counted: &'a mut [Energies],
+}
+
+impl<'a> Runs<'a> {
+    fn split_at(self, tile: usize) -> (Self, Self) {
+        let (left, right) = self.tiles.split_at(tile);
+        let nodes = match (left.first(), right.first()) {
+            (Some(first), Some(next)) => next.slots.start - first.slots.start,
+            (None, _) => 0,
+            (_, None) => self.fields.x.len(),
+        };
+        let (a, b) = self.fields.split_at(nodes);
+        let (p, q) = self.counted.split_at_mut(tile);
+        (Self { tiles: left, fields: a, counted: p }, Self { tiles: right, fields: b, counted: q })
     }
-    let (left, right) = tiles.split_at(cut);
-    let (a, b) = fields.split_at(right[0].slots.start - left[0].slots.start);
-    let (p, q) = counted.split_at_mut(cut);
-    let (here, there) = scratch.split_at_mut(threads / 2);
-    micropool::join(|| sweep_all(left, a, p, here, drive), || sweep_all(right, b, q, there, drive));
+
+    fn take(&mut self) -> Self {
+        std::mem::replace(self, Self { tiles: &[], fields: TileFields::default(), counted: &mut [] })
+    }
+
+    /// Sweeps all that are left.
+    fn sweep(self, scratch: &mut Scratch, drive: Drive) {
+        self.for_each(|one| one.sweep_one(scratch, drive));
+    }
+
+    fn sweep_one(self, scratch: &mut Scratch, drive: Drive) {
+        if let ([tile], [energies]) = (self.tiles, self.counted) {
+            *energies = sweep(tile, self.fields, scratch, drive);
+        }
+    }
+}
+
+impl<'a> Iterator for Runs<'a> {
+    type Item = Self;
+
+    fn next(&mut self) -> Option<Self> {
+        let (one, rest) = (!self.tiles.is_empty()).then(|| self.take().split_at(1))?;
+        *self = rest;
+        Some(one)
+    }
+}
+
+impl DoubleEndedIterator for Runs<'_> {
+    fn next_back(&mut self) -> Option<Self> {
+        let last = self.tiles.len().checked_sub(1)?;
+        let (rest, one) = self.take().split_at(last);
+        *self = rest;
+        Some(one)
+    }
+}
+
+/// Sweeps tiles, two threads from either end; more share runs of about equal work.
+fn sweep_all(runs: Runs<'_>, scratch: &mut [Scratch], drive: Drive) {
+    match scratch {
+        [] => {}
+        [one] => runs.sweep(one, drive),
+        [one, other] => {
+            from_both_ends(runs, |run| run.sweep_one(one, drive), |run| run.sweep_one(other, drive));
+        }
+        _ => {
+            let (threads, half) = (scratch.len(), scratch.len() / 2);
+            let work = runs.tiles.iter().map(|tile| tile.work);
+            let (left, right) = runs.split_at(cut(work.clone(), work.sum(), half, threads));
+            let (here, there) = scratch.split_at_mut(half);
+            micropool::join(|| sweep_all(left, here, drive), || sweep_all(right, there, drive));
+        }
+    }
 }
 
 impl<'a> TileFields<'a> {

@@ -110,6 +110,7 @@ pub mod state;
 pub mod statics;
 mod strip;
 mod sweep;
+pub mod threads;
 mod tile;
 
 pub use dynamics::Dynamics;

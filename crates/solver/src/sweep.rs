@@ -14,7 +14,8 @@ use crate::{
     tile::Tile,
 };
 
-/// The node fields of one tile.
+/// The node fields of one tile, or of several that follow each other.
+#[derive(Default)]
 pub(crate) struct TileFields<'a> {
     pub(crate) x: &'a mut [f64],
     pub(crate) y: &'a mut [f64],

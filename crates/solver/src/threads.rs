@@ -1,0 +1,71 @@
+//! Work shared out over the threads of the pool that the caller is in.
+
+use std::sync::{Mutex, PoisonError};
+
+/// Does something to every item, on up to `threads` threads; what happens to an item does not depend on how many.
+///
+/// Two threads begin at either end and meet where they may, so an item mostly stays with the core that has it in its
+/// cache, and neither waits for longer than one item takes. More threads are dealt runs of about equal `work` by twos.
+/// Less than `least` work for each is not worth a fork, which takes some microseconds.
+pub fn share_out<T: Send>(
+    items: &mut [T],
+    threads: usize,
+    least: usize,
+    work: &(impl Fn(&T) -> usize + Sync),
+    each: &(impl Fn(&mut T) + Sync),
+) {
+    let all: usize = items.iter().map(work).sum();
+    if threads < 2 || items.len() < 2 || all < 2 * least {
+        items.iter_mut().for_each(each);
+    } else if threads == 2 {
+        from_both_ends(items.iter_mut(), each, each);
+    } else {
+        let half = threads / 2;
+        let cut = cut(items.iter().map(work), all, half, threads);
+        let (first, second) = items.split_at_mut(cut);
+        micropool::join(
+            || share_out(first, half, least, work, each),
+            || share_out(second, threads - half, least, work, each),
+        );
+    }
+}
+
+/// How many items make about `part` of `whole` parts of all work.
+pub(crate) fn cut(
+    items: impl ExactSizeIterator<Item = usize>,
+    all: usize,
+    part: usize,
+    whole: usize,
+) -> usize {
+    let last = items.len().saturating_sub(1);
+    let mut before = 0;
+    let first = items.take_while(|work| {
+        before += work;
+        // An item goes to the side where more than half of it belongs.
+        (2 * before - work) * whole <= 2 * all * part
+    });
+    first.count().clamp(1.min(last), last)
+}
+
+/// Two threads take items from either end until none is left, each in its own way.
+pub(crate) fn from_both_ends<I: DoubleEndedIterator + Send>(
+    items: I,
+    mut here: impl FnMut(I::Item) + Send,
+    mut there: impl FnMut(I::Item) + Send,
+) {
+    // Nobody can leave an iterator half advanced: taking an item cannot fail.
+    let items = Mutex::new(items);
+    let rest = || items.lock().unwrap_or_else(PoisonError::into_inner);
+    micropool::join(
+        || {
+            while let Some(item) = { rest().next() } {
+                here(item);
+            }
+        },
+        || {
+            while let Some(item) = { rest().next_back() } {
+                there(item);
+            }
+        },
+    );
+}
