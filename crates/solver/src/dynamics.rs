@@ -12,6 +12,7 @@ use crate::{
     lanes::LANES,
     layout::{Layout, lay_out},
     model::{Behaviour, Model, Motion},
+    moments::{LaneMoments, Moments, lane_moments},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
     sweep::{Drive, Energies, Scratch, TileFields, sweep},
@@ -41,7 +42,6 @@ pub struct Dynamics {
     rigid_bodies: Vec<RigidBody>,
     mass: Field,
     motion: Vec<Motion>,
-    body_nodes: Vec<std::ops::Range<usize>>,
     elements: Elements,
     forces: NodeForces,
     scratch: Vec<Scratch>,
@@ -55,13 +55,10 @@ pub struct Dynamics {
     pub(crate) frames_placed: Option<u64>,
 }
 
-/// One body of the mass damping: the tile and lane that its frame serves, and its slots.
+/// One body of the mass damping: the tiles and lanes that its frame serves.
 #[derive(Debug, Clone)]
 pub(crate) struct DampedBody {
     pub(crate) places: Vec<(usize, usize)>,
-    slots: Vec<u32>,
-    /// Its motion when the frames were last placed here.
-    motion: RigidMotion,
 }
 
 /// Energy counted step by step [J].
@@ -178,7 +175,6 @@ impl Dynamics {
             rigid_bodies,
             mass,
             motion,
-            body_nodes: model.mesh.bodies.iter().map(|b| b.nodes.clone()).collect(),
             elements,
             forces: NodeForces::zeros(n),
             scratch: (0..threads.max(1)).map(|_| Scratch::new(largest)).collect(),
@@ -303,14 +299,12 @@ impl Dynamics {
             }
             let mass = self.mass[tile.slots.clone()].iter().copied().collect();
             let frames = LaneFrames::new(std::array::from_fn(|l| frame(l).unwrap_or(Frame::Rest)));
-            tile.damping = Some(TileDamping { rate: damping.rate(), frames, mass });
+            tile.damping =
+                Some(TileDamping { rate: damping.rate(), frames, mass, moments: LaneMoments::default() });
             for lane in 0..LANES {
                 let Some(&b) = layout.bodies.get(if layout.congruent { lane } else { 0 }) else { continue };
                 let at = bodies.iter().position(|(body, _)| *body == b).unwrap_or_else(|| {
-                    let nodes = self.body_nodes[b].clone();
-                    let slots = nodes.map(|n| self.layout.slot_of_node[n]).collect();
-                    bodies
-                        .push((b, DampedBody { places: Vec::new(), slots, motion: RigidMotion::default() }));
+                    bodies.push((b, DampedBody { places: Vec::new() }));
                     bodies.len() - 1
                 });
                 bodies[at].1.places.push((t, lane));
@@ -323,7 +317,7 @@ impl Dynamics {
 
     /// Places the damping frames now and then, and moves them on in between.
     fn place_damping_frames(&mut self) {
-        let Some(mut damped) = self.damped.take() else { return };
+        let Some(damped) = self.damped.take() else { return };
         let step = self.state.step;
         let due = |placed: u64| step < placed || step - placed >= PLACE_EVERY;
         let place = step.is_multiple_of(PLACE_EVERY) || self.frames_placed.is_none_or(due);
@@ -331,18 +325,21 @@ impl Dynamics {
         self.frames_placed = Some(placed);
         let mut tiles = std::mem::take(&mut self.tiles);
         if place {
-            let moving = |body: &DampedBody| {
-                let frames = |&(tile, _): &(usize, usize)| tiles[tile].damping.as_ref().map(|d| &d.frames);
-                body.places.iter().filter_map(frames).any(LaneFrames::follow)
+            let sum = |tile: &mut Tile| {
+                if let Some(d) = tile.damping.as_mut().filter(|d| d.frames.follow()) {
+                    d.moments = lane_moments(&d.mass, &self.state, tile.slots.clone());
+                }
             };
-            if damped.iter().any(moving) {
-                let find = |body: &mut DampedBody| body.motion = self.rigid_motion(&body.slots);
-                share_out(&mut damped, self.threads(), LEAST_WORK, &|body| body.slots.len(), &find);
-            }
+            share_out(&mut tiles, self.threads(), LEAST_WORK, &|tile| tile.slots.len(), &sum);
             for body in &damped {
+                let mut moments = Moments::default();
+                for &(tile, lane) in &body.places {
+                    tiles[tile].damping.iter().for_each(|d| moments += d.moments[lane]);
+                }
+                let own = moments.motion();
                 for &(tile, lane) in &body.places {
                     if let Some(d) = &mut tiles[tile].damping {
-                        d.frames.place(lane, body.motion);
+                        d.frames.place(lane, own);
                     }
                 }
             }

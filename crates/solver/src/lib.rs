@@ -103,6 +103,7 @@ pub mod lanes;
 pub mod layout;
 pub mod material;
 pub mod model;
+mod moments;
 pub mod reference;
 pub mod rigid;
 pub mod snapshot;

@@ -12,6 +12,7 @@ use crate::{
     lanes::{LANES, Vector},
     layout::TileLayout,
     model::Motion,
+    moments::LaneMoments,
 };
 
 /// Shorter runs of quadrilaterals go through the gather path.
@@ -58,6 +59,8 @@ pub(crate) struct TileDamping {
     pub(crate) frames: LaneFrames,
     /// Mass of each slot [kg], for the heat.
     pub(crate) mass: Field,
+    /// Mass and momentum of each lane when the frames were last placed here.
+    pub(crate) moments: LaneMoments,
 }
 
 /// A run of quadrilaterals whose corners all advance by one.
