@@ -9,7 +9,7 @@ use stribeck_solver::{
 };
 
 use crate::{
-    meeting::{Account, Chord, Laws, Meeting, Spots, ends},
+    meeting::{Account, Chord, Laws, Meeting, Spots, gather},
     points::Points,
     row::Outcome,
     shape::Push,
@@ -49,58 +49,51 @@ impl Band<'_> {
     ) -> [Outcome; LANES] {
         let Self { secondary, points, facets, awake, nearest, doze, history } = self;
         let mut outcomes = [Outcome::default(); LANES];
-        let mut own = [[0.0; LANES]; 8];
-        let mut nodes = [(0, 0); LANES];
-        for l in 0..Vector::<V>::LEN {
-            nodes[l] = secondary.ends(facets[l]);
-            let e = ends(at, nodes[l]);
-            for k in 0..8 {
-                own[k][l] = e[k];
-            }
+        let mut own = [[0; LANES]; 2];
+        let mut begin = [0; LANES];
+        let mut len = [0; LANES];
+        for l in 0..LANES {
+            let (a, b) = secondary.ends(facets[l]);
+            (own[0][l], own[1][l]) = (a as u32, b as u32);
+            let range = points.of_facet(facets[l]);
+            (begin[l], len[l]) = (range.start as u32, range.len());
         }
-        let chord = Chord::each(simd, &own);
+        let chord = Chord::each(simd, at, &own);
         let zero = Vector::all(simd, 0.0);
         let (mut force, mut with_place) = ([zero; 2], [zero; 2]);
         let mut any = false;
         for k in 0..points.most {
-            let mut other = [[0.0; LANES]; 8];
-            let mut feet = [(0, 0); LANES];
-            let [mut open, mut place, mut weight, mut slip, mut damping] = [[0.0; LANES]; 5];
-            for l in 0..Vector::<V>::LEN {
-                let range = points.of_facet(facets[l]);
-                let there = k < range.len();
+            let mut other = [[0; LANES]; 2];
+            let mut point = begin;
+            let mut open = [0.0; LANES];
+            for l in 0..LANES {
+                let there = awake >> l & 1 == 1 && k < len[l];
                 // Lanes without a point go along with the facet's first one, closed.
-                let i = if there { range.start + k } else { range.start };
+                point[l] += if there { k as u32 } else { 0 };
+                let i = point[l] as usize;
                 let facet = nearest[i] as usize;
-                if awake >> l & 1 == 1 && there && doze[i] < now + 1.0 {
+                if there && doze[i] < now + 1.0 {
                     outcomes[l].left |= 1 << k;
                     open[l] = if primary.beside_corner[facet] { 0.0 } else { 1.0 };
                 }
-                (place[l], weight[l]) = (points.place[i], points.weight[i]);
-                if MEMORY {
-                    (slip[l], damping[l]) = (history.slip[i], history.damping[i]);
-                }
-                feet[l] = primary.ends(facet);
-                let e = ends(at, feet[l]);
-                for k in 0..8 {
-                    other[k][l] = e[k];
-                }
+                let (a, b) = primary.ends(facet);
+                (other[0][l], other[1][l]) = (a as u32, b as u32);
             }
             let spots = Spots {
                 open: Vector::load(simd, &open, 0),
-                place: Vector::load(simd, &place, 0),
-                weight: Vector::load(simd, &weight, 0),
-                slip: Vector::load(simd, &slip, 0),
-                damping: Vector::load(simd, &damping, 0),
+                place: gather(simd, &points.place, &point),
+                weight: gather(simd, &points.weight, &point),
+                slip: if MEMORY { gather(simd, &history.slip, &point) } else { zero },
+                damping: if MEMORY { gather(simd, &history.damping, &point) } else { zero },
             };
-            let meeting = Meeting::new(laws, &chord, &Chord::each(simd, &other));
+            let meeting = Meeting::new(laws, &chord, &Chord::each(simd, at, &other));
             let acting = meeting.act::<MEMORY>(laws, &spots, account);
             let (on, apart) = (acting.on.bits(), acting.apart.bits());
             if apart != 0 {
                 let mut dozes = [0.0; LANES];
                 acting.doze.store(&mut dozes, 0);
                 for l in (0..Vector::<V>::LEN).filter(|l| apart >> l & 1 == 1) {
-                    doze[points.of_facet(facets[l]).start + k] = dozes[l];
+                    doze[point[l] as usize] = dozes[l];
                     outcomes[l].left &= !(1 << k);
                 }
             }
@@ -112,6 +105,7 @@ impl Band<'_> {
             force = [force[0] + fx, force[1] + fy];
             let [wx, wy] = with_place;
             with_place = [fx.times_plus(spots.place, wx), fy.times_plus(spots.place, wy)];
+            let [mut slip, mut damping] = [[0.0; LANES]; 2];
             acting.slip.store(&mut slip, 0);
             acting.damping.store(&mut damping, 0);
             let (second_x, second_y) = (fx * acting.foot, fy * acting.foot);
@@ -124,14 +118,14 @@ impl Band<'_> {
                 if on >> l & 1 == 0 {
                     continue;
                 }
-                let i = points.of_facet(facets[l]).start + k;
+                let i = point[l] as usize;
                 if MEMORY {
                     (history.slip[i], history.damping[i]) = (slip[l], damping[l]);
                 }
                 outcomes[l].touched = true;
                 outcomes[l].left &= !(1 << k);
-                push.push((feet[l].0 as u32, [first_fx[l], first_fy[l]]));
-                push.push((feet[l].1 as u32, [second_fx[l], second_fy[l]]));
+                push.push((other[0][l], [first_fx[l], first_fy[l]]));
+                push.push((other[1][l], [second_fx[l], second_fy[l]]));
             }
         }
         if any {
@@ -143,8 +137,8 @@ impl Band<'_> {
             for l in 0..Vector::<V>::LEN {
                 if outcomes[l].touched {
                     outcomes[l].force = [fx[l], fy[l]];
-                    push.push((nodes[l].0 as u32, [fx[l] - sx[l], fy[l] - sy[l]]));
-                    push.push((nodes[l].1 as u32, [sx[l], sy[l]]));
+                    push.push((own[0][l], [fx[l] - sx[l], fy[l] - sy[l]]));
+                    push.push((own[1][l], [sx[l], sy[l]]));
                 }
             }
         }

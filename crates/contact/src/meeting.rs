@@ -118,24 +118,28 @@ impl<V: Simd> Chord<V> {
         }
     }
 
-    /// A chord in each lane, from arrays of their ends.
+    /// A chord in each lane, from the slots of their ends.
     #[inline(always)]
-    pub(crate) fn each(simd: V, e: &[[f64; LANES]; 8]) -> Self {
-        let v = [
-            Vector::load(simd, &e[0], 0),
-            Vector::load(simd, &e[1], 0),
-            Vector::load(simd, &e[2], 0),
-            Vector::load(simd, &e[3], 0),
-            Vector::load(simd, &e[4], 0),
-            Vector::load(simd, &e[5], 0),
-            Vector::load(simd, &e[6], 0),
-            Vector::load(simd, &e[7], 0),
-        ];
+    pub(crate) fn each(simd: V, at: &Moment<'_>, [a, b]: &[[u32; LANES]; 2]) -> Self {
+        let first = [gather(simd, at.x, a), gather(simd, at.y, a)];
+        let velocity = [gather(simd, at.vx, a), gather(simd, at.vy, a)];
         Self {
-            position: [[v[0], v[1]], [v[4] - v[0], v[5] - v[1]]],
-            velocity: [[v[2], v[3]], [v[6] - v[2], v[7] - v[3]]],
+            position: [first, [gather(simd, at.x, b) - first[0], gather(simd, at.y, b) - first[1]]],
+            velocity: [
+                velocity,
+                [gather(simd, at.vx, b) - velocity[0], gather(simd, at.vy, b) - velocity[1]],
+            ],
         }
     }
+}
+
+/// A number of a field in each lane.
+#[inline(always)]
+pub(crate) fn gather<V: Simd>(simd: V, field: &[f64], at: &[u32; LANES]) -> Vector<V> {
+    // Spelled out, so that it stays in registers.
+    let [a, b, c, d, e, f, g, h] = *at;
+    let n = |at: u32| field[at as usize];
+    Vector::load(simd, &[n(a), n(b), n(c), n(d), n(e), n(f), n(g), n(h)], 0)
 }
 
 impl<V: Simd> Laws<V> {
