@@ -148,7 +148,7 @@ fn main() {
     let repeats = 400;
     let mut blocks = BLOCKS.map(|(columns, rows)| (columns * rows, block(columns, rows)));
     let mut fields = BLOCKS.map(|(columns, rows)| [(); 5].map(|()| vec![1e-9; (columns + 1) * (rows + 1)]));
-    let steps = BLOCKS.map(|(columns, rows)| (400_000 / (columns * rows)).max(1));
+    let steps = BLOCKS.map(|(columns, rows)| (4_000_000 / (columns * rows)).max(2));
 
     let (mut apart, mut together) = (Times::default(), Times::default());
     let (mut streams, mut sweeps) = (BLOCKS.map(|_| Times::default()), BLOCKS.map(|_| Times::default()));
