@@ -237,6 +237,9 @@ pub struct SolverScene {
     pub mass_damping_per_s: f64,
     /// What the mass damping is relative to.
     pub damping_frame: DampingFrame,
+    /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time step.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub stiffness_damping_ns: f64,
     /// How the run starts.
     pub start: Start,
 }
@@ -318,6 +321,11 @@ pub struct GuardsScene {
     pub area_stop_percent: f64,
     /// Time for which no roller may carry anything before the run carries a warning [ms].
     pub unsupported_warning_ms: f64,
+}
+
+/// Fields that came later are left out where they change nothing: the hash of an older scene stays.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Default for Scene {
@@ -428,6 +436,7 @@ impl Default for SolverScene {
             hourglass_scale: 1.0,
             mass_damping_per_s: 5000.0,
             damping_frame: DampingFrame::Rolling,
+            stiffness_damping_ns: 0.0,
             start: Start::Preloaded,
         }
     }
