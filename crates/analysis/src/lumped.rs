@@ -42,6 +42,9 @@ pub struct Lumped {
     pub phases: f64,
     /// 2 for an even count of facets, 0 for an odd one.
     pub both_contacts: f64,
+    /// Coefficient of friction with which the most loaded roller is turned over its vertices by traction alone
+    /// (THEORY §5.4).
+    pub friction_to_roll: f64,
     /// Amplitude of the ring's acceleration [g].
     pub level_g: f64,
 }
@@ -87,6 +90,7 @@ impl Lumped {
             smoothing,
             phases: if arms > 0.0 { re.hypot(im) / arms } else { 0.0 },
             both_contacts,
+            friction_to_roll: both_contacts * smoothing.abs() / facets,
             level_g: (TAU * frequency_hz).powi(2) * y / STANDARD_GRAVITY,
         })
     }

@@ -238,7 +238,6 @@ pub struct SolverScene {
     /// What the mass damping is relative to.
     pub damping_frame: DampingFrame,
     /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time step.
-    #[serde(skip_serializing_if = "is_zero")]
     pub stiffness_damping_ns: f64,
     /// How the run starts.
     pub start: Start,
@@ -321,11 +320,6 @@ pub struct GuardsScene {
     pub area_stop_percent: f64,
     /// Time for which no roller may carry anything before the run carries a warning [ms].
     pub unsupported_warning_ms: f64,
-}
-
-/// Fields that came later are left out where they change nothing: the hash of an older scene stays.
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 impl Default for Scene {
