@@ -218,6 +218,19 @@ fn mode(
                 format!("the highest peak near it, {:.1} Hz, is BPFO ×{multiple}", line.frequency_hz);
             return Ok(entry);
         }
+        let same = |a: &&Artefact| {
+            a.family == Family::Mesh
+                && a.measured_hz.is_some_and(|hz| (hz - line.frequency_hz).abs() < 0.5 * width)
+        };
+        if let Some(mesh) = known.iter().find(same) {
+            entry.verdict = format!(
+                "the highest peak near it, {:.1} Hz, is that of {} ×{}",
+                line.frequency_hz,
+                mesh.name.replace('_', " "),
+                mesh.harmonic
+            );
+            return Ok(entry);
+        }
         entry.measured_hz = Some(line.frequency_hz);
         entry.level_g = Some(line.amplitude);
         entry.verdict = format!(

@@ -143,6 +143,22 @@ mod tests {
     }
 
     #[test]
+    fn analytic_few_facets_need_more_friction_than_the_paper_has() {
+        // THEORY §5.4: two cosines of amplitude h₁ g under the load Q are climbed by a couple 2 N_v Q h₁ g, against 2µQr.
+        let of = |facets| {
+            let mut scene = scene(facets, RollerCopies::Translated);
+            scene.operation.load_n = 50_000.0;
+            Lumped::of(&scene).unwrap()
+        };
+        let (few, many) = (of(56), of(112));
+        let couple = 2.0 * 56.0 * few.height_m * few.smoothing.abs();
+        assert!((couple / (2.0 * few.friction_to_roll * 9e-3) - 1.0).abs() < 1e-9, "{few:?}");
+        assert!((few.friction_to_roll - 0.017).abs() < 5e-4, "{few:?}");
+        assert!((many.friction_to_roll - 0.002).abs() < 5e-4, "{many:?}");
+        assert_eq!(of(113).friction_to_roll, 0.0);
+    }
+
+    #[test]
     fn analytic_phases_follow_copies_and_parity() {
         let of = |facets, copies| Lumped::of(&scene(facets, copies)).unwrap();
         // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded rollers not all of

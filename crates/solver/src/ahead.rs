@@ -78,7 +78,10 @@ impl WithSimd for LookAhead<'_> {
             let (own_x, own_y, mass) = (&mut [][..], &mut [][..], &[][..]);
             let step_over_mass = &tile.step_over_mass;
             let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
-            tile.strips.iter().for_each(|s| strip_forces(simd, s, &tile.varying, k, &mut nodes, step));
+            // A loop: within a closure the compiler would not use the instruction set of this function.
+            for s in &tile.strips {
+                strip_forces(simd, s, &tile.varying, k, &mut nodes, step);
+            }
             if !ahead {
                 [fx, fy].into_iter().flatten().for_each(|f| *f = -*f);
             }

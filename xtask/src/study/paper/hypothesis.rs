@@ -2,7 +2,7 @@
 //! must be when facets, speed, load and orientation change. A bearing without a defect, so that nothing knocks.
 
 use anyhow::Result;
-use stribeck_analysis::load;
+use stribeck_analysis::load::vertical_sum;
 use stribeck_analysis::lumped::Lumped;
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::record::Record;
@@ -100,7 +100,7 @@ fn sensor_level(run: &Finished, sensor: &str) -> Option<f64> {
 fn force_line(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
     let record = Record::new(&read);
-    signal::amplitude(&load::vertical_sum(&record), record.sample_rate_hz(), lumped(run)?.frequency_hz)
+    signal::amplitude(&vertical_sum(&record), record.sample_rate_hz(), lumped(run)?.frequency_hz)
 }
 
 /// Table, pictures, conclusions.
@@ -140,22 +140,7 @@ fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
         number(worst, 2),
         silent.len()
     ));
-    let by_load: Vec<f64> = LOADS_KN
-        .iter()
-        .map(|kn| format!("sound-112-{kn}kN"))
-        .chain(["sound-112".to_owned()])
-        .filter_map(|name| roller_line(runs.iter().find(|r| r.variant.name == name)?)?.measured_hz)
-        .collect();
-    if let (Some(low), Some(high)) =
-        (by_load.iter().copied().reduce(f64::min), by_load.iter().copied().reduce(f64::max))
-    {
-        sheet.say(&format!(
-            "Load: between 25 and 100 kN, {} loads, the line stands between {low:.1} and {high:.1} Hz, {:.1} % apart: load does not \
-             move it. What is left goes with the spin of the rollers: under little load they slip a little more.",
-            by_load.len(),
-            100.0 * (high / low - 1.0)
-        ));
-    }
+    load(sheet, runs);
     let by = |name: &str| runs.iter().find(|r| r.variant.name == format!("sound-{name}"));
     let ratio = |a: &str, b: &str, of: fn(&Finished) -> Option<f64>| Some(of(by(a)?)? / of(by(b)?)?);
     let says = [
@@ -186,6 +171,35 @@ fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
         })
         .collect();
     sheet.table(&["level of", "sum of forces", "loudest sensor", "lumped"], &rows);
+}
+
+/// Whether load moves the line.
+fn load(sheet: &mut Sheet, runs: &[Finished]) {
+    let names: Vec<String> =
+        LOADS_KN.iter().map(|kn| format!("sound-112-{kn}kN")).chain(["sound-112".to_owned()]).collect();
+    let loaded: Vec<&Finished> = runs.iter().filter(|r| names.contains(&r.variant.name)).collect();
+    let range = |of: fn(&Finished) -> Option<f64>| {
+        let all: Vec<f64> = loaded.iter().filter_map(|r| of(r)).collect();
+        let low = all.iter().copied().reduce(f64::min)?;
+        Some((all.len(), low, all.into_iter().reduce(f64::max)?))
+    };
+    let resolution = loaded.iter().find_map(|r| Some(r.numbers()?.spectrum.as_ref()?.resolution_hz));
+    let line = range(|r| roller_line(r)?.measured_hz);
+    if let (Some((count, low, high)), Some((_, slow, fast)), Some(resolution)) =
+        (line, range(rolling), resolution)
+    {
+        sheet.say(&format!(
+            "Load: at {count} of {} loads between 25 and 100 kN the line stands out, between {} and {} Hz, {} % apart, {} than one \
+             resolution of {} Hz; the spin of the rollers differs by {} %.",
+            loaded.len(),
+            number(low, 1),
+            number(high, 1),
+            number(100.0 * (high / low - 1.0), 2),
+            if high - low < resolution { "less" } else { "more" },
+            number(resolution, 0),
+            number(100.0 * (fast / slow - 1.0), 2)
+        ));
+    }
 }
 
 fn frequencies(runs: &[Finished]) -> Figure {

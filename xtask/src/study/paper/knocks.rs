@@ -29,8 +29,8 @@ pub(super) fn write(sheet: &mut Sheet, with: &[Finished], without: &[Finished]) 
     }
     sheet.heading("What the defect hides");
     sheet.say(
-        "The same bearings with the defect, 12 ms, beside those without. Where the line is lost between the impulses, it is there \
-         as soon as nothing knocks; where it is not there either, the rollers do not roll.",
+        "The same bearings with the defect, 12 ms, beside those without: whether the line is there as soon as nothing knocks, and \
+         whether the rollers roll at all.",
     );
     let cell = |v: Option<f64>, decimals| v.map_or("–".to_owned(), |v| number(v, decimals));
     let mut rows = Vec::new();
