@@ -64,11 +64,13 @@ pub fn ledger(
     sensor: &str,
     density: &Spectrum,
 ) -> Result<Vec<Artefact>, Error> {
-    let mut all: Vec<Artefact> = tones.iter().filter(|t| t.sensor == sensor).map(Artefact::of_mesh).collect();
+    let comb = Comb::of(prediction, motion, density);
+    let of_mesh = |tone: &Tone| Artefact::of_mesh(tone, comb.as_ref());
+    let mut all: Vec<Artefact> = tones.iter().filter(|t| t.sensor == sensor).map(of_mesh).collect();
     all.extend(beats(prediction, motion, density));
     all.extend(defect(prediction, motion, sensor, density)?);
     for (n, hz) in ring::outer_ring_modes(scene, LAST_MODE) {
-        all.push(mode(n, hz, density)?);
+        all.push(mode(n, hz, density, comb.as_ref(), &all)?);
     }
     Ok(all)
 }
@@ -166,7 +168,35 @@ fn defect(
     Ok(lines.iter().map(entry).collect())
 }
 
-fn mode(n: u32, hz: f64, density: &Spectrum) -> Result<Artefact, Error> {
+/// All multiples of BPFO, where a spectrum shows them: knocks make a comb over the whole spectrum.
+struct Comb {
+    spacing_hz: f64,
+    /// A line closer to a tooth than this is not told from it [Hz].
+    reach_hz: f64,
+}
+
+impl Comb {
+    fn of(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum) -> Option<Self> {
+        prediction.defect?;
+        let spacing_hz = motion.bpfo_hz.unwrap_or(prediction.kinematics.bpfo_hz);
+        let reach_hz = 0.5 * density.resolution().width_6db_hz;
+        shows_family(density, spacing_hz).then_some(Self { spacing_hz, reach_hz })
+    }
+
+    /// The multiple of BPFO that stands at `hz`, if any.
+    fn tooth(&self, hz: f64) -> Option<u64> {
+        let nearest = (hz / self.spacing_hz).round();
+        (nearest >= 1.0 && (hz - nearest * self.spacing_hz).abs() < self.reach_hz).then_some(nearest as u64)
+    }
+}
+
+fn mode(
+    n: u32,
+    hz: f64,
+    density: &Spectrum,
+    comb: Option<&Comb>,
+    known: &[Artefact],
+) -> Result<Artefact, Error> {
     let (from, to) = ((1.0 - MODE_REACH) * hz, (1.0 + MODE_REACH) * hz);
     let mut entry = Artefact {
         family: Family::Ring,
@@ -183,6 +213,24 @@ fn mode(n: u32, hz: f64, density: &Spectrum) -> Result<Artefact, Error> {
     let above = density.stands_above_db(&peak, 0.6 * hz, 1.4 * hz, 1.5 * width).unwrap_or(0.0);
     if !peak.at_edge && above >= tones::LEAST_PROMINENCE_DB {
         let line = density.sinusoid(&peak).map_err(Error::Signal)?;
+        if let Some(multiple) = comb.and_then(|c| c.tooth(line.frequency_hz)) {
+            entry.verdict =
+                format!("the highest peak near it, {:.1} Hz, is BPFO ×{multiple}", line.frequency_hz);
+            return Ok(entry);
+        }
+        let same = |a: &&Artefact| {
+            a.family == Family::Mesh
+                && a.measured_hz.is_some_and(|hz| (hz - line.frequency_hz).abs() < 0.5 * width)
+        };
+        if let Some(mesh) = known.iter().find(same) {
+            entry.verdict = format!(
+                "the highest peak near it, {:.1} Hz, is that of {} ×{}",
+                line.frequency_hz,
+                mesh.name.replace('_', " "),
+                mesh.harmonic
+            );
+            return Ok(entry);
+        }
         entry.measured_hz = Some(line.frequency_hz);
         entry.level_g = Some(line.amplitude);
         entry.verdict = format!(
@@ -193,16 +241,20 @@ fn mode(n: u32, hz: f64, density: &Spectrum) -> Result<Artefact, Error> {
 }
 
 impl Artefact {
-    fn of_mesh(tone: &Tone) -> Self {
-        let verdict = match (tone.measured_hz, tone.prominence_db) {
-            (Some(_), _) if tone.unresolved_from.is_empty() => "artefact of the mesh, on its own".to_owned(),
-            (Some(_), _) => {
+    fn of_mesh(tone: &Tone, comb: Option<&Comb>) -> Self {
+        let tooth = tone.measured_hz.and_then(|hz| comb?.tooth(hz));
+        let verdict = match (tooth, tone.measured_hz, tone.prominence_db) {
+            (Some(multiple), ..) => format!("BPFO ×{multiple} stands at the same place: not told apart"),
+            (None, Some(_), _) if tone.unresolved_from.is_empty() => {
+                "artefact of the mesh, on its own".to_owned()
+            }
+            (None, Some(_), _) => {
                 "artefact of the mesh; this record cannot say of which of the merged lines".to_owned()
             }
-            (None, Some(db)) => {
-                format!("not above the background: {db:.0} dB, {:.0} dB count", tones::LEAST_PROMINENCE_DB)
+            (None, None, Some(db)) => {
+                format!("not above the background: {db:.1} dB, {:.0} dB count", tones::LEAST_PROMINENCE_DB)
             }
-            (None, None) => "no peak of its own".to_owned(),
+            (None, None, None) => "no peak of its own".to_owned(),
         };
         Self {
             family: Family::Mesh,
@@ -214,5 +266,17 @@ impl Artefact {
             level_g: tone.level_g,
             verdict,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_multiples_of_bpfo_are_teeth_and_what_lies_between_is_not() {
+        let comb = Comb { spacing_hz: 89.8, reach_hz: 3.0 };
+        assert_eq!((comb.tooth(89.8), comb.tooth(628.7), comb.tooth(592.0)), (Some(1), Some(7), None));
+        assert_eq!((comb.tooth(1.0), comb.tooth(45.0)), (None, None));
     }
 }

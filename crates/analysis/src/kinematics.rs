@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use stribeck_bearing::kinematics::Kinematics;
 
-use crate::events::median;
 use crate::record::{Record, Roller};
 
 /// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
@@ -25,7 +24,8 @@ pub struct KinematicsFinding {
     pub bpfo_hz: Option<f64>,
     /// Ball pass frequency of the outer raceway, no slip.
     pub expected_bpfo_hz: f64,
-    /// Spin of a roller relative to the cage, mean of the loaded rollers.
+    /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by the force of the
+    /// outer raceway. What turns freely, in the defect or outside the load zone, has no vote.
     pub roller_spin_hz: Option<f64>,
     /// Spin of a roller relative to the cage, no slip.
     pub expected_roller_spin_hz: f64,
@@ -95,11 +95,25 @@ pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding 
         expected_cage_hz: expected.cage_hz,
         bpfo_hz: cage_hz.filter(|_| !rollers.is_empty()).map(|hz| hz * rollers.len() as f64),
         expected_bpfo_hz: expected.bpfo_hz,
-        roller_spin_hz: middle(motions.iter().filter(|m| m.loaded).map(|m| m.spin_hz)),
+        roller_spin_hz: spin_under_load(time, &rollers).zip(cage).map(|(s, c)| (s - c).abs() / TAU),
         expected_roller_spin_hz: expected.roller_spin_hz,
         roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
         rollers: motions,
     }
+}
+
+/// Mean spin [rad/s] weighted by the normal force of the outer raceway; `None` where nothing is loaded.
+fn spin_under_load(time_s: &[f64], rollers: &[Roller<'_>]) -> Option<f64> {
+    let (mut turned, mut weight) = (0.0, 0.0);
+    for roller in rollers {
+        let force = roller.outer_normal();
+        for n in 1..time_s.len() {
+            let load = (force[n - 1] + force[n]).max(0.0);
+            turned += load * (roller.spin[n] - roller.spin[n - 1]);
+            weight += load * (time_s[n] - time_s[n - 1]);
+        }
+    }
+    (weight > 0.0).then(|| turned / weight)
 }
 
 /// Rate [rad/s] of the straight line of least squares through `angle` [rad]; `None` for fewer than two times.
@@ -111,13 +125,6 @@ pub fn rate(time_s: &[f64], angle: &[f64]) -> Option<f64> {
         spread += (t - t0) * (t - t0);
     }
     (spread > 0.0).then(|| moment / spread)
-}
-
-/// Median; `None` of nothing. A roller that has been free in the defect may spin at its own speed for a while, and a mean
-/// would give it a vote.
-fn middle(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.collect();
-    (!values.is_empty()).then(|| median(&mut values))
 }
 
 /// Arithmetic mean; `None` of nothing.
@@ -141,6 +148,28 @@ mod tests {
         assert!((motion.ratio("outer_race_nodes").unwrap() - 0.975).abs() < 1e-12);
         assert!((motion.ratio("inner_race_nodes").unwrap() - 1.025).abs() < 1e-12);
         assert_eq!((motion.ratio("roller_vertices"), motion.ratio("else")), (None, None));
+    }
+
+    #[test]
+    fn analytic_only_loaded_time_counts_for_the_spin() {
+        // Loaded for the first half at 40 rad/s, free for the second, where it slows down.
+        let time: Vec<f64> = (0..=100).map(|n| 0.01 * f64::from(n)).collect();
+        let spin: Vec<f64> =
+            time.iter().map(|t| if *t < 0.5 { 40.0 * t } else { 20.0 + 10.0 * (t - 0.5) }).collect();
+        let force: Vec<f64> = time.iter().map(|t| if *t < 0.499 { -7.0 } else { 0.0 }).collect();
+        let (one, none) = (vec![1.0; 101], vec![0.0; 101]);
+        let roller = Roller {
+            number: 1,
+            x: &one,
+            y: &none,
+            spin: &spin,
+            outer_fx: &force,
+            outer_fy: &none,
+            inner_fx: &none,
+            inner_fy: &none,
+        };
+        assert!((spin_under_load(&time, &[roller]).unwrap() - 40.0).abs() < 1e-9);
+        assert_eq!(spin_under_load(&time, &[]), None);
     }
 
     #[test]

@@ -42,6 +42,9 @@ pub struct Lumped {
     pub phases: f64,
     /// 2 for an even count of facets, 0 for an odd one.
     pub both_contacts: f64,
+    /// Coefficient of friction with which the most loaded roller is turned over its vertices by traction alone
+    /// (THEORY §5.4).
+    pub friction_to_roll: f64,
     /// Amplitude of the ring's acceleration [g].
     pub level_g: f64,
 }
@@ -87,6 +90,7 @@ impl Lumped {
             smoothing,
             phases: if arms > 0.0 { re.hypot(im) / arms } else { 0.0 },
             both_contacts,
+            friction_to_roll: both_contacts * smoothing.abs() / facets,
             level_g: (TAU * frequency_hz).powi(2) * y / STANDARD_GRAVITY,
         })
     }
@@ -136,6 +140,22 @@ mod tests {
         assert!((average(1.0) - 2.0 * 0.440_050_6).abs() < 1e-6);
         assert!(average(3.831_706).abs() < 1e-6);
         assert!((average(0.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn analytic_few_facets_need_more_friction_than_the_paper_has() {
+        // THEORY §5.4: two cosines of amplitude h₁ g under the load Q are climbed by a couple 2 N_v Q h₁ g, against 2µQr.
+        let of = |facets| {
+            let mut scene = scene(facets, RollerCopies::Translated);
+            scene.operation.load_n = 50_000.0;
+            Lumped::of(&scene).unwrap()
+        };
+        let (few, many) = (of(56), of(112));
+        let couple = 2.0 * 56.0 * few.height_m * few.smoothing.abs();
+        assert!((couple / (2.0 * few.friction_to_roll * 9e-3) - 1.0).abs() < 1e-9, "{few:?}");
+        assert!((few.friction_to_roll - 0.017).abs() < 5e-4, "{few:?}");
+        assert!((many.friction_to_roll - 0.002).abs() < 5e-4, "{many:?}");
+        assert_eq!(of(113).friction_to_roll, 0.0);
     }
 
     #[test]

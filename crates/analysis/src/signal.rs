@@ -1,6 +1,8 @@
-//! One line of any signal.
+//! One line, or one part, of any signal.
 
-use stribeck_dsp::{Welch, WelchOptions, Window};
+use stribeck_dsp::{Spectrum, Welch, WelchOptions, Window};
+
+use crate::Error;
 
 /// Amplitude of the line within one resolution of `frequency_hz`, over the whole record with a Hann window; `None` for a
 /// record that cannot hold it.
@@ -14,6 +16,22 @@ pub fn amplitude(signal: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Opti
     let reach = spectrum.resolution().resolution_hz;
     let peak = spectrum.peak(frequency_hz - reach, frequency_hz + reach).ok()?;
     Some(spectrum.sinusoid(&peak).ok()?.amplitude)
+}
+
+/// Density [unit²/Hz] of the first `seconds` of a signal on a grid [Hz]; `None` when the signal is shorter.
+///
+/// # Errors
+/// [`Error::Signal`] when a finite signal is refused.
+pub fn density_of_start(
+    signal: &[f64],
+    sample_rate_hz: f64,
+    seconds: f64,
+    grid_hz: f64,
+) -> Result<Option<Spectrum>, Error> {
+    let samples = (seconds * sample_rate_hz).round() as usize;
+    let Some(first) = signal.get(..samples) else { return Ok(None) };
+    let mut welch = Welch::for_grid(sample_rate_hz, samples, grid_hz).map_err(Error::Signal)?;
+    welch.estimate(first).map(Some).map_err(Error::Signal)
 }
 
 #[cfg(test)]

@@ -6,7 +6,9 @@ use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surfac
 use stribeck_mesh::{
     Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
 };
-use stribeck_solver::{Behaviour, Dynamics, Elastic, Model, Motion, force::NodalLoad};
+use stribeck_solver::{
+    Behaviour, Dynamics, Elastic, Model, Motion, critical::damped_time_step, force::NodalLoad,
+};
 
 use crate::{
     error::Error,
@@ -209,7 +211,7 @@ impl Assembly {
         }
     }
 
-    /// Critical time step of the stiffest element by itself [s]: an estimate before anything is laid out.
+    /// Critical time step of the stiffest element by itself [s], stiffness damping included: an estimate before anything is laid out.
     pub fn element_time_step_s(&self, scene: &Scene) -> f64 {
         let mesh = &self.model.mesh;
         let nu = scene.material.poissons_ratio;
@@ -220,7 +222,9 @@ impl Assembly {
         let quads = mesh.quads.iter().filter(|q| elastic(q[0]));
         let quads = quads.map(|q| characteristic_length(&q.map(corner), nu));
         let triangles = mesh.triangles.iter().map(|t| characteristic_length(&t.map(corner), nu));
-        quads.chain(triangles).fold(f64::INFINITY, f64::min) / self.model.materials[0].dilatational_speed()
+        let shortest = quads.chain(triangles).fold(f64::INFINITY, f64::min);
+        let undamped = shortest / self.model.materials[0].dilatational_speed();
+        damped_time_step(undamped, 1e-9 * scene.solver.stiffness_damping_ns)
     }
 
     /// Lays everything out for `threads` workers.
@@ -245,7 +249,8 @@ impl Assembly {
             loaded[n as usize] = true;
         }
 
-        let dynamics = Dynamics::new(model, &loaded, threads)?;
+        let mut dynamics = Dynamics::new(model, &loaded, threads)?;
+        dynamics.set_stiffness_damping(1e-9 * scene.solver.stiffness_damping_ns)?;
         let slot = |&n: &u32| dynamics.layout().slot_of_node[n as usize];
         let slots = |s: &stribeck_mesh::Surface| s.nodes.iter().map(slot).collect::<Vec<u32>>();
         let body =

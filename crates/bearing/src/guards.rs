@@ -99,7 +99,8 @@ impl Guards {
         if critical < SMALL_STEP * square {
             warnings.push(format!(
                 "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: some cell is very small, or the \
-                 contact very stiff. Look at `defect.depth_mm`, `mesh.roller_facets` and `contact.penalty_scale`, or expect a run {:.0} \
+                 contact very stiff, or stiffness damping strong. Look at `defect.depth_mm`, `mesh.roller_facets`, `contact.penalty_scale` and \
+                 `solver.stiffness_damping_ns`, or expect a run {:.0} \
                  times as long",
                 1e9 * critical,
                 100.0 * critical / square,

@@ -237,6 +237,8 @@ pub struct SolverScene {
     pub mass_damping_per_s: f64,
     /// What the mass damping is relative to.
     pub damping_frame: DampingFrame,
+    /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time step.
+    pub stiffness_damping_ns: f64,
     /// How the run starts.
     pub start: Start,
 }
@@ -428,6 +430,7 @@ impl Default for SolverScene {
             hourglass_scale: 1.0,
             mass_damping_per_s: 5000.0,
             damping_frame: DampingFrame::Rolling,
+            stiffness_damping_ns: 0.0,
             start: Start::Preloaded,
         }
     }

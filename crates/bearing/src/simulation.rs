@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use stribeck_mesh::vtu;
 use stribeck_solver::{
     Force,
+    critical::damped_time_step,
     damping::{Frame, MassDamping},
 };
 
@@ -219,11 +220,13 @@ fn may_go_on(dir: &RunDir) -> Result<(), Error> {
     Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
 }
 
-/// Critical time step with contact; its damping acts half a step late and counts with the step it is used at.
+/// Critical time step with contact; damping of contact and of stiffness acts half a step late and counts with the step it
+/// is used at.
 pub(crate) fn critical_time_step(machine: &Machine) -> f64 {
     let forces: [&dyn Force; 1] = [&machine.contacts];
     let first = machine.dynamics.critical_time_step(&forces, 0.0).time_step;
-    machine.dynamics.critical_time_step(&forces, 0.9 * first).time_step
+    let damped = damped_time_step(first, machine.dynamics.stiffness_damping());
+    machine.dynamics.critical_time_step(&forces, 0.9 * damped).time_step
 }
 
 fn expected_support(scene: &Scene, machine: &Machine) -> f64 {

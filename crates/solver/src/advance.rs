@@ -1,5 +1,7 @@
 //! Moving nodes: central difference, with damping where there is some, and prescribed rotation (THEORY §2.3, §2.6).
 
+use std::marker::PhantomData;
+
 use pulp::Simd;
 
 use crate::{
@@ -57,8 +59,12 @@ pub(crate) fn gain(rate: f64, dt: f64) -> f64 {
 
 /// Fields of a tile, and the forces summed so far. All are longer by a group of lanes than the last node that counts.
 pub(crate) struct Nodes<'a> {
+    /// Positions that elements see [m].
     pub(crate) x: &'a mut [f64],
     pub(crate) y: &'a mut [f64],
+    /// Positions of the nodes [m] where elements see others; empty where they see these.
+    pub(crate) own_x: &'a mut [f64],
+    pub(crate) own_y: &'a mut [f64],
     pub(crate) vx: &'a mut [f64],
     pub(crate) vy: &'a mut [f64],
     pub(crate) fx: &'a mut [f64],
@@ -72,11 +78,14 @@ pub(crate) struct Nodes<'a> {
 impl Nodes<'_> {
     /// The same arrays, all of one length that the compiler knows to be one.
     #[inline(always)]
-    pub(crate) fn alike(&mut self) -> Nodes<'_> {
+    pub(crate) fn alike<D: Damping>(&mut self) -> Nodes<'_> {
         let n = self.x.len();
+        let own = if D::AHEAD { n } else { 0 };
         Nodes {
             x: &mut self.x[..n],
             y: &mut self.y[..n],
+            own_x: &mut self.own_x[..own],
+            own_y: &mut self.own_y[..own],
             vx: &mut self.vx[..n],
             vy: &mut self.vy[..n],
             fx: &mut self.fx[..n],
@@ -93,6 +102,8 @@ pub(crate) trait Damping {
     const DAMPS: bool;
     /// Whether the heat of that is counted.
     const COUNTS: bool;
+    /// Whether elements see positions ahead of the nodes (stiffness damping).
+    const AHEAD: bool = false;
 }
 
 /// No damping.
@@ -101,6 +112,8 @@ pub(crate) struct Undamped;
 pub(crate) struct Damped;
 /// Damping and its heat.
 pub(crate) struct Counted;
+/// The same with stiffness damping.
+pub(crate) struct Ahead<D>(PhantomData<D>);
 
 impl Damping for Undamped {
     const DAMPS: bool = false;
@@ -115,6 +128,12 @@ impl Damping for Damped {
 impl Damping for Counted {
     const DAMPS: bool = true;
     const COUNTS: bool = true;
+}
+
+impl<D: Damping> Damping for Ahead<D> {
+    const DAMPS: bool = D::DAMPS;
+    const COUNTS: bool = D::COUNTS;
+    const AHEAD: bool = true;
 }
 
 /// Takes a group of nodes from `at` on one step on under forces x, y [N]: v += Δt·a, x += Δt·v. With `LAST`, only the
@@ -136,7 +155,9 @@ pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
     step: &Step<S>,
     heat: &mut Vector<S>,
 ) {
-    let (x, y) = (Vector::load(simd, nodes.x, at), Vector::load(simd, nodes.y, at));
+    let [own_x, own_y] =
+        if D::AHEAD { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
+    let (x, y) = (Vector::load(simd, own_x, at), Vector::load(simd, own_y, at));
     let (vx, vy) = (Vector::load(simd, nodes.vx, at), Vector::load(simd, nodes.vy, at));
     let m = Vector::load(simd, nodes.step_over_mass, at);
     let (mut ux, mut uy) = if D::DAMPS {
@@ -167,8 +188,8 @@ pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
         *heat = *heat + if LAST { warm.first(n) } else { warm };
     }
     let zero = Vector::all(simd, 0.0);
-    put::<S, LAST>(ux.times_plus(step.dt, x), n, nodes.x, at);
-    put::<S, LAST>(uy.times_plus(step.dt, y), n, nodes.y, at);
+    put::<S, LAST>(ux.times_plus(step.dt, x), n, own_x, at);
+    put::<S, LAST>(uy.times_plus(step.dt, y), n, own_y, at);
     put::<S, LAST>(ux, n, nodes.vx, at);
     put::<S, LAST>(uy, n, nodes.vy, at);
     put::<S, LAST>(zero, n, nodes.fx, at);
@@ -207,7 +228,7 @@ pub(crate) fn advance_row<S: Simd, D: Damping>(
 /// Turns a row about a centre [m] by the exact angle of one step at `rate` [rad/s]; returns the work [J] of the drive,
 /// whose force is what mass and other forces leave over. `gain` is that of the nodes' `step_over_mass`.
 #[inline(always)]
-pub(crate) fn rotate(
+pub(crate) fn rotate<D: Damping>(
     nodes: &mut Nodes<'_>,
     row: std::ops::Range<usize>,
     centre: [f64; 2],
@@ -219,17 +240,19 @@ pub(crate) fn rotate(
     // cos − 1 without cancellation: the angle of a step is about 1e-6.
     let half = (0.5 * rate * dt).sin();
     let (c1, s) = (-2.0 * half * half, (rate * dt).sin());
+    let [x, y] =
+        if D::AHEAD { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
     let mut work = 0.0;
     for i in row {
-        let (rx, ry) = (nodes.x[i] - centre[0], nodes.y[i] - centre[1]);
+        let (rx, ry) = (x[i] - centre[0], y[i] - centre[1]);
         let (dx, dy) = (c1 * rx - s * ry, s * rx + c1 * ry);
         let (vx, vy) = (dx / dt, dy / dt);
         let m = gain * dt / nodes.step_over_mass[i];
         let reaction_x = m * ((vx - nodes.vx[i]) / dt - gravity[0]) - nodes.fx[i];
         let reaction_y = m * ((vy - nodes.vy[i]) / dt - gravity[1]) - nodes.fy[i];
         work += 0.5 * dt * (reaction_x * (vx + nodes.vx[i]) + reaction_y * (vy + nodes.vy[i]));
-        nodes.x[i] += dx;
-        nodes.y[i] += dy;
+        x[i] += dx;
+        y[i] += dy;
         nodes.vx[i] = vx;
         nodes.vy[i] = vy;
         nodes.fx[i] = 0.0;

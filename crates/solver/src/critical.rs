@@ -32,6 +32,12 @@ const PROBE: f64 = 2e-6;
 /// Far from the origin positions round to more than that; a probe is this many of their last digits at least.
 const DIGITS: f64 = 1e5;
 
+/// What stiffness damping `beta` [s] leaves of the critical time step `undamped` [s], when it damps all stiffness
+/// (THEORY §2.7).
+pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
+    if beta > 0.0 { undamped * undamped / (beta + beta.hypot(undamped)) } else { undamped }
+}
+
 impl Dynamics {
     /// Elastic forces [N] of all elements at positions `x`, `y`, added to `fx`, `fy`.
     pub fn elastic_forces(&self, x: &[f64], y: &[f64], fx: &mut [f64], fy: &mut [f64]) {
@@ -59,14 +65,19 @@ impl Dynamics {
     /// Critical time step of elements and forces at the present positions.
     ///
     /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add in
-    /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms). Rigid bodies
-    /// have no K: D over their mass and inertia bounds theirs. Infinite when nothing has stiffness.
+    /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms, zero leaves them
+    /// out). Rigid bodies have no K: D over their mass and inertia bounds theirs. Infinite when nothing has stiffness.
+    /// Stiffness damping makes K larger by 1 + 2β/`dt`; [`damped_time_step`] guesses that `dt`.
     pub fn critical_time_step(&self, forces: &[&dyn Force], dt: f64) -> Critical {
         let mut bound = vec![0.0; self.state.x.len()];
         forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
         let rigid = self.rigid_frequency_bound(&bound).sqrt();
         let free: Vec<usize> = self.elastic_slots();
-        let elastic = Operator::new(self, bound, free, Vec::new()).largest();
+        let mut operator = Operator::new(self, bound, free, Vec::new());
+        if dt > 0.0 {
+            operator.stiffer = 1.0 + 2.0 * self.stiffness_damping() / dt;
+        }
+        let elastic = operator.largest();
         // D couples no two bodies, so the larger of the two is that of the whole.
         if elastic.frequency >= rigid {
             return elastic;
@@ -95,6 +106,8 @@ struct Operator<'a> {
     answers: Vec<bool>,
     /// Displacement of a probe [m].
     probe: f64,
+    /// What multiplies K.
+    stiffer: f64,
     springs: Vec<Spring>,
 }
 
@@ -127,7 +140,7 @@ impl<'a> Operator<'a> {
         let nodes = springs.iter_mut().flat_map(|s| &mut s.nodes);
         nodes.for_each(|n| *n = n.and_then(|slot| place[slot]));
         let answers = vec![true; 2 * free.len()];
-        Self { dynamics, bound, free, answers, probe: probe(dynamics), springs }
+        Self { dynamics, bound, free, answers, probe: probe(dynamics), stiffer: 1.0, springs }
     }
 
     /// out = M⁻½ (K + D) M⁻½ v, with K from central differences of the elastic forces.
@@ -153,8 +166,9 @@ impl<'a> Operator<'a> {
         for (i, &s) in self.free.iter().enumerate() {
             let root = mass[s].sqrt();
             let diagonal = self.bound[s] / mass[s];
-            out[i] = (minus.x[s] - plus.x[s]) / (2.0 * h * root) + diagonal * v[i];
-            out[n + i] = (minus.y[s] - plus.y[s]) / (2.0 * h * root) + diagonal * v[n + i];
+            let stiffness = self.stiffer / (2.0 * h * root);
+            out[i] = (minus.x[s] - plus.x[s]) * stiffness + diagonal * v[i];
+            out[n + i] = (minus.y[s] - plus.y[s]) * stiffness + diagonal * v[n + i];
         }
         for Spring { nodes, direction, stiffness } in &self.springs {
             let component = |k: usize| nodes[k / 2].map(|i| (i + (k % 2) * n, mass[self.free[i]].sqrt()));

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     advance::gain,
+    ahead::Seen,
     damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
     error::{Error, check, check_count},
@@ -20,7 +21,7 @@ use crate::{
     tile::{Tile, TileDamping},
 };
 
-/// The heat of mass damping is counted in every so manyth step: it costs as much as damping itself.
+/// The heat of damping is counted in every so manyth step: it costs as much as damping itself.
 const HEAT_EVERY: u64 = 4;
 
 /// Nodes or elements that are worth another thread, for sums that are taken now and then.
@@ -35,7 +36,7 @@ pub struct Dynamics {
     pub rigid: Vec<RigidState>,
     /// Work of prescribed motions since the start [J].
     pub drive: Accumulated,
-    /// Heat of mass damping since the start [J].
+    /// Heat of mass and stiffness damping since the start [J].
     pub heat: Accumulated,
     layout: Layout,
     pub(crate) tiles: Vec<Tile>,
@@ -50,6 +51,8 @@ pub struct Dynamics {
     time_step: f64,
     gravity: [f64; 2],
     parallel: bool,
+    /// β of the stiffness damping [s].
+    beta: f64,
     pub(crate) damped: Option<Vec<DampedBody>>,
     /// Step at which the damping frames were last placed.
     pub(crate) frames_placed: Option<u64>,
@@ -183,6 +186,7 @@ impl Dynamics {
             time_step: 0.0,
             gravity: model.gravity,
             parallel: threads > 1,
+            beta: 0.0,
             layout,
         })
     }
@@ -273,6 +277,12 @@ impl Dynamics {
             self.state.x[ghost as usize] = self.state.x[owner as usize];
             self.state.y[ghost as usize] = self.state.y[owner as usize];
         }
+        if self.beta > 0.0 {
+            for &(ghost, owner) in &self.layout.ghosts {
+                self.state.vx[ghost as usize] = self.state.vx[owner as usize];
+                self.state.vy[ghost as usize] = self.state.vy[owner as usize];
+            }
+        }
         self.sweep_tiles();
         for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid) {
             body.advance(at, &mut self.state, &mut self.forces, self.time_step, self.gravity);
@@ -313,6 +323,25 @@ impl Dynamics {
         self.set_step_over_mass();
         self.frames_placed = None;
         self.damped = (!bodies.is_empty()).then(|| bodies.into_iter().map(|(_, body)| body).collect());
+    }
+
+    /// Sets the stiffness-proportional damping of elastic bodies, forces β K v; a mode of the angular frequency ω has the
+    /// damping ratio βω/2. It shortens the critical time step (THEORY §2.7).
+    ///
+    /// # Errors
+    /// When `beta` [s] is negative or not finite.
+    pub fn set_stiffness_damping(&mut self, beta: f64) -> Result<(), Error> {
+        check("stiffness damping [s]", beta, beta >= 0.0, "zero or positive")?;
+        self.beta = beta;
+        let largest = self.tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
+        let slots = if beta > 0.0 { largest } else { 0 };
+        self.scratch.iter_mut().for_each(|s| s.seen = Seen::new(slots));
+        Ok(())
+    }
+
+    /// β of the stiffness damping [s].
+    pub fn stiffness_damping(&self) -> f64 {
+        self.beta
     }
 
     /// Places the damping frames now and then, and moves them on in between.
@@ -360,7 +389,7 @@ impl Dynamics {
             fy: &mut self.forces.fy,
         };
         let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
-        let drive = Drive { dt: self.time_step, gravity: self.gravity, count_heat };
+        let drive = Drive { dt: self.time_step, gravity: self.gravity, beta: self.beta, count_heat };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
         sweep_all(Runs { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
         // In the order of the tiles, whatever thread each was on.

@@ -80,7 +80,7 @@
 //! | What is one step? | `dynamics.rs` |
 //! | What does it take to continue a run? | `snapshot.rs` |
 //! | What force does an element make? | `element.rs` |
-//! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
+//! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs`, `ahead.rs` |
 //! | How long may a step be? | `critical.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
 //! | How is equilibrium found? | `statics.rs` |
@@ -89,6 +89,7 @@
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
 mod advance;
+mod ahead;
 pub mod critical;
 pub mod damping;
 pub mod distortion;

@@ -4,7 +4,7 @@
 use pulp::Simd;
 
 use crate::{
-    advance::{Damping, Nodes, Step, advance},
+    advance::{Damping, Nodes, Step, Undamped, advance},
     element::{QuadMetric, Stiffness},
     lanes::Vector,
     tile::{Strip, StripReferences, VaryingReferences},
@@ -29,6 +29,29 @@ pub(crate) fn strip<S: Simd, D: Damping>(
         StripReferences::Varying(start) => {
             let each = Each { references: varying, start };
             run_or_hold::<S, D, _>(simd, &each, strip, stiffness, nodes, step, heat);
+        }
+    }
+}
+
+/// Adds the forces of one strip and moves nothing.
+#[inline(always)]
+pub(crate) fn strip_forces<S: Simd>(
+    simd: S,
+    strip: &Strip,
+    varying: &VaryingReferences,
+    stiffness: &Stiffness<Vector<S>>,
+    nodes: &mut Nodes<'_>,
+    step: &Step<S>,
+) {
+    let heat = &mut Vector::all(simd, 0.0);
+    match strip.references {
+        StripReferences::Uniform(q) => {
+            let same = q.of(Vector::all(simd, 0.0));
+            run::<S, Undamped, _, false>(simd, &same, strip, stiffness, nodes, step, heat);
+        }
+        StripReferences::Varying(start) => {
+            let each = Each { references: varying, start };
+            run::<S, Undamped, _, false>(simd, &each, strip, stiffness, nodes, step, heat);
         }
     }
 }
@@ -63,7 +86,7 @@ fn run<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
     step: &Step<S>,
     heat: &mut Vector<S>,
 ) {
-    let nodes = &mut nodes.alike();
+    let nodes = &mut nodes.alike::<D>();
     let len = Vector::<S>::LEN;
     let mut right = [[Vector::all(simd, 0.0); 2]; 2];
     let [low, _, _, high] = strip.corners.map(|c| c as usize);

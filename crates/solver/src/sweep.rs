@@ -4,7 +4,8 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    advance::{Counted, Damped, Damping, Nodes, Step, Undamped, advance_row, gain, rotate},
+    advance::{Ahead, Counted, Damped, Damping, Nodes, Step, Undamped, advance_row, gain, rotate},
+    ahead::{LookAhead, Seen},
     damping::LaneFrames,
     field::Field,
     gather::{congruent_elements, single_elements},
@@ -26,17 +27,27 @@ pub(crate) struct TileFields<'a> {
     pub(crate) fy: &'a mut [f64],
 }
 
+impl TileFields<'_> {
+    /// The same fields once more.
+    fn again(&mut self) -> TileFields<'_> {
+        let Self { x, y, vx, vy, fx, fy } = self;
+        TileFields { x, y, vx, vy, fx, fy }
+    }
+}
+
 /// What a worker thread may scribble on.
 #[derive(Debug, Clone)]
 pub(crate) struct Scratch {
     /// Forces on the nodes of the tile at hand; all zero between tiles.
     fx: Field,
     fy: Field,
+    /// Where elements see the nodes; empty without stiffness damping.
+    pub(crate) seen: Seen,
 }
 
 impl Scratch {
     pub(crate) fn new(slots: usize) -> Self {
-        Self { fx: Field::zeros(slots), fy: Field::zeros(slots) }
+        Self { fx: Field::zeros(slots), fy: Field::zeros(slots), seen: Seen::default() }
     }
 }
 
@@ -45,6 +56,8 @@ impl Scratch {
 pub(crate) struct Drive {
     pub(crate) dt: f64,
     pub(crate) gravity: [f64; 2],
+    /// β of the stiffness damping [s].
+    pub(crate) beta: f64,
     /// Whether the heat of damping is counted in this step.
     pub(crate) count_heat: bool,
 }
@@ -54,7 +67,7 @@ pub(crate) struct Drive {
 pub(crate) struct Energies {
     /// Work of prescribed motion.
     pub(crate) work: f64,
-    /// Heat of mass damping; zero where it is not counted.
+    /// Heat of damping; zero where it is not counted.
     pub(crate) heat: f64,
 }
 
@@ -66,8 +79,23 @@ impl std::ops::Add for Energies {
 }
 
 /// Computes the forces of one tile and takes its nodes one step on.
-pub(crate) fn sweep(tile: &Tile, fields: TileFields<'_>, scratch: &mut Scratch, drive: Drive) -> Energies {
-    Arch::new().dispatch(Sweep { tile, fields, scratch, drive })
+pub(crate) fn sweep(
+    tile: &Tile,
+    mut fields: TileFields<'_>,
+    scratch: &mut Scratch,
+    drive: Drive,
+) -> Energies {
+    let arch = Arch::new();
+    if drive.beta == 0.0 || !tile.elastic {
+        return arch.dispatch(Sweep { tile, fields, scratch, drive });
+    }
+    let seen = &mut scratch.seen;
+    let before = arch.dispatch(LookAhead { tile, fields: fields.again(), seen, drive });
+    let mut energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, drive });
+    if drive.count_heat {
+        energies.heat += 0.5 * drive.dt * (before + scratch.seen.power(tile.own, fields.vx, fields.vy));
+    }
+    energies
 }
 
 /// A sweep to be compiled for each instruction set and kind of damping.
@@ -83,10 +111,14 @@ impl WithSimd for Sweep<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Energies {
-        match &self.tile.damping {
-            None => self.run::<S, Undamped>(simd),
-            Some(_) if self.drive.count_heat => self.run::<S, Counted>(simd),
-            Some(_) => self.run::<S, Damped>(simd),
+        let ahead = self.drive.beta > 0.0 && self.tile.elastic;
+        match (&self.tile.damping, self.drive.count_heat) {
+            (None, _) if ahead => self.run::<S, Ahead<Undamped>>(simd),
+            (Some(_), true) if ahead => self.run::<S, Ahead<Counted>>(simd),
+            (Some(_), false) if ahead => self.run::<S, Ahead<Damped>>(simd),
+            (None, _) => self.run::<S, Undamped>(simd),
+            (Some(_), true) => self.run::<S, Counted>(simd),
+            (Some(_), false) => self.run::<S, Damped>(simd),
         }
     }
 }
@@ -109,13 +141,19 @@ impl Sweep<'_> {
             outer_x[node] = 0.0;
             outer_y[node] = 0.0;
         }
+        let (x, y, own_x, own_y) = if D::AHEAD {
+            (&mut scratch.seen.x[..n], &mut scratch.seen.y[..n], x, y)
+        } else {
+            (x, y, &mut [][..], &mut [][..])
+        };
         if tile.congruent {
             congruent_elements(simd, tile, stiffness, x, y, fx, fy);
         } else {
             single_elements(simd, tile, stiffness, x, y, fx, fy);
         }
         let mass = tile.damping.as_ref().map_or(&[][..], |d| &d.mass);
-        let mut nodes = Nodes { x, y, vx, vy, fx, fy, step_over_mass: &tile.step_over_mass, mass };
+        let step_over_mass = &tile.step_over_mass;
+        let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
         let mut finish = tile.finish.iter().peekable();
         let (mut work, mut heat) = (0.0, Vector::all(simd, 0.0));
         for done in 0..=tile.strips.len() {
@@ -127,7 +165,7 @@ impl Sweep<'_> {
                     Motion::Held => [0.0, 0.0],
                     Motion::Rotating { centre, rate } => {
                         let gain = gain(tile.damping.as_ref().map_or(0.0, |d| d.rate), dt);
-                        work += rotate(&mut nodes, f.nodes.clone(), centre, rate, dt, gain, gravity);
+                        work += rotate::<D>(&mut nodes, f.nodes.clone(), centre, rate, dt, gain, gravity);
                         continue;
                     }
                 };

@@ -5,6 +5,7 @@
 //! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 
 mod kills;
+mod long;
 mod noise;
 mod paper;
 mod rig;
@@ -32,6 +33,8 @@ pub(crate) struct Options {
 enum Study {
     /// Which reading of the paper agrees with it best, and whether its hypothesis holds
     Paper(paper::Options),
+    /// The bearing for 0.35 s: lines resolved to 3 Hz, the defect in the envelope
+    Long(long::Options),
     /// Runs killed at random moments and continued: the same bytes
     Kills(kills::Options),
     /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
@@ -46,6 +49,7 @@ enum Study {
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     match &options.study {
         Study::Paper(options) => paper::run(options),
+        Study::Long(options) => long::run(options),
         Study::Kills(options) => kills::run(options),
         Study::Stability(options) => stability::run(options),
         Study::WorkPrecision(options) => work_precision::run(options),

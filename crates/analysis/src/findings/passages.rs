@@ -33,17 +33,21 @@ pub(super) fn picked_events(
             None => notes.push(format!("roller {} is not in the trace", passage.roller)),
             Some(roller) => {
                 let orbit = roller.orbit();
+                let traverse = passage.exit_s - passage.entry_s;
                 let near = |edge: f64, expected: f64| {
                     let all = events::crossings(time, &orbit, edge.to_radians());
                     let gap = |t: &f64| (t - expected).abs();
-                    let traverse = passage.exit_s - passage.entry_s;
                     all.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).filter(|t| gap(t) < traverse)
                 };
                 let path_entry = near(edges.leading_deg, passage.entry_s);
                 let path_exit = near(edges.trailing_deg, passage.exit_s);
+                // The cage slips a little, so that in a long record the path says better when to look.
+                let late = path_entry.or(path_exit.map(|t| t - traverse)).unwrap_or(passage.entry_s)
+                    - passage.entry_s;
+                let late = if late.abs() > 0.1 * traverse { late } else { 0.0 };
                 let seen = Passage {
-                    entry_s: passage.entry_s,
-                    exit_s: passage.exit_s,
+                    entry_s: passage.entry_s + late,
+                    exit_s: passage.exit_s + late,
                     middle_s: near(edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
                     smoothing_s: prediction.smoothing_s(passage.exit_s - passage.entry_s),
                 };
@@ -73,10 +77,13 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
     let count = record.rollers().len();
     let spans: Vec<(usize, f64, f64)> =
         events.iter().map(|e| (e.roller, e.extent_s().0, e.extent_s().1)).collect();
+    // In a long record a neighbour comes round again; the one that counts is a roller spacing before or after.
+    let spacing_s = 1.0 / prediction.kinematics.bpfo_hz;
     for event in events.iter_mut() {
+        let own_s = event.extent_s().0;
         let neighbours = spans.iter().filter(|s| {
             let apart = event.roller.abs_diff(s.0);
-            apart.min(count.saturating_sub(apart)) == 1
+            apart.min(count.saturating_sub(apart)) == 1 && (s.1 - own_s).abs() < 2.0 * spacing_s
         });
         let Some(roller) = record.roller(event.roller) else { continue };
         let own = event.extent_s();

@@ -144,6 +144,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("solver.time_step_factor", solver.time_step_factor, positive(1.5), "");
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
     add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");
+    add("solver.stiffness_damping_ns", solver.stiffness_damping_ns, within(0.0, 1e4), "ns");
     add("output.interval_us", output.interval_us, within(0.01, 1e6), "µs");
     add("guards.energy_warning_percent", guards.energy_warning_percent, positive(1e6), "%");
     add("guards.energy_stop_percent", guards.energy_stop_percent, positive(1e6), "%");

@@ -6,6 +6,9 @@ use crate::paper;
 use crate::plot::{Axis, Colour, Figure, Level, Mark};
 use crate::summary::Event;
 
+/// Most exits that are named in full.
+const NAMED: usize = 6;
+
 /// Fig. 2: as recorded.
 pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first().filter(|s| !s.raw_g.is_empty())?;
@@ -20,8 +23,8 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
             gravities(levels.between_g),
         ))
         .note(
-            "Dashed across: the paper's levels, read from its text. Dashed upright: a roller over the trailing edge without \
-             slip. The paper's exits are near 5, 16–17 and 28 ms.",
+            "Dashed across: the paper's levels, read from its text. Dashed upright: a roller's centre over the trailing edge, by \
+             its recorded path. The paper's exits are near 5, 16–17 and 28 ms.",
         );
     figure.marks = exits(&findings.summary.events);
     figure.levels = both_signs(&[(paper::IMPULSE_G, "impulses"), (paper::BETWEEN_G, "between")]);
@@ -92,9 +95,15 @@ fn over_time(id: &str, title: &str) -> Figure {
     Figure::new(id, title, Axis::si("Time", "s"), Axis::plain("a_y", "g")).synced("time")
 }
 
+/// Exits by the recorded path where there is one; of many only the first is named in full.
 fn exits(events: &[Event]) -> Vec<Mark> {
-    let label = |e: &Event| format!("exit of roller {}", e.roller);
-    events.iter().map(|e| mark(1e-3 * e.expected_exit_ms, &label(e), Colour::Green, true)).collect()
+    let label = |(n, e): (usize, &Event)| match n {
+        _ if events.len() <= NAMED => format!("exit of roller {}", e.roller),
+        0 => format!("exit of roller {}", e.roller),
+        _ => e.roller.to_string(),
+    };
+    let at = |e: &Event| 1e-3 * e.path_exit_ms.unwrap_or(e.expected_exit_ms);
+    events.iter().enumerate().map(|(n, e)| mark(at(e), &label((n, e)), Colour::Green, true)).collect()
 }
 
 /// The paper's levels on either side of zero.

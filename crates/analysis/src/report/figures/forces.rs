@@ -12,6 +12,9 @@ use crate::summary::Event;
 /// Rollers whose force is drawn: the paper's three. All others are in the table.
 const DRAWN: usize = 3;
 
+/// A record of more roller spacings is drawn about each passage only.
+const LONG_SPACINGS: f64 = 6.0;
+
 /// Figs. 8a to 8c: vertical force of the outer raceway on each roller that crosses the defect.
 pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
     let crossings = findings.crossings.iter().zip(&findings.summary.events).take(DRAWN);
@@ -28,6 +31,16 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         figure = figure.with(sampled(findings, "notched", Colour::Blue, &crossing.filtered_n));
     }
     figure.bands = transient(findings);
+    // A long record shows the passage, not the whole turn.
+    let spacing_s = 1.0 / findings.prediction.kinematics.bpfo_hz;
+    let end_s = findings.start_s + crossing.raw_n.len() as f64 * findings.interval_s;
+    if end_s > LONG_SPACINGS * spacing_s {
+        let middle_s = 0.5e-3 * (event.expected_entry_ms + event.expected_exit_ms);
+        let from = (middle_s - 1.5 * spacing_s).max(findings.start_s);
+        figure.x = figure.x.over(from, from + 3.0 * spacing_s);
+        // A figure of its own span shares no cursor with the others.
+        figure.sync = None;
+    }
     for (ms, label) in [(event.expected_entry_ms, "leading edge"), (event.expected_exit_ms, "trailing edge")]
     {
         figure.marks.push(mark(1e-3 * ms, label, Colour::Orange, true));

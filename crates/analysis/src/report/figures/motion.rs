@@ -54,8 +54,8 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
     );
     vec![
         spin.caption(
-            "A loaded roller rolls; in the defect nothing drives it at the outer raceway, and where its speed then differs from \
-             rolling it slips until the contact has it again.",
+            "A loaded roller rolls; in the defect and outside the load zone nothing drives it at the outer raceway, and where its \
+             speed then differs from rolling it slips until the contact has it again.",
         )
         .note(note.clone()),
         orbit

@@ -1,0 +1,91 @@
+//! Stiffness damping: elements see each node where it would be a time β later, so that their forces hold β K v (THEORY §2.7).
+
+use pulp::{Simd, WithSimd};
+
+use crate::{
+    advance::{Nodes, Step},
+    damping::LaneFrames,
+    field::Field,
+    gather::{congruent_elements, single_elements},
+    lanes::{Number, Vector},
+    strip::strip_forces,
+    sweep::{Drive, TileFields},
+    tile::Tile,
+};
+
+/// Where the elements of the tile at hand see its nodes, and what that changes about their forces.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Seen {
+    /// Positions x + β v [m].
+    pub(crate) x: Field,
+    pub(crate) y: Field,
+    /// Damping force [N], in steps that count its heat.
+    fx: Field,
+    fy: Field,
+}
+
+impl Seen {
+    /// For tiles of at most so many slots.
+    pub(crate) fn new(slots: usize) -> Self {
+        let zeros = || Field::zeros(slots);
+        Self { x: zeros(), y: zeros(), fx: zeros(), fy: zeros() }
+    }
+
+    /// Power [W] that the damping force takes from the first `own` nodes at these velocities [m/s].
+    pub(crate) fn power(&self, own: usize, vx: &[f64], vy: &[f64]) -> f64 {
+        -(0..own).map(|n| self.fx[n] * vx[n] + self.fy[n] * vy[n]).sum::<f64>()
+    }
+}
+
+/// Finds [`Seen`] for one tile. Ghosts must have positions and velocities.
+pub(crate) struct LookAhead<'a> {
+    pub(crate) tile: &'a Tile,
+    pub(crate) fields: TileFields<'a>,
+    pub(crate) seen: &'a mut Seen,
+    pub(crate) drive: Drive,
+}
+
+impl WithSimd for LookAhead<'_> {
+    /// Power [W] that damping takes at the velocities before the step; zero where heat is not counted.
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Self { tile, fields, seen, drive } = self;
+        let TileFields { x, y, vx, vy, .. } = fields;
+        let n = tile.slots.len();
+        for (to, at, v) in [(&mut seen.x, &*x, &*vx), (&mut seen.y, &*y, &*vy)] {
+            for ((to, at), v) in to[..n].iter_mut().zip(at).zip(v) {
+                *to = drive.beta.times_plus(*v, *at);
+            }
+        }
+        if !drive.count_heat {
+            return 0.0;
+        }
+        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
+        let step = &Step::new(simd, drive.dt, drive.gravity, 0.0, &LaneFrames::REST);
+        seen.fx[..n].fill(0.0);
+        seen.fy[..n].fill(0.0);
+        // Forces where elements see the nodes less those where the nodes are: −f of the latter, plus f of the former.
+        for ahead in [false, true] {
+            let (x, y) = if ahead { (&mut seen.x[..n], &mut seen.y[..n]) } else { (&mut *x, &mut *y) };
+            let (fx, fy) = (&mut seen.fx[..n], &mut seen.fy[..n]);
+            if tile.congruent {
+                congruent_elements(simd, tile, k, x, y, fx, fy);
+            } else {
+                single_elements(simd, tile, k, x, y, fx, fy);
+            }
+            let (own_x, own_y, mass) = (&mut [][..], &mut [][..], &[][..]);
+            let step_over_mass = &tile.step_over_mass;
+            let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
+            // A loop: within a closure the compiler would not use the instruction set of this function.
+            for s in &tile.strips {
+                strip_forces(simd, s, &tile.varying, k, &mut nodes, step);
+            }
+            if !ahead {
+                [fx, fy].into_iter().flatten().for_each(|f| *f = -*f);
+            }
+        }
+        seen.power(tile.own, vx, vy)
+    }
+}
