@@ -8,9 +8,10 @@ use crate::{
     law::Law,
     points::Points,
     projection::{Frame, distance},
-    row::{MOST_POINTS, Row},
+    row::{Against, MOST_POINTS, Row},
     shape::{Push, Shape, Side},
     spline::Patch,
+    spline_row::Feet,
     surface::Surface,
     touch::{Histories, Slide, Sum, touch},
 };
@@ -66,6 +67,8 @@ pub(crate) struct Weights {
     pub(crate) fastest: f64,
     /// Rounds the corner of the penalty law over about this gap [m]; zero for the law itself.
     pub(crate) softness: f64,
+    /// Whether points may be done together.
+    pub(crate) together: bool,
 }
 
 /// The evaluation of a pass, to be compiled for each instruction set.
@@ -96,7 +99,7 @@ impl WithSimd for Evaluation<'_> {
 impl Weights {
     /// Larger gaps than this carry nothing [m].
     #[inline(always)]
-    fn reach(&self) -> f64 {
+    pub(crate) fn reach(&self) -> f64 {
         // Beyond 30 softnesses the rounded law is below 1e-13 of one softness of penetration.
         if self.softness > 0.0 { 30.0 * self.softness } else { self.law.onset }
     }
@@ -232,9 +235,11 @@ impl Pass {
         let closing = w.fastest * at.dt;
         // Consecutive points mostly share a primary facet: its forces wait until another one comes.
         let mut other: Option<Side<P>> = None;
-        // Points on one chord against another chord, with the sharp law: many at a time.
+        // Chords against chords and splines against splines, with the law itself: many points at a time.
         let flat = secondary.is_flat() && primary.is_flat();
-        let together = flat && w.softness == 0.0 && w.law.onset == 0.0 && history.len() > 0;
+        let splines = secondary.spline.is_some() && primary.spline.is_some();
+        let together = w.together && (flat || splines) && w.softness == 0.0 && history.len() > 0;
+        let mut feet = Feet::new(simd, w, at.dt);
         let mut shape: Option<P> = None;
         for candidate in candidates {
             if at.step < candidate.wake {
@@ -249,8 +254,10 @@ impl Pass {
             self.work += 4 + range.len() / 4;
             let mut done = [false; MOST_POINTS];
             if together && range.len() <= MOST_POINTS {
-                let mut row = Row { points: &self.points, range: range.clone(), nearest, doze, now, history };
-                touched = row.touch(simd, &mut own, primary, at, w, self.deepest, &mut done, &mut sum, push);
+                let against = Against { primary, at, w, deepest: self.deepest };
+                let points = &self.points;
+                let mut row = Row { points, range: range.clone(), nearest, doze, now, history, against };
+                touched = S::touch_row(simd, &mut row, &mut own, &mut feet, &mut done, &mut sum, push);
             }
             for i in range.clone() {
                 if done.get(i - range.start) == Some(&true) {
@@ -330,6 +337,7 @@ impl Pass {
         if let Some(side) = &other {
             side.flush(primary, push);
         }
+        feet.flush(primary, &mut sum, push);
         self.asleep = first_awake;
         sum
     }

@@ -1,10 +1,15 @@
 //! Projection of a point onto a surface, and the signed gap (THEORY §4.1, §4.4).
 
+use pulp::Simd;
+
 use crate::{
-    shape::{Poly, Push, Shape, Spot},
+    row::{MOST_POINTS, Row},
+    shape::{Poly, Push, Shape, Side, Spot},
     smooth::{Rise, height, slope},
     spline::Patch,
+    spline_row::Feet,
     surface::Surface,
+    touch::Sum,
 };
 
 /// Where a point projects.
@@ -78,8 +83,16 @@ impl Shape for Frame {
     }
 
     #[inline(always)]
-    fn chord(&self) -> Option<&Frame> {
-        Some(self)
+    fn touch_row<V: Simd>(
+        simd: V,
+        row: &mut Row<'_>,
+        own: &mut Side<Self>,
+        _feet: &mut Feet<V>,
+        done: &mut [bool; MOST_POINTS],
+        sum: &mut Sum,
+        push: &mut Vec<Push>,
+    ) -> bool {
+        row.touch(simd, own, done, sum, push)
     }
 
     #[inline(always)]

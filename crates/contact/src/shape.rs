@@ -4,12 +4,15 @@
 //! x = c(s) + e(s) n. Its variation is δx = δc − e t (n·δc′)/|c′|, with the unit tangent t: the height turns with the
 //! curve. Velocities follow from the same two terms, forces go the same way back (THEORY §4.4).
 
+use pulp::Simd;
 use stribeck_solver::state::Moment;
 
 use crate::{
-    projection::{Foot, Frame, Projection},
+    projection::{Foot, Projection},
+    row::{MOST_POINTS, Row},
+    spline_row::Feet,
     surface::Surface,
-    touch::Slide,
+    touch::{Slide, Sum},
 };
 
 /// A force on a node: slot, x [N], y [N].
@@ -42,8 +45,17 @@ pub(crate) trait Shape: Copy {
 
     fn facet(&self) -> usize;
 
-    /// The chord, where that is the polynomial.
-    fn chord(&self) -> Option<&Frame>;
+    /// Evaluates those of a row's points that can be done together, and marks them as done; whether one touches. What
+    /// acts on the other surface may wait in `feet`.
+    fn touch_row<V: Simd>(
+        simd: V,
+        row: &mut Row<'_>,
+        own: &mut Side<Self>,
+        feet: &mut Feet<V>,
+        done: &mut [bool; MOST_POINTS],
+        sum: &mut Sum,
+        push: &mut Vec<Push>,
+    ) -> bool;
 
     fn spot(&self, place: f64, height: f64) -> Spot;
 
@@ -73,8 +85,8 @@ pub(crate) trait Coefficients {
     fn slope(&self, s: f64) -> [f64; 2];
     /// Adds a force that acts on the value, and one that acts on the slope at `s`.
     fn add(&mut self, s: f64, on_value: [f64; 2], on_slope: [f64; 2]);
-    /// Adds the sums of many forces on values, as they are and times their places; only for chords.
-    fn add_sums(&mut self, forces: [f64; 2], with_places: [f64; 2]);
+    /// Adds forces that others have got.
+    fn add_all(&mut self, forces: &Self);
 }
 
 impl<const K: usize> Coefficients for Poly<K> {
@@ -103,10 +115,9 @@ impl<const K: usize> Coefficients for Poly<K> {
     }
 
     #[inline(always)]
-    fn add_sums(&mut self, forces: [f64; 2], with_places: [f64; 2]) {
-        for k in 0..2 {
-            self.0[0][k] += forces[k];
-            self.0[1][k] += with_places[k];
+    fn add_all(&mut self, forces: &Self) {
+        for k in 0..K {
+            self.0[k] = [self.0[k][0] + forces.0[k][0], self.0[k][1] + forces.0[k][1]];
         }
     }
 
@@ -167,17 +178,18 @@ impl<S: Shape> Side<S> {
         }
     }
 
-    /// Values of a chord's motion at its first node and their change to the second [m/s].
+    /// Coefficients of its motion [m/s].
     #[inline(always)]
-    pub(crate) fn linear_motion(&self) -> [[f64; 2]; 2] {
-        [self.velocity.value(0.0), self.velocity.slope(0.0)]
+    pub(crate) fn coefficients_of_motion(&self) -> S::Coefficients {
+        self.velocity
     }
 
-    /// Adds forces on many points of a chord: their sum, and the sum of each times its place.
+    /// Adds forces on many points: what each coefficient gets.
     #[inline(always)]
-    pub(crate) fn push_sums(&mut self, forces: [f64; 2], with_places: [f64; 2]) {
-        self.forces.add_sums(forces, with_places);
-        self.force = [self.force[0] + forces[0], self.force[1] + forces[1]];
+    pub(crate) fn push_all(&mut self, forces: &S::Coefficients) {
+        self.forces.add_all(forces);
+        let all = forces.value(0.0);
+        self.force = [self.force[0] + all[0], self.force[1] + all[1]];
         self.used = true;
     }
 

@@ -5,10 +5,15 @@
 //! height that makes it the surface's own curve in the reference positions. Corners are kept: the nodes beyond one are
 //! its mirror images through the corner.
 
+use pulp::Simd;
+
 use crate::{
     projection::{Foot, Frame, Projection, walk},
-    shape::{Coefficients, Poly, Push, Shape, Spot},
+    row::{MOST_POINTS, Row},
+    shape::{Coefficients, Poly, Push, Shape, Side, Spot},
+    spline_row::Feet,
     surface::Surface,
+    touch::Sum,
 };
 
 /// Nodes that a facet's curve depends on: its own two and two more on either side.
@@ -18,7 +23,7 @@ const SUPPORT: usize = 6;
 type Matrix = [[f64; SUPPORT]; 4];
 
 /// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as that.
-const JOINT: f64 = 1e-9;
+pub(crate) const JOINT: f64 = 1e-9;
 
 /// Newton's method for a foot ends after a correction that leaves an error of rounding: a facet's curve turns by a tenth,
 /// so an error ε becomes less than 0.1 ε².
@@ -172,8 +177,8 @@ fn derivative(c: &[f64; 4], s: f64) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Patch {
     facet: usize,
-    curve: Poly<4>,
-    height: [f64; 4],
+    pub(crate) curve: Poly<4>,
+    pub(crate) height: [f64; 4],
     /// Position, first and second derivative in the middle.
     middle: [[f64; 2]; 3],
 }
@@ -250,8 +255,16 @@ impl Shape for Patch {
     }
 
     #[inline(always)]
-    fn chord(&self) -> Option<&Frame> {
-        None
+    fn touch_row<V: Simd>(
+        simd: V,
+        row: &mut Row<'_>,
+        own: &mut Side<Self>,
+        feet: &mut Feet<V>,
+        done: &mut [bool; MOST_POINTS],
+        _sum: &mut Sum,
+        push: &mut Vec<Push>,
+    ) -> bool {
+        row.touch_splines(simd, own, feet, done, push)
     }
 
     #[inline(always)]

@@ -1,6 +1,6 @@
 //! Numbers that a kernel computes with: one at a time, or as many side by side as one instruction takes.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use pulp::Simd;
 
@@ -133,6 +133,12 @@ impl<S: Simd> Vector<S> {
         Self { lanes: self.simd.max_f64s(self.lanes, other.lanes), ..self }
     }
 
+    /// The square root, lane by lane.
+    #[inline(always)]
+    pub fn square_root(self) -> Self {
+        Self { lanes: self.simd.sqrt_f64s(self.lanes), ..self }
+    }
+
     /// `yes` where this is below `limit`, `no` elsewhere.
     #[inline(always)]
     pub fn choose_below(self, limit: Self, yes: Self, no: Self) -> Self {
@@ -163,6 +169,14 @@ impl<S: Simd> Mul for Vector<S> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self { lanes: self.simd.mul_f64s(self.lanes, other.lanes), ..self }
+    }
+}
+
+impl<S: Simd> Div for Vector<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self { lanes: self.simd.div_f64s(self.lanes, other.lanes), ..self }
     }
 }
 
