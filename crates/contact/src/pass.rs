@@ -135,7 +135,7 @@ impl Pass {
                 searched: 0,
                 doze: vec![0; n],
                 candidates: Vec::new(),
-                history: Histories::new(if remembers { n } else { 0 }),
+                history: if remembers { Histories::new(n) } else { Histories::default() },
             },
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,

@@ -1,5 +1,7 @@
 //! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
 
+use stribeck_solver::lanes::LANES;
+
 use crate::surface::Surface;
 
 /// Where the penalty acts.
@@ -19,7 +21,7 @@ impl Method {
     pub const MOST_POINTS: usize = 32;
 }
 
-/// Contact points, facet by facet.
+/// Contact points, facet by facet. Fields of points go on beyond the last one, so that whole vectors can be read.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
@@ -59,6 +61,10 @@ impl Points {
             points.height.extend(points.place[new].iter().map(|&s| surface.height(f, s)));
             points.first.push(points.place.len() as u32);
         }
+        let padded = points.len() + LANES;
+        for field in [&mut points.place, &mut points.height, &mut points.weight] {
+            field.resize(padded, 0.0);
+        }
         points
     }
 
@@ -68,7 +74,7 @@ impl Points {
     }
 
     pub(crate) fn len(&self) -> usize {
-        self.place.len()
+        self.first.last().map_or(0, |&last| last as usize)
     }
 
     /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.

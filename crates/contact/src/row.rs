@@ -128,7 +128,7 @@ impl Row<'_> {
             let n = (self.range.len() - start).min(Vector::<V>::LEN);
             let i = self.range.start + start;
             let waiting = self.waiting(simd, start, n, done);
-            let s = Vector::load_first(simd, n, &self.points.place, i);
+            let s = Vector::load(simd, &self.points.place, i);
             let r = [s.times_plus(m.along[0], m.origin[0]), s.times_plus(m.along[1], m.origin[1])];
             let place = r[0].times_plus(m.other[0], r[1] * m.other[1]);
             let gap = r[0].times_plus(m.normal[0], r[1] * m.normal[1]);
@@ -142,12 +142,12 @@ impl Row<'_> {
                 continue;
             }
             any = true;
-            let weight = Vector::load_first(simd, n, &self.points.weight, i);
+            let weight = Vector::load(simd, &self.points.weight, i);
             let [v, u] = [motion(&m.own_motion, s), motion(&m.other_motion, place)];
             let relative = [v[0] - u[0], v[1] - u[1]];
             let opening = relative[0].times_plus(m.normal[0], relative[1] * m.normal[1]);
             let along = relative[1] * m.normal[0] - relative[0] * m.normal[1];
-            let points = Touching { n, first: i, on, gap, weight, opening, along };
+            let points = Touching { first: i, on, gap, weight, opening, along };
             let [normal, shear] = law.act(&points, self.history, &mut sums.work);
             let fx = on * (normal * m.normal[0] - shear * m.normal[1]);
             let fy = on * (normal * m.normal[1] + shear * m.normal[0]);

@@ -123,9 +123,10 @@ impl Row<'_> {
         let [Some(near), Some(far)] = places.map(|place| feet.facets[place].as_ref()) else { return false };
         let (near, far) = (Lanes::of(simd, &near.side), Lanes::of(simd, &far.side));
         let line = Lanes::of(simd, own);
-        let all = |value| Vector::all(simd, value);
-        let (zero, one) = (all(0.0), all(1.0));
-        let (reach, closing) = (all(w.reach()), w.fastest * at.dt);
+        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
+        let (reach, deepest) = (Vector::all(simd, w.reach()), Vector::all(simd, deepest));
+        let (joint, small) = (Vector::all(simd, JOINT), Vector::all(simd, SMALL));
+        let closing = w.fastest * at.dt;
         let mut forces = [[zero; 2]; 4];
         let mut touched = false;
         for start in (0..self.range.len()).step_by(Vector::<V>::LEN) {
@@ -140,26 +141,26 @@ impl Row<'_> {
             let (waiting, first) = (Vector::load(simd, &waiting, 0), Vector::load(simd, &first, 0));
             let to = Lanes::chosen(first, &near, &far);
 
-            let s = Vector::load_first(simd, n, &self.points.place, i);
-            let height = Vector::load_first(simd, n, &self.points.height, i);
+            let s = Vector::load(simd, &self.points.place, i);
+            let height = Vector::load(simd, &self.points.height, i);
             let (c, d) = (value(&line.curve, s), slope(&line.curve, s));
             let inverse = one / dot(d, d).square_root();
             let normal = [d[1] * inverse, -(d[0] * inverse)];
             let p = [height.times_plus(normal[0], c[0]), height.times_plus(normal[1], c[1])];
 
             let foot = to.foot(p);
-            let held = foot.place.choose_below(one + all(JOINT), waiting, zero);
-            let held = all(-JOINT).choose_below(foot.place, held, zero);
-            let held = foot.rest.choose_below(all(SMALL), held, zero);
+            let held = foot.place.choose_below(one + joint, waiting, zero);
+            let held = (-joint).choose_below(foot.place, held, zero);
+            let held = foot.rest.choose_below(small, held, zero);
             let on = foot.gap.choose_below(reach, held, zero);
-            let on = (-foot.gap).choose_below(all(deepest), on, zero);
+            let on = (-foot.gap).choose_below(deepest, on, zero);
             self.let_doze(held - on, foot.gap - reach, closing, i, n);
             if !mark(on, n, &mut done[start..]) {
                 continue;
             }
             touched = true;
 
-            let weight = Vector::load_first(simd, n, &self.points.weight, i);
+            let weight = Vector::load(simd, &self.points.weight, i);
             let (v, swing) = (value(&line.motion, s), dot(normal, slope(&line.motion, s)));
             let v = off_curve(v, swing * height * inverse, normal);
             let (u, swing) =
@@ -167,14 +168,14 @@ impl Row<'_> {
             let opening = dot(foot.normal, [v[0] - u[0], v[1] - u[1]]) - foot.turn * swing;
             let u = off_curve(u, swing * foot.height * foot.inverse, foot.curve_normal);
             let along = foot.normal[0] * (v[1] - u[1]) - foot.normal[1] * (v[0] - u[0]);
-            let points = Touching { n, first: i, on, gap: foot.gap, weight, opening, along };
+            let points = Touching { first: i, on, gap: foot.gap, weight, opening, along };
             let [pressure, shear] = feet.law.act(&points, self.history, &mut feet.work);
 
             let f = [
                 pressure * foot.normal[0] - shear * foot.normal[1],
                 pressure * foot.normal[1] + shear * foot.normal[0],
             ];
-            let f = f.map(|f| zero.choose_below(on, f, zero));
+            let f = pick(on, f, [zero; 2]);
             let lever = height * inverse * (f[0] * normal[1] - f[1] * normal[0]);
             add(&mut forces, s, f, [lever * normal[0], lever * normal[1]]);
             let lever = foot.height * foot.inverse * shear * dot(foot.normal, foot.curve_normal)
@@ -229,63 +230,61 @@ impl<V: Simd> Lanes<V> {
     /// The same facet in all lanes.
     #[inline(always)]
     fn of(simd: V, side: &Side<Patch>) -> Self {
-        let all = |values: [f64; 2]| values.map(|value| Vector::all(simd, value));
         let (Poly(curve), Poly(motion)) = (side.shape.curve, side.coefficients_of_motion());
-        let chord = [0, 1].map(|k| curve[1][k] + curve[2][k] + curve[3][k]);
+        let chord = [curve[1][0] + curve[2][0] + curve[3][0], curve[1][1] + curve[2][1] + curve[3][1]];
         let square = chord[0] * chord[0] + chord[1] * chord[1];
+        let [e, f, g, h] = side.shape.height;
         Self {
-            curve: curve.map(all),
-            motion: motion.map(all),
-            height: side.shape.height.map(|value| Vector::all(simd, value)),
-            chord: all([chord[0] / square, chord[1] / square]),
+            curve: all(simd, &curve),
+            motion: all(simd, &motion),
+            height: [Vector::all(simd, e), Vector::all(simd, f), Vector::all(simd, g), Vector::all(simd, h)],
+            chord: [Vector::all(simd, chord[0] / square), Vector::all(simd, chord[1] / square)],
         }
     }
 
     /// `yes` in the lanes that are one, `no` in those that are zero.
     #[inline(always)]
     fn chosen(lanes: Vector<V>, yes: &Self, no: &Self) -> Self {
-        let zero = lanes.constant(0.0);
-        let pair = |a: [Vector<V>; 2], b: [Vector<V>; 2]| {
-            [zero.choose_below(lanes, a[0], b[0]), zero.choose_below(lanes, a[1], b[1])]
-        };
         let (mut curve, mut motion, mut height) = (yes.curve, yes.motion, yes.height);
         for k in 0..4 {
-            curve[k] = pair(yes.curve[k], no.curve[k]);
-            motion[k] = pair(yes.motion[k], no.motion[k]);
-            height[k] = zero.choose_below(lanes, yes.height[k], no.height[k]);
+            curve[k] = pick(lanes, yes.curve[k], no.curve[k]);
+            motion[k] = pick(lanes, yes.motion[k], no.motion[k]);
+            height[k] = lanes.constant(0.0).choose_below(lanes, yes.height[k], no.height[k]);
         }
-        Self { curve, motion, height, chord: pair(yes.chord, no.chord) }
+        Self { curve, motion, height, chord: pick(lanes, yes.chord, no.chord) }
+    }
+
+    /// From points of the curve to `p`, and the first and second derivatives there.
+    #[inline(always)]
+    fn seen_from(&self, p: [Vector<V>; 2], s: Vector<V>) -> ([Vector<V>; 2], [Vector<V>; 2], [Vector<V>; 2]) {
+        let (c, at) = (&self.curve, value(&self.curve, s));
+        let (two, steep) = (s.constant(2.0), s.constant(3.0) * s);
+        let bend = [two * steep.times_plus(c[3][0], c[2][0]), two * steep.times_plus(c[3][1], c[2][1])];
+        ([p[0] - at[0], p[1] - at[1]], slope(c, s), bend)
     }
 
     /// Feet of the points `p`, as `Patch::above` finds them.
     #[inline(always)]
     fn foot(&self, p: [Vector<V>; 2]) -> Foot<V> {
-        let [constant, half, two, three] = [0.0, 0.5, 2.0, 3.0].map(|value| p[0].constant(value));
-        let (low, high, one) = (-two, three, p[0].constant(1.0));
-        let from = |s: Vector<V>| {
-            let c = value(&self.curve, s);
-            [p[0] - c[0], p[1] - c[1]]
-        };
-        let bend = |s: Vector<V>| {
-            let steep = three * s;
-            [0, 1].map(|k| two * steep.times_plus(self.curve[3][k], self.curve[2][k]))
-        };
-        let mut s = dot([p[0] - self.curve[0][0], p[1] - self.curve[0][1]], self.chord).max(low).min(high);
-        let mut rest = constant;
+        let (zero, half, one) = (p[0].constant(0.0), p[0].constant(0.5), p[0].constant(1.0));
+        let (low, high) = (p[0].constant(-2.0), p[0].constant(3.0));
+        let start = [p[0] - self.curve[0][0], p[1] - self.curve[0][1]];
+        let mut s = dot(start, self.chord).max(low).min(high);
+        let mut rest = zero;
         for _ in 0..2 {
-            let (r, d, dd) = (from(s), slope(&self.curve, s), bend(s));
+            let (r, d, dd) = self.seen_from(p, s);
             let square = dot(d, d);
             rest = dot(r, d) / (square - dot(r, dd).min(half * square));
             s = (s + rest).max(low).min(high);
         }
-        let (r, d, dd) = (from(s), slope(&self.curve, s), bend(s));
+        let (r, d, dd) = self.seen_from(p, s);
         let square = dot(d, d);
         let inverse = one / square.square_root();
         let n = [d[1] * inverse, -(d[0] * inverse)];
         let off = dot(r, n);
         let h = &self.height;
         let height = h[3].times_plus(s, h[2]).times_plus(s, h[1]).times_plus(s, h[0]);
-        let rise = (three * h[3]).times_plus(s, two * h[2]).times_plus(s, h[1]);
+        let rise = (s.constant(3.0) * h[3]).times_plus(s, s.constant(2.0) * h[2]).times_plus(s, h[1]);
         let steep = rise / (square - off * dot(n, dd));
         Foot {
             gap: off - height,
@@ -301,19 +300,40 @@ impl<V: Simd> Lanes<V> {
 }
 
 #[inline(always)]
+fn all<V: Simd>(simd: V, c: &[[f64; 2]; 4]) -> Curve<V> {
+    let mut lanes = [[Vector::all(simd, 0.0); 2]; 4];
+    for k in 0..4 {
+        lanes[k] = [Vector::all(simd, c[k][0]), Vector::all(simd, c[k][1])];
+    }
+    lanes
+}
+
+#[inline(always)]
+fn pick<V: Simd>(lanes: Vector<V>, yes: [Vector<V>; 2], no: [Vector<V>; 2]) -> [Vector<V>; 2] {
+    let zero = lanes.constant(0.0);
+    [zero.choose_below(lanes, yes[0], no[0]), zero.choose_below(lanes, yes[1], no[1])]
+}
+
+#[inline(always)]
 fn dot<V: Simd>(a: [Vector<V>; 2], b: [Vector<V>; 2]) -> Vector<V> {
     a[0].times_plus(b[0], a[1] * b[1])
 }
 
 #[inline(always)]
 fn value<V: Simd>(c: &Curve<V>, s: Vector<V>) -> [Vector<V>; 2] {
-    [0, 1].map(|k| c[3][k].times_plus(s, c[2][k]).times_plus(s, c[1][k]).times_plus(s, c[0][k]))
+    [
+        c[3][0].times_plus(s, c[2][0]).times_plus(s, c[1][0]).times_plus(s, c[0][0]),
+        c[3][1].times_plus(s, c[2][1]).times_plus(s, c[1][1]).times_plus(s, c[0][1]),
+    ]
 }
 
 #[inline(always)]
 fn slope<V: Simd>(c: &Curve<V>, s: Vector<V>) -> [Vector<V>; 2] {
     let (two, three) = (s.constant(2.0), s.constant(3.0));
-    [0, 1].map(|k| (three * c[3][k]).times_plus(s, two * c[2][k]).times_plus(s, c[1][k]))
+    [
+        (three * c[3][0]).times_plus(s, two * c[2][0]).times_plus(s, c[1][0]),
+        (three * c[3][1]).times_plus(s, two * c[2][1]).times_plus(s, c[1][1]),
+    ]
 }
 
 /// Velocity off a curve that moves with `v`: `back` is how fast the height swings backwards.

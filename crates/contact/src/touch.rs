@@ -1,6 +1,7 @@
 //! What acts at one point in contact, and what it remembers (THEORY §4.2–4.3).
 
 use serde::{Deserialize, Serialize};
+use stribeck_solver::lanes::LANES;
 
 use crate::law::Law;
 
@@ -13,7 +14,7 @@ pub(crate) struct History {
     damping: f64,
 }
 
-/// Histories of all points of a pass, one array a field; empty without damping and friction.
+/// Histories of all points of a pass, one array a field, as long as whole vectors need; empty without damping and friction.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Histories {
     pub(crate) slip: Vec<f64>,
@@ -23,7 +24,7 @@ pub(crate) struct Histories {
 impl Histories {
     /// Of `n` points without contact.
     pub(crate) fn new(n: usize) -> Self {
-        Self { slip: vec![0.0; n], damping: vec![0.0; n] }
+        Self { slip: vec![0.0; n + LANES], damping: vec![0.0; n + LANES] }
     }
 
     pub(crate) fn len(&self) -> usize {

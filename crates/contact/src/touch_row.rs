@@ -29,9 +29,8 @@ struct Onset<V: Simd> {
     work: Vector<V>,
 }
 
-/// Points in contact: `n` of them from the point `first` on, of which those act where `on` is one.
+/// A vector of points from the point `first` on, of which those act where `on` is one.
 pub(crate) struct Touching<V: Simd> {
-    pub(crate) n: usize,
     pub(crate) first: usize,
     pub(crate) on: Vector<V>,
     pub(crate) gap: Vector<V>,
@@ -70,16 +69,26 @@ impl<V: Simd> Work<V> {
 impl<V: Simd> Law<V> {
     #[inline(always)]
     pub(crate) fn new(simd: V, w: &Weights, dt: f64) -> Self {
-        let (law, all) = (&w.law, |value| Vector::all(simd, value));
-        let onset = |e| Onset { gap: all(e), quarter: all(0.25 / e), work: all(e * e / 6.0) };
+        let (law, e) = (&w.law, w.law.onset);
+        // No closures: what they do would not be compiled for the vectors' instruction set.
+        let onset = if e > 0.0 {
+            let [gap, quarter, work] = [e, 0.25 / e, e * e / 6.0];
+            Some(Onset {
+                gap: Vector::all(simd, gap),
+                quarter: Vector::all(simd, quarter),
+                work: Vector::all(simd, work),
+            })
+        } else {
+            None
+        };
         Self {
             simd,
-            stiffness: all(law.stiffness * w.thickness),
-            dashpot: all(law.damping * w.thickness),
-            tangential: all(law.tangential),
-            ratio: all(law.friction / law.tangential),
-            dt: all(dt),
-            onset: (law.onset > 0.0).then(|| onset(law.onset)),
+            stiffness: Vector::all(simd, law.stiffness * w.thickness),
+            dashpot: Vector::all(simd, law.damping * w.thickness),
+            tangential: Vector::all(simd, law.tangential),
+            ratio: Vector::all(simd, law.friction / law.tangential),
+            dt: Vector::all(simd, dt),
+            onset,
         }
     }
 
@@ -91,7 +100,7 @@ impl<V: Simd> Law<V> {
         histories: &mut Histories,
         work: &mut Work<V>,
     ) -> [Vector<V>; 2] {
-        let &Touching { n, first, on, gap, weight, opening, along } = points;
+        let &Touching { first, on, gap, weight, opening, along } = points;
         let (zero, half) = (on.constant(0.0), on.constant(0.5));
         let depth = -gap;
         let dashpot = self.dashpot * weight;
@@ -113,22 +122,21 @@ impl<V: Simd> Law<V> {
             }
         };
         let damping = (-(dashpot * opening)).max(-elastic);
-        let before = Vector::load_first(self.simd, n, &histories.damping, first);
+        let before = Vector::load(self.simd, &histories.damping, first);
         let damping_heat = -(half * self.dt * (before + damping) * opening);
         let kt = self.tangential * k;
         let limit = self.ratio * depth;
-        let slip = Vector::load_first(self.simd, n, &histories.slip, first);
+        let slip = Vector::load(self.simd, &histories.slip, first);
         let moved = along * self.dt;
         let after = (slip + moved).max(-limit).min(limit);
         let (was, is) = (half * kt * slip * slip, half * kt * after * after);
         let friction_heat = half * kt * (slip + after) * moved - (is - was);
-        zero.choose_below(on, damping, before).store_first(n, &mut histories.damping, first);
-        zero.choose_below(on, after, slip).store_first(n, &mut histories.slip, first);
-        let acting = |value| zero.choose_below(on, value, zero);
-        work.stored = work.stored + acting(stored + is);
-        work.friction = work.friction + acting(friction_heat);
-        work.damping = work.damping + acting(damping_heat);
-        work.penetration = work.penetration.max(acting(depth));
+        zero.choose_below(on, damping, before).store(&mut histories.damping, first);
+        zero.choose_below(on, after, slip).store(&mut histories.slip, first);
+        work.stored = work.stored + zero.choose_below(on, stored + is, zero);
+        work.friction = work.friction + zero.choose_below(on, friction_heat, zero);
+        work.damping = work.damping + zero.choose_below(on, damping_heat, zero);
+        work.penetration = work.penetration.max(zero.choose_below(on, depth, zero));
         [elastic + damping, -(kt * after)]
     }
 }
