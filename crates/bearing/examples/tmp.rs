@@ -53,7 +53,6 @@ fn machine(scene: &Scene, threads: usize) -> (Machine, usize) {
     (machine, elements)
 }
 
-
 fn main() {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes");
@@ -73,19 +72,32 @@ fn main() {
         for (m, _, all, none) in &mut machines {
             let Machine { dynamics, contacts, load, .. } = m;
             let t = std::time::Instant::now();
-            for _ in 0..20 { dynamics.step(&mut [load, contacts]); }
+            for _ in 0..20 {
+                dynamics.step(&mut [load, contacts]);
+            }
             all.push(t.elapsed().as_secs_f64() / 20.0 * 1e6);
             let n = dynamics.state.x.len();
             let mut force = NodeForces::zeros(n);
             let mut at = dynamics.moment();
             contacts.accumulate(at, &mut force);
             let t = std::time::Instant::now();
-            for _ in 0..20 { at.step += 1; contacts.accumulate(at, &mut force); }
+            for _ in 0..20 {
+                at.step += 1;
+                contacts.accumulate(at, &mut force);
+            }
             none.push(t.elapsed().as_secs_f64() / 20.0 * 1e6);
         }
     }
     for (arg, (_, elements, all, contact)) in args.iter().zip(&mut machines) {
-        all.sort_by(f64::total_cmp); contact.sort_by(f64::total_cmp);
-        println!("{arg}: step min {:.1} quartile {:.1} µs ({:.2} ns/element), contact min {:.1} quartile {:.1}", all[0], all[25], all[0] * 1e3 / *elements as f64, contact[0], contact[25]);
+        all.sort_by(f64::total_cmp);
+        contact.sort_by(f64::total_cmp);
+        println!(
+            "{arg}: step min {:.1} quartile {:.1} µs ({:.2} ns/element), contact min {:.1} quartile {:.1}",
+            all[0],
+            all[25],
+            all[0] * 1e3 / *elements as f64,
+            contact[0],
+            contact[25]
+        );
     }
 }

@@ -82,7 +82,7 @@
 //! | Which curve does a polyline stand for? | `smooth.rs` |
 //! | Where does the law act? | `points.rs` |
 //! | What does one pass do, in contact and out of it? | `pass.rs`, `touch.rs` |
-//! | How are many points done at a time? | `row.rs`, `spline_row.rs`, `touch_row.rs` |
+//! | How are many points done at a time? | `row.rs`, `spline_row.rs`, `patch_row.rs`, `touch_row.rs` |
 //! | Who is near whom? | `search.rs` |
 //! | How does it all become one force? | `contacts.rs` |
 
@@ -93,6 +93,7 @@ mod contacts;
 mod error;
 mod law;
 mod pass;
+mod patch_row;
 mod points;
 mod projection;
 mod row;

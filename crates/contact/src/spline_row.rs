@@ -13,19 +13,14 @@ use stribeck_solver::{
 
 use crate::{
     pass::Weights,
+    patch_row::{Curve, Lanes, pick, slide, totals},
     row::{Against, MOST_POINTS, Row, mark},
-    shape::{Poly, Push, Shape, Side},
-    spline::{JOINT, Patch},
+    shape::{Push, Shape, Side},
+    spline::Patch,
     surface::Surface,
     touch::Sum,
     touch_row::{Law, Touching, Work},
 };
-
-/// A foot is found when the last correction is below this: what is left is a tenth of its square (`spline.rs`).
-const SMALL: f64 = 1e-6;
-
-/// Values of a curve's polynomial in all lanes.
-type Curve<V> = [[Vector<V>; 2]; 4];
 
 /// One or two facets of the primary surface that points have their feet on, kept from one facet of points to the next:
 /// what acts on them is handed to the nodes when others come.
@@ -40,15 +35,6 @@ pub(crate) struct Feet<V: Simd> {
 struct Met<V: Simd> {
     side: Side<Patch>,
     forces: Curve<V>,
-}
-
-/// A facet's coefficients, each lane its own.
-struct Lanes<V: Simd> {
-    curve: Curve<V>,
-    motion: Curve<V>,
-    height: [Vector<V>; 4],
-    /// Chord over its squared length [1/m].
-    chord: [Vector<V>; 2],
 }
 
 impl<V: Simd> Feet<V> {
@@ -123,35 +109,20 @@ impl Row<'_> {
         let [Some(near), Some(far)] = places.map(|place| feet.facets[place].as_ref()) else { return false };
         let (near, far) = (Lanes::of(simd, &near.side), Lanes::of(simd, &far.side));
         let line = Lanes::of(simd, own);
-        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
+        let zero = Vector::all(simd, 0.0);
         let (reach, deepest) = (Vector::all(simd, w.reach()), Vector::all(simd, deepest));
-        let (joint, small) = (Vector::all(simd, JOINT), Vector::all(simd, SMALL));
         let closing = w.fastest * at.dt;
         let mut forces = [[zero; 2]; 4];
         let mut touched = false;
         for start in (0..self.range.len()).step_by(Vector::<V>::LEN) {
             let n = (self.range.len() - start).min(Vector::<V>::LEN);
             let i = self.range.start + start;
-            let (mut waiting, mut first) = ([0.0; LANES], [0.0; LANES]);
-            for l in 0..n {
-                let facet = self.nearest[i + l] as usize;
-                first[l] = f64::from(u8::from(facet == a));
-                waiting[l] = f64::from(u8::from(self.doze[i + l] <= self.now && (facet == a || facet == b)));
-            }
-            let (waiting, first) = (Vector::load(simd, &waiting, 0), Vector::load(simd, &first, 0));
+            let [waiting, first] = self.lanes(simd, i, n, [a, b]);
             let to = Lanes::chosen(first, &near, &far);
-
-            let s = Vector::load(simd, &self.points.place, i);
-            let height = Vector::load(simd, &self.points.height, i);
-            let (c, d) = (value(&line.curve, s), slope(&line.curve, s));
-            let inverse = one / dot(d, d).square_root();
-            let normal = [d[1] * inverse, -(d[0] * inverse)];
-            let p = [height.times_plus(normal[0], c[0]), height.times_plus(normal[1], c[1])];
-
-            let foot = to.foot(p);
-            let held = foot.place.choose_below(one + joint, waiting, zero);
-            let held = (-joint).choose_below(foot.place, held, zero);
-            let held = foot.rest.choose_below(small, held, zero);
+            let place = Vector::load(simd, &self.points.place, i);
+            let spots = line.spots(place, Vector::load(simd, &self.points.height, i));
+            let foot = to.foot(spots.at);
+            let held = foot.held(waiting);
             let on = foot.gap.choose_below(reach, held, zero);
             let on = (-foot.gap).choose_below(deepest, on, zero);
             self.let_doze(held - on, foot.gap - reach, closing, i, n);
@@ -159,37 +130,18 @@ impl Row<'_> {
                 continue;
             }
             touched = true;
-
+            let [opening, along] = slide(&line, &spots, &to, &foot);
             let weight = Vector::load(simd, &self.points.weight, i);
-            let (v, swing) = (value(&line.motion, s), dot(normal, slope(&line.motion, s)));
-            let v = off_curve(v, swing * height * inverse, normal);
-            let (u, swing) =
-                (value(&to.motion, foot.place), dot(foot.curve_normal, slope(&to.motion, foot.place)));
-            let opening = dot(foot.normal, [v[0] - u[0], v[1] - u[1]]) - foot.turn * swing;
-            let u = off_curve(u, swing * foot.height * foot.inverse, foot.curve_normal);
-            let along = foot.normal[0] * (v[1] - u[1]) - foot.normal[1] * (v[0] - u[0]);
             let points = Touching { first: i, on, gap: foot.gap, weight, opening, along };
-            let [pressure, shear] = feet.law.act(&points, self.history, &mut feet.work);
-
-            let f = [
-                pressure * foot.normal[0] - shear * foot.normal[1],
-                pressure * foot.normal[1] + shear * foot.normal[0],
-            ];
-            let f = pick(on, f, [zero; 2]);
-            let lever = height * inverse * (f[0] * normal[1] - f[1] * normal[0]);
-            add(&mut forces, s, f, [lever * normal[0], lever * normal[1]]);
-            let lever = foot.height * foot.inverse * shear * dot(foot.normal, foot.curve_normal)
-                - foot.turn * pressure;
-            let lever = zero.choose_below(on, lever, zero);
-            let mut there = [[zero; 2]; 4];
-            let on_slope = [lever * foot.curve_normal[0], lever * foot.curve_normal[1]];
-            add(&mut there, foot.place, [-f[0], -f[1]], on_slope);
-            for (place, lanes) in [(places[0], first), (places[1], one - first)] {
+            let acts = feet.law.act(&points, self.history, &mut feet.work);
+            let f = foot.force(acts, on);
+            spots.push(f, &mut forces);
+            let there = foot.push(f, acts, on);
+            for (place, lanes) in [(places[0], first), (places[1], first.constant(1.0) - first)] {
                 let Some(met) = &mut feet.facets[place] else { continue };
                 for (sum, part) in met.forces.iter_mut().zip(&there) {
-                    for k in 0..2 {
-                        sum[k] = sum[k] + zero.choose_below(lanes, part[k], zero);
-                    }
+                    let part = pick(lanes, *part, [zero; 2]);
+                    *sum = [sum[0] + part[0], sum[1] + part[1]];
                 }
             }
         }
@@ -197,6 +149,18 @@ impl Row<'_> {
             own.push_all(&totals(&forces));
         }
         touched
+    }
+
+    /// One where one of `n` points from `i` on may touch one of two facets, and where that is the first of them.
+    #[inline(always)]
+    fn lanes<V: Simd>(&self, simd: V, i: usize, n: usize, [a, b]: [usize; 2]) -> [Vector<V>; 2] {
+        let (mut waiting, mut first) = ([0.0; LANES], [0.0; LANES]);
+        for l in 0..n {
+            let facet = self.nearest[i + l] as usize;
+            first[l] = f64::from(u8::from(facet == a));
+            waiting[l] = f64::from(u8::from(self.doze[i + l] <= self.now && (facet == a || facet == b)));
+        }
+        [Vector::load(simd, &waiting, 0), Vector::load(simd, &first, 0)]
     }
 
     /// Points that are apart need not be looked at before they may have come near; those that remember something settle
@@ -212,155 +176,4 @@ impl Row<'_> {
             }
         }
     }
-}
-
-/// Feet of points, as in [`Projection`](crate::Projection), and the last correction of their places.
-struct Foot<V: Simd> {
-    gap: Vector<V>,
-    normal: [Vector<V>; 2],
-    place: Vector<V>,
-    turn: Vector<V>,
-    height: Vector<V>,
-    curve_normal: [Vector<V>; 2],
-    inverse: Vector<V>,
-    rest: Vector<V>,
-}
-
-impl<V: Simd> Lanes<V> {
-    /// The same facet in all lanes.
-    #[inline(always)]
-    fn of(simd: V, side: &Side<Patch>) -> Self {
-        let (Poly(curve), Poly(motion)) = (side.shape.curve, side.coefficients_of_motion());
-        let chord = [curve[1][0] + curve[2][0] + curve[3][0], curve[1][1] + curve[2][1] + curve[3][1]];
-        let square = chord[0] * chord[0] + chord[1] * chord[1];
-        let [e, f, g, h] = side.shape.height;
-        Self {
-            curve: all(simd, &curve),
-            motion: all(simd, &motion),
-            height: [Vector::all(simd, e), Vector::all(simd, f), Vector::all(simd, g), Vector::all(simd, h)],
-            chord: [Vector::all(simd, chord[0] / square), Vector::all(simd, chord[1] / square)],
-        }
-    }
-
-    /// `yes` in the lanes that are one, `no` in those that are zero.
-    #[inline(always)]
-    fn chosen(lanes: Vector<V>, yes: &Self, no: &Self) -> Self {
-        let (mut curve, mut motion, mut height) = (yes.curve, yes.motion, yes.height);
-        for k in 0..4 {
-            curve[k] = pick(lanes, yes.curve[k], no.curve[k]);
-            motion[k] = pick(lanes, yes.motion[k], no.motion[k]);
-            height[k] = lanes.constant(0.0).choose_below(lanes, yes.height[k], no.height[k]);
-        }
-        Self { curve, motion, height, chord: pick(lanes, yes.chord, no.chord) }
-    }
-
-    /// From points of the curve to `p`, and the first and second derivatives there.
-    #[inline(always)]
-    fn seen_from(&self, p: [Vector<V>; 2], s: Vector<V>) -> ([Vector<V>; 2], [Vector<V>; 2], [Vector<V>; 2]) {
-        let (c, at) = (&self.curve, value(&self.curve, s));
-        let (two, steep) = (s.constant(2.0), s.constant(3.0) * s);
-        let bend = [two * steep.times_plus(c[3][0], c[2][0]), two * steep.times_plus(c[3][1], c[2][1])];
-        ([p[0] - at[0], p[1] - at[1]], slope(c, s), bend)
-    }
-
-    /// Feet of the points `p`, as `Patch::above` finds them.
-    #[inline(always)]
-    fn foot(&self, p: [Vector<V>; 2]) -> Foot<V> {
-        let (zero, half, one) = (p[0].constant(0.0), p[0].constant(0.5), p[0].constant(1.0));
-        let (low, high) = (p[0].constant(-2.0), p[0].constant(3.0));
-        let start = [p[0] - self.curve[0][0], p[1] - self.curve[0][1]];
-        let mut s = dot(start, self.chord).max(low).min(high);
-        let mut rest = zero;
-        for _ in 0..2 {
-            let (r, d, dd) = self.seen_from(p, s);
-            let square = dot(d, d);
-            rest = dot(r, d) / (square - dot(r, dd).min(half * square));
-            s = (s + rest).max(low).min(high);
-        }
-        let (r, d, dd) = self.seen_from(p, s);
-        let square = dot(d, d);
-        let inverse = one / square.square_root();
-        let n = [d[1] * inverse, -(d[0] * inverse)];
-        let off = dot(r, n);
-        let h = &self.height;
-        let height = h[3].times_plus(s, h[2]).times_plus(s, h[1]).times_plus(s, h[0]);
-        let rise = (s.constant(3.0) * h[3]).times_plus(s, s.constant(2.0) * h[2]).times_plus(s, h[1]);
-        let steep = rise / (square - off * dot(n, dd));
-        Foot {
-            gap: off - height,
-            normal: [n[0] - steep * d[0], n[1] - steep * d[1]],
-            place: s,
-            turn: steep * off,
-            height,
-            curve_normal: n,
-            inverse,
-            rest: rest.max(-rest),
-        }
-    }
-}
-
-#[inline(always)]
-fn all<V: Simd>(simd: V, c: &[[f64; 2]; 4]) -> Curve<V> {
-    let mut lanes = [[Vector::all(simd, 0.0); 2]; 4];
-    for k in 0..4 {
-        lanes[k] = [Vector::all(simd, c[k][0]), Vector::all(simd, c[k][1])];
-    }
-    lanes
-}
-
-#[inline(always)]
-fn pick<V: Simd>(lanes: Vector<V>, yes: [Vector<V>; 2], no: [Vector<V>; 2]) -> [Vector<V>; 2] {
-    let zero = lanes.constant(0.0);
-    [zero.choose_below(lanes, yes[0], no[0]), zero.choose_below(lanes, yes[1], no[1])]
-}
-
-#[inline(always)]
-fn dot<V: Simd>(a: [Vector<V>; 2], b: [Vector<V>; 2]) -> Vector<V> {
-    a[0].times_plus(b[0], a[1] * b[1])
-}
-
-#[inline(always)]
-fn value<V: Simd>(c: &Curve<V>, s: Vector<V>) -> [Vector<V>; 2] {
-    [
-        c[3][0].times_plus(s, c[2][0]).times_plus(s, c[1][0]).times_plus(s, c[0][0]),
-        c[3][1].times_plus(s, c[2][1]).times_plus(s, c[1][1]).times_plus(s, c[0][1]),
-    ]
-}
-
-#[inline(always)]
-fn slope<V: Simd>(c: &Curve<V>, s: Vector<V>) -> [Vector<V>; 2] {
-    let (two, three) = (s.constant(2.0), s.constant(3.0));
-    [
-        (three * c[3][0]).times_plus(s, two * c[2][0]).times_plus(s, c[1][0]),
-        (three * c[3][1]).times_plus(s, two * c[2][1]).times_plus(s, c[1][1]),
-    ]
-}
-
-/// Velocity off a curve that moves with `v`: `back` is how fast the height swings backwards.
-#[inline(always)]
-fn off_curve<V: Simd>(v: [Vector<V>; 2], back: Vector<V>, n: [Vector<V>; 2]) -> [Vector<V>; 2] {
-    [back.times_plus(n[1], v[0]), v[1] - back * n[0]]
-}
-
-/// Adds forces on values and on slopes, as [`Coefficients::add`](crate::shape::Coefficients::add) does.
-#[inline(always)]
-fn add<V: Simd>(to: &mut Curve<V>, s: Vector<V>, f: [Vector<V>; 2], on_slope: [Vector<V>; 2]) {
-    let (square, two, three) = (s * s, s.constant(2.0), s.constant(3.0));
-    let (cube, twice, thrice) = (square * s, two * s, three * square);
-    for k in 0..2 {
-        to[0][k] = to[0][k] + f[k];
-        to[1][k] = to[1][k] + f[k].times_plus(s, on_slope[k]);
-        to[2][k] = to[2][k] + f[k].times_plus(square, on_slope[k] * twice);
-        to[3][k] = to[3][k] + f[k].times_plus(cube, on_slope[k] * thrice);
-    }
-}
-
-/// Sums over the lanes.
-#[inline(always)]
-fn totals<V: Simd>(forces: &Curve<V>) -> Poly<4> {
-    let mut sums = [[0.0; 2]; 4];
-    for k in 0..4 {
-        sums[k] = [forces[k][0].sum(), forces[k][1].sum()];
-    }
-    Poly(sums)
 }

@@ -89,6 +89,7 @@
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
 mod advance;
+mod block;
 pub mod critical;
 pub mod damping;
 pub mod distortion;
