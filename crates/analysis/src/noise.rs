@@ -1,48 +1,93 @@
 //! How much of a record is contact noise: the line of the roller vertices and the level where no roller meets the defect.
 
+use std::ops::Range;
+
 use crate::levels::{STANDARD_GRAVITY, impulse_span, level, quiet_spans};
 use crate::record::Record;
-use crate::signal::amplitude;
+use crate::signal::{amplitude, band_rms, smoothed_peak};
 
-/// Levels of one sensor, of the vector of both components.
+/// Levels of one sensor, of the vector of both components. Quiet stretches are those without an event that are nearly as
+/// long as the longest; powers are averaged over them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
-    /// Amplitude of the facet line in the longest stretch without an event [g].
+    /// Amplitude of the facet line [g].
     pub line_g: f64,
-    /// The same at twice the frequency [g].
+    /// The same measure at neighbouring frequencies, where no line of the mesh lies: root of the mean square [g].
+    pub background_g: f64,
+    /// Smallest and largest of these [g].
+    pub background_range_g: [f64; 2],
+    /// The line at twice the frequency [g].
     pub second_g: f64,
-    /// Root mean square in that stretch [g].
+    /// Root mean square [g].
     pub quiet_rms_g: f64,
+    /// Root mean square above [`RINGING_HZ`] [g].
+    pub ringing_g: f64,
+    /// Root mean square before the first event [g].
+    pub start_g: f64,
     /// Largest magnitude within 1 ms of the first exit, vertical [g].
     pub impulse_g: f64,
     /// Energy of that impulse, ∫ a² dt [g² ms].
     pub impulse_g2_ms: f64,
+    /// Largest magnitude there of the mean over [`IMPULSE_MEAN_S`], vertical [g].
+    pub impulse_mean_g: f64,
 }
+
+/// Neighbours of a line lie this many resolutions away: neither their windows nor the line's reach into another.
+const NEIGHBOURS: [f64; 4] = [-6.0, -3.0, 3.0, 6.0];
+
+/// Frequencies that elements of 0.5 mm no longer carry well [Hz].
+pub const RINGING_HZ: f64 = 20e3;
+
+/// One period of the default scene's facet line [s], so that a running mean takes it and its harmonics out.
+pub const IMPULSE_MEAN_S: f64 = 1.0 / 4671.0;
+
+/// A quiet stretch counts when it is at least this part of the longest.
+const LONG_ENOUGH: f64 = 0.9;
 
 /// Measures `sensor` where `passages` (entry, exit) [s] are over, about the line `facet_hz`. `None` when the record holds no
 /// such stretch.
 pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet_hz: f64) -> Option<Noise> {
     let (time, rate) = (record.time_s(), record.sample_rate_hz());
     let components = [record.acceleration_g(sensor, "ax")?, record.acceleration_g(sensor, "ay")?];
-    let quiet = quiet_spans(time, passages, 0.0).into_iter().max_by_key(ExactSizeIterator::len)?;
-    let both = |of: &dyn Fn(&[f64]) -> Option<f64>| -> Option<f64> {
-        let [x, y] = [of(&components[0][quiet.clone()])?, of(&components[1][quiet.clone()])?];
-        Some(x.hypot(y))
+    let all = quiet_spans(time, passages, 0.0);
+    let longest = all.iter().map(ExactSizeIterator::len).max()?;
+    let least = (LONG_ENOUGH * longest as f64) as usize;
+    let quiet: Vec<Range<usize>> = all.iter().filter(|span| span.len() >= least).cloned().collect();
+    let both = |spans: &[Range<usize>], of: &dyn Fn(&[f64]) -> Option<f64>| -> Option<f64> {
+        let mut power = 0.0;
+        for span in spans {
+            for component in &components {
+                power += of(&component[span.clone()])?.powi(2) / spans.len() as f64;
+            }
+        }
+        Some(power.sqrt())
     };
     let rms = |signal: &[f64]| {
         let mean = signal.iter().sum::<f64>() / signal.len() as f64;
         let centred: Vec<f64> = signal.iter().map(|v| v - mean).collect();
         level(&centred, std::slice::from_ref(&(0..centred.len()))).map(|l| l.rms)
     };
+    let line = |hz: f64| both(&quiet, &|s| amplitude(s, rate, hz));
+    let resolution = rate / longest as f64;
+    let beside: Vec<f64> =
+        NEIGHBOURS.iter().map(|n| line(facet_hz + n * resolution)).collect::<Option<_>>()?;
+    let power: f64 = beside.iter().map(|g| g * g).sum();
     let exit = passages.first()?.1;
-    let at_exit = impulse_span(time, exit);
-    let vertical = components[1].get(at_exit)?;
+    let vertical = components[1].get(impulse_span(time, exit))?;
     Some(Noise {
-        line_g: both(&|s| amplitude(s, rate, facet_hz))?,
-        second_g: both(&|s| amplitude(s, rate, 2.0 * facet_hz))?,
-        quiet_rms_g: both(&rms)?,
+        line_g: line(facet_hz)?,
+        background_g: (power / beside.len() as f64).sqrt(),
+        background_range_g: [
+            beside.iter().copied().fold(f64::INFINITY, f64::min),
+            beside.iter().copied().fold(0.0, f64::max),
+        ],
+        second_g: line(2.0 * facet_hz)?,
+        quiet_rms_g: both(&quiet, &rms)?,
+        ringing_g: both(&quiet, &|s| band_rms(s, rate, RINGING_HZ, 0.5 * rate))?,
+        start_g: both(&all[..1], &rms)?,
         impulse_g: vertical.iter().fold(0.0, |m: f64, a| m.max(a.abs())),
         impulse_g2_ms: 1e3 * record.interval_s() * vertical.iter().map(|a| a * a).sum::<f64>(),
+        impulse_mean_g: smoothed_peak(vertical, record.interval_s(), IMPULSE_MEAN_S)?,
     })
 }
 

@@ -34,6 +34,22 @@ pub fn density_of_start(
     welch.estimate(first).map(Some).map_err(Error::Signal)
 }
 
+/// Root mean square of the part of a signal between two frequencies; `None` for a record that cannot hold it.
+pub fn band_rms(signal: &[f64], sample_rate_hz: f64, low_hz: f64, high_hz: f64) -> Option<f64> {
+    if signal.len() < 16 {
+        return None;
+    }
+    let welch = Welch::new(sample_rate_hz, signal.len(), &WelchOptions::new(signal.len()));
+    welch.ok()?.estimate(signal).ok()?.band_rms(low_hz, high_hz).ok()
+}
+
+/// Largest magnitude of the running mean over `width_s`: what is left of a peak when everything faster is taken out.
+pub fn smoothed_peak(signal: &[f64], interval_s: f64, width_s: f64) -> Option<f64> {
+    let width = (width_s / interval_s).round().max(1.0) as usize;
+    let means = signal.windows(width).map(|w| (w.iter().sum::<f64>() / width as f64).abs());
+    means.max_by(f64::total_cmp)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -44,5 +60,17 @@ mod tests {
         let signal: Vec<f64> = (0..1200).map(tone).collect();
         assert!((amplitude(&signal, 1e5, 4680.0).unwrap() - 2.0).abs() < 0.02);
         assert_eq!(amplitude(&signal[..10], 1e5, 4680.0), None);
+    }
+
+    #[test]
+    fn analytic_band_and_running_mean_of_a_step_with_a_tone() {
+        // A tone of 20 periods in 20 samples each, on a step of one.
+        let signal: Vec<f64> = (0..400)
+            .map(|n| f64::from(u8::from(n >= 200)) + 3.0 * (std::f64::consts::TAU * n as f64 / 20.0).sin())
+            .collect();
+        assert!((smoothed_peak(&signal, 1e-5, 20e-5).unwrap() - 1.0).abs() < 1e-12);
+        // A window of Hann leaks a little of the step.
+        assert!((band_rms(&signal, 1e5, 4e3, 6e3).unwrap() - 3.0 / 2f64.sqrt()).abs() < 0.01);
+        assert_eq!(smoothed_peak(&signal[..10], 1e-5, 20e-5), None);
     }
 }

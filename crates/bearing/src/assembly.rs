@@ -269,18 +269,16 @@ impl Assembly {
             .map(|(i, s)| {
                 let name = names.get(i).map_or_else(|| format!("surface {i}"), |n| (*n).to_owned());
                 let surface = Surface::new(name, slots(s), s.closed, x, y)?;
+                // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
                 let centre = match i.checked_sub(names.len()) {
-                    None => Some([0.0; 2]),
-                    Some(roller) if roller < centres.len() => Some(centres[roller]),
-                    _ => None,
+                    None if i == OUTER_RACEWAY || i == INNER_RACEWAY => [0.0; 2],
+                    Some(roller) if roller < centres.len() => centres[roller],
+                    _ => return Ok(surface),
                 };
                 let surface = surface.smoothed(smoothing(scene.contact.surface, centre), x, y)?;
-                // Nothing travels over the seat, and the cage touches with its corners.
-                let rolls =
-                    i == OUTER_RACEWAY || i == INNER_RACEWAY || (names.len()..first_piece).contains(&i);
                 Ok::<_, Error>(match scene.contact.interpolation {
-                    ContactInterpolation::Spline if rolls => surface.splined(x, y),
-                    _ => surface,
+                    ContactInterpolation::Spline => surface.splined(x, y),
+                    ContactInterpolation::Linear => surface,
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -371,12 +369,12 @@ impl Assembly {
     }
 }
 
-/// What the polyline of a body about `centre` stands for; bodies without one, the pieces of the cage, keep their corners.
-fn smoothing(surface: ContactSurface, centre: Option<[f64; 2]>) -> Smoothing {
-    match (surface, centre) {
-        (ContactSurface::Arc, Some(centre)) => Smoothing::Arc { centre },
-        (ContactSurface::Nagata, Some(_)) => Smoothing::Nagata,
-        _ => Smoothing::Facet,
+/// What the polyline of a body about `centre` stands for.
+fn smoothing(surface: ContactSurface, centre: [f64; 2]) -> Smoothing {
+    match surface {
+        ContactSurface::Facet => Smoothing::Facet,
+        ContactSurface::Arc => Smoothing::Arc { centre },
+        ContactSurface::Nagata => Smoothing::Nagata,
     }
 }
 

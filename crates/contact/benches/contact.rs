@@ -1,4 +1,5 @@
-//! Contact of 24 discs between two rings, 0.5 mm facets, one thread: both methods, friction and damping included.
+//! Contact of 24 discs between two rings, 0.5 mm facets, one thread: friction and damping included. On splines, with
+//! points one by one as well.
 //!
 //! `forces` one evaluation, the searches that fall due included; `search` one evaluation with a search.
 //! Positions rest while the step number advances, so that candidates sleep and wake as they do in motion.
@@ -7,7 +8,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
 use stribeck_mesh::{Annulus, Disc, Mesh, Placed};
 use stribeck_solver::{Dynamics, Elastic, Force, Model, state::NodeForces};
 
@@ -33,8 +34,13 @@ fn ring(inner_radius: f64, outer_radius: f64, at: f64) -> Annulus {
     Annulus { inner_radius, outer_radius, facets, layers: 4, start_angle: 0.0, groove: None }
 }
 
+/// Mean of the nodes.
+fn centre_of(slots: &[u32], x: &[f64], y: &[f64]) -> [f64; 2] {
+    [x, y].map(|x| slots.iter().map(|&n| x[n as usize]).sum::<f64>() / slots.len() as f64)
+}
+
 /// The bodies laid out, their contacts, and rolling velocities.
-fn scene(method: Method) -> (Dynamics, Contacts) {
+fn scene(method: Method, splines: bool) -> (Dynamics, Contacts) {
     let mut mesh = Mesh::new();
     let mut add = |name: &str, part| mesh.add(name, &part);
     let outer = add("outer", ring(OUTER, OUTER + 2e-3, OUTER).part().expect("a ring that can be made"));
@@ -61,10 +67,17 @@ fn scene(method: Method) -> (Dynamics, Contacts) {
     let surfaces = [(&outer, "inner"), (&inner, "outer")].into_iter().chain(named).map(|(placed, name)| {
         let surface = placed.surface(name).expect("a surface of that name");
         let slots = surface.nodes.iter().map(|&n| d.layout().slot_of_node[n as usize]).collect();
-        Surface::new(name, slots, surface.closed, &x, &y).expect("a surface with facets")
+        let surface = Surface::new(name, slots, surface.closed, &x, &y).expect("a surface with facets");
+        if !splines {
+            return surface;
+        }
+        let centre = centre_of(&surface.slots, &x, &y);
+        let arcs = surface.smoothed(Smoothing::Arc { centre }, &x, &y).expect("circles");
+        arcs.splined(&x, &y)
     });
     let law = Law::penalty(200e9 / SIZE).and_then(|law| law.with_damping(0.1, 0.5 * 7850.0 * SIZE));
-    let law = law.and_then(|law| law.with_friction(0.005)).expect("a possible law");
+    let law = law.and_then(|law| law.with_friction(0.005));
+    let law = law.and_then(|law| law.with_onset(if splines { 5e-7 } else { 0.0 })).expect("a possible law");
     let pairs: Vec<PairSpec> = (0..DISCS)
         .flat_map(|i| [0, 1].map(|second| PairSpec { first: 2 + i, second, law, method, sides: Sides::Both }))
         .collect();
@@ -75,10 +88,17 @@ fn scene(method: Method) -> (Dynamics, Contacts) {
 fn contact(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("contact");
     group.sample_size(30).warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(1));
-    for (name, method) in
-        [("collocated", Method::Collocated), ("integrated, 4 points", Method::Integrated { points: 4 })]
-    {
-        let (d, mut contacts) = scene(method);
+    for (name, points, splines, together) in [
+        ("collocated", None, false, true),
+        ("integrated, 4 points", Some(4), false, true),
+        ("integrated, 16 points", Some(16), false, true),
+        ("splines, 8 points", Some(8), true, true),
+        ("splines, 12 points", Some(12), true, true),
+        ("splines, 12 points one by one", Some(12), true, false),
+    ] {
+        let method = points.map_or(Method::Collocated, |points| Method::Integrated { points });
+        let (d, mut contacts) = scene(method, splines);
+        contacts.set_together(together);
         let n = d.state.x.len();
         let mut force = NodeForces::zeros(n);
         let mut at = d.moment();

@@ -9,12 +9,13 @@ use stribeck_solver::{
 };
 
 use crate::{
-    meeting::{Account, Chord, Laws, Meeting, Spots, gather},
+    meeting::{Chord, Meeting, Spots, gather},
     points::Points,
     row::Outcome,
     shape::Push,
     surface::Surface,
     touch::Histories,
+    touch_row::{Law, Work},
 };
 
 /// Facets with more points than this fill vectors of their own.
@@ -40,11 +41,11 @@ impl Band<'_> {
     pub(crate) fn touch<V: Simd, const MEMORY: bool>(
         self,
         simd: V,
-        laws: &Laws<V>,
+        law: &Law<V>,
         now: f64,
         primary: &Surface,
         at: &Moment<'_>,
-        account: &mut Account<V>,
+        work: &mut Work<V>,
         push: &mut Vec<Push>,
     ) -> [Outcome; LANES] {
         let Self { secondary, points, facets, awake, nearest, doze, history } = self;
@@ -86,12 +87,12 @@ impl Band<'_> {
                 slip: if MEMORY { gather(simd, &history.slip, &point) } else { zero },
                 damping: if MEMORY { gather(simd, &history.damping, &point) } else { zero },
             };
-            let meeting = Meeting::new(laws, &chord, &Chord::each(simd, at, &other));
-            let acting = meeting.act::<MEMORY>(laws, &spots, account);
-            let (on, apart) = (acting.on.bits(), acting.apart.bits());
+            let meeting = Meeting::new(&chord, &Chord::each(simd, at, &other));
+            let acting = meeting.act::<MEMORY>(law, &spots, work);
+            let (on, apart) = (acting.acts.on.bits(), acting.acts.apart.bits());
             if apart != 0 {
                 let mut dozes = [0.0; LANES];
-                acting.doze.store(&mut dozes, 0);
+                acting.acts.doze.store(&mut dozes, 0);
                 for l in (0..Vector::<V>::LEN).filter(|l| apart >> l & 1 == 1) {
                     doze[point[l] as usize] = dozes[l];
                     outcomes[l].left &= !(1 << k);
@@ -106,8 +107,8 @@ impl Band<'_> {
             let [wx, wy] = with_place;
             with_place = [fx.times_plus(spots.place, wx), fy.times_plus(spots.place, wy)];
             let [mut slip, mut damping] = [[0.0; LANES]; 2];
-            acting.slip.store(&mut slip, 0);
-            acting.damping.store(&mut damping, 0);
+            acting.acts.slip.store(&mut slip, 0);
+            acting.acts.damping.store(&mut damping, 0);
             let (second_x, second_y) = (fx * acting.foot, fy * acting.foot);
             let [mut first_fx, mut first_fy, mut second_fx, mut second_fy] = [[0.0; LANES]; 4];
             (second_x - fx).store(&mut first_fx, 0);

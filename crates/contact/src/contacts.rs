@@ -82,6 +82,7 @@ pub struct Contacts {
     search: Schedule,
     preload: Option<f64>,
     parallel: bool,
+    together: bool,
     energy: Energy,
 }
 
@@ -153,6 +154,7 @@ impl Contacts {
             search: Schedule::default(),
             preload: None,
             parallel: false,
+            together: true,
             energy: Energy::default(),
         })
     }
@@ -160,6 +162,12 @@ impl Contacts {
     /// Evaluates pairs in parallel from now on; the result is the same to the bit.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
+    }
+
+    /// Evaluates points one by one from now on, the plain way that whole vectors of points are checked against. Sums
+    /// differ by rounding.
+    pub fn set_together(&mut self, together: bool) {
+        self.together = together;
     }
 
     /// For a static preload: leaves damping and friction out and rounds the corner of the penalty law over a gap
@@ -249,7 +257,7 @@ impl Contacts {
     }
 
     fn weights(&self, spec: &PairSpec) -> Weights {
-        weights(spec, self.thickness, self.search.fastest, self.preload)
+        weights(spec, self.thickness, self.search.fastest, self.preload, self.together)
     }
 }
 
@@ -292,11 +300,11 @@ fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize)
 }
 
 /// Two passes carry half of the stiffness each.
-fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>) -> Weights {
+fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>, together: bool) -> Weights {
     let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
     let share = if spec.sides == Sides::Both { 0.5 } else { 1.0 };
     let softness = preload.unwrap_or(0.0);
-    Weights { law, thickness: share * thickness, fastest, softness }
+    Weights { law, thickness: share * thickness, fastest, softness, together }
 }
 
 impl Force for Contacts {
@@ -305,9 +313,9 @@ impl Force for Contacts {
             self.search(&at);
         }
         let threads = self.threads();
-        let Self { surfaces, pairs, thickness, search, preload, .. } = self;
+        let Self { surfaces, pairs, thickness, search, preload, together, .. } = self;
         let evaluate = |pair: &mut Pair| {
-            let w = weights(&pair.spec, *thickness, search.fastest, *preload);
+            let w = weights(&pair.spec, *thickness, search.fastest, *preload, *together);
             pair.push.clear();
             for (pass, sum) in pair.passes.iter_mut().zip(&mut pair.sum) {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);

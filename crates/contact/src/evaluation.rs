@@ -8,15 +8,16 @@ use stribeck_solver::{
 
 use crate::{
     band::{self, Band},
-    meeting::{Account, Laws},
     pass::{Memory, NEVER, PACE_KEPT, Pass, Weights},
     points::Points,
     projection::Frame,
     row::{Outcome, Row},
     shape::{Push, Shape, Side},
     spline::Patch,
+    spline_row::Feet,
     surface::Surface,
     touch::{Histories, Sum, touch},
+    touch_row::{Law, Work},
 };
 
 /// One evaluation, compiled for each instruction set.
@@ -33,14 +34,15 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) -> Sum {
-        // Which curves meet is asked once a pass, as whether points remember; the loop over points is compiled for each.
+        // Which curves meet is asked once a pass, and whether points remember; the loop over points is compiled for each.
         let memory = !self.pass.memory.history.is_empty();
         match [self.pass.secondary, self.pass.primary].map(|s| self.surfaces[s].spline.is_some()) {
             [false, false] if memory => self.evaluate::<V, Frame, Frame, true>(simd),
             [false, false] => self.evaluate::<V, Frame, Frame, false>(simd),
+            [true, true] if memory => self.evaluate::<V, Patch, Patch, true>(simd),
+            [true, true] => self.evaluate::<V, Patch, Patch, false>(simd),
             [false, true] => self.evaluate::<V, Frame, Patch, true>(simd),
             [true, false] => self.evaluate::<V, Patch, Frame, true>(simd),
-            [true, true] => self.evaluate::<V, Patch, Patch, true>(simd),
         }
     }
 }
@@ -50,48 +52,40 @@ impl Evaluation<'_> {
     fn evaluate<V: Simd, S: Shape, P: Shape, const MEMORY: bool>(self, simd: V) -> Sum {
         let Self { pass, surfaces, at, w, push } = self;
         let (secondary, primary) = (&surfaces[pass.secondary], &surfaces[pass.primary]);
+        let (deepest, points) = (pass.deepest, &pass.points);
         let Memory { nearest, searched, doze, pace, candidates, asleep, history } = &mut pass.memory;
-        let points = &pass.points;
         let now = at.step.saturating_sub(*searched) as f64;
-        // Points on chords against chords, with the sharp law: many at a time.
+        *pace *= PACE_KEPT;
+        // Chords against chords and splines against splines, with the law itself: many points at a time.
         let flat = secondary.is_flat() && primary.is_flat();
-        let together = flat && w.softness == 0.0 && w.law.onset == 0.0;
-        let laws = Laws::new(simd, w, at.dt, pass.deepest, now, PACE_KEPT * *pace);
-        let mut account = Account::new(simd);
-        let mut first_awake = u64::MAX;
-        let (mut sum, mut work) = (Sum::default(), 0);
-        let deepest = pass.deepest;
-        let lanes = if together && points.most <= band::MOST_POINTS { Vector::<V>::LEN } else { 1 };
-        let mut singles = Singles::<P> {
-            secondary,
-            primary,
-            at,
-            w,
-            points,
-            deepest,
-            now,
-            pace: PACE_KEPT * *pace,
-            foot: None,
-            other: None,
-        };
+        let splines = secondary.spline.is_some() && primary.spline.is_some();
+        let together = w.together && w.softness == 0.0 && (flat || splines);
+        let lanes = if together && flat && points.most <= band::MOST_POINTS { Vector::<V>::LEN } else { 1 };
+        let law = Law::new(simd, w, at.dt, deepest, now, *pace);
+        let (mut done, mut feet) = (Work::none(simd), Feet::none());
+        let (mut sum, mut work, mut first_awake) = (Sum::default(), 0, u64::MAX);
+        let mut singles =
+            Singles::<P> { primary, at, w, points, deepest, now, pace: *pace, foot: None, other: None };
         for group in candidates.chunks_mut(lanes) {
             let awake = group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
-            let mut outcomes = [Outcome::default(); LANES];
             if awake == 0 {
                 group.iter().for_each(|c| first_awake = first_awake.min(c.wake));
                 continue;
             }
+            let mut outcomes = [Outcome::default(); LANES];
+            let mut own = None;
             let facet = group[0].facet as usize;
             if lanes > 1 {
                 let mut facets = [facet; LANES];
                 facets.iter_mut().zip(group.iter()).for_each(|(f, c)| *f = c.facet as usize);
                 let band = Band { secondary, points, facets, awake, nearest, doze, history };
-                outcomes = band.touch::<V, MEMORY>(simd, &laws, now, primary, at, &mut account, push);
+                outcomes = band.touch::<V, MEMORY>(simd, &law, now, primary, at, &mut done, push);
                 work += 15 * points.most;
             } else if together {
-                let row = Row { points, range: points.of_facet(facet), nearest, doze, history };
-                let own = secondary.ends(facet);
-                outcomes[0] = row.touch::<V, MEMORY>(simd, &laws, now, own, primary, at, &mut account, push);
+                let range = points.of_facet(facet);
+                let row = Row { points, range, nearest, doze, history, secondary, primary, at, now };
+                outcomes[0] =
+                    S::touch_row::<V, MEMORY>(simd, row, facet, &mut own, &mut feet, &law, &mut done, push);
                 work += if outcomes[0].touched { 20 } else { 10 };
             } else {
                 let awake = points.of_facet(facet).enumerate().filter(|(_, i)| doze[*i] < now + 1.0);
@@ -101,26 +95,33 @@ impl Evaluation<'_> {
             for (l, candidate) in group.iter_mut().enumerate() {
                 let outcome = &mut outcomes[l];
                 if awake >> l & 1 == 1 {
+                    let facet = candidate.facet as usize;
                     if outcome.left != 0 {
                         work += 5 * outcome.left.count_ones() as usize;
-                        let own = S::new(secondary, at.x, at.y, candidate.facet as usize);
+                        let side = || Side::new(S::new(secondary, at.x, at.y, facet), secondary, at);
+                        let own = own.get_or_insert_with(side);
                         singles.touch(own, outcome, nearest, doze, history, &mut sum, push);
                     }
+                    if let Some(own) = own.take() {
+                        own.flush(secondary, push);
+                        sum.force = [sum.force[0] + own.force[0], sum.force[1] + own.force[1]];
+                    }
+                    sum.force = [sum.force[0] + outcome.force[0], sum.force[1] + outcome.force[1]];
                     candidate.wake = if outcome.touched {
                         0
                     } else {
-                        let range = points.of_facet(candidate.facet as usize);
-                        let soonest = doze[range].iter().copied().fold(f64::INFINITY, f64::min);
+                        let soonest =
+                            doze[points.of_facet(facet)].iter().copied().fold(f64::INFINITY, f64::min);
                         searched.saturating_add(soonest as u64)
                     };
-                    sum.force = [sum.force[0] + outcome.force[0], sum.force[1] + outcome.force[1]];
                 }
                 first_awake = first_awake.min(candidate.wake);
             }
         }
         singles.flush(push);
-        account.add_to(&mut sum);
-        *pace = singles.pace.max(account.pace());
+        feet.flush(primary, push);
+        done.add_to(&mut sum);
+        *pace = singles.pace.max(done.pace());
         *asleep = first_awake;
         pass.work = work;
         sum
@@ -129,7 +130,6 @@ impl Evaluation<'_> {
 
 /// Points one by one: those on curves, near ends and corners, and those that do not touch and may doze.
 struct Singles<'a, P: Shape> {
-    secondary: &'a Surface,
     primary: &'a Surface,
     at: &'a Moment<'a>,
     w: &'a Weights,
@@ -150,7 +150,7 @@ impl<P: Shape> Singles<'_, P> {
     #[allow(clippy::too_many_arguments)] // what a pass remembers, field by field
     fn touch<S: Shape>(
         &mut self,
-        facet: S,
+        own: &mut Side<S>,
         outcome: &mut Outcome,
         nearest: &mut [u32],
         doze: &mut [f64],
@@ -158,9 +158,8 @@ impl<P: Shape> Singles<'_, P> {
         sum: &mut Sum,
         push: &mut Vec<Push>,
     ) {
-        let Self { secondary, primary, at, w, points, .. } = *self;
-        let mut own = Side::new(facet, secondary, at);
-        let first = points.of_facet(facet.facet()).start;
+        let Self { primary, at, w, points, .. } = *self;
+        let first = points.of_facet(own.shape.facet()).start;
         let mut left = outcome.left;
         while left != 0 {
             let i = first + left.trailing_zeros() as usize;
@@ -225,8 +224,6 @@ impl<P: Shape> Singles<'_, P> {
             own.push_point(&spot, f);
             other.push_foot(&to, f, pressure, shear);
         }
-        own.flush(secondary, push);
-        outcome.force = [outcome.force[0] + own.force[0], outcome.force[1] + own.force[1]];
     }
 
     fn flush(&self, push: &mut Vec<Push>) {

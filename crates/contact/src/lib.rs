@@ -82,6 +82,7 @@
 //! | Which curve does a polyline stand for? | `smooth.rs` |
 //! | Where does the law act? | `points.rs` |
 //! | What does one pass do, in contact and out of it? | `pass.rs`, `touch.rs` |
+//! | How are many points done at a time? | `row.rs`, `spline_row.rs`, `patch_row.rs`, `touch_row.rs` |
 //! | Who is near whom? | `search.rs` |
 //! | How does it all become one force? | `contacts.rs` |
 
@@ -95,6 +96,7 @@ mod evaluation;
 mod law;
 mod meeting;
 mod pass;
+mod patch_row;
 mod points;
 mod projection;
 mod row;
@@ -102,8 +104,10 @@ mod search;
 mod shape;
 mod smooth;
 mod spline;
+mod spline_row;
 mod surface;
 mod touch;
+mod touch_row;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;

@@ -83,6 +83,8 @@ pub(crate) struct Weights {
     pub(crate) fastest: f64,
     /// Rounds the corner of the penalty law over about this gap [m]; zero for the law itself.
     pub(crate) softness: f64,
+    /// Whether points may be done together.
+    pub(crate) together: bool,
 }
 
 impl Weights {

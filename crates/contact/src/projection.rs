@@ -1,10 +1,15 @@
 //! Projection of a point onto a surface, and the signed gap (THEORY §4.1, §4.4).
 
+use pulp::Simd;
+
 use crate::{
-    shape::{Poly, Push, Shape, Spot},
+    row::{Outcome, Row},
+    shape::{Poly, Push, Shape, Side, Spot},
     smooth::{Rise, height, slope},
     spline::Patch,
+    spline_row::Feet,
     surface::Surface,
+    touch_row::{Law, Work},
 };
 
 /// Where a point projects.
@@ -75,6 +80,21 @@ impl Shape for Frame {
     #[inline(always)]
     fn facet(&self) -> usize {
         self.facet
+    }
+
+    #[inline(always)]
+    fn touch_row<V: Simd, const MEMORY: bool>(
+        simd: V,
+        row: Row<'_>,
+        facet: usize,
+        _own: &mut Option<Side<Self>>,
+        _feet: &mut Feet<V>,
+        law: &Law<V>,
+        work: &mut Work<V>,
+        push: &mut Vec<Push>,
+    ) -> Outcome {
+        let ends = row.secondary.ends(facet);
+        row.touch::<V, MEMORY>(simd, ends, law, work, push)
     }
 
     #[inline(always)]

@@ -11,11 +11,12 @@ use stribeck_solver::{
 };
 
 use crate::{
-    meeting::{Account, Chord, Laws, Meeting, Spots, ends},
+    meeting::{Chord, Meeting, Spots, ends},
     points::{Method, Points},
     shape::Push,
     surface::Surface,
     touch::Histories,
+    touch_row::{Law, Work},
 };
 
 /// Room for the points of a facet: two of them may be corners.
@@ -29,6 +30,11 @@ pub(crate) struct Row<'a> {
     pub(crate) nearest: &'a [u32],
     pub(crate) doze: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
+    /// Surfaces whose points and facets meet, and when: the moment, and steps since the search.
+    pub(crate) secondary: &'a Surface,
+    pub(crate) primary: &'a Surface,
+    pub(crate) at: &'a Moment<'a>,
+    pub(crate) now: f64,
 }
 
 /// How far vectors of points came.
@@ -42,32 +48,42 @@ pub(crate) struct Outcome {
     pub(crate) force: [f64; 2],
 }
 
+/// One where a point is awake and not done yet, for all points of a row.
+pub(crate) type Open = [f64; ROOM];
+
 impl Row<'_> {
-    /// Evaluates the points that certainly touch and pushes their forces.
+    /// Points that are awake, and their bits.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)] // a facet's whole situation
+    pub(crate) fn open<V: Simd>(&self, simd: V) -> (Open, u64) {
+        let (n, len) = (self.range.len(), Vector::<V>::LEN);
+        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
+        let (mut open, mut bits) = ([0.0; ROOM], 0);
+        for start in (0..n).step_by(len) {
+            let dozes = Vector::load(simd, self.doze, self.range.start + start);
+            let awake = dozes.choose_below(Vector::all(simd, self.now + 1.0), one, zero);
+            let awake = awake.first(len.min(n - start));
+            awake.store(&mut open, start);
+            bits |= awake.bits() << start;
+        }
+        (open, bits)
+    }
+
+    /// Chords against chords: evaluates the points that certainly touch and pushes their forces, lets those doze that
+    /// certainly do not.
+    #[inline(always)]
     pub(crate) fn touch<V: Simd, const MEMORY: bool>(
         self,
         simd: V,
-        laws: &Laws<V>,
-        now: f64,
         own: (usize, usize),
-        primary: &Surface,
-        at: &Moment<'_>,
-        account: &mut Account<V>,
+        law: &Law<V>,
+        work: &mut Work<V>,
         push: &mut Vec<Push>,
     ) -> Outcome {
-        let Self { points, range, nearest, doze, history } = self;
+        let (mut open, left) = self.open(simd);
+        let mut outcome = Outcome { left, ..Outcome::default() };
+        let Self { points, range, nearest, doze, history, primary, at, .. } = self;
         let (n, len) = (range.len(), Vector::<V>::LEN);
-        let mut outcome = Outcome::default();
-        let mut open = [0.0; ROOM];
-        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
-        for start in (0..n).step_by(len) {
-            let dozes = Vector::load(simd, doze, range.start + start);
-            let awake = dozes.choose_below(Vector::all(simd, now + 1.0), one, zero).first(len.min(n - start));
-            awake.store(&mut open, start);
-            outcome.left |= awake.bits() << start;
-        }
+        let zero = Vector::all(simd, 0.0);
         let chord = Chord::all(simd, &ends(at, own));
         let mut untried = outcome.left;
         let mut tried = None;
@@ -84,7 +100,7 @@ impl Row<'_> {
                 untried = 0;
             }
             let (a, b) = primary.ends(facet);
-            let meeting = Meeting::new(laws, &chord, &Chord::all(simd, &ends(at, (a, b))));
+            let meeting = Meeting::new(&chord, &Chord::all(simd, &ends(at, (a, b))));
             let mut force = [zero; 2];
             let (mut with_place, mut with_foot) = ([zero; 2], [zero; 2]);
             let (mut touches, mut done) = (false, 0);
@@ -97,21 +113,21 @@ impl Row<'_> {
                     slip: if MEMORY { Vector::load(simd, &history.slip, i) } else { zero },
                     damping: if MEMORY { Vector::load(simd, &history.damping, i) } else { zero },
                 };
-                let acting = meeting.act::<MEMORY>(laws, &spots, account);
-                let (on, apart) = (acting.on.bits() << start, acting.apart.bits() << start);
+                let acting = meeting.act::<MEMORY>(law, &spots, work);
+                let (on, apart) = (acting.acts.on.bits() << start, acting.acts.apart.bits() << start);
                 if apart != 0 {
                     let dozes = Vector::load(simd, doze, i);
-                    zero.choose_below(acting.apart, acting.doze, dozes).store(doze, i);
+                    zero.choose_below(acting.acts.apart, acting.acts.doze, dozes).store(doze, i);
                 }
                 done |= on | apart;
-                (spots.open - acting.on - acting.apart).store(&mut open, start);
+                (spots.open - acting.acts.on - acting.acts.apart).store(&mut open, start);
                 if on == 0 {
                     continue;
                 }
                 touches = true;
                 if MEMORY {
-                    acting.slip.store(&mut history.slip, i);
-                    acting.damping.store(&mut history.damping, i);
+                    acting.acts.slip.store(&mut history.slip, i);
+                    acting.acts.damping.store(&mut history.damping, i);
                 }
                 let [fx, fy] = acting.force;
                 force = [force[0] + fx, force[1] + fy];

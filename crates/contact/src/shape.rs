@@ -4,12 +4,16 @@
 //! x = c(s) + e(s) n. Its variation is δx = δc − e t (n·δc′)/|c′|, with the unit tangent t: the height turns with the
 //! curve. Velocities follow from the same two terms, forces go the same way back (THEORY §4.4).
 
+use pulp::Simd;
 use stribeck_solver::state::Moment;
 
 use crate::{
     projection::{Foot, Projection},
+    row::{Outcome, Row},
+    spline_row::Feet,
     surface::Surface,
     touch::Slide,
+    touch_row::{Law, Work},
 };
 
 /// A force on a node: slot, x [N], y [N].
@@ -42,6 +46,20 @@ pub(crate) trait Shape: Copy {
 
     fn facet(&self) -> usize;
 
+    /// Evaluates those of a row's points that can be done together. What acts on the other surface may wait in `feet`;
+    /// the facet in motion is left in `own` where it was needed.
+    #[allow(clippy::too_many_arguments)] // a facet's whole situation
+    fn touch_row<V: Simd, const MEMORY: bool>(
+        simd: V,
+        row: Row<'_>,
+        facet: usize,
+        own: &mut Option<Side<Self>>,
+        feet: &mut Feet<V>,
+        law: &Law<V>,
+        work: &mut Work<V>,
+        push: &mut Vec<Push>,
+    ) -> Outcome;
+
     fn spot(&self, place: f64, height: f64) -> Spot;
 
     /// Projects `p`, walking on to the facet where its foot is; `None` beyond the ends of an open surface.
@@ -70,6 +88,8 @@ pub(crate) trait Coefficients {
     fn slope(&self, s: f64) -> [f64; 2];
     /// Adds a force that acts on the value, and one that acts on the slope at `s`.
     fn add(&mut self, s: f64, on_value: [f64; 2], on_slope: [f64; 2]);
+    /// Adds forces that others have got.
+    fn add_all(&mut self, forces: &Self);
 }
 
 impl<const K: usize> Coefficients for Poly<K> {
@@ -95,6 +115,13 @@ impl<const K: usize> Coefficients for Poly<K> {
             v = [v[0] * s + k as f64 * self.0[k][0], v[1] * s + k as f64 * self.0[k][1]];
         }
         v
+    }
+
+    #[inline(always)]
+    fn add_all(&mut self, forces: &Self) {
+        for k in 0..K {
+            self.0[k] = [self.0[k][0] + forces.0[k][0], self.0[k][1] + forces.0[k][1]];
+        }
     }
 
     #[inline(always)]
@@ -152,6 +179,21 @@ impl<S: Shape> Side<S> {
             opening: nx * (v[0] - u[0]) + ny * (v[1] - u[1]) - to.turn * swing,
             along: nx * (v[1] - foot[1]) - ny * (v[0] - foot[0]),
         }
+    }
+
+    /// Coefficients of its motion [m/s].
+    #[inline(always)]
+    pub(crate) fn coefficients_of_motion(&self) -> S::Coefficients {
+        self.velocity
+    }
+
+    /// Adds forces on many points: what each coefficient gets.
+    #[inline(always)]
+    pub(crate) fn push_all(&mut self, forces: &S::Coefficients) {
+        self.forces.add_all(forces);
+        let all = forces.value(0.0);
+        self.force = [self.force[0] + all[0], self.force[1] + all[1]];
+        self.used = true;
     }
 
     /// Adds a force on a point.

@@ -5,20 +5,28 @@
 //! height that makes it the surface's own curve in the reference positions. Corners are kept: the nodes beyond one are
 //! its mirror images through the corner.
 
+use pulp::Simd;
+
 use crate::{
     projection::{Foot, Frame, Projection, walk},
-    shape::{Coefficients, Poly, Push, Shape, Spot},
+    row::{Outcome, Row},
+    shape::{Coefficients, Poly, Push, Shape, Side, Spot},
+    spline_row::Feet,
     surface::Surface,
+    touch_row::{Law, Work},
 };
 
 /// Nodes that a facet's curve depends on: its own two and two more on either side.
 const SUPPORT: usize = 6;
 
 /// Coefficients of s⁰ … s³ from the nodes of the support.
-type Matrix = [[f64; SUPPORT]; 4];
+type Rows = [[f64; SUPPORT]; 4];
+
+/// The same by node, for x and y of each coefficient in turn.
+type Columns = [[f64; 8]; SUPPORT];
 
 /// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as that.
-const JOINT: f64 = 1e-9;
+pub(crate) const JOINT: f64 = 1e-9;
 
 /// Newton's method for a foot ends after a correction that leaves an error of rounding: a facet's curve turns by a tenth,
 /// so an error ε becomes less than 0.1 ε².
@@ -31,7 +39,7 @@ const MOST_CORRECTIONS: usize = 4;
 #[derive(Debug, Clone)]
 pub(crate) struct Spline {
     facets: Vec<Support>,
-    matrices: Vec<Matrix>,
+    matrices: Vec<(Rows, Columns)>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -55,9 +63,9 @@ impl Spline {
             let low = [0, -1, -2].into_iter().find(|&o| corner(o)).unwrap_or(-2);
             let high = [1, 2, 3].into_iter().find(|&o| corner(o)).unwrap_or(3);
             let rows = matrix(low, high);
-            let known = spline.matrices.iter().position(|m| *m == rows);
+            let known = spline.matrices.iter().position(|(m, _)| *m == rows);
             let matrix = known.unwrap_or_else(|| {
-                spline.matrices.push(rows);
+                spline.matrices.push((rows, columns(&rows)));
                 spline.matrices.len() - 1
             });
             // Nodes beyond a corner have no weight; the facet's own stand in for them.
@@ -73,23 +81,24 @@ impl Spline {
         spline
     }
 
+    #[inline(always)]
     fn patch(&self, x: &[f64], y: &[f64], facet: usize) -> Patch {
-        Patch::of(facet, self.gather(x, y, facet), self.facets[facet].height)
+        Patch { facet, curve: self.gather(x, y, facet), height: self.facets[facet].height }
     }
 
     #[inline(always)]
     fn gather(&self, x: &[f64], y: &[f64], facet: usize) -> Poly<4> {
         let Support { slots, matrix, .. } = &self.facets[facet];
-        let rows = &self.matrices[*matrix as usize];
-        let (px, py) = (slots.map(|n| x[n as usize]), slots.map(|n| y[n as usize]));
-        let mut c = [[0.0; 2]; 4];
-        for k in 0..4 {
-            for j in 0..SUPPORT {
-                c[k][0] += rows[k][j] * px[j];
-                c[k][1] += rows[k][j] * py[j];
+        let (_, columns) = &self.matrices[*matrix as usize];
+        let mut c = [0.0; 8];
+        for (column, &slot) in columns.iter().zip(slots) {
+            let (px, py) = (x[slot as usize], y[slot as usize]);
+            for k in 0..4 {
+                c[2 * k] += column[2 * k] * px;
+                c[2 * k + 1] += column[2 * k + 1] * py;
             }
         }
-        Poly(c)
+        Poly([[c[0], c[1]], [c[2], c[3]], [c[4], c[5]], [c[6], c[7]]])
     }
 
     /// Height above the spline [m].
@@ -100,7 +109,7 @@ impl Spline {
     /// Vertices that a point hangs on, with their shares; near corners shares may be negative.
     pub(crate) fn shares(&self, facet: usize, s: f64) -> [(usize, f64); SUPPORT] {
         let Support { vertices, matrix, .. } = &self.facets[facet];
-        let rows = &self.matrices[*matrix as usize];
+        let (rows, _) = &self.matrices[*matrix as usize];
         std::array::from_fn(|j| {
             let share = rows.iter().rev().fold(0.0, |sum, row| sum * s + row[j]);
             (vertices[j] as usize, share)
@@ -115,7 +124,7 @@ impl Spline {
 }
 
 /// Rows of the spline on a facet whose nearest corners stand at these offsets from its first vertex (−2 and 3 at most).
-fn matrix(low: i64, high: i64) -> Matrix {
+fn matrix(low: i64, high: i64) -> Rows {
     // A node, or what stands for it beyond a corner, in nodes of the support.
     fn node(offset: i64, low: i64, high: i64) -> [f64; SUPPORT] {
         let corner = match offset {
@@ -134,6 +143,10 @@ fn matrix(low: i64, high: i64) -> Matrix {
     const BASIS: [[f64; 4]; 4] =
         [[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]];
     BASIS.map(|row| std::array::from_fn(|j| (0..4).map(|i| row[i] * q[i][j]).sum::<f64>() / 6.0))
+}
+
+fn columns(rows: &Rows) -> Columns {
+    std::array::from_fn(|j| std::array::from_fn(|m| rows[m / 2][j]))
 }
 
 /// Distance along the patch's normal from its point at `s` to the surface's curve [m].
@@ -172,24 +185,17 @@ fn derivative(c: &[f64; 4], s: f64) -> f64 {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Patch {
     facet: usize,
-    curve: Poly<4>,
-    height: [f64; 4],
-    /// Position, first and second derivative in the middle.
-    middle: [[f64; 2]; 3],
+    pub(crate) curve: Poly<4>,
+    pub(crate) height: [f64; 4],
 }
 
 impl Patch {
-    fn of(facet: usize, curve: Poly<4>, height: [f64; 4]) -> Self {
-        let (r, d, dd) = curve.seen_from([0.0; 2], 0.5);
-        Self { facet, curve, height, middle: [[-r[0], -r[1]], d, dd] }
-    }
-
     /// Projection of `p` on the curve, which goes on beyond its ends.
     #[inline(always)]
     fn above(&self, p: [f64; 2]) -> Projection {
-        let [m, d, dd] = self.middle;
+        let (r, d, dd) = self.curve.seen_from(p, 0.5);
         // Far beyond the facet's ends its polynomial is no guide.
-        let mut s = (0.5 + correction([p[0] - m[0], p[1] - m[1]], d, dd)).clamp(-2.0, 3.0);
+        let mut s = (0.5 + correction(r, d, dd)).clamp(-2.0, 3.0);
         let (mut r, mut d, mut dd) = self.curve.seen_from(p, s);
         for _ in 0..MOST_CORRECTIONS {
             let more = correction(r, d, dd);
@@ -250,6 +256,22 @@ impl Shape for Patch {
     }
 
     #[inline(always)]
+    fn touch_row<V: Simd, const MEMORY: bool>(
+        simd: V,
+        row: Row<'_>,
+        facet: usize,
+        own: &mut Option<Side<Self>>,
+        feet: &mut Feet<V>,
+        law: &Law<V>,
+        work: &mut Work<V>,
+        push: &mut Vec<Push>,
+    ) -> Outcome {
+        let side = || Side::new(Self::new(row.secondary, row.at.x, row.at.y, facet), row.secondary, row.at);
+        let own = own.get_or_insert_with(side);
+        row.touch_splines::<V, MEMORY>(simd, own, feet, law, work, push)
+    }
+
+    #[inline(always)]
     fn spot(&self, place: f64, height: f64) -> Spot {
         let (c, d) = (self.curve.value(place), self.curve.slope(place));
         let inverse = 1.0 / (d[0] * d[0] + d[1] * d[1]).sqrt();
@@ -285,21 +307,24 @@ impl Shape for Patch {
 
     #[inline(always)]
     fn gather(&self, surface: &Surface, x: &[f64], y: &[f64]) -> Poly<4> {
-        surface.spline.as_ref().map_or(Poly::zero(), |spline| spline.gather(x, y, self.facet))
+        let Some(spline) = &surface.spline else { return Poly::zero() };
+        spline.gather(x, y, self.facet)
     }
 
     #[inline(always)]
     fn scatter(&self, surface: &Surface, forces: &Poly<4>, push: &mut Vec<Push>) {
         let Some(spline) = &surface.spline else { return };
         let Support { slots, matrix, .. } = &spline.facets[self.facet];
-        let rows = &spline.matrices[*matrix as usize];
-        for j in 0..SUPPORT {
-            let mut f = [0.0; 2];
-            for k in 0..4 {
-                f[0] += rows[k][j] * forces.0[k][0];
-                f[1] += rows[k][j] * forces.0[k][1];
+        let (rows, _) = &spline.matrices[*matrix as usize];
+        let (mut fx, mut fy) = ([0.0; SUPPORT], [0.0; SUPPORT]);
+        for (row, [x, y]) in rows.iter().zip(&forces.0) {
+            for j in 0..SUPPORT {
+                fx[j] += row[j] * x;
+                fy[j] += row[j] * y;
             }
-            push.push((slots[j], f));
+        }
+        for j in 0..SUPPORT {
+            push.push((slots[j], [fx[j], fy[j]]));
         }
     }
 }

@@ -90,6 +90,7 @@
 
 mod advance;
 mod ahead;
+mod block;
 pub mod critical;
 pub mod damping;
 pub mod distortion;

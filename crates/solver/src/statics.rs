@@ -16,6 +16,7 @@ use faer::{
 };
 
 use crate::{
+    block::Block,
     dynamics::Dynamics,
     element::{QuadReference, Stiffness, TriangleReference},
     error::Error,
@@ -357,16 +358,18 @@ impl Unknowns {
         unknowns
     }
 
+    /// Equation of a component of the nodes' displacements, if it is free.
+    fn equation(&self, nodes: &[u32], component: usize) -> Option<usize> {
+        let index = self.index[nodes[component / 2] as usize];
+        if index == u32::MAX { None } else { self.number[index as usize][component % 2] }
+    }
+
     /// Pushes k · d dᵀ (lower triangle).
     fn rank_one(&self, nodes: &[u32], direction: &[f64], k: f64, out: &mut Vec<Triplet<usize, usize, f64>>) {
-        let equation = |i: usize| {
-            let index = self.index[nodes[i / 2] as usize];
-            if index == u32::MAX { None } else { self.number[index as usize][i % 2] }
-        };
         for i in 0..direction.len() {
-            let Some(row) = equation(i).filter(|_| direction[i] != 0.0) else { continue };
+            let Some(row) = self.equation(nodes, i).filter(|_| direction[i] != 0.0) else { continue };
             for j in 0..direction.len() {
-                let Some(col) = equation(j).filter(|_| direction[j] != 0.0) else { continue };
+                let Some(col) = self.equation(nodes, j).filter(|_| direction[j] != 0.0) else { continue };
                 if row >= col {
                     out.push(Triplet { row, col, val: k * direction[i] * direction[j] });
                 }
@@ -470,11 +473,17 @@ impl Unknowns {
         elastic: &Matrix,
     ) -> Result<Factor, Error> {
         let mut triplets = Vec::new();
+        let mut block = Block::default();
         for f in forces {
             f.tangent(&d.state.x, &d.state.y, &mut |r| {
-                self.rank_one(r.nodes, r.direction, r.stiffness, &mut triplets);
+                if block.nodes() != r.nodes {
+                    block.hand_over(|nodes, i| self.equation(nodes, i), &mut triplets);
+                    block.begin(r.nodes);
+                }
+                block.add(r.direction, r.stiffness);
             });
         }
+        block.hand_over(|nodes, i| self.equation(nodes, i), &mut triplets);
         for (_, slots) in &statics.bodies {
             let hold = hold(d, slots, &residual.force, statics.longest_step);
             for &s in slots {
