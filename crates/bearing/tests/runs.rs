@@ -157,7 +157,7 @@ fn invariant_stiffness_damping_is_paid_and_counted() {
     /// Of the peak strain energy: what a bearing may miss before it is warned.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
-    // Its heat alone is seen.
+    // Its heat alone is seen. Loaded bodies that turn drive themselves a little with it (THEORY §2.7): it may be negative.
     plain.solver.mass_damping_per_s = 0.0;
     let mut scene = plain.clone();
     scene.solver.stiffness_damping_ns = 100.0;
@@ -165,7 +165,12 @@ fn invariant_stiffness_damping_is_paid_and_counted() {
     assert!(info.critical_time_step_s < 0.9 * undamped.critical_time_step_s, "{info:?}");
     assert!(info.energy.max_relative_error < LEDGER, "{:?}", info.energy);
     let heat = |run: &Run| run.energy.get("damping_j").and_then(|h| h.last().copied()).expect("a column");
-    assert!(heat(&without) == 0.0 && heat(&one) > 0.0, "{} J without, {} J with", heat(&without), heat(&one));
+    assert!(
+        heat(&without) == 0.0 && heat(&one) != 0.0,
+        "{} J without, {} J with",
+        heat(&without),
+        heat(&one)
+    );
     let (_, two) = run(&scene, 2);
     assert!(one.trace == two.trace && one.energy == two.energy, "two threads: other bits");
 }
