@@ -149,11 +149,11 @@ impl<V: Simd> Lanes<V> {
 
     /// From points of the curve to `p`, and the first and second derivatives there.
     #[inline(always)]
-    fn seen_from(&self, p: [Vector<V>; 2], s: Vector<V>) -> ([Vector<V>; 2], [Vector<V>; 2], [Vector<V>; 2]) {
+    fn seen_from(&self, p: [Vector<V>; 2], s: Vector<V>) -> [[Vector<V>; 2]; 3] {
         let (c, at) = (&self.curve, value(&self.curve, s));
         let (two, steep) = (s.constant(2.0), s.constant(3.0) * s);
         let bend = [two * steep.times_plus(c[3][0], c[2][0]), two * steep.times_plus(c[3][1], c[2][1])];
-        ([p[0] - at[0], p[1] - at[1]], slope(c, s), bend)
+        [[p[0] - at[0], p[1] - at[1]], slope(c, s), bend]
     }
 
     /// Feet of the points `p`, as `Patch::above` finds them.
@@ -165,12 +165,12 @@ impl<V: Simd> Lanes<V> {
         let mut s = dot(start, self.chord).max(low).min(high);
         let mut rest = zero;
         for _ in 0..2 {
-            let (r, d, dd) = self.seen_from(p, s);
+            let [r, d, dd] = self.seen_from(p, s);
             let square = dot(d, d);
             rest = dot(r, d) / (square - dot(r, dd).min(half * square));
             s = (s + rest).max(low).min(high);
         }
-        let (r, d, dd) = self.seen_from(p, s);
+        let [r, d, dd] = self.seen_from(p, s);
         let square = dot(d, d);
         let inverse = one / square.sqrt();
         let n = [d[1] * inverse, -(d[0] * inverse)];
