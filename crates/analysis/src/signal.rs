@@ -18,6 +18,32 @@ pub fn amplitude(signal: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Opti
     Some(spectrum.sinusoid(&peak).ok()?.amplitude)
 }
 
+/// A line of a spectrum.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Line {
+    /// Frequency [Hz].
+    pub hz: f64,
+    /// Amplitude [unit of the signal].
+    pub amplitude: f64,
+    /// How far it stands above the median of its surroundings [dB].
+    pub above_db: f64,
+}
+
+/// The highest peak between two frequencies [Hz], over the whole record with a Hann window; `None` when there is none
+/// between them.
+pub fn line_between(signal: &[f64], sample_rate_hz: f64, from_hz: f64, to_hz: f64) -> Option<Line> {
+    let options =
+        WelchOptions { window: Window::Hann, nfft: 4 * signal.len(), ..WelchOptions::new(signal.len()) };
+    let spectrum = Welch::new(sample_rate_hz, signal.len(), &options).ok()?.estimate(signal).ok()?;
+    let peak = spectrum.peak(from_hz, to_hz).ok().filter(|peak| !peak.at_edge)?;
+    let width = spectrum.resolution().width_6db_hz;
+    let half = (12.0 * width).max(0.1 * peak.frequency_hz);
+    let (low, high) = ((peak.frequency_hz - half).max(0.0), peak.frequency_hz + half);
+    let above_db = spectrum.stands_above_db(&peak, low, high.min(0.5 * sample_rate_hz), 1.5 * width).ok()?;
+    let line = spectrum.sinusoid(&peak).ok()?;
+    Some(Line { hz: line.frequency_hz, amplitude: line.amplitude, above_db })
+}
+
 /// Density [unit²/Hz] of the first `seconds` of a signal on a grid [Hz]; `None` when the signal is shorter.
 ///
 /// # Errors
@@ -60,6 +86,10 @@ mod tests {
         let signal: Vec<f64> = (0..1200).map(tone).collect();
         assert!((amplitude(&signal, 1e5, 4680.0).unwrap() - 2.0).abs() < 0.02);
         assert_eq!(amplitude(&signal[..10], 1e5, 4680.0), None);
+        let line = line_between(&signal, 1e5, 4600.0, 4700.0).unwrap();
+        assert!((line.hz - 4671.5).abs() < 1.0 && (line.amplitude - 2.0).abs() < 0.02, "{line:?}");
+        assert!(line.above_db > 40.0, "{line:?}");
+        assert_eq!(line_between(&signal, 1e5, 4690.0, 4720.0), None);
     }
 
     #[test]

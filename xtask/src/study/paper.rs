@@ -86,10 +86,3 @@ fn tone(run: &Finished) -> Option<&Tone> {
 fn leading(summary: &Summary) -> Option<&str> {
     summary.levels.sensor.as_deref()
 }
-
-/// The measured fundamental of the roller vertices that stands out most at any sensor.
-fn roller_line(run: &Finished) -> Option<&Tone> {
-    let of_rollers = |t: &&Tone| t.name == "roller_vertices" && t.harmonic == 1 && t.measured_hz.is_some();
-    let lines = run.numbers()?.tones.iter().filter(of_rollers);
-    lines.max_by(|a, b| a.prominence_db.unwrap_or(0.0).total_cmp(&b.prominence_db.unwrap_or(0.0)))
-}

@@ -3,15 +3,16 @@
 
 use anyhow::Result;
 use stribeck_analysis::load::vertical_sum;
-use stribeck_analysis::lumped::Lumped;
+use stribeck_analysis::lumped::{Lumped, pattern_hz};
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::record::Record;
-use stribeck_analysis::signal;
+use stribeck_analysis::signal::{self, Line};
+use stribeck_analysis::tones::LEAST_PROMINENCE_DB;
 use stribeck_bearing::run_dir::Run;
 
 use super::super::table::{number, quantity_by};
 use super::super::{Column, Finished, Sheet, Variant};
-use super::{LEAN, LONG, roller_line};
+use super::{LEAN, LONG};
 
 /// Raceways with counts of their own, so that their lines stand 900 Hz and more away from those of the rollers.
 const RACES: [&str; 2] = ["mesh.outer_facets=1000", "mesh.inner_facets=820"];
@@ -51,20 +52,68 @@ const FACETS: [&str; 5] = ["56", "112", "113", "120", "224"];
 /// Loads besides the paper's 50 kN.
 const LOADS_KN: [u32; 4] = [25, 35, 70, 100];
 
-const COLUMNS: [Column; 12] = [
+const COLUMNS: [Column; 14] = [
     Column { name: "N_v", decimals: 0, of: |run| Some(run.scene.mesh.roller_facets as f64) },
     Column { name: "N_v × spin Hz", decimals: 0, of: |run| lumped(run).map(|l| l.frequency_hz) },
     Column { name: "friction to roll", decimals: 4, of: |run| lumped(run).map(|l| l.friction_to_roll) },
     Column { name: "rolling", decimals: 3, of: rolling },
-    Column { name: "measured Hz", decimals: 1, of: |run| roller_line(run).and_then(|t| t.measured_hz) },
+    Column { name: "measured Hz", decimals: 1, of: |run| line(run).map(|l| l.hz) },
     Column { name: "off, resolutions", decimals: 2, of: off },
+    Column { name: "pattern Hz", decimals: 1, of: pattern },
+    Column { name: "off pattern, resolutions", decimals: 2, of: off_pattern },
     Column { name: "above background dB", decimals: 0, of: above },
-    Column { name: "side g", decimals: 1, of: |run| sensor_level(run, "side") },
-    Column { name: "loudest g", decimals: 1, of: |run| roller_line(run).and_then(|t| t.level_g) },
+    Column { name: "side g", decimals: 1, of: |run| line_at(run, "side").map(|l| l.amplitude) },
+    Column { name: "clearest g", decimals: 1, of: |run| line(run).map(|l| l.amplitude) },
     Column { name: "sum of forces N", decimals: 0, of: force_line },
     Column { name: "lumped g", decimals: 1, of: |run| lumped(run).map(|l| l.level_g) },
     Column { name: "phases", decimals: 2, of: |run| lumped(run).map(|l| l.phases) },
 ];
+
+/// The line of the roller vertices at the sensor where it stands out most, when it is one.
+pub(super) fn line(run: &Finished) -> Option<Line> {
+    clearest(run).filter(|l| l.above_db >= LEAST_PROMINENCE_DB)
+}
+
+/// How far the roller line stands above its surroundings at the sensor that hears it most clearly [dB], line or not.
+pub(super) fn above(run: &Finished) -> Option<f64> {
+    clearest(run).map(|l| l.above_db)
+}
+
+fn clearest(run: &Finished) -> Option<Line> {
+    let sensors = run.scene.output.sensors.iter();
+    sensors.filter_map(|s| peak_at(run, &s.name)).max_by(|a, b| a.above_db.total_cmp(&b.above_db))
+}
+
+fn line_at(run: &Finished, sensor: &str) -> Option<Line> {
+    peak_at(run, sensor).filter(|l| l.above_db >= LEAST_PROMINENCE_DB)
+}
+
+/// The highest peak within a resolution of N_v × spin or of the pattern's line.
+fn peak_at(run: &Finished, sensor: &str) -> Option<Line> {
+    let read = Run::read(&run.folder).ok()?;
+    let record = Record::new(&read);
+    let (free, reach) = (lumped(run)?.frequency_hz, resolution(run)?);
+    let pattern = pattern(run).unwrap_or(free);
+    let signal = record.acceleration_g(sensor, "ay")?;
+    let (from, to) = (free.min(pattern) - reach, free.max(pattern) + reach);
+    signal::line_between(&signal, record.sample_rate_hz(), from, to)
+}
+
+/// One over the length of the record [Hz].
+fn resolution(run: &Finished) -> Option<f64> {
+    Some(run.numbers()?.spectrum.as_ref()?.resolution_hz)
+}
+
+/// Where the pattern of all rollers has its strongest line by the recorded motion [Hz]; sliding rollers have none.
+fn pattern(run: &Finished) -> Option<f64> {
+    let motion = &run.numbers()?.kinematics;
+    rolling(run).filter(|r| *r >= ROLLS)?;
+    Some(pattern_hz(&run.scene, motion.roller_spin_hz?, motion.cage_hz?))
+}
+
+fn off_pattern(run: &Finished) -> Option<f64> {
+    Some((line(run)?.hz - pattern(run)?) / resolution(run)?)
+}
 
 /// Spin of the loaded rollers relative to the cage over that of rolling ones.
 pub(super) fn rolling(run: &Finished) -> Option<f64> {
@@ -72,28 +121,13 @@ pub(super) fn rolling(run: &Finished) -> Option<f64> {
     Some(motion.roller_spin_hz? / motion.expected_roller_spin_hz)
 }
 
-/// How far the roller line stands above its surroundings at the sensor that hears it most clearly [dB], line or not.
-pub(super) fn above(run: &Finished) -> Option<f64> {
-    let tones = run.numbers()?.tones.iter();
-    let of_rollers = tones.filter(|t| t.name == "roller_vertices" && t.harmonic == 1);
-    of_rollers.filter_map(|t| t.prominence_db).reduce(f64::max)
-}
-
 fn lumped(run: &Finished) -> Option<Lumped> {
     Lumped::of(&run.scene).ok()
 }
 
-/// Distance of the measured line from its prediction without slip, in resolutions.
+/// Distance of the measured line from N_v × spin without slip, in resolutions.
 fn off(run: &Finished) -> Option<f64> {
-    let line = roller_line(run)?;
-    let resolution = run.numbers()?.spectrum.as_ref()?.resolution_hz;
-    Some((line.measured_hz? - line.predicted_hz) / resolution)
-}
-
-/// Level of the roller line at one sensor.
-fn sensor_level(run: &Finished, sensor: &str) -> Option<f64> {
-    let tones = &run.numbers()?.tones;
-    tones.iter().find(|t| t.sensor == sensor && t.name == "roller_vertices" && t.harmonic == 1)?.level_g
+    Some((line(run)?.hz - lumped(run)?.frequency_hz) / resolution(run)?)
 }
 
 /// Amplitude of the roller line in the vertical force of all rollers [N].
@@ -111,7 +145,8 @@ pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
          whose lines stand near 3754 Hz, so that what stands at N_v × spin comes from the rollers alone, and the contact is stiff \
          (E/h), which smooths the facets least. *Friction to roll* is what the most loaded roller needs to be turned over its own vertices \
          by traction (THEORY §5.4); the scene has 0.005. *Rolling* is the spin of the loaded rollers relative to the cage over that \
-         of rolling without slip. *Off* is measured against predicted without slip, in resolutions of the record. *Lumped* is the \
+         of rolling without slip. *Off* is measured against N_v × spin without slip, in resolutions of the record; \
+         *pattern* is where copies in one orientation have their line by the recorded motion (THEORY §5.5). *Lumped* is the \
          acceleration of a rigid ring on springs that follow the polygons (`crates/analysis/src/lumped.rs`): its phases and its \
          smoothing by the contact\u{2019}s width, without the ring\u{2019}s own dynamics. *Sum of forces* is the line in the \
          vertical force of all rollers, which knows no transfer path. A line counts when it stands 10 dB above its surroundings.",
@@ -130,15 +165,23 @@ fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
     let found: Vec<(&Finished, f64)> = runs.iter().filter_map(|r| Some((r, off(r)?))).collect();
     let inside = found.iter().filter(|f| f.1.abs() <= 1.0).count();
     let worst = found.iter().map(|f| f.1.abs()).fold(0.0, f64::max);
+    let near_pattern = |run: &Finished| off_pattern(run).is_some_and(|o| o.abs() <= 1.0);
+    let of_pattern = found.iter().filter(|(run, _)| near_pattern(run)).count();
+    let nearer =
+        found.iter().filter(|(run, off)| off_pattern(run).is_some_and(|o| o.abs() < off.abs())).count();
     let silent: Vec<&Finished> = runs.iter().filter(|r| r.numbers().is_some() && off(r).is_none()).collect();
     let sliding = silent.iter().filter(|r| rolling(r).is_some_and(|r| r < ROLLS)).count();
     sheet.say(&format!(
-        "Of {} runs, {} show the line; {inside} have it within one resolution of N_v × spin (the farthest is {} off). {} show none; in {sliding} of \
-         these the rollers slide instead of rolling.",
+        "Of {} runs, {} show the line: {inside} have it within one resolution of N_v × spin (the farthest is {} off) and {of_pattern} within \
+         one resolution of the pattern\u{2019}s line. {} show none; in {sliding} of these the rollers slide instead of rolling.",
         found.len() + silent.len(),
         found.len(),
         number(worst, 2),
         silent.len()
+    ));
+    sheet.say(&format!(
+        "{nearer} of {} lines are nearer to the pattern\u{2019}s line than to N_v × spin.",
+        found.len()
     ));
     load(sheet, runs);
     let by = |name: &str| runs.iter().find(|r| r.variant.name == format!("sound-{name}"));
@@ -165,12 +208,12 @@ fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
             vec![
                 (*words).to_owned(),
                 cell(ratio(a, b, force_line)),
-                cell(ratio(a, b, |r| roller_line(r)?.level_g)),
+                cell(ratio(a, b, |r| line(r).map(|l| l.amplitude))),
                 cell(ratio(a, b, |r| lumped(r).map(|l| l.level_g))),
             ]
         })
         .collect();
-    sheet.table(&["level of", "sum of forces", "loudest sensor", "lumped"], &rows);
+    sheet.table(&["level of", "sum of forces", "clearest sensor", "lumped"], &rows);
 }
 
 /// Whether load moves the line.
@@ -183,8 +226,8 @@ fn load(sheet: &mut Sheet, runs: &[Finished]) {
         let low = all.iter().copied().reduce(f64::min)?;
         Some((all.len(), low, all.into_iter().reduce(f64::max)?))
     };
-    let resolution = loaded.iter().find_map(|r| Some(r.numbers()?.spectrum.as_ref()?.resolution_hz));
-    let line = range(|r| roller_line(r)?.measured_hz);
+    let resolution = loaded.iter().find_map(|r| resolution(r));
+    let line = range(|r| line(r).map(|l| l.hz));
     if let (Some((count, low, high)), Some((_, slow, fast)), Some(resolution)) =
         (line, range(rolling), resolution)
     {
@@ -218,13 +261,7 @@ fn levels(runs: &[Finished]) -> Figure {
     let decibels = |v: f64| 20.0 * v.log10();
     let mut points: Vec<(f64, f64, f64)> = runs
         .iter()
-        .filter_map(|r| {
-            Some((
-                lumped(r)?.level_g,
-                force_line(r)?,
-                roller_line(r).and_then(|t| t.level_g).unwrap_or(f64::NAN),
-            ))
-        })
+        .filter_map(|r| Some((lumped(r)?.level_g, force_line(r)?, line(r).map_or(f64::NAN, |l| l.amplitude))))
         .filter(|p| p.0 > 0.01)
         .collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -238,7 +275,7 @@ fn levels(runs: &[Finished]) -> Figure {
         Axis::plain("Measured", "dB re 1 g; dB re 1 kN"),
     )
     .with(Series::listed("equal", Colour::Grey, x.clone(), x.clone()))
-    .with(Series::listed("loudest sensor", Colour::Blue, x.clone(), sensor).as_points())
+    .with(Series::listed("clearest sensor", Colour::Blue, x.clone(), sensor).as_points())
     .with(Series::listed("sum of forces", Colour::Orange, x, force).as_points())
     .caption("A slope of one means that phases, speed and contact width act as the lumped model says; odd counts, for which it predicts nothing, are left out.")
 }

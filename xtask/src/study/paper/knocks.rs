@@ -1,9 +1,9 @@
-//! The same experiments with the defect in: what its knocks hide.
+//! The same experiments with the defect in: whether its knocks hide the line.
 
 use super::super::table::number;
 use super::super::{Finished, Sheet, Variant};
-use super::hypothesis::{above, experiments, rolling};
-use super::{SHORT, roller_line};
+use super::SHORT;
+use super::hypothesis::{above, experiments, line, rolling};
 
 /// What is only tried without the defect.
 const SOUND_ONLY: [&str; 3] = ["facets-56-friction", "facets-112-35kN", "facets-112-70kN"];
@@ -27,7 +27,7 @@ pub(super) fn write(sheet: &mut Sheet, with: &[Finished], without: &[Finished]) 
     if pairs.is_empty() {
         return;
     }
-    sheet.heading("What the defect hides");
+    sheet.heading("With the defect");
     sheet.say(
         "The same bearings with the defect, 12 ms, beside those without: whether the line is there as soon as nothing knocks, and \
          whether the rollers roll at all.",
@@ -36,7 +36,7 @@ pub(super) fn write(sheet: &mut Sheet, with: &[Finished], without: &[Finished]) 
     let mut rows = Vec::new();
     let (mut hidden, mut seen) = (0, 0);
     for (name, knocking, sound) in pairs {
-        let line = |run: &Finished| roller_line(run).and_then(|t| t.measured_hz);
+        let line = |run: &Finished| line(run).map(|l| l.hz);
         if line(knocking).is_none() && line(sound).is_some() {
             hidden += 1;
         }
@@ -60,7 +60,7 @@ pub(super) fn write(sheet: &mut Sheet, with: &[Finished], without: &[Finished]) 
         ["variant", "line Hz, with defect", "above dB", "line Hz, without", "above dB", "rolling, without"];
     sheet.table(&names, &rows);
     sheet.say(&format!(
-        "{hidden} lines that the knocks hid are found without them; {seen} of {} bearings have their line where N_v × spin says.",
+        "{seen} of {} bearings show a line without the defect; {hidden} of these lines are lost among its knocks.",
         rows.len()
     ));
 }
