@@ -385,7 +385,7 @@ impl Default for MeshScene {
         Self {
             size_mm: 0.5,
             roller_facets: 112,
-            roller_copies: RollerCopies::Translated,
+            roller_copies: RollerCopies::Rotated,
             outer_facets: None,
             inner_facets: None,
             grading: None,

@@ -30,7 +30,7 @@ pub(super) fn variants() -> Vec<Variant> {
 /// Every experiment, all under the overrides `set`; their names begin with `prefix`.
 pub(super) fn experiments(prefix: &str, set: &[&str]) -> Vec<Variant> {
     let variant = |name: &str, own: &[&str]| {
-        let all = set.iter().chain(&RACES).chain([&STIFF]).chain(own);
+        let all = set.iter().chain(&RACES).chain([&STIFF, &TRANSLATED]).chain(own);
         Variant::new(format!("{prefix}-{name}"), LEAN, &all.copied().collect::<Vec<_>>())
     };
     let mut all: Vec<Variant> =
@@ -46,6 +46,9 @@ pub(super) fn experiments(prefix: &str, set: &[&str]) -> Vec<Variant> {
     all.extend(LOADS_KN.iter().map(load));
     all
 }
+
+/// Unless an experiment says otherwise.
+const TRANSLATED: &str = "mesh.roller_copies=translated";
 
 /// Facets of a roller.
 const FACETS: [&str; 5] = ["56", "112", "113", "120", "224"];
