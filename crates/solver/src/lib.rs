@@ -83,7 +83,7 @@
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs` |
 //! | How long may a step be? | `critical.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
-//! | How is equilibrium found? | `statics.rs` |
+//! | How is equilibrium found? | `statics.rs`, `statics/` |
 //! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
