@@ -89,7 +89,7 @@ pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> R
         iterations: ITERATIONS,
     };
     // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between them.
-    let mut solver = Equilibrator::new(&machine.dynamics)?;
+    let mut solver = Equilibrator::new(&machine.dynamics);
     let load = scene.operation.load_n.max(1.0);
     let mut warning = None;
     // Rollers in a wide clearance feel its sides from farther away.

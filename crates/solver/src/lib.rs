@@ -83,14 +83,13 @@
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs`, `ahead.rs` |
 //! | How long may a step be? | `critical.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
-//! | How is equilibrium found? | `statics.rs` |
+//! | How is equilibrium found? | `statics.rs`, `statics/` |
 //! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
 mod advance;
 mod ahead;
-mod block;
 pub mod critical;
 pub mod damping;
 pub mod distortion;

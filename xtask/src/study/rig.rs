@@ -184,7 +184,7 @@ impl Rig {
             tolerance,
             iterations: 80,
         };
-        let mut solver = Equilibrator::new(&self.dynamics)?;
+        let mut solver = Equilibrator::new(&self.dynamics);
         for softness in [4e-6, 1e-6, 2e-7, 4e-8, 8e-9, 2e-9, 0.0] {
             self.contacts.set_preload(Some(softness));
             let rough = if softness > 0.0 { 1e3 } else { 1.0 };

@@ -50,7 +50,7 @@ pub(in crate::study) fn cylinder_of(part: &Part, material: Elastic, facets: usiz
         tolerance: 1e-3,
         iterations: 60,
     };
-    Equilibrator::new(d)?.equilibrate(d, &mut [&mut load], &statics)?;
+    Equilibrator::new(d).equilibrate(d, &mut [&mut load], &statics)?;
     let radius = slots.iter().map(|&s| d.state.x[s].hypot(d.state.y[s])).sum::<f64>() / slots.len() as f64;
     let (e, nu) = (material.youngs_modulus(), material.poissons_ratio());
     let lame = PRESSURE * a * a / (e * (b * b - a * a)) * (1.0 + nu) * ((1.0 - 2.0 * nu) * a + b * b / a);

@@ -1,0 +1,145 @@
+//! What each feature of a scene costs a step: the scene, the scene without it, and features that are there but zero.
+//!
+//! Prints a table in Markdown. `cargo bench -p stribeck-bearing --bench features -- fixtures/scenes/lean.ron` measures
+//! another scene than the paper's. One thread; rounds of all variants alternate, and the median round counts.
+
+mod motion;
+
+use std::path::Path;
+use std::time::Instant;
+
+use motion::{CLOSING, machine};
+use stribeck_bearing::assembly::Machine;
+use stribeck_bearing::scene::Scene;
+use stribeck_solver::damping::{Frame, MassDamping};
+
+/// Steps of a round, and rounds.
+const STEPS: usize = 40;
+const ROUNDS: usize = 21;
+
+/// Steps between two samples of the paper's scene, at which energies are added up.
+const SAMPLE: usize = 164;
+
+/// What is in a step besides the elements.
+struct Variant {
+    name: &'static str,
+    scene: Scene,
+    contact: bool,
+    /// Rate of the mass damping [1/s]; `None` sets none.
+    damping: Option<f64>,
+    /// Energies at every sample.
+    energies: bool,
+}
+
+/// A variant in motion.
+struct Moving {
+    variant: Variant,
+    machine: Machine,
+    elements: usize,
+    /// Processor time of each round [ns per element-step].
+    rounds: Vec<f64>,
+}
+
+fn variants(scene: &Scene) -> Vec<Variant> {
+    let rate = Some(scene.solver.mass_damping_per_s);
+    let full = |name, change: fn(&mut Scene)| {
+        let mut scene = scene.clone();
+        change(&mut scene);
+        Variant { name, scene, contact: true, damping: rate, energies: false }
+    };
+    let bare = |name, change: fn(&mut Scene)| Variant { contact: false, damping: None, ..full(name, change) };
+    let light = |s: &mut Scene| {
+        s.cage = None;
+        s.operation.gravity_m_s2 = 0.0;
+    };
+    vec![
+        full("everything", |_| ()),
+        Variant { energies: true, ..full("everything, and energies at every sample", |_| ()) },
+        Variant { damping: None, ..full("without mass damping", |_| ()) },
+        full("without contact damping", |s| s.contact.damping_ratio = 0.0),
+        full("without friction", |s| (s.contact.friction, s.contact.seat_friction) = (0.0, 0.0)),
+        full("without gravity", |s| s.operation.gravity_m_s2 = 0.0),
+        full("without cage", |s| s.cage = None),
+        Variant { contact: false, ..full("without contact", |_| ()) },
+        bare("elements and load alone", light),
+        Variant { damping: Some(0.0), ..bare("the same with mass damping of rate 0", light) },
+        bare("the same with gravity", |s| s.cage = None),
+        bare("the same with a cage", |s| s.operation.gravity_m_s2 = 0.0),
+    ]
+}
+
+impl Moving {
+    fn new(variant: Variant) -> Self {
+        let (mut machine, elements) = machine(&variant.scene, 1);
+        if let Some(rate) = variant.damping {
+            let mut frames: Vec<_> = machine.standing_bodies.iter().map(|&b| (b, Frame::Rest)).collect();
+            frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Track)));
+            machine.dynamics.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
+        }
+        let mut moving = Self { variant, machine, elements, rounds: Vec::new() };
+        (0..CLOSING).for_each(|_| moving.step());
+        moving
+    }
+
+    fn step(&mut self) {
+        let Machine { dynamics, contacts, load, .. } = &mut self.machine;
+        if self.variant.contact {
+            dynamics.step(&mut [load, contacts])
+        } else {
+            dynamics.step(&mut [load])
+        }
+        if self.variant.energies && dynamics.state.step.is_multiple_of(SAMPLE as u64) {
+            let (vx, vy, rigid) = (&dynamics.state.vx, &dynamics.state.vy, &dynamics.rigid);
+            std::hint::black_box((
+                dynamics.elastic_energy(),
+                dynamics.gravity_work(),
+                dynamics.kinetic_energy(vx, vy, rigid),
+            ));
+        }
+    }
+
+    fn round(&mut self) {
+        let steps = if self.variant.energies { SAMPLE } else { STEPS };
+        let began = now_ns();
+        (0..steps).for_each(|_| self.step());
+        self.rounds.push((now_ns() - began) / (steps * self.elements) as f64);
+    }
+
+    fn median(&mut self) -> f64 {
+        self.rounds.sort_unstable_by(f64::total_cmp);
+        self.rounds[self.rounds.len() / 2]
+    }
+}
+
+/// Time that this thread has had on a processor [ns]; where the system does not tell, time on the wall.
+fn now_ns() -> f64 {
+    thread_local!(static BEGAN: Instant = Instant::now());
+    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let spent = spent.and_then(|s| s.split(' ').next()?.parse().ok());
+    spent.unwrap_or_else(|| BEGAN.with(|b| b.elapsed().as_nanos() as f64))
+}
+
+fn main() {
+    let given = std::env::args().skip(1).find(|a| a.ends_with(".ron"));
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let file = given.map_or_else(|| root.join("fixtures/scenes/singh2014.ron"), |file| root.join(file));
+    let scene = Scene::read(&file).expect("a scene");
+    let mut all: Vec<Moving> = variants(&scene).into_iter().map(Moving::new).collect();
+    for _ in 0..ROUNDS {
+        all.iter_mut().for_each(Moving::round);
+    }
+    let whole = all[0].median();
+    println!("# What each feature costs: {}\n", scene.name);
+    println!(
+        "Written by `cargo bench -p stribeck-bearing --bench features`: one thread, processor time, medians of"
+    );
+    println!("{ROUNDS} rounds in turn, quartiles in brackets.\n");
+    println!("| step | elements | ns per element-step | of everything |\n|---|---|---|---|");
+    for moving in &mut all {
+        let median = moving.median();
+        let [low, high] = [1, 3].map(|q| moving.rounds[q * moving.rounds.len() / 4]);
+        let name = moving.variant.name;
+        let share = 100.0 * median / whole;
+        println!("| {name} | {} | {median:.2} ({low:.2} to {high:.2}) | {share:.0} % |", moving.elements);
+    }
+}

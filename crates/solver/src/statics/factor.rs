@@ -1,0 +1,74 @@
+//! Cholesky factors of matrices that share a pattern: what depends on the pattern alone is done once.
+
+use faer::{
+    Conj, MatMut, Par, Side, Spec,
+    dyn_stack::{MemBuffer, MemStack, StackReq},
+    sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky},
+};
+
+use super::matrix::Matrix;
+use crate::error::Error;
+
+/// One thread: the bits of a factorisation then do not depend on how many there are.
+const PAR: Par = Par::Seq;
+
+/// A factor L of L Lᵀ, and the memory in which the next one is computed.
+pub(super) struct Factor {
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+    scratch: MemBuffer,
+}
+
+impl Factor {
+    /// Lays out the factor of matrices with this pattern, eliminated in the order in which they are numbered.
+    pub(super) fn new(matrix: &Matrix) -> Result<Self, Error> {
+        // Without an ordering the analysis wants the upper triangle and the numbers the lower one.
+        let upper = matrix.pattern().transpose().to_col_major().map_err(failed)?;
+        let order = SymmetricOrdering::Identity;
+        let symbolic = factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, order, Default::default())
+            .map_err(failed)?;
+        let scratch = StackReq::any_of(&[
+            symbolic.factorize_numeric_llt_scratch::<f64>(PAR, Spec::default()),
+            symbolic.solve_in_place_scratch::<f64>(1, PAR),
+        ]);
+        let scratch = MemBuffer::try_new(scratch).map_err(failed)?;
+        Ok(Self { symbolic, values: Vec::new(), scratch })
+    }
+
+    /// Numbers of the factor.
+    pub(super) fn entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// Factorises a matrix of the pattern.
+    pub(super) fn compute(&mut self, matrix: &Matrix) -> Result<(), Error> {
+        let missing = self.entries() - self.values.len();
+        self.values.try_reserve_exact(missing).map_err(failed)?;
+        self.values.resize(self.entries(), 0.0);
+        let (stack, no) = (MemStack::new(&mut self.scratch), Default::default());
+        self.symbolic
+            .factorize_numeric_llt(
+                &mut self.values,
+                matrix.view(),
+                Side::Lower,
+                no,
+                PAR,
+                stack,
+                Spec::default(),
+            )
+            .map_err(failed)?;
+        Ok(())
+    }
+
+    /// Solves for one right-hand side in place.
+    pub(super) fn solve(&mut self, rhs: &mut [f64]) {
+        let n = rhs.len();
+        let rhs = MatMut::from_column_major_slice_mut(rhs, n, 1);
+        let stack = MemStack::new(&mut self.scratch);
+        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, rhs, PAR, stack);
+    }
+}
+
+fn failed(error: impl std::fmt::Debug) -> Error {
+    Error::Factorisation(format!("{error:?}"))
+}
