@@ -83,7 +83,11 @@ impl Moving {
 
     fn step(&mut self) {
         let Machine { dynamics, contacts, load, .. } = &mut self.machine;
-        if self.variant.contact { dynamics.step(&mut [load, contacts]) } else { dynamics.step(&mut [load]) }
+        if self.variant.contact {
+            dynamics.step(&mut [load, contacts])
+        } else {
+            dynamics.step(&mut [load])
+        }
         if self.variant.energies && dynamics.state.step.is_multiple_of(SAMPLE as u64) {
             let (vx, vy, rigid) = (&dynamics.state.vx, &dynamics.state.vy, &dynamics.rigid);
             std::hint::black_box((
@@ -126,7 +130,9 @@ fn main() {
     }
     let whole = all[0].median();
     println!("# What each feature costs: {}\n", scene.name);
-    println!("Written by `cargo bench -p stribeck-bearing --bench features`: one thread, processor time, medians of");
+    println!(
+        "Written by `cargo bench -p stribeck-bearing --bench features`: one thread, processor time, medians of"
+    );
     println!("{ROUNDS} rounds in turn, quartiles in brackets.\n");
     println!("| step | elements | ns per element-step | of everything |\n|---|---|---|---|");
     for moving in &mut all {

@@ -21,7 +21,8 @@ fn run(time_step_factor: f64) -> (RunInfo, u64) {
     scene.solver.duration_ms = 0.3;
     scene.solver.start = Start::Sudden;
     scene.solver.time_step_factor = time_step_factor;
-    let folder = std::env::temp_dir().join(format!("stribeck-memory-{}-{time_step_factor}", std::process::id()));
+    let folder =
+        std::env::temp_dir().join(format!("stribeck-memory-{}-{time_step_factor}", std::process::id()));
     let dir = RunDir::create(&folder).expect("the folder is new");
     let host = Host {
         threads: 1,
@@ -49,5 +50,8 @@ fn invariant_more_steps_between_samples_allocate_nothing_more() {
     let more = many.steps.abs_diff(few.steps) as f64;
     assert!(more > few.steps as f64, "{} and {} steps", few.steps, many.steps);
     let taken = memory_of_many.abs_diff(memory_of_few) as f64;
-    assert!(taken < PER_STEP * more, "{taken} more allocations for {more} more steps, {memory_of_few} in all");
+    assert!(
+        taken < PER_STEP * more,
+        "{taken} more allocations for {more} more steps, {memory_of_few} in all"
+    );
 }
