@@ -113,6 +113,8 @@ impl Moving {
 
 /// Time that this thread has had on a processor [ns]; where the system does not tell, time on the wall.
 fn now_ns() -> f64 {
+    // The system brings this number up to date when a thread offers its processor, and else every few milliseconds.
+    std::thread::yield_now();
     thread_local!(static BEGAN: Instant = Instant::now());
     let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
     let spent = spent.and_then(|s| s.split(' ').next()?.parse().ok());
