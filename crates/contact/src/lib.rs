@@ -81,8 +81,8 @@
 //! | What is the gap, at corners and ends too? | `projection.rs` |
 //! | Which curve does a polyline stand for? | `smooth.rs` |
 //! | Where does the law act? | `points.rs` |
-//! | What does one pass do, in contact and out of it? | `pass.rs`, `touch.rs` |
-//! | How are many points done at a time? | `row.rs`, `spline_row.rs`, `patch_row.rs`, `touch_row.rs` |
+//! | What does one pass do, in contact and out of it? | `pass.rs`, `evaluation.rs`, `touch.rs` |
+//! | How are many points done at a time? | `row.rs`, `meeting.rs`, `spline_row.rs`, `patch_row.rs`, `touch_row.rs`, `band.rs` |
 //! | Who is near whom? | `search.rs` |
 //! | How does it all become one force? | `contacts.rs` |
 
