@@ -11,16 +11,16 @@ use crate::workspace;
 /// Ticks per second in `/proc/self/stat`; Linux promises this number to programs on every architecture.
 const TICKS_PER_SECOND: f64 = 100.0;
 
-/// Calls `work` with a [`Host`] that describes this process.
+/// Calls `work` with a [`Host`] that describes this process; its clocks begin now.
 pub(crate) fn with<T>(threads: usize, work: impl FnOnce(&Host<'_>) -> T) -> T {
-    let start = Instant::now();
+    let (start, before) = (Instant::now(), cpu_s());
     work(&Host {
         threads,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: commit(&workspace::root()),
         machine: machine(),
         wall_s: &|| start.elapsed().as_secs_f64(),
-        cpu_s: &cpu_s,
+        cpu_s: &|| cpu_s() - before,
     })
 }
 

@@ -24,12 +24,17 @@ pub struct Noise {
     pub ringing_g: f64,
     /// Root mean square before the first event [g].
     pub start_g: f64,
-    /// Largest magnitude within 1 ms of the first exit, vertical [g].
-    pub impulse_g: f64,
-    /// Energy of that impulse, ∫ a² dt [g² ms].
-    pub impulse_g2_ms: f64,
-    /// Largest magnitude there of the mean over [`IMPULSE_MEAN_S`], vertical [g].
-    pub impulse_mean_g: f64,
+}
+
+/// The first impulse of one sensor: its vertical acceleration within 1 ms of the exit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Impulse {
+    /// Largest magnitude [g].
+    pub peak_g: f64,
+    /// Energy, ∫ a² dt [g² ms].
+    pub energy_g2_ms: f64,
+    /// Largest magnitude of the mean over [`IMPULSE_MEAN_S`] [g].
+    pub mean_g: f64,
 }
 
 /// Neighbours of a line lie this many resolutions away: neither their windows nor the line's reach into another.
@@ -72,8 +77,6 @@ pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet
     let beside: Vec<f64> =
         NEIGHBOURS.iter().map(|n| line(facet_hz + n * resolution)).collect::<Option<_>>()?;
     let power: f64 = beside.iter().map(|g| g * g).sum();
-    let exit = passages.first()?.1;
-    let vertical = components[1].get(impulse_span(time, exit))?;
     Some(Noise {
         line_g: line(facet_hz)?,
         background_g: (power / beside.len() as f64).sqrt(),
@@ -85,9 +88,17 @@ pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet
         quiet_rms_g: both(&quiet, &rms)?,
         ringing_g: both(&quiet, &|s| band_rms(s, rate, RINGING_HZ, 0.5 * rate))?,
         start_g: both(&all[..1], &rms)?,
-        impulse_g: vertical.iter().fold(0.0, |m: f64, a| m.max(a.abs())),
-        impulse_g2_ms: 1e3 * record.interval_s() * vertical.iter().map(|a| a * a).sum::<f64>(),
-        impulse_mean_g: smoothed_peak(vertical, record.interval_s(), IMPULSE_MEAN_S)?,
+    })
+}
+
+/// Measures the impulse at `exit_s` [s]; `None` when the record ends before it.
+pub fn impulse(record: &Record<'_>, sensor: &str, exit_s: f64) -> Option<Impulse> {
+    let vertical = record.acceleration_g(sensor, "ay")?;
+    let vertical = vertical.get(impulse_span(record.time_s(), exit_s))?;
+    Some(Impulse {
+        peak_g: vertical.iter().fold(0.0, |m: f64, a| m.max(a.abs())),
+        energy_g2_ms: 1e3 * record.interval_s() * vertical.iter().map(|a| a * a).sum::<f64>(),
+        mean_g: smoothed_peak(vertical, record.interval_s(), IMPULSE_MEAN_S)?,
     })
 }
 

@@ -3,7 +3,7 @@
 use stribeck_analysis::record::Record;
 use stribeck_bearing::run_dir::Run;
 
-use super::noise;
+use super::first_impulse;
 use crate::study::table::number;
 use crate::study::{Finished, Sheet};
 
@@ -21,9 +21,9 @@ const QUANTITIES: [Quantity; 7] = [
     ("is loaded again ms", 3, |r| r.numbers()?.events.first()?.exit_ms),
     ("force of roller 2 N", 0, |r| forces(r).get(1).copied()),
     ("force of roller 24 N", 0, |r| forces(r).get(23).copied()),
-    ("impulse, peak g", 0, |r| noise(r, 0).map(|n| n.impulse_g)),
-    ("impulse, energy g² ms", 0, |r| noise(r, 0).map(|n| n.impulse_g2_ms)),
-    ("impulse, mean over 0.21 ms g", 1, |r| noise(r, 0).map(|n| n.impulse_mean_g)),
+    ("impulse, peak g", 0, |r| first_impulse(r).map(|i| i.peak_g)),
+    ("impulse, energy g² ms", 0, |r| first_impulse(r).map(|i| i.energy_g2_ms)),
+    ("impulse, mean over 0.21 ms g", 1, |r| first_impulse(r).map(|i| i.mean_g)),
 ];
 
 /// Mean of each roller's force on the outer ring [N].
