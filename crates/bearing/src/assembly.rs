@@ -21,6 +21,10 @@ use crate::{
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
 const CAGE_ELEMENT_MM: f64 = 2.0;
 
+/// Height of the adapter's flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is
+/// narrower would set the time step.
+const FLATTEST: f64 = 0.91;
+
 /// Integration points on a facet of the adapter's seat: two conforming surfaces need fewer than a line contact.
 const SEAT_POINTS: usize = 2;
 
@@ -399,14 +403,9 @@ fn adapter_part(scene: &Scene, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Re
     Ok(adapter.part_on(&seat)?)
 }
 
-/// Rows of the adapter: cells of the wanted size on average between its crown and its sides.
+/// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at the crown.
 fn adapter_rows(scene: &Scene, size: f64) -> usize {
-    let a = &scene.adapter;
-    let radius = 0.5 * scene.bearing.outer_race_diameter_mm + scene.bearing.outer_ring_thickness_mm;
-    let half = 0.5 * a.width_mm;
-    let side = a.height_mm + radius - (radius * radius - half * half).sqrt();
-    let middle = (a.height_mm * a.height_mm * side).cbrt();
-    ((1e-3 * middle / size).round() as usize).max(2)
+    ((1e-3 * scene.adapter.height_mm / (FLATTEST * size)) as usize).max(2)
 }
 
 /// Facets a full turn would have at the spacing outside the defect.

@@ -56,7 +56,7 @@
 //! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
 //! | How is a shape divided? | `annulus.rs`, `grading.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
 //! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
-//! | How are bad cells made better? | `relax.rs` |
+//! | How are bad cells made better? | `relax.rs` one by one, `fair.rs` and `patch.rs` as a whole |
 
 mod mesh;
 mod part;
@@ -77,6 +77,8 @@ mod seated_block;
 pub mod strips;
 
 mod characteristic;
+mod fair;
+mod patch;
 pub mod quality;
 pub mod relax;
 

@@ -159,10 +159,9 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
             let groove = Some(Groove { centre_angle, length, depth });
             let part = Annulus { facets, layers, groove, ..RING }.part().expect("a groove that can be cut");
             assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");
-            // Two or five layers are too few to spread the facet by which the walls shift the rows.
-            let least = if layers >= 10 { 0.7 } else { 0.45 };
+            // An element alone; what the assembled ones keep is tested with `fair.rs`.
             let kept = relative_length(&part, 0.01 / layers as f64);
-            assert!(kept > least, "{facets} facets, {groove:?}: {kept:.3}");
+            assert!(kept > 0.45, "{facets} facets, {groove:?}: {kept:.3}");
             assert_boundary_is(&part, &["inner", "outer"]);
         }
     }

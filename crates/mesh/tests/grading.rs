@@ -104,7 +104,7 @@ fn invariant_grading_keeps_the_critical_step() {
     }
 }
 
-/// The groove has the same walls and floor as in the uniform ring, and its cells are no smaller.
+/// The groove has the same walls and floor as in the uniform ring.
 #[test]
 fn invariant_groove_in_the_fine_circle() {
     let ring = Annulus { start_angle: 0.0, groove: Some(GROOVE), ..RING };
@@ -115,8 +115,6 @@ fn invariant_groove_in_the_fine_circle() {
         assert_eq!(part.y[..1257], uniform.y[..1257]);
         assert!(smallest_jacobian(&part) > 0.0);
         assert_boundary_is(&part, &["inner", "outer"]);
-        let (kept, before) = (relative_length(&part, 0.5e-3), relative_length(&uniform, 0.5e-3));
-        assert!(kept >= before, "{fine_layers} fine layers: {kept:.4} instead of {before:.4}");
         // The search for better cells leaves the coarse circle alone.
         let plain = made(Annulus { groove: None, ..ring }, Grading { fine_layers, ..INWARDS });
         let back = &surface(&part, "outer").nodes;

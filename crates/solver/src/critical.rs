@@ -91,10 +91,7 @@ impl Dynamics {
         let mut springs = Vec::new();
         let (x, y) = (&self.state.x, &self.state.y);
         forces.iter().for_each(|f| f.tangent(x, y, &mut |piece| springs.push(Spring::new(&piece))));
-        let mut operator = Operator::new(self, vec![0.0; self.state.x.len()], self.elastic_slots(), springs);
-        let n = operator.free.len();
-        operator.answers = (0..2 * n).map(|i| self.free_components(operator.free[i % n])[i / n]).collect();
-        operator.largest()
+        Operator::new(self, vec![0.0; self.state.x.len()], self.elastic_slots(), springs).largest()
     }
 }
 
@@ -102,7 +99,7 @@ struct Operator<'a> {
     dynamics: &'a Dynamics,
     bound: Vec<f64>,
     free: Vec<usize>,
-    /// Whether each component answers to forces; held ones that are taken for free raise the bound a little.
+    /// Whether each component answers to forces.
     answers: Vec<bool>,
     /// Displacement of a probe [m].
     probe: f64,
@@ -139,7 +136,8 @@ impl<'a> Operator<'a> {
         free.iter().enumerate().for_each(|(i, &s)| place[s] = Some(i));
         let nodes = springs.iter_mut().flat_map(|s| &mut s.nodes);
         nodes.for_each(|n| *n = n.and_then(|slot| place[slot]));
-        let answers = vec![true; 2 * free.len()];
+        let answers =
+            (0..2).flat_map(|k| free.iter().map(move |&s| dynamics.free_components(s)[k])).collect();
         Self { dynamics, bound, free, answers, probe: probe(dynamics), stiffer: 1.0, springs }
     }
 

@@ -68,22 +68,21 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: S::as_simd_f64s(&from[at..at + Self::LEN]).0[0] }
     }
 
-    /// The first `n` numbers from `at` on, and zeros.
-    #[inline(always)]
-    pub fn load_first(simd: S, n: usize, from: &[f64], at: usize) -> Self {
-        Self { simd, lanes: simd.partial_load_f64s(&from[at..at + n]) }
-    }
-
     /// Writes the numbers from `at` on.
     #[inline(always)]
     pub fn store(self, to: &mut [f64], at: usize) {
         S::as_mut_simd_f64s(&mut to[at..at + Self::LEN]).0[0] = self.lanes;
     }
 
-    /// Writes the first `n` numbers from `at` on.
+    /// Writes the first `n` numbers from `at` on; what stands behind them is written back.
     #[inline(always)]
     pub fn store_first(self, n: usize, to: &mut [f64], at: usize) {
-        self.simd.partial_store_f64s(&mut to[at..at + n], self.lanes);
+        let simd = self.simd;
+        let keep = S::as_simd_u64s(&KEEP[LANES - n..LANES - n + Self::LEN]).0[0];
+        let old = simd.transmute_u64s_f64s(Self::load(simd, to, at).lanes);
+        let changed = simd.xor_u64s(old, simd.transmute_u64s_f64s(self.lanes));
+        let bits = simd.xor_u64s(old, simd.and_u64s(changed, keep));
+        Self { lanes: simd.transmute_f64s_u64s(bits), ..self }.store(to, at);
     }
 
     /// The first `n` numbers, and zeros.
