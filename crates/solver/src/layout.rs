@@ -10,7 +10,7 @@
 
 use std::{collections::HashSet, ops::Range};
 
-use stribeck_mesh::{Mesh, strips::find_strips};
+use stribeck_mesh::{Body, Mesh, strips::find_strips};
 
 use crate::{
     element::{QuadReference, TriangleReference},
@@ -21,6 +21,9 @@ use crate::{
 
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
 const TILE_NODES: usize = 8000;
+
+/// What an element across a seam costs, over one of a strip: it is gathered, from lines of cache that nothing has asked for.
+const ACROSS: usize = 10;
 
 /// No slot.
 const NONE: u32 = u32::MAX;
@@ -126,7 +129,7 @@ impl Layout {
         let mesh = &model.mesh;
         let body = &mesh.bodies[b];
         let tile_of_node = match model.behaviour[b] {
-            Behaviour::Elastic => bisect(mesh, body.nodes.clone()),
+            Behaviour::Elastic => bisect(mesh, body),
             Behaviour::Rigid => vec![0; body.nodes.len()],
         };
         let tiles = tile_of_node.iter().max().map_or(0, |&t| t + 1);
@@ -150,7 +153,12 @@ impl Layout {
         let mut local = vec![NONE; body.nodes.len()];
         for t in 0..tiles {
             let start = self.len();
-            let rows = row_starts(&quads[t].iter().map(|&e| mesh.quads[e]).collect::<Vec<_>>());
+            // Rows begin with the first own node: elements across a seam between columns are in no strip.
+            let row_starts_of = |all: bool| {
+                let inside = |e: &&usize| all || mesh.quads[**e].iter().all(|&n| of(n) == t);
+                row_starts(&quads[t].iter().filter(inside).map(|&e| mesh.quads[e]).collect::<Vec<_>>())
+            };
+            let (rows, ghost_rows) = (row_starts_of(false), row_starts_of(true));
             for &n in &own[t] {
                 if rows.contains(&n) {
                     self.pad();
@@ -168,10 +176,18 @@ impl Layout {
             for n in corner_lists {
                 let entry = &mut local[n as usize - body.nodes.start];
                 if *entry == NONE {
-                    *entry = (self.len() - start) as u32;
-                    self.node_of_slot.push(Some(n));
+                    *entry = 0;
                     ghosts.push(n);
                 }
+            }
+            // In their own order, so that rows of ghosts are rows.
+            ghosts.sort_unstable();
+            for &n in &ghosts {
+                if ghost_rows.contains(&n) {
+                    self.pad();
+                }
+                local[n as usize - body.nodes.start] = (self.len() - start) as u32;
+                self.node_of_slot.push(Some(n));
             }
             if model.behaviour[b] == Behaviour::Elastic {
                 // A kernel may read and write a whole group of lanes from the last node on.
@@ -226,11 +242,14 @@ fn each_tile(tiles: &[usize], mut f: impl FnMut(usize)) {
     }
 }
 
-/// Tile of each node of a body: recursive bisection along the longer side until a tile is small enough.
-/// Within a tile nodes keep their order, so rows stay rows.
-fn bisect(mesh: &Mesh, nodes: Range<usize>) -> Vec<usize> {
+/// Tile of each node of a body: recursive bisection until a tile is small enough, across the longer side or between two
+/// rows, whichever costs less. Within a tile nodes keep their order, so rows stay rows.
+fn bisect(mesh: &Mesh, body: &Body) -> Vec<usize> {
+    let nodes = body.nodes.clone();
     let mut tile = vec![0; nodes.len()];
     let mut next = 1;
+    let quads = &mesh.quads[body.quads.clone()];
+    let rows = row_starts(quads);
     let mut todo = vec![(0, nodes.clone().collect::<Vec<_>>())];
     while let Some((t, members)) = todo.pop() {
         if members.len() <= TILE_NODES {
@@ -243,13 +262,33 @@ fn bisect(mesh: &Mesh, nodes: Range<usize>) -> Vec<usize> {
             hi - lo
         };
         let along = if extent(&mesh.x) >= extent(&mesh.y) { &mesh.x } else { &mesh.y };
-        let mut sorted = members;
-        sorted.sort_by(|&a, &b| along[a].total_cmp(&along[b]).then(a.cmp(&b)));
-        let upper = sorted.split_off(sorted.len() / 2);
+        let mut across = members.clone();
+        across.sort_by(|&a, &b| along[a].total_cmp(&along[b]).then(a.cmp(&b)));
+        across.drain(..across.len() / 2);
+        across.sort_unstable();
+        let middle = members.len() / 2;
+        let starts = (middle / 2..3 * middle / 2).filter(|&i| rows.contains(&(members[i] as u32)));
+        let between = starts.min_by_key(|i| i.abs_diff(middle)).map(|i| members[i..].to_vec());
+        // Elements on a seam are computed twice: those along it in a strip, those across it one by one.
+        let crossing = |upper: &[usize]| {
+            let mut side: Vec<Option<bool>> = vec![None; nodes.len()];
+            members.iter().for_each(|n| side[n - nodes.start] = Some(false));
+            upper.iter().for_each(|n| side[n - nodes.start] = Some(true));
+            let crosses = |e: &[u32; 4]| {
+                let sides = e.map(|n| side[n as usize - nodes.start]);
+                sides.contains(&Some(false)) && sides.contains(&Some(true))
+            };
+            quads.iter().filter(|e| crosses(e)).count()
+        };
+        let upper = match between {
+            Some(between) if crossing(&between) < ACROSS * crossing(&across) => between,
+            _ => across,
+        };
         for &n in &upper {
             tile[n - nodes.start] = next;
         }
-        todo.push((t, sorted));
+        let lower = members.into_iter().filter(|n| tile[n - nodes.start] == t).collect();
+        todo.push((t, lower));
         todo.push((next, upper));
         next += 1;
     }
