@@ -13,8 +13,9 @@ use crate::{Error, Part};
 /// No element is removed, so the rows stay strips: two neighbouring nodes of the inner surface stand at the
 /// same angle, one on the inner radius and one on the floor, and the facet between them is the wall. The
 /// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
-/// and equally long on the rest of the inner surface. The rows below follow smoothly; near the walls the nodes
-/// are moved to keep the critical time step up ([`raise_critical_step`]).
+/// and equally long on the rest of the inner surface. The rows below follow smoothly, so that the assembled
+/// elements keep nine tenths of the critical time step of squares; shallow and deep grooves keep two thirds
+/// (THEORY §2.4).
 ///
 /// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
 /// leaves less than a quarter of the inner surface or more floor than facets, and a groove so deep or a
@@ -37,11 +38,11 @@ const POISSON: f64 = 0.3;
 const SPREAD: usize = 100;
 const SWEEPS: usize = 60;
 
-/// Side of the squares whose time step the cells near a wall reach, over that of fine cells. The rows of a ring of
-/// bearing proportions reach 0.9 to 0.95 on the side where they are short, and a groove need do no better.
+/// Side of the squares whose time step the cells near a wall are to reach, over that of fine cells. The shorter rows of
+/// rings and rollers of bearing proportions have 0.9 to 0.95, and a groove need do no better.
 const LENGTH: f64 = 0.95;
 
-/// Columns on each side of a wall, and rows below it, that the pattern search may move.
+/// Columns on each side of a wall, and rows below it, whose nodes may move.
 const REACH: usize = 12;
 
 /// Cuts the groove into an annulus by moving its nodes. The first of them are those of the inner surface,
