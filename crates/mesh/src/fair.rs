@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::Part;
 use crate::part::signed_area;
-use crate::patch::Patch;
+use crate::patch::{Patch, add, dot};
 
 /// Weight of smoothness against frequencies that are too high.
 const SMOOTHNESS: f64 = 1e-2;
@@ -29,13 +29,13 @@ const MEMORY: usize = 10;
 const ARMIJO: f64 = 1e-4;
 
 /// Moves nodes so that all natural frequencies of the assembled elements come below that of endless squares with sides of
-/// `length` [m], and their displacements from `plain`, the same mesh with straight rows, vary smoothly.
+/// `length` [m], and their displacements from `plain`, the same mesh with straight rows, vary smoothly (THEORY §2.4).
 ///
-/// The cost is Σ (ω²/ω₀² − 1)² over the modes with ω > ω₀, plus a small multiple of Σ |Δd|², d the displacement of a
-/// node over `length` and Δd what its neighbours' mean differs from it: a plate that is bent as little as the frequencies
-/// allow. An element alone says little about the time step: one that is too small among large ones vibrates no
-/// faster than squares, because its nodes carry their mass. Quasi-Newton steps (L-BFGS); no step turns an element inside
-/// out, so a part in order stays in order.
+/// The cost is Σ (ω²/ω₀² − 1)² over the modes with ω > ω₀, plus small multiples of Σ |Δd|² and of what corners are too
+/// sharp or too flat; d is the displacement of a node over `length` and Δd what its neighbours' mean differs from it: a
+/// plate that is bent as little as the frequencies allow. An element alone says little about the time step: one that is
+/// too small among large ones vibrates no faster than squares, because its nodes carry their mass. Quasi-Newton steps
+/// (L-BFGS). Areas stay positive, but a corner may turn over: the caller asks whether elements are inside out.
 ///
 /// Source: J. Nocedal and S. J. Wright, *Numerical Optimization*, 2nd ed., 2006, algorithms 3.1 and 7.4.
 pub(crate) fn raise_assembled_step(
@@ -46,6 +46,9 @@ pub(crate) fn raise_assembled_step(
     length: f64,
 ) {
     let patch = Patch::new(part, movable, poisson, length);
+    if patch.movable == 0 {
+        return;
+    }
     let in_units = |part: &Part, n: u32| [part.x[n as usize] / length, part.y[n as usize] / length];
     let at: Vec<[f64; 2]> = patch.nodes.iter().map(|n| in_units(part, *n)).collect();
     let plain = patch.nodes.iter().map(|n| in_units(plain, *n)).collect();
@@ -96,7 +99,7 @@ struct Found {
 impl Goal {
     /// None when an element is inside out.
     fn cost(&self, at: Vec<[f64; 2]>) -> Option<Found> {
-        // Corners may turn over on the way: what they are worth shows in the frequencies and the smoothness.
+        // Corners may turn over on the way; `flatness` turns most of them back.
         let mut elements = self.patch.elements[..self.patch.moving].iter();
         if !elements.all(|corners| signed_area(&corners.map(|n| at[n])) > 0.0) {
             return None;
@@ -158,9 +161,8 @@ impl Goal {
                 continue;
             };
             let gain = (best.cost - next.cost) / best.cost;
-            let moved: Vec<f64> =
-                next.at.as_flattened().iter().zip(best.at.as_flattened()).map(|(a, b)| a - b).collect();
-            let moved = moved[..next.slope.len()].to_vec();
+            let positions = next.at.as_flattened().iter().zip(best.at.as_flattened());
+            let moved: Vec<f64> = positions.take(next.slope.len()).map(|(a, b)| a - b).collect();
             let turned: Vec<f64> = next.slope.iter().zip(&best.slope).map(|(a, b)| a - b).collect();
             let curvature = dot(&moved, &turned);
             if curvature > 0.0 {
@@ -227,15 +229,6 @@ fn downhill(slope: &[f64], pairs: &[(Vec<f64>, Vec<f64>, f64)]) -> Vec<f64> {
     along
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// a += scale · b
-fn add(a: &mut [f64], scale: f64, b: &[f64]) {
-    a.iter_mut().zip(b).for_each(|(a, b)| *a += scale * b);
-}
-
 #[cfg(test)]
 mod tests {
     use std::f64::consts::TAU;
@@ -257,7 +250,7 @@ mod tests {
     }
 
     /// A wall of 0.2 mm among cells of 0.5 mm costs a tenth of the time step of squares, where columns that follow it
-    /// straight would cost four tenths; shallow and deep grooves cost up to a third.
+    /// straight would cost four tenths; shallow, short and deep grooves cost up to a third.
     #[test]
     fn invariant_grooves_keep_the_time_step() {
         let graded = Grading { fine: Circle::Inner, fine_layers: 2, transitions: 1 };

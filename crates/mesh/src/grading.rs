@@ -35,7 +35,7 @@ pub enum Circle {
 /// upper cell; these are the only triangles. The nodes t, i, i, t, i, i, … are numbered one after the other: the
 /// cells below that zigzag are a strip, and only those above it and the first coarse row are not.
 ///
-/// In a transition no quadrilateral has a smaller characteristic length than a fine square, so the critical time
+/// In a transition away from a groove no quadrilateral has a smaller characteristic length than a fine square, so the critical time
 /// step is that of the fine mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grading {

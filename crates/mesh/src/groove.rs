@@ -14,7 +14,7 @@ use crate::{Error, Part};
 /// same angle, one on the inner radius and one on the floor, and the facet between them is the wall. The
 /// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
 /// and equally long on the rest of the inner surface. The rows below follow smoothly, so that the assembled
-/// elements keep nine tenths of the critical time step of squares; shallow and deep grooves keep two thirds
+/// elements keep nine tenths of the critical time step of squares; shallow, short and deep grooves keep two thirds
 /// (THEORY §2.4).
 ///
 /// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
@@ -46,7 +46,8 @@ const LENGTH: f64 = 0.95;
 const REACH: usize = 12;
 
 /// Cuts the groove into an annulus by moving its nodes. The first of them are those of the inner surface,
-/// `places` has one entry per node, and cells of the length `enough` [m] need not become larger.
+/// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
+/// become larger.
 pub(crate) fn cut(
     annulus: &Annulus,
     groove: &Groove,
@@ -70,7 +71,7 @@ pub(crate) fn cut(
     let start = part.clone();
     raise_assembled_step(part, &plain, &movable, POISSON, length);
     if inside_out(part).is_some() {
-        // Rows that a deep groove has tangled are put into order cell by cell.
+        // Rows that a deep groove has tangled, or the search itself, are put into order cell by cell.
         *part = start;
         let deep = (groove.depth / layer) as usize;
         raise_critical_step_to(enough, part, &movable, POISSON, SWEEPS * (1 + deep));

@@ -81,6 +81,7 @@ mod fair;
 mod patch;
 pub mod quality;
 pub mod relax;
+mod tridiagonal;
 
 pub mod vtu;
 

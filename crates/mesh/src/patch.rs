@@ -1,9 +1,8 @@
 //! The highest natural frequencies of a few elements among others, and how they change as nodes move.
 
-use faer::{Mat, Side};
-
 use crate::Part;
 use crate::part::signed_area;
+use crate::tridiagonal;
 
 /// Dimension of the Krylov space: cells that are worse than all others stand out of it soon.
 const KRYLOV: usize = 32;
@@ -112,7 +111,7 @@ impl Patch {
         let n = self.nodes.len();
         let space = KRYLOV.min(2 * n);
         let mut basis: Vec<Vec<[f64; 2]>> = vec![rough(n)];
-        let mut projected = Mat::<f64>::zeros(space, space);
+        let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
         for k in 0..space {
             let mut next = vec![[0.0; 2]; n];
             for (corners, shape) in self.elements.iter().zip(&shapes) {
@@ -121,35 +120,36 @@ impl Patch {
                     next[*n] = [next[*n][0] + f[0] / root[*n], next[*n][1] + f[1] / root[*n]];
                 }
             }
-            projected[(k, k)] = dot(&next, &basis[k]);
+            let here = dot(next.as_flattened(), basis[k].as_flattened());
+            diagonal.push(here);
             for earlier in &basis {
-                let part = dot(&next, earlier);
-                add(&mut next, -part, earlier);
+                let part = dot(next.as_flattened(), earlier.as_flattened());
+                add(next.as_flattened_mut(), -part, earlier.as_flattened());
             }
-            let length = dot(&next, &next).sqrt();
-            if k + 1 == space || length < 1e-12 * bound {
+            let length = dot(next.as_flattened(), next.as_flattened()).sqrt();
+            if k + 1 == space || length <= 1e-12 * here.abs() {
                 break;
             }
-            (projected[(k + 1, k)], projected[(k, k + 1)]) = (length, length);
+            beside.push(length);
             next.iter_mut().flatten().for_each(|v| *v /= length);
             basis.push(next);
         }
-        let size = basis.len();
-        // It fails only for what is no number, and then no mode is above the bound.
-        let Ok(solved) = projected.submatrix(0, 0, size, size).self_adjoint_eigen(Side::Lower) else {
-            return Vec::new();
-        };
         let mut modes = Vec::new();
-        for k in (0..size).rev().take_while(|k| solved.S()[*k] > bound) {
-            let mut shape = vec![[0.0; 2]; n];
-            basis.iter().enumerate().for_each(|(i, v)| add(&mut shape, solved.U()[(i, k)], v));
-            shape.iter_mut().zip(&root).for_each(|(u, root)| *u = u.map(|v| v / root));
-            modes.push(Mode { square: solved.S()[k], shape });
+        for (square, part) in tridiagonal::eigenpairs(diagonal, beside) {
+            if square > bound {
+                let mut shape = vec![[0.0; 2]; n];
+                basis
+                    .iter()
+                    .zip(&part)
+                    .for_each(|(v, part)| add(shape.as_flattened_mut(), *part, v.as_flattened()));
+                shape.iter_mut().zip(&root).for_each(|(u, root)| *u = u.map(|v| v / root));
+                modes.push(Mode { square, shape });
+            }
         }
         modes
     }
 
-    /// Derivative of Σ `weight` · ω² of some modes with respect to the positions of all nodes, at `at`.
+    /// Derivative of Σ `weight` · ω² of some modes with respect to the positions of movable nodes, at `at`; the others' is zero.
     pub(crate) fn derivative(&self, modes: &[(f64, Mode)], at: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let mut derivative = vec![[0.0; 2]; self.nodes.len()];
         for corners in &self.elements[..self.moving] {
@@ -165,7 +165,7 @@ impl Patch {
                 };
                 modes.iter().map(of).sum::<f64>()
             };
-            for c in 0..4 {
+            for c in (0..4).filter(|c| corners[*c] < self.movable) {
                 for axis in 0..2 {
                     let (mut more, mut less) = (here, here);
                     more[c][axis] += STEP;
@@ -241,13 +241,14 @@ fn shares<T: PartialEq>(corners: &[T; 4]) -> [f64; 4] {
     if corners[2] == corners[3] { [1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0] } else { [0.25; 4] }
 }
 
-fn dot(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1]).sum()
+/// a · b
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// a += scale · b
-fn add(a: &mut [[f64; 2]], scale: f64, b: &[[f64; 2]]) {
-    a.iter_mut().zip(b).for_each(|(a, b)| *a = [a[0] + scale * b[0], a[1] + scale * b[1]]);
+pub(crate) fn add(a: &mut [f64], scale: f64, b: &[f64]) {
+    a.iter_mut().zip(b).for_each(|(a, b)| *a += scale * b);
 }
 
 /// A fixed vector of length 1 that has a part along every mode.
@@ -258,7 +259,7 @@ fn rough(n: usize) -> Vec<[f64; 2]> {
         (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
     let mut vector: Vec<[f64; 2]> = (0..n).map(|_| [number(), number()]).collect();
-    let length = dot(&vector, &vector).sqrt();
+    let length = dot(vector.as_flattened(), vector.as_flattened()).sqrt();
     vector.iter_mut().flatten().for_each(|v| *v /= length);
     vector
 }

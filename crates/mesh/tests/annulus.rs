@@ -167,6 +167,14 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
     }
 }
 
+/// A ring of one layer has no node that could move.
+#[test]
+fn issue_groove_in_a_single_layer() {
+    let groove = Some(GROOVE);
+    let part = Annulus { facets: 63, layers: 1, groove, ..RING }.part().expect("a groove that can be cut");
+    assert!(smallest_jacobian(&part) > 0.0);
+}
+
 /// The deepest groove that is promised, through six layers of ten.
 #[test]
 fn invariant_deepest_groove_stays_in_order() {

@@ -181,7 +181,7 @@ impl<'a> Operator<'a> {
 
     fn largest(&self) -> Critical {
         let n = 2 * self.free.len();
-        if n == 0 {
+        if !self.answers.contains(&true) {
             return Critical { time_step: f64::INFINITY, frequency: 0.0, iterations: 0, residual: 0.0 };
         }
         let slots = self.dynamics.state.x.len();

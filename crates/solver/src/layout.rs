@@ -245,13 +245,13 @@ fn each_tile(tiles: &[usize], mut f: impl FnMut(usize)) {
 /// Tile of each node of a body: recursive bisection until a tile is small enough, across the longer side or between two
 /// rows, whichever costs less. Within a tile nodes keep their order, so rows stay rows.
 fn bisect(mesh: &Mesh, body: &Body) -> Vec<usize> {
-    let nodes = body.nodes.clone();
-    let mut tile = vec![0; nodes.len()];
+    let first = body.nodes.start;
+    let mut tile = vec![0; body.nodes.len()];
+    let mut upper = vec![false; body.nodes.len()];
     let mut next = 1;
-    let quads = &mesh.quads[body.quads.clone()];
-    let rows = row_starts(quads);
-    let mut todo = vec![(0, nodes.clone().collect::<Vec<_>>())];
-    while let Some((t, members)) = todo.pop() {
+    // Tiles that may be too large: number, nodes, and the quadrilaterals that have only such nodes.
+    let mut todo = vec![(0, body.nodes.clone().collect::<Vec<_>>(), mesh.quads[body.quads.clone()].to_vec())];
+    while let Some((t, members, quads)) = todo.pop() {
         if members.len() <= TILE_NODES {
             continue;
         }
@@ -262,34 +262,34 @@ fn bisect(mesh: &Mesh, body: &Body) -> Vec<usize> {
             hi - lo
         };
         let along = if extent(&mesh.x) >= extent(&mesh.y) { &mesh.x } else { &mesh.y };
+        let middle = members.len() / 2;
         let mut across = members.clone();
         across.sort_by(|&a, &b| along[a].total_cmp(&along[b]).then(a.cmp(&b)));
-        across.drain(..across.len() / 2);
-        across.sort_unstable();
-        let middle = members.len() / 2;
+        across.drain(..middle);
+        let rows = row_starts(&quads);
         let starts = (middle / 2..3 * middle / 2).filter(|&i| rows.contains(&(members[i] as u32)));
-        let between = starts.min_by_key(|i| i.abs_diff(middle)).map(|i| members[i..].to_vec());
+        let between = starts.min_by_key(|i| i.abs_diff(middle)).map(|i| &members[i..]);
         // Elements on a seam are computed twice: those along it in a strip, those across it one by one.
-        let crossing = |upper: &[usize]| {
-            let mut side: Vec<Option<bool>> = vec![None; nodes.len()];
-            members.iter().for_each(|n| side[n - nodes.start] = Some(false));
-            upper.iter().for_each(|n| side[n - nodes.start] = Some(true));
-            let crosses = |e: &[u32; 4]| {
-                let sides = e.map(|n| side[n as usize - nodes.start]);
-                sides.contains(&Some(false)) && sides.contains(&Some(true))
-            };
-            quads.iter().filter(|e| crosses(e)).count()
+        let mut crossing = |part: &[usize]| {
+            members.iter().for_each(|n| upper[n - first] = false);
+            part.iter().for_each(|n| upper[n - first] = true);
+            let sides = |e: &[u32; 4]| e.map(|n| upper[n as usize - first]);
+            quads.iter().map(sides).filter(|s| s.contains(&true) && s.contains(&false)).count()
         };
-        let upper = match between {
-            Some(between) if crossing(&between) < ACROSS * crossing(&across) => between,
-            _ => across,
-        };
-        for &n in &upper {
-            tile[n - nodes.start] = next;
+        let cost = ACROSS * crossing(&across);
+        // The part that is asked last is the one that is taken.
+        if between.is_none_or(|between| crossing(between) >= cost) {
+            crossing(&across);
         }
-        let lower = members.into_iter().filter(|n| tile[n - nodes.start] == t).collect();
-        todo.push((t, lower));
-        todo.push((next, upper));
+        let (above, below): (Vec<_>, Vec<_>) = members.into_iter().partition(|n| upper[n - first]);
+        above.iter().for_each(|n| tile[n - first] = next);
+        let of = |t: usize| -> Vec<[u32; 4]> {
+            let inside = |e: &&[u32; 4]| e.iter().all(|n| tile[*n as usize - first] == t);
+            quads.iter().filter(inside).copied().collect()
+        };
+        let (quads_below, quads_above) = (of(t), of(next));
+        todo.push((t, below, quads_below));
+        todo.push((next, above, quads_above));
         next += 1;
     }
     tile

@@ -10,7 +10,7 @@ mod ledger;
 use common::*;
 use stribeck_mesh::{Annulus, Part};
 use stribeck_solver::{
-    Behaviour, Dynamics, Force,
+    Behaviour, Dynamics, Force, Motion,
     force::NodalLoad,
     state::{Moment, NodeForces},
 };
@@ -192,6 +192,16 @@ fn invariant_rigid_bodies_on_springs_limit_the_step() {
     run(&mut d, &mut [&mut ground], 10_000);
     // Amplitude of a free oscillation v/ω, doubled for the step near its limit.
     assert!((d.rigid[0].centre[0] - 0.01).abs() < 2.0 / translation, "{:?}", d.rigid[0]);
+}
+
+/// A body all of whose nodes are held vibrates at no frequency.
+#[test]
+fn hostile_held_bodies_have_no_limit() {
+    let mut model = body(&rectangle(0.02, 0.01, 2, 1));
+    model.motion.fill(Motion::Held);
+    let d = lay_out(&model);
+    assert_eq!(d.critical_time_step(&[], 0.0).time_step, f64::INFINITY);
+    assert_eq!(d.present_critical_time_step(&[]).time_step, f64::INFINITY);
 }
 
 #[test]

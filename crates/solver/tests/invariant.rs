@@ -6,7 +6,8 @@ use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
 use stribeck_solver::{Behaviour, Dynamics, Force, Model, Motion, force::NodalLoad};
 
-/// A scene with every kind of tile: a plate of several tiles, congruent discs, a driven ring, a rigid block.
+/// A scene with every kind of tile: a plate and a ring of several tiles, congruent discs, a driven
+/// ring, a rigid block.
 fn everything() -> Model {
     let mut mesh = Mesh::new();
     mesh.add("plate", &rectangle(0.15, 0.15, 149, 149));
@@ -22,6 +23,9 @@ fn everything() -> Model {
         start_angle: 0.0,
         groove: None,
     };
+    // Wide enough for several tiles, cut across its rows.
+    let wide = Annulus { inner_radius: 0.2, outer_radius: 0.21, facets: 700, layers: 12, ..ring };
+    mesh.add("wide ring", &wide.part().expect("a ring").translated(0.8, 0.0));
     let ring = mesh.add("ring", &ring.part().expect("a ring").translated(0.3, 0.3));
     let block = mesh.add("block", &rectangle(0.01, 0.02, 4, 8).translated(-0.1, 0.0));
     let mut model = Model::new(mesh, steel(), THICKNESS).expect("a positive thickness");

@@ -9,7 +9,7 @@ const SHORT: [&str; 2] = ["solver.duration_ms=12.0", "output.frames=None"];
 /// Three exits, two quiet times.
 const LONG: [&str; 2] = ["solver.duration_ms=30.0", "output.frames=None"];
 /// One exit and most of the quiet time behind it, at half the element size too.
-const IMPULSE: [&str; 2] = ["solver.duration_ms=11.5", "output.frames=None"];
+const EXIT: [&str; 2] = ["solver.duration_ms=11.5", "output.frames=None"];
 
 /// Measured with copies of the roller in one orientation, the default of its time.
 const TRANSLATED: &str = "mesh.roller_copies=translated";
@@ -126,7 +126,7 @@ pub(super) fn converged() -> [Vec<Variant>; 3] {
     let of = |name: &str, set: &[&str]| -> Vec<Variant> {
         let start = |(start, degrees): &(&str, &str)| {
             let variant = Variant::new(format!("{name}{start}"), LEAN, set).with(TRANSLATED);
-            let variant = IMPULSE.iter().fold(variant, |variant, s| variant.with(*s));
+            let variant = EXIT.iter().fold(variant, |variant, s| variant.with(*s));
             variant.with(format!("bearing.first_roller_deg={degrees}"))
         };
         STARTS.iter().map(start).collect()
