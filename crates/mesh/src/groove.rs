@@ -39,7 +39,7 @@ const SPREAD: usize = 100;
 const SWEEPS: usize = 60;
 
 /// Side of the squares whose time step the cells near a wall are to reach, over that of fine cells. The shorter rows of
-/// rings and rollers of bearing proportions have 0.9 to 0.95, and a groove need do no better.
+/// thin rings and of discs have 0.9 to 0.95, and a groove need do no better.
 const LENGTH: f64 = 0.95;
 
 /// Columns on each side of a wall, and rows below it, whose nodes may move.
