@@ -6,6 +6,9 @@ use crate::Part;
 use crate::part::signed_area;
 use crate::patch::{Patch, add, dot};
 
+/// ω² of endless squares with sides of the unit of length, see [`Patch`].
+const GRID_WAVE: f64 = 4.0;
+
 /// Weight of smoothness against frequencies that are too high.
 const SMOOTHNESS: f64 = 1e-2;
 
@@ -97,18 +100,17 @@ struct Found {
 }
 
 impl Goal {
-    /// None when an element is inside out.
+    /// None when an element has no positive area.
     fn cost(&self, at: Vec<[f64; 2]>) -> Option<Found> {
         // Corners may turn over on the way; `flatness` turns most of them back.
         let mut elements = self.patch.elements[..self.patch.moving].iter();
         if !elements.all(|corners| signed_area(&corners.map(|n| at[n])) > 0.0) {
             return None;
         }
-        let bound = 4.0;
-        let modes = self.patch.modes_above(bound, &at);
-        let excess: Vec<f64> = modes.iter().map(|m| m.square / bound - 1.0).collect();
+        let modes = self.patch.modes_above(GRID_WAVE, &at);
+        let excess: Vec<f64> = modes.iter().map(|m| m.square / GRID_WAVE - 1.0).collect();
         let mut cost: f64 = excess.iter().map(|e| e * e).sum();
-        let weighted: Vec<_> = excess.iter().map(|e| 2.0 * e / bound).zip(modes).collect();
+        let weighted: Vec<_> = excess.iter().map(|e| 2.0 * e / GRID_WAVE).zip(modes).collect();
         let mut slope = self.patch.derivative(&weighted, &at);
         for Plate { node, around } in &self.plates {
             let share = 1.0 / around.len() as f64;
