@@ -11,7 +11,7 @@ use stribeck_solver::{
 use crate::{
     error::Error,
     law::Law,
-    pass::{LEAST_SPEED, Memory, Pass, SPEED_MARGIN, Weights},
+    pass::{LEAST_SPEED, LONGEST_REST, Memory, Pass, SPEED_MARGIN, Weights},
     points::{Method, Points},
     search::Tree,
     shape::Push,
@@ -96,9 +96,6 @@ struct Pair {
     sum: [Sum; 2],
 }
 
-/// Longest time between two searches, in steps: speeds may change meanwhile.
-const LONGEST_REST: f64 = 400.0;
-
 /// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much more than
 /// the mean; no other spacing gives more.
 const CLUSTERING: f64 = 1.125;
@@ -176,6 +173,11 @@ impl Contacts {
     pub fn set_preload(&mut self, softness: Option<f64>) {
         self.preload = softness;
         self.search.next = 0;
+        self.forget_candidates();
+    }
+
+    fn forget_candidates(&mut self) {
+        self.pairs.iter_mut().flat_map(|pair| &mut pair.passes).for_each(Pass::forget_candidates);
     }
 
     /// What each pair does, in the order given.
@@ -225,6 +227,10 @@ impl Contacts {
 
     fn search(&mut self, at: &Moment<'_>) {
         let grow = 0.5 * self.skin;
+        if self.preload.is_some() {
+            // Newton's method jumps: nothing that was known of positions holds.
+            self.forget_candidates();
+        }
         for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
             tree.update(surface, at.x, at.y, grow + surface.largest_sag());
         }
@@ -237,7 +243,7 @@ impl Contacts {
                     pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
                     pair.found.sort_unstable();
                 }
-                pass.take(pair.found.iter().copied(), surfaces, at);
+                pass.take(&pair.found, surfaces, at);
             }
             pair.push.clear();
             pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());

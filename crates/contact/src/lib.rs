@@ -95,6 +95,7 @@ mod error;
 mod evaluation;
 mod law;
 mod meeting;
+mod nearest;
 mod pass;
 mod patch_row;
 mod points;

@@ -7,8 +7,9 @@ use stribeck_solver::{force::RankOne, lanes::LANES, state::Moment};
 use crate::{
     evaluation::Evaluation,
     law::Law,
+    nearest::Nearest,
     points::Points,
-    projection::{Frame, distance},
+    projection::Frame,
     shape::{Push, Shape, Side},
     spline::Patch,
     surface::Surface,
@@ -26,6 +27,9 @@ pub(crate) struct Pass {
     pub(crate) deepest: f64,
     /// About how long the last evaluation took, in units of some ten nanoseconds.
     pub(crate) work: usize,
+    /// Room for the candidates of the search before, and for the facets nearest to the points of one.
+    before: Vec<Candidate>,
+    found: Vec<u32>,
 }
 
 /// What a pass remembers from step to step.
@@ -66,7 +70,10 @@ const FASTEST_OVER: f64 = 16.0;
 /// What is left of a pass's pace from one evaluation to the next.
 pub(crate) const PACE_KEPT: f64 = 0.99;
 
-/// Steps that a point without a foot dozes: longer than any time between two searches.
+/// Longest time between two searches or looks at a point, in steps: speeds may change meanwhile.
+pub(crate) const LONGEST_REST: f64 = 400.0;
+
+/// Steps that a point without a foot dozes: until the next search.
 pub(crate) const NEVER: f64 = 1e9;
 
 /// Most nodes that a facet hangs on.
@@ -99,7 +106,7 @@ impl Weights {
     #[inline(always)]
     pub(crate) fn steps_apart(&self, gap: f64, sliding: f64, pace: f64, dt: f64) -> f64 {
         let closing = SPEED_MARGIN * (pace + sliding.abs()) + self.least_speed();
-        ((gap - self.reach()).abs() / (closing.min(self.fastest) * dt)).min(NEVER)
+        ((gap - self.reach()).abs() / (closing.min(self.fastest) * dt)).min(LONGEST_REST)
     }
 
     /// Approach allowed for however slow a point is [m/s].
@@ -145,6 +152,8 @@ impl Pass {
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
             work: 0,
+            before: Vec::new(),
+            found: Vec::new(),
         }
     }
 
@@ -167,41 +176,49 @@ impl Pass {
         self.memory = memory;
     }
 
-    /// Takes new candidates from pairs (secondary facet, primary facet), ascending.
-    pub(crate) fn take(
-        &mut self,
-        pairs: impl Iterator<Item = (u32, u32)>,
-        surfaces: &[Surface],
-        at: &Moment<'_>,
-    ) {
-        let (x, y) = (at.x, at.y);
+    /// Takes new candidates from pairs (secondary facet, primary facet), ascending. Points of facets that were candidates
+    /// before go on from what they remember, but where another part of the primary surface has come nearer.
+    pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
+        let Self { points, before, found, .. } = self;
         let Memory { nearest, searched, doze, candidates, asleep, .. } = &mut self.memory;
+        let elapsed = at.step.saturating_sub(*searched) as f64;
         *searched = at.step;
-        candidates.clear();
         *asleep = 0;
-        let mut best: [f64; 64] = [f64::INFINITY; 64];
-        let mut last = None;
-        for (f, g) in pairs {
-            let range = self.points.of_facet(f as usize);
-            if last != Some(f) {
-                candidates.push(Candidate { facet: f, wake: 0 });
-                doze[range.clone()].fill(0.0);
-                best = [f64::INFINITY; 64];
-                last = Some(f);
-            }
-            let own = Frame::new(secondary, x, y, f as usize);
-            for (k, i) in range.enumerate() {
-                // On the chord: near enough to begin a walk.
-                let p = own.spot(self.points.place[i], 0.0).at;
-                let d = distance(primary, x, y, p, g as usize);
-                let best = &mut best[k.min(63)];
-                if d < *best {
-                    *best = d;
-                    nearest[i] = g;
+        std::mem::swap(candidates, before);
+        candidates.clear();
+        let mut before = before.iter().peekable();
+        for pairs in pairs.chunk_by(|a, b| a.0 == b.0) {
+            let facet = pairs[0].0;
+            Arch::new().dispatch(Nearest {
+                secondary,
+                primary,
+                points,
+                x: at.x,
+                y: at.y,
+                facet: facet as usize,
+                pairs,
+                found,
+            });
+            while before.next_if(|c| c.facet < facet).is_some() {}
+            let stays = before.peek().is_some_and(|c| c.facet == facet);
+            let mut soonest = f64::INFINITY;
+            for (i, &new) in points.of_facet(facet as usize).zip(found.iter()) {
+                if stays && primary.adjoin(nearest[i] as usize, new as usize) {
+                    // Whoever had no foot looks again.
+                    doze[i] = if doze[i] == NEVER { 0.0 } else { doze[i] - elapsed };
+                } else {
+                    (nearest[i], doze[i]) = (new, 0.0);
                 }
+                soonest = soonest.min(doze[i]);
             }
+            candidates.push(Candidate { facet, wake: at.step + soonest.max(0.0) as u64 });
         }
+    }
+
+    /// Forgets all candidates: positions are about to change in other ways than by motion.
+    pub(crate) fn forget_candidates(&mut self) {
+        self.memory.candidates.clear();
     }
 
     /// Pushes that one evaluation makes at most, until the next candidates are taken.

@@ -275,12 +275,3 @@ fn at_vertex(
     let place = if forward { 1.0 } else { 0.0 };
     Some(Projection { gap: sign * distance, normal, place, turn: 0.0, height: 0.0, ..frame.above(p, place) })
 }
-
-/// Distance from a point to one chord [m].
-pub(crate) fn distance(surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], facet: usize) -> f64 {
-    let frame = Frame::new(surface, x, y, facet);
-    let end = frame.place(p).clamp(0.0, 1.0);
-    let foot = frame.spot(end, 0.0).at;
-    let (dx, dy) = (p[0] - foot[0], p[1] - foot[1]);
-    (dx * dx + dy * dy).sqrt()
-}

@@ -259,6 +259,11 @@ impl Surface {
         neighbour(self.facets(), self.closed, facet, forward)
     }
 
+    /// Whether two facets are one or have a vertex in common.
+    pub(crate) fn adjoin(&self, a: usize, b: usize) -> bool {
+        a == b || [true, false].iter().any(|&forward| self.neighbour(a, forward) == Some(b))
+    }
+
     /// Length that belongs to each vertex [m]: half of each facet that meets there.
     pub(crate) fn tributary(&self) -> Vec<f64> {
         let mut v = vec![0.0; self.slots.len()];

@@ -4,7 +4,7 @@ use pulp::Simd;
 use stribeck_solver::lanes::{Number, Vector};
 
 use crate::{
-    pass::{NEVER, SPEED_MARGIN, Weights},
+    pass::{LONGEST_REST, SPEED_MARGIN, Weights},
     touch::Sum,
 };
 
@@ -27,7 +27,7 @@ pub(crate) struct Law<V: Simd> {
     least: Vector<V>,
     fastest: Vector<V>,
     now: Vector<V>,
-    never: Vector<V>,
+    longest: Vector<V>,
 }
 
 /// The parabola with which the pressure sets in.
@@ -129,7 +129,7 @@ impl<V: Simd> Law<V> {
             least: Vector::all(simd, w.least_speed()),
             fastest: Vector::all(simd, w.fastest),
             now: Vector::all(simd, now),
-            never: Vector::all(simd, NEVER),
+            longest: Vector::all(simd, LONGEST_REST),
         }
     }
 
@@ -144,8 +144,8 @@ impl<V: Simd> Law<V> {
         let pace = within * opening.max(-opening);
         work.pace = work.pace.max(pace);
         let closing = (self.pace.max(pace) + along.max(-along)).times_plus(self.margin, self.least);
-        let doze = self.now + (gap - self.reach) / (closing.min(self.fastest) * self.dt);
-        let doze = doze.min(self.never);
+        let steps = (gap - self.reach) / (closing.min(self.fastest) * self.dt);
+        let doze = self.now + steps.min(self.longest);
         let still = points.slip * points.slip + points.damping * points.damping;
         let apart = gap.choose_below(self.reach, zero, zero.choose_below(still, zero, within));
         let dashpot = self.dashpot * weight;

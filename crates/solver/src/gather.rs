@@ -9,8 +9,12 @@ use crate::{
     tile::{CongruentRun, Tile},
 };
 
-/// Corner values of a group of elements, one row a corner.
-type Corners = [[f64; LANES]; 4];
+/// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
+/// way to memory.
+const BLOCK: usize = 8 * LANES;
+
+/// Corner values of a block of elements, one row a corner.
+type Corners = [[f64; BLOCK]; 4];
 
 /// The gather path: quadrilaterals in groups, triangles one by one.
 #[inline(always)]
@@ -23,19 +27,21 @@ pub(crate) fn single_elements<S: Simd>(
     fx: &mut [f64],
     fy: &mut [f64],
 ) {
-    let (mut xs, mut ys): (Corners, Corners) = Default::default();
-    for (g, elements) in tile.quads.chunks(Vector::<S>::LEN).enumerate() {
+    let (mut xs, mut ys): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
+    for (block, elements) in tile.quads.chunks(BLOCK).enumerate() {
         for (l, corners) in elements.iter().enumerate() {
             for c in 0..4 {
                 xs[c][l] = x[corners[c] as usize];
                 ys[c][l] = y[corners[c] as usize];
             }
         }
-        let references = tile.varying.group(simd, tile.first_gathered, g * Vector::<S>::LEN);
-        let forces = references.forces(rows(simd, &xs), rows(simd, &ys), k);
-        for c in 0..4 {
-            forces[c][0].store(&mut xs[c], 0);
-            forces[c][1].store(&mut ys[c], 0);
+        for at in (0..elements.len()).step_by(Vector::<S>::LEN) {
+            let references = tile.varying.group(simd, tile.first_gathered, block * BLOCK + at);
+            let forces = references.forces(rows(simd, &xs, at), rows(simd, &ys, at), k);
+            for c in 0..4 {
+                forces[c][0].store(&mut xs[c], at);
+                forces[c][1].store(&mut ys[c], at);
+            }
         }
         for (l, corners) in elements.iter().enumerate() {
             for c in 0..4 {
@@ -57,9 +63,9 @@ pub(crate) fn single_elements<S: Simd>(
 }
 
 #[inline(always)]
-fn rows<S: Simd>(simd: S, v: &Corners) -> [Vector<S>; 4] {
+fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
     let [a, b, c, d] = v;
-    [Vector::load(simd, a, 0), Vector::load(simd, b, 0), Vector::load(simd, c, 0), Vector::load(simd, d, 0)]
+    [Vector::load(simd, a, at), Vector::load(simd, b, at), Vector::load(simd, c, at), Vector::load(simd, d, at)]
 }
 
 #[inline(always)]

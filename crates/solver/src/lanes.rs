@@ -108,6 +108,11 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     pub fn bits(self) -> u64 {
         const WEIGHTS: [f64; LANES] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+        let set = self.simd.less_than_f64s(self.simd.splat_f64s(0.5), self.lanes);
+        // A mask register holds these very bits.
+        if let &[bits] = pulp::bytemuck::bytes_of(&set) {
+            return u64::from(bits);
+        }
         let weights = Self::load(self.simd, &WEIGHTS, 0);
         self.simd.reduce_sum_f64s((self * weights).lanes) as u64
     }
@@ -127,9 +132,7 @@ impl<S: Simd> Vector<S> {
     /// The sum of all numbers.
     #[inline(always)]
     pub fn sum(self) -> f64 {
-        let mut each = [0.0; LANES];
-        self.store(&mut each, 0);
-        each.iter().sum()
+        self.simd.reduce_sum_f64s(self.lanes)
     }
 }
 

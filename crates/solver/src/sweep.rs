@@ -134,12 +134,11 @@ impl Sweep<'_> {
         let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
         let n = tile.slots.len();
         let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
-        for &node in &tile.loaded {
-            let node = node as usize;
-            fx[node] = outer_x[node];
-            fy[node] = outer_y[node];
-            outer_x[node] = 0.0;
-            outer_y[node] = 0.0;
+        for run in &tile.loaded {
+            for (force, outer) in [(&mut *fx, &mut *outer_x), (&mut *fy, &mut *outer_y)] {
+                force[run.clone()].copy_from_slice(&outer[run.clone()]);
+                outer[run.clone()].fill(0.0);
+            }
         }
         let (x, y, own_x, own_y) = if D::AHEAD {
             (&mut scratch.seen.x[..n], &mut scratch.seen.y[..n], x, y)

@@ -43,8 +43,8 @@ pub(crate) struct Tile {
     pub(crate) finish: Vec<Finish>,
     /// About how long a step takes, in arbitrary units.
     pub(crate) work: usize,
-    /// Own nodes that other forces may push.
-    pub(crate) loaded: Vec<u32>,
+    /// Runs of own nodes that other forces may push.
+    pub(crate) loaded: Vec<Range<usize>>,
     /// Time step over mass [s/kg]; zero for nodes without mass.
     pub(crate) step_over_mass: Field,
     /// Damping of this tile's bodies, if any.
@@ -61,6 +61,19 @@ pub(crate) struct TileDamping {
     pub(crate) mass: Field,
     /// Mass and momentum of each lane when the frames were last placed here.
     pub(crate) moments: LaneMoments,
+}
+
+/// Runs of entries that are true.
+fn runs(flags: &[bool]) -> Vec<Range<usize>> {
+    let mut at = 0;
+    let mut runs = Vec::new();
+    for run in flags.chunk_by(|a, b| a == b) {
+        if run[0] {
+            runs.push(at..at + run.len());
+        }
+        at += run.len();
+    }
+    runs
 }
 
 /// A run of quadrilaterals whose corners all advance by one.
@@ -194,7 +207,7 @@ impl Tile {
             elastic: true,
             finish: Vec::new(),
             work: 0,
-            loaded: (0..layout.own as u32).filter(|&n| loaded[n as usize]).collect(),
+            loaded: runs(&loaded[..layout.own]),
             step_over_mass: Field::default(),
             damping: None,
         };
