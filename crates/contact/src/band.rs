@@ -10,6 +10,7 @@ use stribeck_solver::{
 
 use crate::{
     meeting::{Chord, Meeting, Spots, gather},
+    pass::Candidate,
     points::Points,
     row::Outcome,
     shape::Push,
@@ -26,7 +27,7 @@ pub(crate) struct Band<'a> {
     pub(crate) secondary: &'a Surface,
     pub(crate) points: &'a Points,
     /// Facets, and bits of those that are awake.
-    pub(crate) facets: [usize; LANES],
+    pub(crate) candidates: &'a [Candidate],
     pub(crate) awake: u64,
     /// Of all points of the pass: where they were found last, until when they doze, what they remember.
     pub(crate) nearest: &'a [u32],
@@ -48,42 +49,54 @@ impl Band<'_> {
         work: &mut Work<V>,
         push: &mut Vec<Push>,
     ) -> [Outcome; LANES] {
-        let Self { secondary, points, facets, awake, nearest, doze, history } = self;
+        let Self { secondary, points, candidates, awake, nearest, doze, history } = self;
         let mut outcomes = [Outcome::default(); LANES];
         let mut own = [[0; LANES]; 2];
-        let mut begin = [0; LANES];
+        let (mut begin, mut pattern) = ([0; LANES], [0; LANES]);
         let mut len = [0; LANES];
         for l in 0..LANES {
-            let (a, b) = secondary.ends(facets[l]);
+            // Lanes without a facet go along with the first one, closed.
+            let candidate = candidates.get(l).unwrap_or(&candidates[0]);
+            let (a, b) = secondary.ends(candidate.facet as usize);
             (own[0][l], own[1][l]) = (a as u32, b as u32);
-            let range = points.of_facet(facets[l]);
-            (begin[l], len[l]) = (range.start as u32, range.len());
+            (begin[l], pattern[l], len[l]) =
+                (candidate.first, candidate.pattern.first, candidate.pattern.points);
         }
+        let alike = pattern == [pattern[0]; LANES];
         let chord = Chord::each(simd, at, &own);
         let zero = Vector::all(simd, 0.0);
         let (mut force, mut with_place) = ([zero; 2], [zero; 2]);
         let mut any = false;
-        for k in 0..points.most {
+        for k in 0..points.most as u32 {
             let mut other = [[0; LANES]; 2];
             let mut point = begin;
-            let mut open = [0.0; LANES];
+            let mut open = 0;
             for l in 0..LANES {
                 let there = awake >> l & 1 == 1 && k < len[l];
-                // Lanes without a point go along with the facet's first one, closed.
-                point[l] += if there { k as u32 } else { 0 };
+                // So do lanes without a point, with the first one of their facet.
+                let step = if there { k } else { 0 };
+                point[l] += step;
                 let i = point[l] as usize;
                 let facet = nearest[i] as usize;
                 if there && doze[i] < now + 1.0 {
                     outcomes[l].left |= 1 << k;
-                    open[l] = if primary.beside_corner[facet] { 0.0 } else { 1.0 };
+                    open |= u64::from(!primary.beside_corner[facet]) << l;
                 }
                 let (a, b) = primary.ends(facet);
                 (other[0][l], other[1][l]) = (a as u32, b as u32);
             }
+            let (place, weight) = if alike {
+                let i = (pattern[0] + k) as usize;
+                (Vector::all(simd, points.place[i]), Vector::all(simd, points.weight[i]))
+            } else {
+                let mut i = pattern;
+                i.iter_mut().zip(&len).for_each(|(i, len)| *i += if k < *len { k } else { 0 });
+                (gather(simd, &points.place, &i), gather(simd, &points.weight, &i))
+            };
             let spots = Spots {
-                open: Vector::load(simd, &open, 0),
-                place: gather(simd, &points.place, &point),
-                weight: gather(simd, &points.weight, &point),
+                open: Vector::ones(simd, open),
+                place,
+                weight,
                 slip: if MEMORY { gather(simd, &history.slip, &point) } else { zero },
                 damping: if MEMORY { gather(simd, &history.damping, &point) } else { zero },
             };

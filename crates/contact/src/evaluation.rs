@@ -2,13 +2,13 @@
 
 use pulp::{Simd, WithSimd};
 use stribeck_solver::{
-    lanes::{LANES, Vector},
+    lanes::Vector,
     state::Moment,
 };
 
 use crate::{
     band::{self, Band},
-    pass::{Memory, NEVER, PACE_KEPT, Pass, Weights},
+    pass::{Candidate, Memory, NEVER, PACE_KEPT, Pass, Weights},
     points::Points,
     projection::Frame,
     row::{Outcome, Row},
@@ -35,7 +35,7 @@ impl WithSimd for Evaluation<'_> {
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) -> Sum {
         // Which curves meet is asked once a pass, and whether points remember; the loop over points is compiled for each.
-        let memory = !self.pass.memory.history.is_empty();
+        let memory = self.pass.memory.history.is_some();
         match [self.pass.secondary, self.pass.primary].map(|s| self.surfaces[s].spline.is_some()) {
             [false, false] if memory => self.evaluate::<V, Frame, Frame, true>(simd),
             [false, false] => self.evaluate::<V, Frame, Frame, false>(simd),
@@ -54,117 +54,163 @@ impl Evaluation<'_> {
         let (secondary, primary) = (&surfaces[pass.secondary], &surfaces[pass.primary]);
         let (deepest, points) = (pass.deepest, &pass.points);
         let Memory { nearest, searched, doze, pace, candidates, asleep, history } = &mut pass.memory;
+        let mut no_history = Histories::default();
         let now = at.step.saturating_sub(*searched) as f64;
         *pace *= PACE_KEPT;
         // Chords against chords and splines against splines, with the law itself: many points at a time.
         let flat = secondary.is_flat() && primary.is_flat();
         let splines = secondary.spline.is_some() && primary.spline.is_some();
         let together = w.together && w.softness == 0.0 && (flat || splines);
-        let lanes = if together && flat && points.most <= band::MOST_POINTS { Vector::<V>::LEN } else { 1 };
         let law = Law::new(simd, w, at.dt, deepest, now, *pace);
         let (mut done, mut feet) = (Work::none(simd), Feet::none());
-        let (mut sum, mut work, mut first_awake) = (Sum::default(), 0, u64::MAX);
-        let mut singles =
-            Singles::<P> { primary, at, w, points, deepest, now, pace: *pace, foot: None, other: None };
-        for group in candidates.chunks_mut(lanes) {
-            let awake = group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
-            if awake == 0 {
-                group.iter().for_each(|c| first_awake = first_awake.min(c.wake));
-                continue;
-            }
-            let mut outcomes = [Outcome::default(); LANES];
-            let mut own = None;
-            let facet = group[0].facet as usize;
-            if lanes > 1 {
-                let mut facets = [facet; LANES];
-                facets.iter_mut().zip(group.iter()).for_each(|(f, c)| *f = c.facet as usize);
-                let band = Band { secondary, points, facets, awake, nearest, doze, history };
-                outcomes = band.touch::<V, MEMORY>(simd, &law, now, primary, at, &mut done, push);
+        let (mut work, mut first_awake) = (0, u64::MAX);
+        let mut rest = Rest::<S, P> {
+            secondary,
+            primary,
+            at,
+            w,
+            points,
+            deepest,
+            searched: *searched,
+            now,
+            pace: *pace,
+            foot: None,
+            other: None,
+            own: None,
+            sum: Sum::default(),
+        };
+        if together && flat && points.most <= band::MOST_POINTS {
+            for group in candidates.chunks_mut(Vector::<V>::LEN) {
+                let awake = group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
+                if awake == 0 {
+                    first_awake = group.iter().fold(first_awake, |first, c| first.min(c.wake));
+                    continue;
+                }
+                let outcomes = {
+                    let history = history.as_mut().unwrap_or(&mut no_history);
+                    let band = Band { secondary, points, candidates: group, awake, nearest, doze, history };
+                    band.touch::<V, MEMORY>(simd, &law, now, primary, at, &mut done, push)
+                };
                 work += 15 * points.most;
-            } else if together {
-                let range = points.of_facet(facet);
-                let row = Row { points, range, nearest, doze, history, secondary, primary, at, now };
-                outcomes[0] =
-                    S::touch_row::<V, MEMORY>(simd, row, facet, &mut own, &mut feet, &law, &mut done, push);
-                work += if outcomes[0].touched { 20 } else { 10 };
-            } else {
-                let awake = points.of_facet(facet).enumerate().filter(|(_, i)| doze[*i] < now + 1.0);
-                outcomes[0].left = awake.fold(0, |bits, (k, _)| bits | 1 << k);
-                work += 4;
+                for (l, candidate) in group.iter_mut().enumerate() {
+                    if awake >> l & 1 == 1 {
+                        rest.finish(simd, candidate, outcomes[l], nearest, doze, history, push);
+                    }
+                    first_awake = first_awake.min(candidate.wake);
+                }
             }
-            for (l, candidate) in group.iter_mut().enumerate() {
-                let outcome = &mut outcomes[l];
-                if awake >> l & 1 == 1 {
-                    let facet = candidate.facet as usize;
-                    if outcome.left != 0 {
-                        work += 5 * outcome.left.count_ones() as usize;
-                        let side = || Side::new(S::new(secondary, at.x, at.y, facet), secondary, at);
-                        let own = own.get_or_insert_with(side);
-                        singles.touch(own, outcome, nearest, doze, history, &mut sum, push);
-                    }
-                    if let Some(own) = own.take() {
-                        own.flush(secondary, push);
-                        sum.force = [sum.force[0] + own.force[0], sum.force[1] + own.force[1]];
-                    }
-                    sum.force = [sum.force[0] + outcome.force[0], sum.force[1] + outcome.force[1]];
-                    candidate.wake = if outcome.touched {
-                        0
+        } else {
+            for candidate in candidates.iter_mut() {
+                if at.step >= candidate.wake {
+                    let mut outcome = Outcome::default();
+                    if together {
+                        let history = history.as_mut().unwrap_or(&mut no_history);
+                        let row = Row { candidate, points, nearest, doze, history, secondary, primary, at, now };
+                        let (own, law) = (&mut rest.own, &law);
+                        outcome = S::touch_row::<V, MEMORY>(simd, row, own, &mut feet, law, &mut done, push);
+                        work += if outcome.touched { 20 } else { 10 };
                     } else {
-                        let soonest =
-                            doze[points.of_facet(facet)].iter().copied().fold(f64::INFINITY, f64::min);
-                        searched.saturating_add(soonest as u64)
-                    };
+                        let awake = candidate.range().enumerate().filter(|(_, i)| doze[*i] < now + 1.0);
+                        outcome.left = awake.fold(0, |bits, (k, _)| bits | 1 << k);
+                        work += 4;
+                    }
+                    work += 5 * outcome.left.count_ones() as usize;
+                    rest.finish(simd, candidate, outcome, nearest, doze, history, push);
                 }
                 first_awake = first_awake.min(candidate.wake);
             }
         }
-        singles.flush(push);
+        rest.flush(push);
         feet.flush(primary, push);
+        let mut sum = rest.sum;
         done.add_to(&mut sum);
-        *pace = singles.pace.max(done.pace());
+        *pace = rest.pace.max(done.pace());
         *asleep = first_awake;
         pass.work = work;
         sum
     }
 }
 
-/// Points one by one: those on curves, near ends and corners, and those that do not touch and may doze.
-struct Singles<'a, P: Shape> {
+/// What vectors of points leave over: points one by one, on curves, near ends and corners; and what a facet comes to.
+struct Rest<'a, S: Shape, P: Shape> {
+    secondary: &'a Surface,
     primary: &'a Surface,
     at: &'a Moment<'a>,
     w: &'a Weights,
     points: &'a Points,
     deepest: f64,
-    now: f64,
     /// See [`Memory`].
+    searched: u64,
     pace: f64,
+    /// Steps since the search.
+    now: f64,
+    /// The facet at hand in motion, where it was needed.
+    own: Option<Side<S>>,
     /// Facet of the primary surface where the last point was found.
     foot: Option<P>,
     /// Consecutive points mostly share a primary facet: its forces wait until another one comes.
     other: Option<Side<P>>,
+    sum: Sum,
 }
 
-impl<P: Shape> Singles<'_, P> {
-    /// Evaluates what is left over of a facet.
+impl<S: Shape, P: Shape> Rest<'_, S, P> {
+    /// Finishes a facet: evaluates the points that are left over, hands forces over and lets it sleep if it may.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // what a pass remembers, field by field
-    fn touch<S: Shape>(
+    fn finish<V: Simd>(
         &mut self,
-        own: &mut Side<S>,
+        simd: V,
+        candidate: &mut Candidate,
+        mut outcome: Outcome,
+        nearest: &mut [u32],
+        doze: &mut [f64],
+        history: &mut Option<Histories>,
+        push: &mut Vec<Push>,
+    ) {
+        if outcome.left != 0 {
+            self.touch(candidate, &mut outcome, nearest, doze, history, push);
+        }
+        let force = &mut self.sum.force;
+        if let Some(own) = self.own.take() {
+            own.flush(self.secondary, push);
+            *force = [force[0] + own.force[0], force[1] + own.force[1]];
+        }
+        *force = [force[0] + outcome.force[0], force[1] + outcome.force[1]];
+        candidate.wake = 0;
+        if !outcome.touched {
+            let range = candidate.range();
+            let mut soonest = Vector::all(simd, f64::INFINITY);
+            let whole = range.len() / Vector::<V>::LEN * Vector::<V>::LEN;
+            for start in (0..whole).step_by(Vector::<V>::LEN) {
+                soonest = soonest.min(Vector::load(simd, doze, range.start + start));
+            }
+            let rest = doze[range.start + whole..range.end].iter().copied();
+            candidate.wake = self.searched.saturating_add(rest.fold(soonest.smallest(), f64::min) as u64);
+        }
+    }
+
+    /// Evaluates points one by one.
+    #[inline(never)]
+    fn touch(
+        &mut self,
+        candidate: &Candidate,
         outcome: &mut Outcome,
         nearest: &mut [u32],
         doze: &mut [f64],
-        history: &mut Histories,
-        sum: &mut Sum,
+        history: &mut Option<Histories>,
         push: &mut Vec<Push>,
     ) {
-        let Self { primary, at, w, points, .. } = *self;
-        let first = points.of_facet(own.shape.facet()).start;
+        let Self { secondary, primary, at, w, points, .. } = *self;
+        let side = || Side::new(S::new(secondary, at.x, at.y, candidate.facet as usize), secondary, at);
+        let own = self.own.get_or_insert_with(side);
+        let sum = &mut self.sum;
         let mut left = outcome.left;
         while left != 0 {
-            let i = first + left.trailing_zeros() as usize;
+            let k = left.trailing_zeros();
+            let (i, of_pattern) = ((candidate.first + k) as usize, (candidate.pattern.first + k) as usize);
             left &= left - 1;
-            let spot = own.shape.spot(points.place[i], points.height[i]);
+            let spot = own.shape.spot(points.place[of_pattern], points.height[of_pattern]);
+            let area = points.weight[of_pattern] * w.thickness;
             let start = nearest[i] as usize;
             let foot = match &mut self.foot {
                 Some(foot) if foot.facet() == start => foot,
@@ -181,9 +227,9 @@ impl<P: Shape> Singles<'_, P> {
                     self.pace = self.pace.max(slide.opening.abs());
                     doze[i] = self.now + w.steps_apart(to.gap, slide.along, self.pace, at.dt);
                 }
-                if let Some(mut past) = history.get(i).filter(|h| !h.is_empty()) {
+                if let Some(history) = history.as_mut().filter(|h| !h.get(i).is_empty()) {
                     outcome.touched = true;
-                    let area = points.weight[i] * w.thickness;
+                    let mut past = history.get(i);
                     past.release(area, &w.law, at.dt, slide.unwrap_or_default(), sum);
                     history.set(i, past);
                 }
@@ -199,14 +245,14 @@ impl<P: Shape> Singles<'_, P> {
                     last.insert(Side::new(foot, primary, at))
                 }
             };
-            let area = points.weight[i] * w.thickness;
             let [pressure, shear] = if w.softness > 0.0 {
                 [w.law.stiffness * area * w.rounded(to.gap)[0], 0.0]
             } else {
                 let slide = other.slide(own.velocity(&spot), &to);
                 self.pace = self.pace.max(slide.opening.abs());
-                match history.get(i) {
-                    Some(mut past) => {
+                match history {
+                    Some(history) => {
+                        let mut past = history.get(i);
                         let push = touch(to.gap, area, &w.law, at.dt, slide, &mut past, sum);
                         history.set(i, past);
                         push

@@ -11,6 +11,7 @@ use stribeck_solver::{
 };
 
 use crate::{
+    patch_row::pick,
     projection::NEAR_END,
     touch_row::{Acts, Law, Touching, Work},
 };
@@ -78,16 +79,56 @@ impl<V: Simd> Chord<V> {
 
     /// A chord in each lane, from the slots of their ends.
     #[inline(always)]
-    pub(crate) fn each(simd: V, at: &Moment<'_>, [a, b]: &[[u32; LANES]; 2]) -> Self {
-        let first = [gather(simd, at.x, a), gather(simd, at.y, a)];
-        let velocity = [gather(simd, at.vx, a), gather(simd, at.vy, a)];
-        Self {
-            position: [first, [gather(simd, at.x, b) - first[0], gather(simd, at.y, b) - first[1]]],
-            velocity: [
-                velocity,
-                [gather(simd, at.vx, b) - velocity[0], gather(simd, at.vy, b) - velocity[1]],
-            ],
+    pub(crate) fn each(simd: V, at: &Moment<'_>, ends: &[[u32; LANES]; 2]) -> Self {
+        let joints = Joints::of(ends);
+        let [[ax, bx], [ay, by]] = [both(simd, at.x, ends, joints), both(simd, at.y, ends, joints)];
+        let [[au, bu], [av, bv]] = [both(simd, at.vx, ends, joints), both(simd, at.vy, ends, joints)];
+        Self { position: [[ax, ay], [bx - ax, by - ay]], velocity: [[au, av], [bu - au, bv - av]] }
+    }
+}
+
+/// How chords in neighbouring lanes hang together.
+#[derive(Clone, Copy)]
+enum Joints {
+    /// Each begins where the one in the lane before ends.
+    Ahead,
+    /// Each ends where the one in the lane before begins.
+    Back,
+    None,
+}
+
+impl Joints {
+    #[inline(always)]
+    fn of([a, b]: &[[u32; LANES]; 2]) -> Self {
+        if a[1..] == b[..LANES - 1] {
+            Self::Ahead
+        } else if b[1..] == a[..LANES - 1] {
+            Self::Back
+        } else {
+            Self::None
         }
+    }
+}
+
+/// A number of a field at both ends of each chord; what two chords share is read once.
+#[inline(always)]
+fn both<V: Simd>(
+    simd: V,
+    field: &[f64],
+    [a, b]: &[[u32; LANES]; 2],
+    joints: Joints,
+) -> [Vector<V>; 2] {
+    let before = |first: u32| Vector::all(simd, field[first as usize]);
+    match joints {
+        Joints::Ahead => {
+            let ends = gather(simd, field, b);
+            [ends.shifted_in(before(a[0])), ends]
+        }
+        Joints::Back => {
+            let begins = gather(simd, field, a);
+            [begins, begins.shifted_in(before(b[0]))]
+        }
+        Joints::None => [gather(simd, field, a), gather(simd, field, b)],
     }
 }
 
@@ -116,6 +157,31 @@ impl<V: Simd> Meeting<V> {
             own_motion: own.velocity,
             other_motion: other.velocity,
         }
+    }
+
+    /// `yes` in the lanes that are one, `no` in those that are zero.
+    #[inline(always)]
+    pub(crate) fn chosen(lanes: Vector<V>, yes: &Self, no: &Self) -> Self {
+        Self {
+            from: [pick(lanes, yes.from[0], no.from[0]), no.from[1]],
+            other: pick(lanes, yes.other, no.other),
+            normal: pick(lanes, yes.normal, no.normal),
+            inverse: lanes.constant(0.0).choose_below(lanes, yes.inverse, no.inverse),
+            own_motion: no.own_motion,
+            other_motion: [
+                pick(lanes, yes.other_motion[0], no.other_motion[0]),
+                pick(lanes, yes.other_motion[1], no.other_motion[1]),
+            ],
+        }
+    }
+
+    /// One where points at these places have their feet beyond the other chord, behind its end or before its beginning.
+    #[inline(always)]
+    pub(crate) fn beyond(&self, s: Vector<V>, end: bool) -> Vector<V> {
+        let (zero, one) = (s.constant(0.0), s.constant(1.0));
+        let r = along(&self.from, s);
+        let foot = r[0].times_plus(self.other[0], r[1] * self.other[1]);
+        if end { one.choose_below(foot, one, zero) } else { foot.choose_below(zero, one, zero) }
     }
 
     /// What acts on a vector of points, and its energies; without `MEMORY` the penalty alone.

@@ -27,7 +27,7 @@ impl WithSimd for Nearest<'_> {
     fn with_simd<V: Simd>(self, simd: V) {
         let Self { secondary, primary, points, x, y, facet, pairs, found } = self;
         found.clear();
-        let range = points.of_facet(facet);
+        let range = points.of_facet[facet].range();
         let (a, b) = secondary.ends(facet);
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         for i in range.clone().step_by(Vector::<V>::LEN) {

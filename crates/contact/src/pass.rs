@@ -1,5 +1,7 @@
 //! One pass: the points of a secondary surface against the facets of a primary one.
 
+use std::ops::Range;
+
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 use stribeck_solver::{force::RankOne, lanes::LANES, state::Moment};
@@ -8,7 +10,7 @@ use crate::{
     evaluation::Evaluation,
     law::Law,
     nearest::Nearest,
-    points::Points,
+    points::{Pattern, Points},
     projection::Frame,
     shape::{Push, Shape, Side},
     spline::Patch,
@@ -27,35 +29,88 @@ pub(crate) struct Pass {
     pub(crate) deepest: f64,
     /// About how long the last evaluation took, in units of some ten nanoseconds.
     pub(crate) work: usize,
-    /// Room for the candidates of the search before, and for the facets nearest to the points of one.
-    before: Vec<Candidate>,
+    /// Room for the memory before a search, and for the facets nearest to the points of one.
+    before: Memory,
     found: Vec<u32>,
 }
 
-/// What a pass remembers from step to step.
+/// What a pass remembers from step to step: of the points of its candidates alone, one row after the other, so that what is
+/// read in every step lies close together. Behind the last point each field has room for a vector that reads on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Memory {
+    pub(crate) candidates: Vec<Candidate>,
     /// Facet of the primary surface on which each point was last found.
     pub(crate) nearest: Vec<u32>,
-    /// Step of the last search.
-    pub(crate) searched: u64,
     /// Steps after the search before which each point cannot touch; it wakes in the step that holds the last of them.
     pub(crate) doze: Vec<f64>,
+    /// What points in contact remember; `None` without damping and friction.
+    pub(crate) history: Option<Histories>,
     /// Fastest that a point of the pass opened or closed of late [m/s].
     pub(crate) pace: f64,
-    pub(crate) candidates: Vec<Candidate>,
-    /// None of them wakes before this step.
+    /// Step of the last search.
+    pub(crate) searched: u64,
+    /// No candidate wakes before this step.
     pub(crate) asleep: u64,
-    /// What points in contact remember.
-    pub(crate) history: Histories,
 }
 
 /// A facet that may touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Candidate {
-    pub(crate) facet: u32,
     /// Not before this step.
     pub(crate) wake: u64,
+    pub(crate) facet: u32,
+    /// First of its points in what the pass remembers.
+    pub(crate) first: u32,
+    pub(crate) pattern: Pattern,
+}
+
+impl Candidate {
+    /// Its points in what the pass remembers.
+    #[inline(always)]
+    pub(crate) fn range(&self) -> Range<usize> {
+        self.first as usize..(self.first + self.pattern.points) as usize
+    }
+}
+
+impl Memory {
+    /// Of no candidates.
+    fn new(remembers: bool) -> Self {
+        let mut memory = Self { history: remembers.then(Histories::default), ..Self::default() };
+        memory.clear();
+        memory.pad();
+        memory
+    }
+
+    /// Forgets all candidates.
+    fn clear(&mut self) {
+        self.candidates.clear();
+        self.nearest.clear();
+        self.doze.clear();
+        if let Some(history) = &mut self.history {
+            history.slip.clear();
+            history.damping.clear();
+        }
+    }
+
+    /// Makes room behind the last point.
+    fn pad(&mut self) {
+        let padded = self.nearest.len() + LANES;
+        self.doze.resize(padded, 0.0);
+        if let Some(history) = &mut self.history {
+            history.slip.resize(padded, 0.0);
+            history.damping.resize(padded, 0.0);
+        }
+    }
+
+    /// Appends a point; one that was `known` as number `i` of another memory takes its history along.
+    fn push(&mut self, nearest: u32, doze: f64, known: Option<(&Self, usize)>) {
+        self.nearest.push(nearest);
+        self.doze.push(doze);
+        if let Some(history) = &mut self.history {
+            let past = known.and_then(|(memory, i)| memory.history.as_ref().map(|h| h.get(i)));
+            history.push(past.unwrap_or_default());
+        }
+    }
 }
 
 /// Speeds are allowed for with this margin until the next look.
@@ -135,40 +190,34 @@ impl Pass {
         law: &Law,
         surfaces: &[Surface],
     ) -> Self {
-        let n = points.len();
         let remembers = law.damping > 0.0 || law.friction > 0.0;
         Self {
             secondary,
             primary,
-            memory: Memory {
-                nearest: vec![0; n],
-                searched: 0,
-                doze: vec![0.0; n + LANES],
-                pace: 0.0,
-                candidates: Vec::new(),
-                asleep: 0,
-                history: if remembers { Histories::new(n) } else { Histories::default() },
-            },
+            memory: Memory::new(remembers),
+            before: Memory::new(remembers),
+            found: Vec::new(),
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
             work: 0,
-            before: Vec::new(),
-            found: Vec::new(),
         }
     }
 
     /// Whether `memory` can be that of this pass: equal counts, and facets that exist.
     pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
-        let (own, secondary, primary) = (&self.memory, &surfaces[self.secondary], &surfaces[self.primary]);
-        memory.nearest.len() == own.nearest.len()
-            && memory.doze.len() == own.doze.len()
-            && if own.history.is_empty() {
-                memory.history.is_empty()
-            } else {
-                memory.history.serve(self.points.len())
-            }
-            && memory.nearest.iter().all(|&facet| (facet as usize) < primary.facets())
-            && memory.candidates.iter().all(|c| (c.facet as usize) < secondary.facets())
+        let mut next = 0;
+        let in_order = memory.candidates.iter().all(|c| {
+            let fits = self.points.of_facet.get(c.facet as usize) == Some(&c.pattern) && c.first == next;
+            next = c.first.saturating_add(c.pattern.points);
+            fits
+        });
+        let (n, facets) = (next as usize, surfaces[self.primary].facets());
+        in_order
+            && memory.nearest.len() == n
+            && memory.doze.len() == n + LANES
+            && memory.history.is_some() == self.memory.history.is_some()
+            && memory.history.as_ref().is_none_or(|history| history.serve(n))
+            && memory.nearest.iter().all(|&facet| (facet as usize) < facets)
     }
 
     /// Goes on from a memory.
@@ -180,16 +229,15 @@ impl Pass {
     /// before go on from what they remember, but where another part of the primary surface has come nearer.
     pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let Self { points, before, found, .. } = self;
-        let Memory { nearest, searched, doze, candidates, asleep, .. } = &mut self.memory;
-        let elapsed = at.step.saturating_sub(*searched) as f64;
-        *searched = at.step;
-        *asleep = 0;
-        std::mem::swap(candidates, before);
-        candidates.clear();
-        let mut before = before.iter().peekable();
+        let Self { points, memory, before, found, .. } = self;
+        std::mem::swap(memory, before);
+        memory.clear();
+        (memory.pace, memory.searched, memory.asleep) = (before.pace, at.step, 0);
+        let elapsed = at.step.saturating_sub(before.searched) as f64;
+        let mut old = before.candidates.iter().peekable();
         for pairs in pairs.chunk_by(|a, b| a.0 == b.0) {
-            let facet = pairs[0].0;
+            let (facet, first) = (pairs[0].0, memory.nearest.len() as u32);
+            let pattern = points.of_facet[facet as usize];
             Arch::new().dispatch(Nearest {
                 secondary,
                 primary,
@@ -200,31 +248,35 @@ impl Pass {
                 pairs,
                 found,
             });
-            while before.next_if(|c| c.facet < facet).is_some() {}
-            let stays = before.peek().is_some_and(|c| c.facet == facet);
+            while old.next_if(|c| c.facet < facet).is_some() {}
+            let old = old.peek().filter(|c| c.facet == facet);
             let mut soonest = f64::INFINITY;
-            for (i, &new) in points.of_facet(facet as usize).zip(found.iter()) {
-                if stays && primary.adjoin(nearest[i] as usize, new as usize) {
+            for (k, &new) in found.iter().enumerate() {
+                let known = old.map(|c| c.first as usize + k);
+                let (mut nearest, mut doze) = (new, 0.0);
+                if let Some(i) = known.filter(|&i| primary.adjoin(before.nearest[i] as usize, new as usize)) {
+                    nearest = before.nearest[i];
                     // Whoever had no foot looks again.
-                    doze[i] = if doze[i] == NEVER { 0.0 } else { doze[i] - elapsed };
-                } else {
-                    (nearest[i], doze[i]) = (new, 0.0);
+                    doze = if before.doze[i] == NEVER { 0.0 } else { before.doze[i] - elapsed };
                 }
-                soonest = soonest.min(doze[i]);
+                soonest = soonest.min(doze);
+                memory.push(nearest, doze, known.map(|i| (&*before, i)));
             }
-            candidates.push(Candidate { facet, wake: at.step + soonest.max(0.0) as u64 });
+            let wake = at.step + soonest.max(0.0) as u64;
+            memory.candidates.push(Candidate { wake, facet, first, pattern });
         }
+        memory.pad();
     }
 
     /// Forgets all candidates: positions are about to change in other ways than by motion.
     pub(crate) fn forget_candidates(&mut self) {
-        self.memory.candidates.clear();
+        self.memory.clear();
+        self.memory.pad();
     }
 
     /// Pushes that one evaluation makes at most, until the next candidates are taken.
     pub(crate) fn most_pushes(&self) -> usize {
-        let points = |c: &Candidate| self.points.of_facet(c.facet as usize).len();
-        self.memory.candidates.iter().map(|c| MOST_NODES * (1 + points(c))).sum()
+        self.memory.candidates.iter().map(|c| MOST_NODES * (1 + c.pattern.points as usize)).sum()
     }
 
     /// Evaluates the pass: pushes forces and sums.
@@ -274,9 +326,9 @@ impl Pass {
         for candidate in &self.memory.candidates {
             let facet = candidate.facet as usize;
             let shape = S::new(secondary, x, y, facet);
-            for i in self.points.of_facet(facet) {
+            for (i, of_point) in candidate.pattern.range().zip(candidate.range()) {
                 let spot = shape.spot(self.points.place[i], self.points.height[i]);
-                let mut foot = P::new(primary, x, y, self.memory.nearest[i] as usize);
+                let mut foot = P::new(primary, x, y, self.memory.nearest[of_point] as usize);
                 let found = foot.project(primary, x, y, spot.at);
                 let Some(to) = found.filter(|f| f.gap < w.reach() && f.gap > -self.deepest) else { continue };
                 let [_, slope] = w.rounded(to.gap);

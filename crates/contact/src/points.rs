@@ -1,5 +1,8 @@
 //! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
 
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
 use stribeck_solver::lanes::LANES;
 
 use crate::surface::Surface;
@@ -21,7 +24,8 @@ impl Method {
     pub const MOST_POINTS: usize = 32;
 }
 
-/// Contact points, facet by facet. Behind the last one each field has room for a vector that reads on.
+/// Contact points. Facets whose points lie and weigh alike share a pattern, so that what all rows of points read stays in
+/// cache. Behind the last one each field has room for a vector that reads on.
 #[derive(Debug, Clone)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
@@ -30,26 +34,46 @@ pub(crate) struct Points {
     pub(crate) height: Vec<f64>,
     /// Length of surface that the point stands for [m].
     pub(crate) weight: Vec<f64>,
-    /// First point of each facet; one more entry than facets.
-    pub(crate) first: Vec<u32>,
+    /// Pattern of each facet.
+    pub(crate) of_facet: Vec<Pattern>,
     /// Most points of one facet.
     pub(crate) most: usize,
 }
 
+/// Which points a facet has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Pattern {
+    pub(crate) first: u32,
+    pub(crate) points: u32,
+}
+
+/// A point of a facet: place, height, weight.
+type Point = [f64; 3];
+
+/// Facets are alike when their points agree to this part of a facet's length.
+const ALIKE: f64 = 1e-9;
+
+/// A facet is compared with this many patterns before it gets one of its own.
+const COMPARED: usize = 8;
+
 impl Points {
     pub(crate) fn new(surface: &Surface, method: Method) -> Self {
-        let mut points =
-            Self { place: Vec::new(), height: Vec::new(), weight: Vec::new(), first: vec![0], most: 0 };
+        let mut all =
+            Self { place: Vec::new(), height: Vec::new(), weight: Vec::new(), of_facet: Vec::new(), most: 0 };
         let tributary = surface.tributary();
+        let mut patterns: Vec<Pattern> = Vec::new();
+        let mut points: Vec<Point> = Vec::new();
         for f in 0..surface.facets() {
+            points.clear();
+            let mut push = |place: f64, weight: f64| points.push([place, surface.height(f, place), weight]);
             match method {
-                Method::Collocated => points.push(0.0, tributary[f]),
+                Method::Collocated => push(0.0, tributary[f]),
                 Method::Integrated { points: n } => {
                     let share = surface.length[f] / n as f64;
                     if surface.corner[f] {
-                        points.push(0.0, 0.5 * share);
+                        push(0.0, 0.5 * share);
                     }
-                    (0..n).for_each(|i| points.push((i as f64 + 0.5) / n as f64, share));
+                    (0..n).for_each(|i| push((i as f64 + 0.5) / n as f64, share));
                 }
             }
             // The last node of an open surface begins no facet.
@@ -58,34 +82,45 @@ impl Points {
                     Method::Collocated => tributary[f + 1],
                     Method::Integrated { points: n } => 0.5 * surface.length[f] / n as f64,
                 };
-                points.push(1.0, weight);
+                push(1.0, weight);
             }
-            let new = points.height.len()..points.place.len();
-            points.height.extend(points.place[new].iter().map(|&s| surface.height(f, s)));
-            points.first.push(points.place.len() as u32);
+            let alike = |pattern: &&Pattern| all.agrees(**pattern, &points, surface.length[f]);
+            let pattern = patterns.iter().rev().take(COMPARED).find(alike).copied();
+            let pattern = pattern.unwrap_or_else(|| {
+                let new = Pattern { first: all.place.len() as u32, points: points.len() as u32 };
+                for &[place, height, weight] in &points {
+                    all.place.push(place);
+                    all.height.push(height);
+                    all.weight.push(weight);
+                }
+                patterns.push(new);
+                new
+            });
+            all.of_facet.push(pattern);
+            all.most = all.most.max(points.len());
         }
-        points.most = points.first.windows(2).map(|w| (w[1] - w[0]) as usize).max().unwrap_or(0);
-        let padded = points.place.len() + LANES;
-        for field in [&mut points.place, &mut points.height, &mut points.weight] {
+        let padded = all.place.len() + LANES;
+        for field in [&mut all.place, &mut all.height, &mut all.weight] {
             field.resize(padded, 0.0);
         }
-        points
+        all
     }
 
-    fn push(&mut self, place: f64, weight: f64) {
-        self.place.push(place);
-        self.weight.push(weight);
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.first.last().map_or(0, |&end| end as usize)
+    /// Whether these points of a facet of this length are those of a pattern.
+    fn agrees(&self, pattern: Pattern, points: &[Point], length: f64) -> bool {
+        let near = |(i, [place, height, weight]): (usize, &Point)| {
+            self.place[i] == *place
+                && (self.height[i] - height).abs() <= ALIKE * length
+                && (self.weight[i] - weight).abs() <= ALIKE * length
+        };
+        pattern.points as usize == points.len() && pattern.range().zip(points).all(near)
     }
 
     /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.
     pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
         let mut dealt = vec![0.0; surface.slots.len()];
-        for f in 0..surface.facets() {
-            for i in self.of_facet(f) {
+        for (f, pattern) in self.of_facet.iter().enumerate() {
+            for i in pattern.range() {
                 // (Σ s u)² ≤ Σ|s| · Σ |s| u².
                 let shares = surface.shares(f, self.place[i]);
                 let sum: f64 = shares.iter().map(|(_, s)| s.abs()).sum();
@@ -99,8 +134,12 @@ impl Points {
     pub(crate) fn largest_weight(&self) -> f64 {
         self.weight.iter().copied().fold(0.0, f64::max)
     }
+}
 
-    pub(crate) fn of_facet(&self, facet: usize) -> std::ops::Range<usize> {
-        self.first[facet] as usize..self.first[facet + 1] as usize
+impl Pattern {
+    /// Its points.
+    #[inline(always)]
+    pub(crate) fn range(self) -> Range<usize> {
+        self.first as usize..(self.first + self.points) as usize
     }
 }

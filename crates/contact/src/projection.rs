@@ -86,15 +86,13 @@ impl Shape for Frame {
     fn touch_row<V: Simd, const MEMORY: bool>(
         simd: V,
         row: Row<'_>,
-        facet: usize,
         _own: &mut Option<Side<Self>>,
         _feet: &mut Feet<V>,
         law: &Law<V>,
         work: &mut Work<V>,
         push: &mut Vec<Push>,
     ) -> Outcome {
-        let ends = row.secondary.ends(facet);
-        row.touch::<V, MEMORY>(simd, ends, law, work, push)
+        row.touch::<V, MEMORY>(simd, law, work, push)
     }
 
     #[inline(always)]

@@ -52,7 +52,6 @@ pub(crate) trait Shape: Copy {
     fn touch_row<V: Simd, const MEMORY: bool>(
         simd: V,
         row: Row<'_>,
-        facet: usize,
         own: &mut Option<Side<Self>>,
         feet: &mut Feet<V>,
         law: &Law<V>,

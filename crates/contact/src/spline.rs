@@ -259,13 +259,13 @@ impl Shape for Patch {
     fn touch_row<V: Simd, const MEMORY: bool>(
         simd: V,
         row: Row<'_>,
-        facet: usize,
         own: &mut Option<Side<Self>>,
         feet: &mut Feet<V>,
         law: &Law<V>,
         work: &mut Work<V>,
         push: &mut Vec<Push>,
     ) -> Outcome {
+        let facet = row.candidate.facet as usize;
         let side = || Side::new(Self::new(row.secondary, row.at.x, row.at.y, facet), row.secondary, row.at);
         let own = own.get_or_insert_with(side);
         row.touch_splines::<V, MEMORY>(simd, own, feet, law, work, push)

@@ -96,7 +96,8 @@ impl Row<'_> {
         let (open, left) = self.open(simd);
         let mut outcome = Outcome { left, ..Outcome::default() };
         let Some([a, b]) = self.two_facets(left) else { return outcome };
-        let Self { points, range, nearest, doze, history, primary, at, .. } = self;
+        let Self { candidate, points, nearest, doze, history, primary, at, .. } = self;
+        let (range, pattern) = (candidate.range(), candidate.pattern.first as usize);
         let places = [feet.take(simd, a, b, primary, at, push), feet.take(simd, b, a, primary, at, push)];
         let [Some(near), Some(far)] = places.map(|place| feet.facets[place].as_ref()) else { return outcome };
         let (near, far) = (Lanes::of(simd, &near.side), Lanes::of(simd, &far.side));
@@ -113,14 +114,15 @@ impl Row<'_> {
             }
             let (first, known) = (Vector::load(simd, &is_near, 0), Vector::load(simd, &known, 0));
             let to = Lanes::chosen(first, &near, &far);
-            let spots =
-                line.spots(Vector::load(simd, &points.place, i), Vector::load(simd, &points.height, i));
+            let of_pattern = pattern + start;
+            let place = Vector::load(simd, &points.place, of_pattern);
+            let spots = line.spots(place, Vector::load(simd, &points.height, of_pattern));
             let foot = to.foot(spots.at);
             let [opening, along] = slide(&line, &spots, &to, &foot);
             let touching = Touching {
                 within: foot.held(Vector::load(simd, &open, start) * known),
                 gap: foot.gap,
-                weight: Vector::load(simd, &points.weight, i),
+                weight: Vector::load(simd, &points.weight, of_pattern),
                 opening,
                 along,
                 slip: if MEMORY { Vector::load(simd, &history.slip, i) } else { zero },
@@ -162,9 +164,9 @@ impl Row<'_> {
     /// The facets on which the first of the points was found last, and the next one that differs; none near a corner.
     #[inline(always)]
     fn two_facets(&self, mut left: u64) -> Option<[usize; 2]> {
-        let mut first = None;
+        let (first_point, mut first) = (self.candidate.first as usize, None);
         while left != 0 {
-            let facet = self.nearest[self.range.start + left.trailing_zeros() as usize] as usize;
+            let facet = self.nearest[first_point + left.trailing_zeros() as usize] as usize;
             left &= left - 1;
             if self.primary.beside_corner[facet] {
                 continue;

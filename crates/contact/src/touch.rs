@@ -14,8 +14,7 @@ pub(crate) struct History {
     damping: f64,
 }
 
-/// Histories of all points of a pass, one array a field, padded as [`Points`](crate::points::Points) are; empty without
-/// damping and friction.
+/// Histories of points, one array a field.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Histories {
     pub(crate) slip: Vec<f64>,
@@ -23,31 +22,26 @@ pub(crate) struct Histories {
 }
 
 impl Histories {
-    /// Of `n` points without contact.
-    pub(crate) fn new(n: usize) -> Self {
-        Self { slip: vec![0.0; n + LANES], damping: vec![0.0; n + LANES] }
-    }
-
-    /// Whether there is one for each of `n` points.
+    /// Whether there is one for each of `n` points, and room behind them.
     pub(crate) fn serve(&self, n: usize) -> bool {
         self.slip.len() == n + LANES && self.damping.len() == n + LANES
     }
 
-    /// Whether nothing is remembered.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.slip.is_empty() && self.damping.is_empty()
-    }
-
     #[inline(always)]
-    pub(crate) fn get(&self, i: usize) -> Option<History> {
-        let (slip, damping) = (*self.slip.get(i)?, *self.damping.get(i)?);
-        Some(History { slip, damping })
+    pub(crate) fn get(&self, i: usize) -> History {
+        History { slip: self.slip[i], damping: self.damping[i] }
     }
 
     /// See [`Histories::get`].
     #[inline(always)]
     pub(crate) fn set(&mut self, i: usize, history: History) {
         (self.slip[i], self.damping[i]) = (history.slip, history.damping);
+    }
+
+    /// Appends one.
+    pub(crate) fn push(&mut self, history: History) {
+        self.slip.push(history.slip);
+        self.damping.push(history.damping);
     }
 }
 

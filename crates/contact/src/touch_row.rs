@@ -143,11 +143,14 @@ impl<V: Simd> Law<V> {
         let on = gap.choose_below(self.reach, shallow, zero);
         let pace = within * opening.max(-opening);
         work.pace = work.pace.max(pace);
-        let closing = (self.pace.max(pace) + along.max(-along)).times_plus(self.margin, self.least);
-        let steps = (gap - self.reach) / (closing.min(self.fastest) * self.dt);
-        let doze = self.now + steps.min(self.longest);
         let still = points.slip * points.slip + points.damping * points.damping;
         let apart = gap.choose_below(self.reach, zero, zero.choose_below(still, zero, within));
+        let mut doze = zero;
+        if apart.bits() != 0 {
+            let closing = (self.pace.max(pace) + along.max(-along)).times_plus(self.margin, self.least);
+            let steps = (gap - self.reach) / (closing.min(self.fastest) * self.dt);
+            doze = self.now + steps.min(self.longest);
+        }
         let dashpot = self.dashpot * weight;
         let k = self.stiffness * weight;
         let (depth, elastic, dashpot, stored) = match &self.onset {

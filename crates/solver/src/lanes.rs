@@ -62,6 +62,18 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: simd.splat_f64s(value) }
     }
 
+    /// One in each lane l whose bit l is set, zero in the others: what [`bits`](Self::bits) makes of it.
+    #[inline(always)]
+    pub fn ones(simd: S, bits: u64) -> Self {
+        const BITS: [u64; LANES] = [1, 2, 4, 8, 16, 32, 64, 128];
+        let each = S::as_simd_u64s(&BITS[..Self::LEN]).0[0];
+        let set = simd.and_u64s(simd.splat_u64s(bits), each);
+        let chosen = simd.equal_u64s(set, each);
+        let one = simd.transmute_u64s_f64s(simd.splat_f64s(1.0));
+        let zero = simd.transmute_u64s_f64s(simd.splat_f64s(0.0));
+        Self { simd, lanes: simd.transmute_f64s_u64s(simd.select_u64s(chosen, one, zero)) }
+    }
+
     /// The numbers from `at` on.
     #[inline(always)]
     pub fn load(simd: S, from: &[f64], at: usize) -> Self {

@@ -136,8 +136,10 @@ impl Sweep<'_> {
         let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
         for run in &tile.loaded {
             for (force, outer) in [(&mut *fx, &mut *outer_x), (&mut *fy, &mut *outer_y)] {
-                force[run.clone()].copy_from_slice(&outer[run.clone()]);
-                outer[run.clone()].fill(0.0);
+                // Runs are mostly too short for a call.
+                for (force, outer) in force[run.clone()].iter_mut().zip(&mut outer[run.clone()]) {
+                    *force = std::mem::take(outer);
+                }
             }
         }
         let (x, y, own_x, own_y) = if D::AHEAD {
