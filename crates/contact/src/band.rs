@@ -64,9 +64,8 @@ impl Band<'_> {
         }
         let alike = pattern == [pattern[0]; LANES];
         let chord = Chord::each(simd, at, &own);
-        let zero = Vector::all(simd, 0.0);
-        let (mut force, mut with_place) = ([zero; 2], [zero; 2]);
-        let mut any = false;
+        let mut on_own = OnChords::none(simd, own);
+        let mut met: Option<(Meeting<V>, OnChords<V>)> = None;
         for k in 0..points.most as u32 {
             let mut other = [[0; LANES]; 2];
             let mut point = begin;
@@ -93,6 +92,7 @@ impl Band<'_> {
                 i.iter_mut().zip(&len).for_each(|(i, len)| *i += if k < *len { k } else { 0 });
                 (gather(simd, &points.place, &i), gather(simd, &points.weight, &i))
             };
+            let zero = Vector::all(simd, 0.0);
             let spots = Spots {
                 open: Vector::ones(simd, open),
                 place,
@@ -100,7 +100,15 @@ impl Band<'_> {
                 slip: if MEMORY { gather(simd, &history.slip, &point) } else { zero },
                 damping: if MEMORY { gather(simd, &history.damping, &point) } else { zero },
             };
-            let meeting = Meeting::new(&chord, &Chord::each(simd, at, &other));
+            // Points of a facet mostly meet the same chord.
+            if met.as_ref().is_none_or(|(_, on_other)| on_other.ends != other) {
+                if let Some((_, on_other)) = &met {
+                    on_other.flush(push);
+                }
+                let meeting = Meeting::new(&chord, &Chord::each(simd, at, &other));
+                met = Some((meeting, OnChords::none(simd, other)));
+            }
+            let Some((meeting, on_other)) = &mut met else { continue };
             let acting = meeting.act::<MEMORY>(law, &spots, work);
             let (on, apart) = (acting.acts.on.bits(), acting.acts.apart.bits());
             if apart != 0 {
@@ -114,48 +122,89 @@ impl Band<'_> {
             if on == 0 {
                 continue;
             }
-            any = true;
             let [fx, fy] = acting.force;
-            force = [force[0] + fx, force[1] + fy];
-            let [wx, wy] = with_place;
-            with_place = [fx.times_plus(spots.place, wx), fy.times_plus(spots.place, wy)];
+            on_own.add(on, [fx, fy], spots.place);
+            on_other.add(on, [-fx, -fy], acting.foot);
             let [mut slip, mut damping] = [[0.0; LANES]; 2];
-            acting.acts.slip.store(&mut slip, 0);
-            acting.acts.damping.store(&mut damping, 0);
-            let (second_x, second_y) = (fx * acting.foot, fy * acting.foot);
-            let [mut first_fx, mut first_fy, mut second_fx, mut second_fy] = [[0.0; LANES]; 4];
-            (second_x - fx).store(&mut first_fx, 0);
-            (second_y - fy).store(&mut first_fy, 0);
-            (-second_x).store(&mut second_fx, 0);
-            (-second_y).store(&mut second_fy, 0);
-            for l in 0..Vector::<V>::LEN {
-                if on >> l & 1 == 0 {
-                    continue;
-                }
+            if MEMORY {
+                acting.acts.slip.store(&mut slip, 0);
+                acting.acts.damping.store(&mut damping, 0);
+            }
+            for l in (0..Vector::<V>::LEN).filter(|l| on >> l & 1 == 1) {
                 let i = point[l] as usize;
                 if MEMORY {
                     (history.slip[i], history.damping[i]) = (slip[l], damping[l]);
                 }
                 outcomes[l].touched = true;
                 outcomes[l].left &= !(1 << k);
-                push.push((other[0][l], [first_fx[l], first_fy[l]]));
-                push.push((other[1][l], [second_fx[l], second_fy[l]]));
             }
         }
-        if any {
-            let [mut fx, mut fy, mut sx, mut sy] = [[0.0; LANES]; 4];
-            force[0].store(&mut fx, 0);
-            force[1].store(&mut fy, 0);
-            with_place[0].store(&mut sx, 0);
-            with_place[1].store(&mut sy, 0);
-            for l in 0..Vector::<V>::LEN {
-                if outcomes[l].touched {
-                    outcomes[l].force = [fx[l], fy[l]];
-                    push.push((own[0][l], [fx[l] - sx[l], fy[l] - sy[l]]));
-                    push.push((own[1][l], [sx[l], sy[l]]));
-                }
-            }
+        if let Some((_, on_other)) = &met {
+            on_other.flush(push);
         }
+        let [mut fx, mut fy] = [[0.0; LANES]; 2];
+        on_own.force[0].store(&mut fx, 0);
+        on_own.force[1].store(&mut fy, 0);
+        (0..Vector::<V>::LEN).for_each(|l| outcomes[l].force = [fx[l], fy[l]]);
+        on_own.flush(push);
         outcomes
+    }
+}
+
+/// Forces on a chord in each lane.
+#[derive(Clone, Copy)]
+struct OnChords<V: Simd> {
+    /// Slots of its ends.
+    ends: [[u32; LANES]; 2],
+    /// Sum of the forces, and of their products with their place on the chord.
+    force: [Vector<V>; 2],
+    with_place: [Vector<V>; 2],
+    /// Bits of lanes with forces.
+    lanes: u64,
+}
+
+impl<V: Simd> OnChords<V> {
+    #[inline(always)]
+    fn none(simd: V, ends: [[u32; LANES]; 2]) -> Self {
+        let zero = [Vector::all(simd, 0.0); 2];
+        Self { ends, force: zero, with_place: zero, lanes: 0 }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, lanes: u64, [fx, fy]: [Vector<V>; 2], place: Vector<V>) {
+        self.lanes |= lanes;
+        self.force = [self.force[0] + fx, self.force[1] + fy];
+        let [wx, wy] = self.with_place;
+        self.with_place = [fx.times_plus(place, wx), fy.times_plus(place, wy)];
+    }
+
+    /// Hands the forces over to the nodes; what neighbouring chords do to a node that they share, at once.
+    #[inline(always)]
+    fn flush(&self, push: &mut Vec<Push>) {
+        if self.lanes == 0 {
+            return;
+        }
+        let [mut ax, mut ay, mut bx, mut by] = [[0.0; LANES]; 4];
+        (self.force[0] - self.with_place[0]).store(&mut ax, 0);
+        (self.force[1] - self.with_place[1]).store(&mut ay, 0);
+        self.with_place[0].store(&mut bx, 0);
+        self.with_place[1].store(&mut by, 0);
+        let mut held: Option<Push> = None;
+        for l in (0..Vector::<V>::LEN).filter(|l| self.lanes >> l & 1 == 1) {
+            let (mut first, mut second) =
+                ((self.ends[0][l], [ax[l], ay[l]]), (self.ends[1][l], [bx[l], by[l]]));
+            match held {
+                Some((node, f)) if node == first.0 => first.1 = [first.1[0] + f[0], first.1[1] + f[1]],
+                Some((node, f)) if node == second.0 => {
+                    second.1 = [second.1[0] + f[0], second.1[1] + f[1]];
+                    (first, second) = (second, first);
+                }
+                Some(other) => push.push(other),
+                None => {}
+            }
+            push.push(first);
+            held = Some(second);
+        }
+        push.extend(held);
     }
 }

@@ -1,10 +1,7 @@
 //! The evaluation of a pass: which points are awake, vectors of them first, then what is left over, one by one.
 
 use pulp::{Simd, WithSimd};
-use stribeck_solver::{
-    lanes::Vector,
-    state::Moment,
-};
+use stribeck_solver::{lanes::Vector, state::Moment};
 
 use crate::{
     band::{self, Band},
@@ -81,7 +78,8 @@ impl Evaluation<'_> {
         };
         if together && flat && points.most <= band::MOST_POINTS {
             for group in candidates.chunks_mut(Vector::<V>::LEN) {
-                let awake = group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
+                let awake =
+                    group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
                 if awake == 0 {
                     first_awake = group.iter().fold(first_awake, |first, c| first.min(c.wake));
                     continue;
@@ -105,7 +103,8 @@ impl Evaluation<'_> {
                     let mut outcome = Outcome::default();
                     if together {
                         let history = history.as_mut().unwrap_or(&mut no_history);
-                        let row = Row { candidate, points, nearest, doze, history, secondary, primary, at, now };
+                        let row =
+                            Row { candidate, points, nearest, doze, history, secondary, primary, at, now };
                         let (own, law) = (&mut rest.own, &law);
                         outcome = S::touch_row::<V, MEMORY>(simd, row, own, &mut feet, law, &mut done, push);
                         work += if outcome.touched { 20 } else { 10 };

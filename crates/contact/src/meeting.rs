@@ -112,12 +112,7 @@ impl Joints {
 
 /// A number of a field at both ends of each chord; what two chords share is read once.
 #[inline(always)]
-fn both<V: Simd>(
-    simd: V,
-    field: &[f64],
-    [a, b]: &[[u32; LANES]; 2],
-    joints: Joints,
-) -> [Vector<V>; 2] {
+fn both<V: Simd>(simd: V, field: &[f64], [a, b]: &[[u32; LANES]; 2], joints: Joints) -> [Vector<V>; 2] {
     let before = |first: u32| Vector::all(simd, field[first as usize]);
     match joints {
         Joints::Ahead => {

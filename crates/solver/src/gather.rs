@@ -65,7 +65,12 @@ pub(crate) fn single_elements<S: Simd>(
 #[inline(always)]
 fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
     let [a, b, c, d] = v;
-    [Vector::load(simd, a, at), Vector::load(simd, b, at), Vector::load(simd, c, at), Vector::load(simd, d, at)]
+    [
+        Vector::load(simd, a, at),
+        Vector::load(simd, b, at),
+        Vector::load(simd, c, at),
+        Vector::load(simd, d, at),
+    ]
 }
 
 #[inline(always)]

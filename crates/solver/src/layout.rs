@@ -73,13 +73,28 @@ pub(crate) fn lay_out(model: &Model, quads: &[QuadReference], triangles: &[Trian
         tiles: Vec::new(),
     };
     let groups = congruent_groups(model, quads, triangles);
-    for group in &groups {
-        match group.as_slice() {
+    let alone_or_together = groups.iter().flat_map(|group| group.chunks(LANES)).collect();
+    let elements = |bodies: &&[usize]| bodies.iter().map(|&b| mesh.bodies[b].quads.len()).sum();
+    for bodies in small_ones_inwards(alone_or_together, elements) {
+        match bodies {
             [body] => layout.add_body(model, *body),
-            bodies => bodies.chunks(LANES).for_each(|some| layout.add_congruent(mesh, some)),
+            bodies => layout.add_congruent(mesh, bodies),
         }
     }
     layout
+}
+
+/// Deals items to two sides, the largest first, each to the side with less work, and joins these where the small ones are:
+/// two threads that begin at either end then have equal work left where they meet, and little of it.
+fn small_ones_inwards<T>(mut items: Vec<T>, work: impl Fn(&T) -> usize) -> impl Iterator<Item = T> {
+    items.sort_by_key(|item| std::cmp::Reverse(work(item)));
+    let [mut left, mut right] = [(0, Vec::new()), (0, Vec::new())];
+    for item in items {
+        let side = if left.0 <= right.0 { &mut left } else { &mut right };
+        side.0 += work(&item);
+        side.1.push(item);
+    }
+    left.1.into_iter().chain(right.1.into_iter().rev())
 }
 
 impl Layout {
