@@ -81,6 +81,8 @@ pub struct Contacts {
     skin: f64,
     search: Schedule,
     preload: Option<f64>,
+    /// Whether positions have changed in other ways than by motion.
+    jumped: bool,
     parallel: bool,
     together: bool,
     energy: Energy,
@@ -150,6 +152,7 @@ impl Contacts {
             skin,
             search: Schedule::default(),
             preload: None,
+            jumped: false,
             parallel: false,
             together: true,
             energy: Energy::default(),
@@ -173,11 +176,7 @@ impl Contacts {
     pub fn set_preload(&mut self, softness: Option<f64>) {
         self.preload = softness;
         self.search.next = 0;
-        self.forget_candidates();
-    }
-
-    fn forget_candidates(&mut self) {
-        self.pairs.iter_mut().flat_map(|pair| &mut pair.passes).for_each(Pass::forget_candidates);
+        self.jumped = true;
     }
 
     /// What each pair does, in the order given.
@@ -227,13 +226,20 @@ impl Contacts {
 
     fn search(&mut self, at: &Moment<'_>) {
         let grow = 0.5 * self.skin;
-        if self.preload.is_some() {
+        if self.preload.is_some() || self.jumped {
             // Newton's method jumps: nothing that was known of positions holds.
-            self.forget_candidates();
+            self.pairs.iter_mut().flat_map(|pair| &mut pair.passes).for_each(Pass::forget_candidates);
+            self.jumped = false;
         }
         for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
             tree.update(surface, at.x, at.y, grow + surface.largest_sag());
         }
+        let square = |&n: &u32| at.vx[n as usize] * at.vx[n as usize] + at.vy[n as usize] * at.vy[n as usize];
+        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(square).fold(0.0, f64::max).sqrt();
+        // Two points may approach each other, each at the highest speed.
+        let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
+        // Who dozes counts on the speed of the search before.
+        let slower = (self.search.fastest / fastest).min(1.0);
         let threads = self.threads();
         let Self { trees, surfaces, pairs, .. } = self;
         let find = |pair: &mut Pair| {
@@ -243,16 +249,12 @@ impl Contacts {
                     pair.found.iter_mut().for_each(|(a, b)| std::mem::swap(a, b));
                     pair.found.sort_unstable();
                 }
-                pass.take(&pair.found, surfaces, at);
+                pass.take(&pair.found, surfaces, at, slower);
             }
             pair.push.clear();
             pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
         };
         share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
-        let square = |&n: &u32| at.vx[n as usize] * at.vx[n as usize] + at.vy[n as usize] * at.vy[n as usize];
-        let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(square).fold(0.0, f64::max).sqrt();
-        // Two points may approach each other, each at the highest speed.
-        let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
         self.search = Schedule { next: at.step + rest.clamp(1.0, LONGEST_REST) as u64, fastest };
     }

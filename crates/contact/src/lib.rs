@@ -83,7 +83,7 @@
 //! | Where does the law act? | `points.rs` |
 //! | What does one pass do, in contact and out of it? | `pass.rs`, `evaluation.rs`, `touch.rs` |
 //! | How are many points done at a time? | `row.rs`, `meeting.rs`, `spline_row.rs`, `patch_row.rs`, `touch_row.rs`, `band.rs` |
-//! | Who is near whom? | `search.rs` |
+//! | Who is near whom? | `search.rs`, `nearest.rs` |
 //! | How does it all become one force? | `contacts.rs` |
 
 // Units stand in brackets, as in "gap [m]", and are no links.

@@ -80,7 +80,7 @@ impl<V: Simd> Chord<V> {
     /// A chord in each lane, from the slots of their ends.
     #[inline(always)]
     pub(crate) fn each(simd: V, at: &Moment<'_>, ends: &[[u32; LANES]; 2]) -> Self {
-        let joints = Joints::of(ends);
+        let joints = Joints::of(ends, Vector::<V>::LEN);
         let [[ax, bx], [ay, by]] = [both(simd, at.x, ends, joints), both(simd, at.y, ends, joints)];
         let [[au, bu], [av, bv]] = [both(simd, at.vx, ends, joints), both(simd, at.vy, ends, joints)];
         Self { position: [[ax, ay], [bx - ax, by - ay]], velocity: [[au, av], [bu - au, bv - av]] }
@@ -99,10 +99,10 @@ enum Joints {
 
 impl Joints {
     #[inline(always)]
-    fn of([a, b]: &[[u32; LANES]; 2]) -> Self {
-        if a[1..] == b[..LANES - 1] {
+    fn of([a, b]: &[[u32; LANES]; 2], lanes: usize) -> Self {
+        if a[1..lanes] == b[..lanes - 1] {
             Self::Ahead
-        } else if b[1..] == a[..LANES - 1] {
+        } else if b[1..lanes] == a[..lanes - 1] {
             Self::Back
         } else {
             Self::None

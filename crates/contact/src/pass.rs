@@ -35,7 +35,7 @@ pub(crate) struct Pass {
 }
 
 /// What a pass remembers from step to step: of the points of its candidates alone, one row after the other, so that what is
-/// read in every step lies close together. Behind the last point each field has room for a vector that reads on.
+/// read in every step lies close together. Behind the last point `doze` and `history` have room for a vector that reads on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Memory {
     pub(crate) candidates: Vec<Candidate>,
@@ -205,16 +205,20 @@ impl Pass {
 
     /// Whether `memory` can be that of this pass: equal counts, and facets that exist.
     pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
-        let mut next = 0;
+        let (mut next, mut least) = (0, 0);
         let in_order = memory.candidates.iter().all(|c| {
-            let fits = self.points.of_facet.get(c.facet as usize) == Some(&c.pattern) && c.first == next;
+            let fits = self.points.of_facet.get(c.facet as usize) == Some(&c.pattern)
+                && c.facet >= least
+                && c.first == next;
             next = c.first.saturating_add(c.pattern.points);
+            least = c.facet.saturating_add(1);
             fits
         });
         let (n, facets) = (next as usize, surfaces[self.primary].facets());
         in_order
             && memory.nearest.len() == n
             && memory.doze.len() == n + LANES
+            && memory.doze.iter().all(|doze| doze.is_finite())
             && memory.history.is_some() == self.memory.history.is_some()
             && memory.history.as_ref().is_none_or(|history| history.serve(n))
             && memory.nearest.iter().all(|&facet| (facet as usize) < facets)
@@ -226,8 +230,9 @@ impl Pass {
     }
 
     /// Takes new candidates from pairs (secondary facet, primary facet), ascending. Points of facets that were candidates
-    /// before go on from what they remember, but where another part of the primary surface has come nearer.
-    pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>) {
+    /// before go on from what they remember, but where another part of the primary surface has come nearer; they doze for
+    /// as much less time as the fastest approach was `slower` in the search before.
+    pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>, slower: f64) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let Self { points, memory, before, found, .. } = self;
         std::mem::swap(memory, before);
@@ -257,12 +262,12 @@ impl Pass {
                 if let Some(i) = known.filter(|&i| primary.adjoin(before.nearest[i] as usize, new as usize)) {
                     nearest = before.nearest[i];
                     // Whoever had no foot looks again.
-                    doze = if before.doze[i] == NEVER { 0.0 } else { before.doze[i] - elapsed };
+                    doze = if before.doze[i] == NEVER { 0.0 } else { slower * (before.doze[i] - elapsed) };
                 }
                 soonest = soonest.min(doze);
                 memory.push(nearest, doze, known.map(|i| (&*before, i)));
             }
-            let wake = at.step + soonest.max(0.0) as u64;
+            let wake = at.step.saturating_add(soonest.max(0.0) as u64);
             memory.candidates.push(Candidate { wake, facet, first, pattern });
         }
         memory.pad();

@@ -1,4 +1,5 @@
-//! Many points of one chord: whole vectors of them against one chord of the other surface at a time (PERFORMANCE.md §2).
+//! Many points of one chord: whole vectors of them, each against the one of two chords of the other surface that is below it
+//! (PERFORMANCE.md §2).
 //!
 //! What lies near the end of the other chord, near a corner, or does not touch is left over.
 

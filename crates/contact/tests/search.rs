@@ -295,6 +295,25 @@ fn invariant_points_done_together_push_as_points_done_singly() {
     }
 }
 
+#[test]
+fn invariant_the_tangent_outlives_the_preload() {
+    let shapes = Shapes::new([60, 45], [1.0, 0.7], [[0.0; 2], [1.69, 0.01]], [0.02, 0.3]);
+    let mut contacts = shapes
+        .contacts(Law::penalty(STIFFNESS).expect("a positive stiffness"), Method::Integrated { points: 4 });
+    let springs = |contacts: &Contacts| {
+        let mut springs = 0;
+        contacts.tangent(&shapes.x, &shapes.y, &mut |_| springs += 1);
+        springs
+    };
+    contacts.set_preload(Some(0.0));
+    shapes.forces(&mut contacts, 0, 0.0);
+    let during = springs(&contacts);
+    assert!(during > 0);
+    // The critical time step is asked for between the preload and the first step.
+    contacts.set_preload(None);
+    assert_eq!(springs(&contacts), during);
+}
+
 /// Some discs that fall onto a floor with friction and damping, in motion.
 fn tumbling(discs: usize) -> (Dynamics, Contacts) {
     let law = Law::penalty(2e14)

@@ -148,12 +148,10 @@ impl Dynamics {
         let is_loaded: Vec<bool> =
             layout.node_of_slot.iter().map(|n| n.is_some_and(|n| loaded[n as usize])).collect();
         let mut tiles = Vec::new();
-        let (mut rigid_bodies, mut rigid) = (Vec::new(), Vec::new());
+        let mut rigid = Vec::new();
         for t in &layout.tiles {
             if model.behaviour[t.body] == Behaviour::Rigid {
-                let (body, at) = RigidBody::new(t.body, t.slots.clone(), &state.x, &state.y, &mass);
-                rigid_bodies.push(body);
-                rigid.push(at);
+                rigid.push(RigidBody::new(t.body, t.slots.clone(), &state.x, &state.y, &mass));
             }
             let stiffness = model.stiffness(t.body);
             let (moves, pushed) = (&motion[t.slots.clone()], &is_loaded[t.slots.clone()]);
@@ -165,6 +163,9 @@ impl Dynamics {
             }
             tiles.push(tile);
         }
+        // Tiles lie as it suits the threads.
+        rigid.sort_by_key(|(body, _)| body.body);
+        let (rigid_bodies, rigid) = rigid.into_iter().unzip();
         let largest = tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
         let elements = Elements::new(model, &layout, &quads, &triangles);
         let n = layout.len();

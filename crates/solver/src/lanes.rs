@@ -227,3 +227,43 @@ impl<S: Simd> Number for Vector<S> {
         Self::all(self.simd, value)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, Scalar, WithSimd};
+
+    use super::*;
+
+    /// What vectors say of numbers, to be asked of each instruction set.
+    struct Ask;
+
+    impl WithSimd for Ask {
+        type Output = usize;
+
+        fn with_simd<S: Simd>(self, simd: S) -> usize {
+            let len = Vector::<S>::LEN;
+            let numbers: Vec<f64> = (0..2 * LANES).map(|i| 0.5 + i as f64).collect();
+            let (low, high) = (Vector::load(simd, &numbers, 0), Vector::load(simd, &numbers, len));
+            assert_eq!(high.sum(), numbers[len..2 * len].iter().sum::<f64>());
+            let mut shifted = vec![0.0; len];
+            high.shifted_in(low).store(&mut shifted, 0);
+            assert_eq!(shifted, numbers[len - 1..2 * len - 1]);
+            for bits in 0..1_u64 << len {
+                let ones = Vector::ones(simd, bits);
+                assert_eq!(ones.bits(), bits, "{len} lanes");
+                assert_eq!(ones.sum(), f64::from(bits.count_ones()));
+            }
+            len
+        }
+    }
+
+    #[test]
+    fn invariant_lanes_mean_the_same_on_every_instruction_set() {
+        assert_eq!(Ask.with_simd(Scalar), 1);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(avx2) = pulp::x86::V3::try_new() {
+            assert_eq!(Simd::vectorize(avx2, Ask), 4);
+        }
+        assert!(Arch::new().dispatch(Ask) <= LANES);
+    }
+}

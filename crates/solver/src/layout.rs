@@ -74,7 +74,10 @@ pub(crate) fn lay_out(model: &Model, quads: &[QuadReference], triangles: &[Trian
     };
     let groups = congruent_groups(model, quads, triangles);
     let alone_or_together = groups.iter().flat_map(|group| group.chunks(LANES)).collect();
-    let elements = |bodies: &&[usize]| bodies.iter().map(|&b| mesh.bodies[b].quads.len()).sum();
+    let elements = |bodies: &&[usize]| {
+        let elastic = bodies.iter().filter(|b| model.behaviour[**b] == Behaviour::Elastic);
+        elastic.map(|&b| mesh.bodies[b].quads.len() + mesh.bodies[b].triangles.len()).sum()
+    };
     for bodies in small_ones_inwards(alone_or_together, elements) {
         match bodies {
             [body] => layout.add_body(model, *body),

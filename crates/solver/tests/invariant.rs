@@ -155,6 +155,28 @@ fn invariant_one_of_two_like_bodies_is_held() {
 }
 
 #[test]
+fn invariant_rigid_bodies_keep_the_order_of_the_mesh() {
+    let mut mesh = Mesh::new();
+    for (i, n) in [2, 9, 4, 7].into_iter().enumerate() {
+        mesh.add(format!("block {i}"), &rectangle(0.01, 0.01, n, n).translated(0.1 * i as f64, 0.0));
+    }
+    let mut model = Model::new(mesh, steel(), THICKNESS).expect("a positive thickness");
+    for i in [0, 2, 3] {
+        model.behaviour[i] = Behaviour::Rigid;
+    }
+    let mut d = lay_out(&model);
+    assert_eq!(d.rigid_body_numbers().collect::<Vec<_>>(), [0, 2, 3]);
+    d.set_time_step(1e-6).expect("a positive time step");
+    d.launch_rigid(1, [1.0, 0.0], 0.0);
+    run(&mut d, &mut [], 10);
+    let moved = |body: usize| {
+        let n = model.mesh.bodies[body].nodes.start;
+        d.state.x[slot(&d, n)] - model.mesh.x[n]
+    };
+    assert!((moved(2) - 1e-5).abs() < 1e-12 && moved(0) == 0.0 && moved(3) == 0.0);
+}
+
+#[test]
 fn invariant_a_rigid_body_keeps_its_shape() {
     let mut model = body(&rectangle(0.02, 0.01, 6, 3));
     model.behaviour[0] = Behaviour::Rigid;

@@ -51,7 +51,10 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         sheet.heading(title);
         sheet.table(&["variant", "what it shows"], &shown);
         let rows: Vec<&Finished> = runs.iter().collect();
-        sheet.say("Line, background and level between the impulses [g] at each sensor:");
+        sheet.say(
+            "Each row is one start; idle rollers that rattle can double a quiet level from one start to the next. \
+             Line, background and level between the impulses [g] at each sensor:",
+        );
         sheet.runs(table, &rows, &LEVELS);
         sheet.say("Impulse at the leading sensor, forces and cost:");
         sheet.runs(&format!("{table}-effects"), &rows, &EFFECTS);

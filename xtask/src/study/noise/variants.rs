@@ -16,7 +16,9 @@ const TRANSLATED: &str = "mesh.roller_copies=translated";
 const ARC: &str = "contact.surface=arc";
 const NAGATA: &str = "contact.surface=nagata";
 const SPLINE: &str = "contact.interpolation=spline";
-const ONSET: &str = "contact.onset_um=3.0";
+const ONSET: &str = "contact.onset_um=8.0";
+/// Hardly wider than points are apart.
+const NARROW: &str = "contact.onset_um=3.0";
 /// As in `singh2014_smooth.ron`.
 const POINTS: &str = "contact.points_per_facet=8";
 const STIFF: &str = "contact.penalty_scale=0.7";
@@ -70,6 +72,12 @@ pub(super) fn remainder() -> Vec<Step> {
     vec![
         cure("smooth-12", &["contact.points_per_facet=12"], "More points: what of the residue passes them."),
         cure("smooth-5", &["contact.points_per_facet=5"], "Fewer points."),
+        cure(
+            "smooth-narrow",
+            &[NARROW],
+            "A narrower onset, 3 µm: points that come and go sound at eight times the line\u{2019}s frequency, 37.4 kHz, \
+             most of all at the seat.",
+        ),
         cure("smooth-one-pass", &["contact.passes=one"], "The two half passes against one."),
         cure(
             "smooth-frictionless",
