@@ -53,7 +53,7 @@ const HANN_WIDTHS: f64 = 2.0;
 
 /// An onset over this many steps of the gap from point to point, to either side, is not heard (docs/results/noise.md,
 /// `smooth` and `smooth-narrow`).
-const ONSET_STEPS: f64 = 1.75;
+const ONSET_STEPS: f64 = 2.0;
 
 impl Plan {
     /// Meshes the scene and says what to expect.
@@ -215,5 +215,9 @@ mod tests {
         scene.contact.onset_um = 1e6 * ONSET_STEPS * sounding.point_step_m(&scene);
         let quiet = Plan::of(&scene).expect("a scene that can be meshed");
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
+        // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
+        scene.mesh.size_mm = 0.5;
+        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&scene);
+        assert!((step - 4.1e-6).abs() < 0.1e-6, "{step}");
     }
 }

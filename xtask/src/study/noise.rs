@@ -137,7 +137,8 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
     }
     sheet.picture(
         &figure.caption(format!(
-            "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge."
+            "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge. What stands at the line behind \
+             the notch is the notch itself: it rings with a time constant of Q/\u{3c0}f = 1 ms from the impulse at 5.1 ms."
         )),
     )?;
     let mut figure = Figure::new(
