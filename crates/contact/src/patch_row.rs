@@ -11,8 +11,11 @@ use crate::{
     spline::{JOINT, Patch},
 };
 
-/// A foot is found when the last correction is below this: what is left is a tenth of its square (`spline.rs`).
-const SMALL: f64 = 1e-6;
+/// A foot is found when less than this part of a facet is left to it.
+const SMALL: f64 = 1e-12;
+
+/// Corrections of a foot at most; on meshes that resolve their curves one is enough.
+const CORRECTIONS: usize = 3;
 
 /// Values of a curve's polynomial in all lanes.
 pub(crate) type Curve<V> = [[Vector<V>; 2]; 4];
@@ -35,7 +38,7 @@ pub(crate) struct Spots<V: Simd> {
     inverse: Vector<V>,
 }
 
-/// Feet of points, as in [`Projection`](crate::Projection), and the last correction of their places.
+/// Feet of points, as in [`Projection`](crate::Projection), and what is left to them.
 pub(crate) struct Foot<V: Simd> {
     pub(crate) gap: Vector<V>,
     normal: [Vector<V>; 2],
@@ -156,22 +159,32 @@ impl<V: Simd> Lanes<V> {
         [[p[0] - at[0], p[1] - at[1]], slope(c, s), bend]
     }
 
-    /// Feet of the points `p`, as `Patch::above` finds them.
+    /// Feet of the points `p`, as `Patch::above` finds them, until those of the points `open` are found.
     #[inline(always)]
-    pub(crate) fn foot(&self, p: [Vector<V>; 2]) -> Foot<V> {
-        let (zero, half, one) = (p[0].constant(0.0), p[0].constant(0.5), p[0].constant(1.0));
+    pub(crate) fn foot(&self, p: [Vector<V>; 2], open: Vector<V>) -> Foot<V> {
+        let (half, one, small) = (p[0].constant(0.5), p[0].constant(1.0), p[0].constant(SMALL));
         let (low, high) = (p[0].constant(-2.0), p[0].constant(3.0));
         let start = [p[0] - self.curve[0][0], p[1] - self.curve[0][1]];
         let mut s = dot(start, self.chord).max(low).min(high);
-        let mut rest = zero;
-        for _ in 0..2 {
-            let [r, d, dd] = self.seen_from(p, s);
-            let square = dot(d, d);
-            rest = dot(r, d) / (square - dot(r, dd).min(half * square));
-            s = (s + rest).max(low).min(high);
+        let [mut r, mut d, mut dd] = self.seen_from(p, s);
+        let six = p[0].constant(6.0);
+        let third = [six * self.curve[3][0], six * self.curve[3][1]];
+        let mut square = dot(d, d);
+        let mut rest = one;
+        for _ in 0..CORRECTIONS {
+            // Chebyshev's: Newton's correction and the bend of r·d.
+            let inverse = one / (square - dot(r, dd).min(half * square));
+            let newton = dot(r, d) * inverse;
+            let bend = half * inverse * (dot(r, third) - p[0].constant(3.0) * dot(d, dd));
+            s = (bend * newton).times_plus(newton, s + newton).max(low).min(high);
+            [r, d, dd] = self.seen_from(p, s);
+            square = dot(d, d);
+            rest = dot(r, d);
+            rest = rest.max(-rest);
+            if (small * square).choose_below(rest, open, rest.constant(0.0)).bits() == 0 {
+                break;
+            }
         }
-        let [r, d, dd] = self.seen_from(p, s);
-        let square = dot(d, d);
         let inverse = one / square.sqrt();
         let n = [d[1] * inverse, -(d[0] * inverse)];
         let off = dot(r, n);
@@ -187,7 +200,7 @@ impl<V: Simd> Lanes<V> {
             height,
             curve_normal: n,
             inverse,
-            rest: rest.max(-rest),
+            rest: rest * inverse * inverse,
         }
     }
 }

@@ -266,8 +266,8 @@ impl Shape for Patch {
         push: &mut Vec<Push>,
     ) -> Outcome {
         let facet = row.candidate.facet as usize;
-        let side = || Side::new(Self::new(row.secondary, row.at.x, row.at.y, facet), row.secondary, row.at);
-        let own = own.get_or_insert_with(side);
+        let patch = Self::new(row.secondary, row.at.x, row.at.y, facet);
+        let own = own.insert(Side::new(patch, row.secondary, row.at));
         row.touch_splines::<V, MEMORY>(simd, own, feet, law, work, push)
     }
 

@@ -1,13 +1,13 @@
 //! Many points of one facet of a spline against facets of another spline at a time.
 //!
 //! The points of a facet mostly have their feet on one or two facets of the other surface, already known from the step
-//! before. Every lane takes the coefficients of its own; two of Newton's corrections from the foot on the chord find the
-//! foot on the curve. Lanes that this does not bring to rest, or brings beyond the facet's ends, are left for the loop
+//! before. Every lane takes the coefficients of its own; a correction of third order from the foot on the chord finds the
+//! foot on the curve, a second one where that is not enough. Lanes that this does not bring to rest, or brings beyond the facet's ends, are left for the loop
 //! over single points.
 
 use pulp::Simd;
 use stribeck_solver::{
-    lanes::{LANES, Number, Vector},
+    lanes::{Number, Vector},
     state::Moment,
 };
 
@@ -81,8 +81,8 @@ impl<V: Simd> Met<V> {
 }
 
 impl Row<'_> {
-    /// Splines against splines: evaluates the points whose feet lie within the facet known for the first of them and the
-    /// next one that differs, lets those doze that certainly do not touch.
+    /// Splines against splines: evaluates the points whose feet lie within the facets known for the first and the last of
+    /// them, lets those doze that certainly do not touch.
     #[inline(always)]
     pub(crate) fn touch_splines<V: Simd, const MEMORY: bool>(
         self,
@@ -106,21 +106,21 @@ impl Row<'_> {
         let mut forces = [[zero; 2]; 4];
         for start in (0..range.len()).step_by(Vector::<V>::LEN) {
             let i = range.start + start;
-            let (mut is_near, mut known) = ([0.0; LANES], [0.0; LANES]);
-            for l in 0..Vector::<V>::LEN.min(range.len() - start) {
-                let facet = nearest[i + l] as usize;
-                is_near[l] = f64::from(u8::from(facet == a));
-                known[l] = f64::from(u8::from(facet == a || facet == b));
+            let (mut is_near, mut is_far) = (0, 0);
+            for (l, &facet) in nearest[i..range.end].iter().take(Vector::<V>::LEN).enumerate() {
+                is_near |= u64::from(facet as usize == a) << l;
+                is_far |= u64::from(facet as usize == b) << l;
             }
-            let (first, known) = (Vector::load(simd, &is_near, 0), Vector::load(simd, &known, 0));
+            let first = Vector::ones(simd, is_near);
             let to = Lanes::chosen(first, &near, &far);
+            let known = Vector::load(simd, &open, start) * Vector::ones(simd, is_near | is_far);
             let of_pattern = pattern + start;
             let place = Vector::load(simd, &points.place, of_pattern);
             let spots = line.spots(place, Vector::load(simd, &points.height, of_pattern));
-            let foot = to.foot(spots.at);
+            let foot = to.foot(spots.at, known);
             let [opening, along] = slide(&line, &spots, &to, &foot);
             let touching = Touching {
-                within: foot.held(Vector::load(simd, &open, start) * known),
+                within: foot.held(known),
                 gap: foot.gap,
                 weight: Vector::load(simd, &points.weight, of_pattern),
                 opening,
@@ -161,22 +161,25 @@ impl Row<'_> {
         outcome
     }
 
-    /// The facets on which the first of the points was found last, and the next one that differs; none near a corner.
+    /// The facets on which the first and the last of the points were found last; none near a corner.
     #[inline(always)]
     fn two_facets(&self, mut left: u64) -> Option<[usize; 2]> {
-        let (first_point, mut first) = (self.candidate.first as usize, None);
+        let first_point = self.candidate.first as usize;
+        let mut first = None;
         while left != 0 {
-            let facet = self.nearest[first_point + left.trailing_zeros() as usize] as usize;
-            left &= left - 1;
-            if self.primary.beside_corner[facet] {
-                continue;
+            let k = if first.is_none() { left.trailing_zeros() } else { left.ilog2() };
+            let facet = self.nearest[first_point + k as usize] as usize;
+            if !self.primary.beside_corner[facet] {
+                match first {
+                    None => {
+                        first = Some(facet);
+                        continue;
+                    }
+                    Some(one) => return Some([one, facet]),
+                }
             }
-            match first {
-                None => first = Some(facet),
-                Some(one) if one != facet => return Some([one, facet]),
-                Some(_) => {}
-            }
+            left &= !(1 << k);
         }
-        first.map(|one| [one, one])
+        None
     }
 }
