@@ -2,8 +2,8 @@
 //!
 //! The points of a facet mostly have their feet on one or two facets of the other surface, already known from the step
 //! before. Every lane takes the coefficients of its own; a correction of third order from the foot on the chord finds the
-//! foot on the curve, a second one where that is not enough. Lanes that this does not bring to rest, or brings beyond the facet's ends, are left for the loop
-//! over single points.
+//! foot on the curve, a second one where that is not enough. Lanes that this does not bring to rest, or brings beyond the
+//! facet's ends, are left for the loop over single points.
 
 use pulp::Simd;
 use stribeck_solver::{
