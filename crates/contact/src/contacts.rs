@@ -69,6 +69,8 @@ struct Schedule {
     next: u64,
     /// Fastest approach of two points [m/s].
     fastest: f64,
+    /// Whether nothing holds by then that is known of points: Newton's method jumps.
+    afresh: bool,
 }
 
 /// All contacts of a model.
@@ -81,8 +83,6 @@ pub struct Contacts {
     skin: f64,
     search: Schedule,
     preload: Option<f64>,
-    /// Whether positions have changed in other ways than by motion.
-    jumped: bool,
     parallel: bool,
     together: bool,
     energy: Energy,
@@ -152,7 +152,6 @@ impl Contacts {
             skin,
             search: Schedule::default(),
             preload: None,
-            jumped: false,
             parallel: false,
             together: true,
             energy: Energy::default(),
@@ -175,8 +174,7 @@ impl Contacts {
     /// takes everything in again.
     pub fn set_preload(&mut self, softness: Option<f64>) {
         self.preload = softness;
-        self.search.next = 0;
-        self.jumped = true;
+        (self.search.next, self.search.afresh) = (0, true);
     }
 
     /// What each pair does, in the order given.
@@ -226,10 +224,8 @@ impl Contacts {
 
     fn search(&mut self, at: &Moment<'_>) {
         let grow = 0.5 * self.skin;
-        if self.preload.is_some() || self.jumped {
-            // Newton's method jumps: nothing that was known of positions holds.
+        if self.search.afresh {
             self.pairs.iter_mut().flat_map(|pair| &mut pair.passes).for_each(Pass::forget_candidates);
-            self.jumped = false;
         }
         for (tree, surface) in self.trees.iter_mut().zip(&self.surfaces) {
             tree.update(surface, at.x, at.y, grow + surface.largest_sag());
@@ -256,7 +252,8 @@ impl Contacts {
         };
         share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
-        self.search = Schedule { next: at.step + rest.clamp(1.0, LONGEST_REST) as u64, fastest };
+        let next = at.step + rest.clamp(1.0, LONGEST_REST) as u64;
+        self.search = Schedule { next, fastest, afresh: self.preload.is_some() };
     }
 
     /// Threads to share pairs out over.
