@@ -56,7 +56,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
              Line, background and level between the impulses [g] at each sensor:",
         );
         sheet.runs(table, &rows, &LEVELS);
-        sheet.say("Impulse at the leading sensor, forces and cost:");
+        sheet.say("Impulse at the leading sensor, forces and cost; *points* is the line of the contact points, their number on a facet times the vertices\u{2019} line:");
         sheet.runs(&format!("{table}-effects"), &rows, &EFFECTS);
         ends.extend(runs);
     }
@@ -117,7 +117,6 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
     let channel = format!("sensor.{sensor}.ay_m_s2");
     let (Some(raw), Some(cured)) = (a.channel(&channel), b.channel(&channel)) else { return Ok(()) };
     let filtered = notch.acceleration(raw)?;
-    let quiet = |time: &[f64]| time.partition_point(|&t| t < 7.1e-3)..time.partition_point(|&t| t < 11.4e-3);
     let hz: Vec<f64> = (0..400).map(|i| 50.0 * i as f64).collect();
     let spectrum = |signal: &[f64], record: &Record<'_>| {
         spectrum_g(&signal[quiet(record.time_s())], record.sample_rate_hz(), &hz)
@@ -137,8 +136,8 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
     }
     sheet.picture(
         &figure.caption(format!(
-            "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge. What stands at the line behind \
-             the notch is the notch itself: it rings with a time constant of Q/\u{3c0}f = 1 ms from the impulse at 5.1 ms."
+            "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge. The notch rings with a \
+             time constant of Q/\u{3c0}f = 1 ms, also from the impulse at 5.1 ms: what stands at the line behind it is partly its own."
         )),
     )?;
     let mut figure = Figure::new(
@@ -170,6 +169,28 @@ fn noise_at(run: &Finished, sensor: usize, hz: Option<f64>) -> Option<Noise> {
     let name = read.scene.output.sensors.get(sensor)?.name.clone();
     let line = prediction.facet_lines.first()?.1;
     measure(&Record::new(&read), &name, &passages, hz.unwrap_or(line))
+}
+
+/// Amplitude at the seat of the line that the points of the facets make [g]; `None` when samples are too far apart for it.
+fn points_line_g(run: &Finished) -> Option<f64> {
+    const SEAT: usize = 2;
+    let read = Run::read(&run.folder).ok()?;
+    let record = Record::new(&read);
+    let line = Prediction::of(&read.scene, &read.info.mesh).facet_lines.first()?.1;
+    let hz = line * read.scene.contact.points_per_facet as f64;
+    let rate = record.sample_rate_hz();
+    let name = &read.scene.output.sensors.get(SEAT)?.name;
+    let span = quiet(record.time_s());
+    let along = |axis: &str| {
+        let signal = record.channel(&format!("sensor.{name}.{axis}_m_s2"))?;
+        spectrum_g(&signal[span.clone()], rate, &[hz]).first().copied()
+    };
+    if hz < 0.5 * rate { Some(along("ax")?.hypot(along("ay")?)) } else { None }
+}
+
+/// Samples between two passages, where spectra are taken.
+fn quiet(time_s: &[f64]) -> std::ops::Range<usize> {
+    time_s.partition_point(|&t| t < 7.1e-3)..time_s.partition_point(|&t| t < 11.4e-3)
 }
 
 /// The first impulse at the leading sensor.
@@ -230,9 +251,10 @@ const RESIDUE: [Column; 6] = [
     Column { name: "at 4671 Hz g", decimals: 2, of: |r| together(r, Some(4671.0), |n| n.line_g) },
 ];
 
-const EFFECTS: [Column; 10] = [
+const EFFECTS: [Column; 11] = [
     Column { name: "second harmonic g", decimals: 2, of: |r| noise(r, 0).map(|n| n.second_g) },
     Column { name: "ringing g", decimals: 2, of: |r| noise(r, 0).map(|n| n.ringing_g) },
+    Column { name: "points at the seat g", decimals: 2, of: points_line_g },
     Column { name: "start g", decimals: 1, of: |r| noise(r, 0).map(|n| n.start_g) },
     Column { name: "impulse g", decimals: 0, of: |r| first_impulse(r).map(|i| i.peak_g) },
     Column { name: "impulse g² ms", decimals: 0, of: |r| first_impulse(r).map(|i| i.energy_g2_ms) },
