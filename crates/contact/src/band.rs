@@ -24,7 +24,6 @@ pub(crate) const MOST_POINTS: usize = 4;
 
 /// Some facets of a pass, at most as many as there are lanes.
 pub(crate) struct Band<'a> {
-    pub(crate) secondary: &'a Surface,
     pub(crate) points: &'a Points,
     /// Facets, and bits of those that are awake.
     pub(crate) candidates: &'a [Candidate],
@@ -49,7 +48,7 @@ impl Band<'_> {
         work: &mut Work<V>,
         push: &mut Vec<Push>,
     ) -> [Outcome; LANES] {
-        let Self { secondary, points, candidates, awake, nearest, doze, history } = self;
+        let Self { points, candidates, awake, nearest, doze, history } = self;
         let mut outcomes = [Outcome::default(); LANES];
         let mut own = [[0; LANES]; 2];
         let (mut begin, mut pattern) = ([0; LANES], [0; LANES]);
@@ -57,8 +56,7 @@ impl Band<'_> {
         for l in 0..LANES {
             // Lanes without a facet go along with the first one, closed.
             let candidate = candidates.get(l).unwrap_or(&candidates[0]);
-            let (a, b) = secondary.ends(candidate.facet as usize);
-            (own[0][l], own[1][l]) = (a as u32, b as u32);
+            [own[0][l], own[1][l]] = candidate.ends;
             (begin[l], pattern[l], len[l]) =
                 (candidate.first, candidate.pattern.first, candidate.pattern.points);
         }

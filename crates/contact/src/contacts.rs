@@ -1,5 +1,7 @@
 //! All contacts of a model: one more force on nodes.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use stribeck_solver::{
     Force,
@@ -98,6 +100,25 @@ struct Pair {
     sum: [Sum; 2],
 }
 
+/// Points of all surfaces. Surfaces of one shape share theirs, so that they stay in cache from one pass to the next.
+#[derive(Default)]
+struct Patterns(Vec<(usize, Method, Arc<Points>)>);
+
+impl Patterns {
+    /// Those of a surface of this number.
+    fn of(&mut self, number: usize, surface: &Surface, method: Method) -> Arc<Points> {
+        if let Some((.., points)) = self.0.iter().find(|(n, m, _)| (*n, *m) == (number, method)) {
+            return Arc::clone(points);
+        }
+        let new = Points::new(surface, method);
+        let length = surface.mean_length();
+        let alike = self.0.iter().find(|(_, m, points)| *m == method && points.are_alike(&new, length));
+        let points = alike.map_or_else(|| Arc::new(new), |(.., points)| Arc::clone(points));
+        self.0.push((number, method, Arc::clone(&points)));
+        points
+    }
+}
+
 /// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much more than
 /// the mean; no other spacing gives more.
 const CLUSTERING: f64 = 1.125;
@@ -125,11 +146,12 @@ impl Contacts {
         let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
         let skin = 0.4 * mean.max(shortest);
         let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin + s.largest_sag())).collect();
+        let mut patterns = Patterns::default();
         let pairs = pairs
             .iter()
             .map(|spec| {
-                let pass = |secondary: usize, primary: usize| {
-                    let points = Points::new(&surfaces[secondary], spec.method);
+                let mut pass = |secondary: usize, primary: usize| {
+                    let points = patterns.of(secondary, &surfaces[secondary], spec.method);
                     Pass::new(secondary, primary, points, &spec.law, &surfaces)
                 };
                 Pair {
@@ -322,6 +344,7 @@ impl Force for Contacts {
         let evaluate = |pair: &mut Pair| {
             let w = weights(&pair.spec, *thickness, search.fastest, *preload, *together);
             pair.push.clear();
+            pair.passes.iter().for_each(|pass| pass.read_ahead(surfaces, &at));
             for (pass, sum) in pair.passes.iter_mut().zip(&mut pair.sum) {
                 *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
             }
@@ -357,7 +380,7 @@ impl Force for Contacts {
             let steepest = [pair.spec.first, pair.spec.second].map(|s| self.surfaces[s].steepest());
             let k = k * (1.0 + STEEPER * (steepest[0] * steepest[0] + steepest[1] * steepest[1]));
             let share = if pair.spec.sides == Sides::Both { 1.0 } else { 2.0 };
-            let points = |surface| pair.passes.iter().find(|p| p.secondary == surface).map(|p| &p.points);
+            let points = |surface| pair.passes.iter().find(|p| p.secondary == surface).map(|p| &*p.points);
             for (this, that) in [(pair.spec.first, pair.spec.second), (pair.spec.second, pair.spec.first)] {
                 let surface = &self.surfaces[this];
                 let held = points(this).map(|p| p.on_nodes(surface));

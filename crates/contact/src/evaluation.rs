@@ -49,7 +49,7 @@ impl Evaluation<'_> {
     fn evaluate<V: Simd, S: Shape, P: Shape, const MEMORY: bool>(self, simd: V) -> Sum {
         let Self { pass, surfaces, at, w, push } = self;
         let (secondary, primary) = (&surfaces[pass.secondary], &surfaces[pass.primary]);
-        let (deepest, points) = (pass.deepest, &pass.points);
+        let (deepest, points) = (pass.deepest, &*pass.points);
         let Memory { nearest, searched, doze, pace, candidates, asleep, history } = &mut pass.memory;
         let mut no_history = Histories::default();
         let now = at.step.saturating_sub(*searched) as f64;
@@ -86,7 +86,7 @@ impl Evaluation<'_> {
                 }
                 let outcomes = {
                     let history = history.as_mut().unwrap_or(&mut no_history);
-                    let band = Band { secondary, points, candidates: group, awake, nearest, doze, history };
+                    let band = Band { points, candidates: group, awake, nearest, doze, history };
                     band.touch::<V, MEMORY>(simd, &law, now, primary, at, &mut done, push)
                 };
                 work += 15 * points.most;

@@ -1,12 +1,13 @@
 //! One pass: the points of a secondary surface against the facets of a primary one.
 
-use std::ops::Range;
+use std::{hint::black_box, ops::Range, sync::Arc};
 
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
-use stribeck_solver::{force::RankOne, lanes::LANES, state::Moment};
+use stribeck_solver::{field::Field, force::RankOne, lanes::LANES, state::Moment};
 
 use crate::{
+    band,
     evaluation::Evaluation,
     law::Law,
     nearest::Nearest,
@@ -23,26 +24,35 @@ use crate::{
 pub(crate) struct Pass {
     pub(crate) secondary: usize,
     pub(crate) primary: usize,
-    pub(crate) points: Points,
+    pub(crate) points: Arc<Points>,
     pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
     pub(crate) deepest: f64,
     /// About how long the last evaluation took, in units of some ten nanoseconds.
     pub(crate) work: usize,
-    /// Room for the memory before a search, and for the facets nearest to the points of one.
+    /// Apart, so that what every step reads lies close together.
+    room: Box<Room>,
+}
+
+/// Room for a search.
+#[derive(Debug, Clone)]
+struct Room {
+    /// The memory before it.
     before: Memory,
+    /// Facets nearest to the points of one.
     found: Vec<u32>,
 }
 
 /// What a pass remembers from step to step: of the points of its candidates alone, one row after the other, so that what is
-/// read in every step lies close together. Behind the last point `doze` and `history` have room for a vector that reads on.
+/// read in every step lies close together. Facets of many points have whole vectors of room, each in a line of cache; behind
+/// the last point there is room for a vector that reads on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Memory {
     pub(crate) candidates: Vec<Candidate>,
     /// Facet of the primary surface on which each point was last found.
     pub(crate) nearest: Vec<u32>,
     /// Steps after the search before which each point cannot touch; it wakes in the step that holds the last of them.
-    pub(crate) doze: Vec<f64>,
+    pub(crate) doze: Field,
     /// What points in contact remember; `None` without damping and friction.
     pub(crate) history: Option<Histories>,
     /// Fastest that a point of the pass opened or closed of late [m/s].
@@ -62,6 +72,8 @@ pub(crate) struct Candidate {
     /// First of its points in what the pass remembers.
     pub(crate) first: u32,
     pub(crate) pattern: Pattern,
+    /// Slots of its ends.
+    pub(crate) ends: [u32; 2],
 }
 
 impl Candidate {
@@ -95,11 +107,16 @@ impl Memory {
     /// Makes room behind the last point.
     fn pad(&mut self) {
         let padded = self.nearest.len() + LANES;
-        self.doze.resize(padded, 0.0);
+        self.doze.resize(padded);
         if let Some(history) = &mut self.history {
-            history.slip.resize(padded, 0.0);
-            history.damping.resize(padded, 0.0);
+            history.slip.resize(padded);
+            history.damping.resize(padded);
         }
+    }
+
+    /// Makes a facet's room whole.
+    fn fill_up(&mut self, pattern: Pattern) {
+        (pattern.points..pattern.room()).for_each(|_| self.push(0, NEVER, None));
     }
 
     /// Appends a point; one that was `known` as number `i` of another memory takes its history along.
@@ -182,11 +199,17 @@ impl Weights {
     }
 }
 
+/// Slots of the ends of a facet.
+fn ends(surface: &Surface, facet: u32) -> [u32; 2] {
+    let (a, b) = surface.ends(facet as usize);
+    [a as u32, b as u32]
+}
+
 impl Pass {
     pub(crate) fn new(
         secondary: usize,
         primary: usize,
-        points: Points,
+        points: Arc<Points>,
         law: &Law,
         surfaces: &[Surface],
     ) -> Self {
@@ -195,8 +218,7 @@ impl Pass {
             secondary,
             primary,
             memory: Memory::new(remembers),
-            before: Memory::new(remembers),
-            found: Vec::new(),
+            room: Box::new(Room { before: Memory::new(remembers), found: Vec::new() }),
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
             points,
             work: 0,
@@ -209,8 +231,9 @@ impl Pass {
         let in_order = memory.candidates.iter().all(|c| {
             let fits = self.points.of_facet.get(c.facet as usize) == Some(&c.pattern)
                 && c.facet >= least
-                && c.first == next;
-            next = c.first.saturating_add(c.pattern.points);
+                && c.first == next
+                && c.ends == ends(&surfaces[self.secondary], c.facet);
+            next = c.first.saturating_add(c.pattern.room());
             least = c.facet.saturating_add(1);
             fits
         });
@@ -234,7 +257,8 @@ impl Pass {
     /// as much less time as the fastest approach was `slower` in the search before.
     pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>, slower: f64) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let Self { points, memory, before, found, .. } = self;
+        let Self { points, memory, room, .. } = self;
+        let Room { before, found } = &mut **room;
         std::mem::swap(memory, before);
         memory.clear();
         (memory.pace, memory.searched, memory.asleep) = (before.pace, at.step, 0);
@@ -268,7 +292,8 @@ impl Pass {
                 memory.push(nearest, doze, known.map(|i| (&*before, i)));
             }
             let wake = at.step.saturating_add(soonest.max(0.0) as u64);
-            memory.candidates.push(Candidate { wake, facet, first, pattern });
+            memory.fill_up(pattern);
+            memory.candidates.push(Candidate { wake, facet, first, pattern, ends: ends(secondary, facet) });
         }
         memory.pad();
     }
@@ -282,6 +307,30 @@ impl Pass {
     /// Pushes that one evaluation makes at most, until the next candidates are taken.
     pub(crate) fn most_pushes(&self) -> usize {
         self.memory.candidates.iter().map(|c| MOST_NODES * (1 + c.pattern.points as usize)).sum()
+    }
+
+    /// Reads what an evaluation of rows begins with, of all facets that are awake: between two steps the elements push it out
+    /// of the near caches, and so memory is waited for once and not facet by facet.
+    pub(crate) fn read_ahead(&self, surfaces: &[Surface], at: &Moment<'_>) {
+        let Memory { nearest, doze, history, candidates, asleep, .. } = &self.memory;
+        // Facets with few points follow one another in memory as they are read.
+        if at.step < *asleep || self.points.most <= band::MOST_POINTS {
+            return;
+        }
+        let primary = &surfaces[self.primary];
+        let mut sum = 0.0;
+        for candidate in candidates.iter().filter(|c| at.step >= c.wake) {
+            let first = candidate.first as usize;
+            let lines = [first, first + LANES];
+            sum += lines.map(|i| doze[i]).iter().sum::<f64>();
+            if let Some(Histories { slip, damping }) = history {
+                sum += lines.map(|i| slip[i] + damping[i]).iter().sum::<f64>();
+            }
+            let (a, b) = primary.ends(nearest[first] as usize);
+            let [c, d] = candidate.ends.map(|n| n as usize);
+            sum += [a, b, c, d].map(|n| at.x[n] + at.y[n] + at.vx[n] + at.vy[n]).iter().sum::<f64>();
+        }
+        black_box(sum);
     }
 
     /// Evaluates the pass: pushes forces and sums.

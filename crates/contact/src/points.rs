@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use stribeck_solver::lanes::LANES;
 
-use crate::surface::Surface;
+use crate::{band, surface::Surface};
 
 /// Where the penalty acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,7 +26,7 @@ impl Method {
 
 /// Contact points. Facets whose points lie and weigh alike share a pattern, so that what all rows of points read stays in
 /// cache. Behind the last one each field has room for a vector that reads on.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
     pub(crate) place: Vec<f64>,
@@ -116,6 +116,17 @@ impl Points {
         pattern.points as usize == points.len() && pattern.range().zip(points).all(near)
     }
 
+    /// Whether these points, of facets of the given mean length [m], are those of another surface.
+    pub(crate) fn are_alike(&self, other: &Self, length: f64) -> bool {
+        let agree = |a: &[f64], b: &[f64]| {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).abs() <= ALIKE * length)
+        };
+        self.of_facet == other.of_facet
+            && self.place == other.place
+            && agree(&self.height, &other.height)
+            && agree(&self.weight, &other.weight)
+    }
+
     /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.
     pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
         let mut dealt = vec![0.0; surface.slots.len()];
@@ -137,6 +148,16 @@ impl Points {
 }
 
 impl Pattern {
+    /// Room that its points take in memory: whole vectors where they are done row by row.
+    #[inline(always)]
+    pub(crate) fn room(self) -> u32 {
+        if self.points as usize > band::MOST_POINTS {
+            self.points.next_multiple_of(LANES as u32)
+        } else {
+            self.points
+        }
+    }
+
     /// Its points.
     #[inline(always)]
     pub(crate) fn range(self) -> Range<usize> {

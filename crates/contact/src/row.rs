@@ -10,7 +10,7 @@ use stribeck_solver::{
 };
 
 use crate::{
-    meeting::{Chord, Meeting, Spots, ends},
+    meeting::{Meeting, Spots, ends},
     pass::Candidate,
     points::{Method, Points},
     shape::Push,
@@ -81,12 +81,12 @@ impl Row<'_> {
     ) -> Outcome {
         let (mut open, left) = self.open(simd);
         let mut outcome = Outcome { left, ..Outcome::default() };
-        let Self { candidate, points, nearest, doze, history, secondary, primary, at, .. } = self;
+        let Self { candidate, points, nearest, doze, history, primary, at, .. } = self;
         let (range, pattern) = (candidate.range(), candidate.pattern.first as usize);
         let (n, len) = (range.len(), Vector::<V>::LEN);
-        let own = secondary.ends(candidate.facet as usize);
+        let own = (candidate.ends[0] as usize, candidate.ends[1] as usize);
         let zero = Vector::all(simd, 0.0);
-        let chord = Chord::all(simd, &ends(at, own));
+        let chord = ends(at, own);
         let mut untried = left;
         let mut tried = None;
         while untried != 0 {
@@ -103,12 +103,8 @@ impl Row<'_> {
                 untried = 0;
             }
             let (near_ends, far_ends) = (primary.ends(a), primary.ends(b));
-            let near = Meeting::new(&chord, &Chord::all(simd, &ends(at, near_ends)));
-            let far = if a == b {
-                None
-            } else {
-                Some(Meeting::new(&chord, &Chord::all(simd, &ends(at, far_ends))))
-            };
+            let near = Meeting::all(simd, &chord, &ends(at, near_ends));
+            let far = if a == b { None } else { Some(Meeting::all(simd, &chord, &ends(at, far_ends))) };
             let follows = near_ends.1 == far_ends.0;
             let mut force = [zero; 2];
             let (mut with_place, mut with_foot) = ([zero; 2], [zero; 2]);

@@ -1,7 +1,7 @@
 //! What acts at one point in contact, and what it remembers (THEORY §4.2–4.3).
 
 use serde::{Deserialize, Serialize};
-use stribeck_solver::lanes::LANES;
+use stribeck_solver::{field::Field, lanes::LANES};
 
 use crate::law::Law;
 
@@ -17,8 +17,8 @@ pub(crate) struct History {
 /// Histories of points, one array a field.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Histories {
-    pub(crate) slip: Vec<f64>,
-    pub(crate) damping: Vec<f64>,
+    pub(crate) slip: Field,
+    pub(crate) damping: Field,
 }
 
 impl Histories {

@@ -126,7 +126,7 @@ impl Dynamics {
             let mut v: Field =
                 layout.node_of_slot.iter().map(|n| n.map_or(ghost, |n| f(n as usize))).collect();
             if ghost == 0.0 {
-                layout.ghosts.iter().for_each(|&(g, _)| v[g as usize] = 0.0);
+                layout.ghosts.iter().for_each(|(ghosts, _)| v[ghosts.clone()].fill(0.0));
             }
             v
         };
@@ -274,15 +274,10 @@ impl Dynamics {
         }
         self.forces = pushed;
         self.place_damping_frames();
-        for &(ghost, owner) in &self.layout.ghosts {
-            self.state.x[ghost as usize] = self.state.x[owner as usize];
-            self.state.y[ghost as usize] = self.state.y[owner as usize];
-        }
+        let State { x, y, vx, vy, .. } = &mut self.state;
+        [x, y].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
         if self.beta > 0.0 {
-            for &(ghost, owner) in &self.layout.ghosts {
-                self.state.vx[ghost as usize] = self.state.vx[owner as usize];
-                self.state.vy[ghost as usize] = self.state.vy[owner as usize];
-            }
+            [vx, vy].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
         }
         self.sweep_tiles();
         for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid) {

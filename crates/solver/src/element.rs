@@ -41,6 +41,8 @@ pub struct Stiffness<T = f64> {
     pub two_shear: T,
     /// Hourglass stiffness [N/m] on γ·x.
     pub hourglass: T,
+    /// First Lamé parameter over twice the shear modulus [-].
+    pub ratio: T,
 }
 
 impl Stiffness {
@@ -51,6 +53,7 @@ impl Stiffness {
             lame: material.lame(),
             two_shear: 2.0 * material.shear(),
             hourglass: hourglass_scale * material.plane_strain_modulus() * thickness / 12.0,
+            ratio: 0.5 * material.lame() / material.shear(),
         }
     }
 }
@@ -171,56 +174,85 @@ fn stress_forces<T: Number>(
     )
 }
 
-/// Shape gradients of one quadrilateral as a kernel takes them; see [`QuadReference`].
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct QuadGradients<T> {
-    pub(crate) b1: [T; 2],
-    pub(crate) b2: [T; 2],
+/// What a kernel takes of a quadrilateral whose neighbours are of other shapes: the fewest numbers that hold its shape
+/// (THEORY §2.1).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct QuadShape<T = f64> {
+    /// Inner products of the reference diagonals p·p, r·r and p·r [m²].
+    pub(crate) rest: [T; 3],
+    /// Shear modulus times volume over (p × r)⁴ [N/m⁷].
+    pub(crate) scale: T,
+    /// See [`QuadReference::s1`].
     pub(crate) s1: T,
+    /// See [`QuadReference::s1`].
     pub(crate) s2: T,
-    /// Half of area times thickness [m³].
-    pub(crate) half_volume: T,
 }
 
-impl<T: Number> QuadGradients<T> {
-    /// Forces [N] on the four corners at positions `x`, `y` [m].
-    #[inline(always)]
-    pub(crate) fn forces(&self, x: [T; 4], y: [T; 4], k: &Stiffness<T>) -> [[T; 2]; 4] {
-        let p = [x[0] - x[2], y[0] - y[2]];
-        let r = [x[1] - x[3], y[1] - y[3]];
-        let (g1, g2) = stress_forces(p, r, self.b1, self.b2, self.half_volume, k);
-        let w = hourglass(x, y, p, r, self.s1, self.s2, k.hourglass);
-        corner_forces(g1, g2, w, self.s1, self.s2)
+impl QuadShape {
+    /// The same element in other terms.
+    pub(crate) fn new(q: &QuadReference, k: &Stiffness) -> Self {
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let (b11, b12, b22) = (dot(q.b1, q.b1), dot(q.b1, q.b2), dot(q.b2, q.b2));
+        // The diagonals are dual to the gradients, so their inner products are the inverse of those of the gradients.
+        let determinant = b11 * b22 - b12 * b12;
+        let rest = [b22 / determinant, b11 / determinant, -b12 / determinant];
+        Self { rest, scale: 0.5 * k.two_shear * q.volume * determinant * determinant, s1: q.s1, s2: q.s2 }
     }
 }
 
-/// Forces [N] of the hourglass stiffness.
-#[inline(always)]
-fn hourglass<T: Number>(x: [T; 4], y: [T; 4], p: [T; 2], r: [T; 2], s1: T, s2: T, stiffness: T) -> [T; 2] {
-    let hx = (x[0] + x[2]) - (x[1] + x[3]);
-    let hy = (y[0] + y[2]) - (y[1] + y[3]);
-    let wx = stiffness * (-s1).times_plus(p[0], (-s2).times_plus(r[0], hx));
-    let wy = stiffness * (-s1).times_plus(p[1], (-s2).times_plus(r[1], hy));
-    [wx, wy]
+impl<T: Number> QuadShape<T> {
+    /// Forces on the four corners at positions `x`, `y` [m]; equal to [`quad_forces`] but for rounding.
+    #[inline(always)]
+    pub(crate) fn forces(&self, x: [T; 4], y: [T; 4], k: &Stiffness<T>) -> CornerForces<T> {
+        let [pp, rr, pr] = self.rest;
+        let (px, py, rx, ry) = (x[0] - x[2], y[0] - y[2], x[1] - x[3], y[1] - y[3]);
+        // Minus the changes of the inner products, scaled.
+        let e1 = self.scale * (-px).times_plus(px, (-py).times_plus(py, pp));
+        let e2 = self.scale * (-rx).times_plus(rx, (-ry).times_plus(ry, rr));
+        let e3 = self.scale * (-px).times_plus(rx, (-py).times_plus(ry, pr));
+        // The tensions κ (B:e) B + B e B, where B is the metric of the gradients times (p × r)².
+        let (m11, m12) = (rr.times_plus(e1, -(pr * e3)), rr.times_plus(e3, -(pr * e2)));
+        let (m21, m22) = (pp.times_plus(e3, -(pr * e1)), pp.times_plus(e2, -(pr * e3)));
+        let trace = m11 + m22;
+        let (n11, n22) = (k.ratio.times_plus(trace, m11), k.ratio.times_plus(trace, m22));
+        let t11 = n11.times_plus(rr, -(m12 * pr));
+        let t12 = m12.times_plus(pp, -(n11 * pr));
+        let t22 = n22.times_plus(pp, -(m21 * pr));
+        let g1 = [t11.times_plus(px, t12 * rx), t11.times_plus(py, t12 * ry)];
+        let g2 = [t22.times_plus(rx, t12 * px), t22.times_plus(ry, t12 * py)];
+        let [hx, hy] = hourglass(x, y, [px, py], [rx, ry], self.s1, self.s2);
+        corner_forces(g1, g2, [k.hourglass * hx, k.hourglass * hy], self.s1, self.s2)
+    }
 }
 
-/// Forces [N] on the corners from those of the diagonals and of the hourglass stiffness.
+/// Hourglass mode γ·x of positions [m].
 #[inline(always)]
-fn corner_forces<T: Number>(g1: [T; 2], g2: [T; 2], [wx, wy]: [T; 2], s1: T, s2: T) -> [[T; 2]; 4] {
+fn hourglass<T: Number>(x: [T; 4], y: [T; 4], p: [T; 2], r: [T; 2], s1: T, s2: T) -> [T; 2] {
+    let hx = (x[0] + x[2]) - (x[1] + x[3]);
+    let hy = (y[0] + y[2]) - (y[1] + y[3]);
+    [(-s1).times_plus(p[0], (-s2).times_plus(r[0], hx)), (-s1).times_plus(p[1], (-s2).times_plus(r[1], hy))]
+}
+
+/// Forces [N] on corners 1, 2 and 4 and minus the force on corner 3: whoever sums subtracts it, which saves a negation.
+pub(crate) type CornerForces<T> = [[T; 2]; 4];
+
+/// Forces on the corners from those of the diagonals and of the hourglass stiffness [N].
+#[inline(always)]
+fn corner_forces<T: Number>(g1: [T; 2], g2: [T; 2], [wx, wy]: [T; 2], s1: T, s2: T) -> CornerForces<T> {
     let t1 = [s1.times_plus(wx, g1[0]), s1.times_plus(wy, g1[1])];
     let t2 = [s2.times_plus(wx, g2[0]), s2.times_plus(wy, g2[1])];
-    [
-        [t1[0] - wx, t1[1] - wy],
-        [t2[0] + wx, t2[1] + wy],
-        [-(t1[0] + wx), -(t1[1] + wy)],
-        [wx - t2[0], wy - t2[1]],
-    ]
+    [[t1[0] - wx, t1[1] - wy], [t2[0] + wx, t2[1] + wy], [t1[0] + wx, t1[1] + wy], [wx - t2[0], wy - t2[1]]]
 }
 
 /// Forces [N] on the four corners of one quadrilateral at positions `x`, `y` [m].
 pub fn quad_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [[f64; 2]; 4] {
     let QuadReference { b1, b2, s1, s2, volume } = *q;
-    QuadGradients { b1, b2, s1, s2, half_volume: 0.5 * volume }.forces(x, y, k)
+    let p = [x[0] - x[2], y[0] - y[2]];
+    let r = [x[1] - x[3], y[1] - y[3]];
+    let (g1, g2) = stress_forces(p, r, b1, b2, 0.5 * volume, k);
+    let w = hourglass(x, y, p, r, s1, s2).map(|h| k.hourglass * h);
+    let [f1, f2, [minus_x, minus_y], f4] = corner_forces(g1, g2, w, s1, s2);
+    [f1, f2, [-minus_x, -minus_y], f4]
 }
 
 /// A quadrilateral's reference and material in terms of the inner products of its diagonals: the fewest operations
@@ -296,9 +328,9 @@ impl QuadMetric {
 }
 
 impl<T: Number> QuadMetric<T> {
-    /// Forces [N] on the four corners at positions `x`, `y` [m]; equal to [`quad_forces`] but for rounding.
+    /// Forces on the four corners at positions `x`, `y` [m]; equal to [`quad_forces`] but for rounding.
     #[inline(always)]
-    pub(crate) fn forces(&self, x: [T; 4], y: [T; 4]) -> [[T; 2]; 4] {
+    pub(crate) fn forces(&self, x: [T; 4], y: [T; 4]) -> CornerForces<T> {
         let ([k11, k12, k22, k13, k23], [m1, m2, m3]) = (self.stiffness, self.from_mixed);
         let (px, py, rx, ry) = (x[0] - x[2], y[0] - y[2], x[1] - x[3], y[1] - y[3]);
         let e1 = px.times_plus(px, py.times_plus(py, self.minus_rest[0]));
@@ -309,8 +341,8 @@ impl<T: Number> QuadMetric<T> {
         let t12 = k13.times_plus(e1, k23.times_plus(e2, m3 * e3));
         let g1 = [t11.times_plus(px, t12 * rx), t11.times_plus(py, t12 * ry)];
         let g2 = [t22.times_plus(rx, t12 * px), t22.times_plus(ry, t12 * py)];
-        let w = hourglass(x, y, [px, py], [rx, ry], self.s1, self.s2, self.hourglass);
-        corner_forces(g1, g2, w, self.s1, self.s2)
+        let [hx, hy] = hourglass(x, y, [px, py], [rx, ry], self.s1, self.s2);
+        corner_forces(g1, g2, [self.hourglass * hx, self.hourglass * hy], self.s1, self.s2)
     }
 }
 
@@ -319,7 +351,8 @@ impl Stiffness {
     #[inline(always)]
     pub(crate) fn of<T: Number>(&self, kind: T) -> Stiffness<T> {
         let (lame, two_shear) = (kind.constant(self.lame), kind.constant(self.two_shear));
-        Stiffness { lame, two_shear, hourglass: kind.constant(self.hourglass) }
+        let (hourglass, ratio) = (kind.constant(self.hourglass), kind.constant(self.ratio));
+        Stiffness { lame, two_shear, hourglass, ratio }
     }
 }
 

@@ -20,8 +20,18 @@ impl Field {
     }
 
     /// Adds a value at the end.
-    pub(crate) fn push(&mut self, value: f64) {
+    pub fn push(&mut self, value: f64) {
         self.0.push(value);
+    }
+
+    /// Makes it `n` values long; new ones are zero.
+    pub fn resize(&mut self, n: usize) {
+        self.0.resize(n, 0.0);
+    }
+
+    /// Forgets all values and keeps their room.
+    pub fn clear(&mut self) {
+        self.0.clear();
     }
 }
 

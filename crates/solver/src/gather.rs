@@ -44,10 +44,12 @@ pub(crate) fn single_elements<S: Simd>(
             }
         }
         for (l, corners) in elements.iter().enumerate() {
-            for c in 0..4 {
+            for c in [0, 1, 3] {
                 fx[corners[c] as usize] += xs[c][l];
                 fy[corners[c] as usize] += ys[c][l];
             }
+            fx[corners[2] as usize] -= xs[2][l];
+            fy[corners[2] as usize] -= ys[2][l];
         }
     }
     for (corners, reference) in &tile.triangles {
@@ -124,25 +126,26 @@ fn congruent_quads<S: Simd>(
     let zero = [Vector::all(simd, 0.0); 2];
     let [mut low, mut high] = run.left;
     let (mut a, mut d) = (node(simd, x, y, low as usize + lane), node(simd, x, y, high as usize + lane));
-    let (mut on_low, mut on_high) = (zero, zero);
+    let (mut on_low, mut minus_high) = (zero, zero);
     for ([next_low, next_high], metric) in &tile.quads_of_runs[run.quads.clone()] {
         let (b, c) =
             (node(simd, x, y, *next_low as usize + lane), node(simd, x, y, *next_high as usize + lane));
-        let [f1, f2, f3, f4] = metric.of(a[0]).forces([a[0], b[0], c[0], d[0]], [a[1], b[1], c[1], d[1]]);
+        let [f1, f2, minus_f3, f4] =
+            metric.of(a[0]).forces([a[0], b[0], c[0], d[0]], [a[1], b[1], c[1], d[1]]);
         let (l, h) = (low as usize + lane, high as usize + lane);
         add(simd, fx, l, on_low[0] + f1[0]);
         add(simd, fy, l, on_low[1] + f1[1]);
-        add(simd, fx, h, on_high[0] + f4[0]);
-        add(simd, fy, h, on_high[1] + f4[1]);
-        (on_low, on_high) = (f2, f3);
+        add(simd, fx, h, f4[0] - minus_high[0]);
+        add(simd, fy, h, f4[1] - minus_high[1]);
+        (on_low, minus_high) = (f2, minus_f3);
         (low, high) = (*next_low, *next_high);
         (a, d) = (b, c);
     }
     let (l, h) = (low as usize + lane, high as usize + lane);
     add(simd, fx, l, on_low[0]);
     add(simd, fy, l, on_low[1]);
-    add(simd, fx, h, on_high[0]);
-    add(simd, fy, h, on_high[1]);
+    add(simd, fx, h, -minus_high[0]);
+    add(simd, fy, h, -minus_high[1]);
 }
 
 #[inline(always)]

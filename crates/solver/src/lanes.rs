@@ -2,7 +2,12 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use pulp::Simd;
+#[cfg(target_arch = "x86_64")]
+use std::any::Any;
+
+#[cfg(target_arch = "x86_64")]
+use pulp::x86::V4;
+use pulp::{Simd, bytemuck};
 
 /// Congruent bodies that share a tile; no instruction set takes more numbers at a time.
 pub const LANES: usize = 8;
@@ -109,6 +114,13 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     pub fn shifted_in(self, before: Self) -> Self {
         let simd = self.simd;
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v4) = (&simd as &dyn Any).downcast_ref::<V4>() {
+            const NEXT: [u64; LANES] = [7, 8, 9, 10, 11, 12, 13, 14];
+            let (now, before) = (bytemuck::cast(self.lanes), bytemuck::cast(before.lanes));
+            let joined = v4.avx512f._mm512_permutex2var_pd(before, bytemuck::cast(NEXT), now);
+            return Self { lanes: bytemuck::cast(joined), ..self };
+        }
         let all_but_last = S::as_simd_u64s(&KEEP[LANES - Self::LEN + 1..LANES + 1]).0[0];
         let last = S::as_simd_u64s(&KEEP_LAST[LANES - Self::LEN..LANES]).0[0];
         let (now, before) = (simd.transmute_u64s_f64s(self.lanes), simd.transmute_u64s_f64s(before.lanes));

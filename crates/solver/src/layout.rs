@@ -35,8 +35,8 @@ pub struct Layout {
     pub slot_of_node: Vec<u32>,
     /// Mesh node of each slot; ghosts name the node that they copy, padding names `None`.
     pub node_of_slot: Vec<Option<u32>>,
-    /// (ghost slot, slot of the node it copies), ascending.
-    pub(crate) ghosts: Vec<(u32, u32)>,
+    /// Runs of ghosts and the first slot of the run that they copy, ascending.
+    pub(crate) ghosts: Vec<(Range<usize>, usize)>,
     /// The tiles, in slot order.
     pub(crate) tiles: Vec<TileLayout>,
 }
@@ -104,6 +104,17 @@ impl Layout {
     /// Number of slots.
     pub fn len(&self) -> usize {
         self.node_of_slot.len()
+    }
+
+    /// Writes what stands in the nodes' slots of a field into those of their ghosts.
+    pub(crate) fn copy_to_ghosts(&self, field: &mut [f64]) {
+        for (ghosts, owner) in &self.ghosts {
+            match ghosts.len() {
+                // Across seams they are single ones: not worth a call.
+                1 => field[ghosts.start] = field[*owner],
+                n => field.copy_within(*owner..owner + n, ghosts.start),
+            }
+        }
     }
 
     /// True when there is no slot.
@@ -230,8 +241,11 @@ impl Layout {
         }
         for tile in &self.tiles[self.tiles.len() - tiles..] {
             for ghost in tile.slots.start + tile.own..tile.slots.end {
-                if let Some(node) = self.node_of_slot[ghost] {
-                    self.ghosts.push((ghost as u32, self.slot_of_node[node as usize]));
+                let Some(node) = self.node_of_slot[ghost] else { continue };
+                let owner = self.slot_of_node[node as usize] as usize;
+                match self.ghosts.last_mut() {
+                    Some((run, first)) if run.end == ghost && *first + run.len() == owner => run.end += 1,
+                    _ => self.ghosts.push((ghost..ghost + 1, owner)),
                 }
             }
         }

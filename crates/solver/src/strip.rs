@@ -5,7 +5,7 @@ use pulp::Simd;
 
 use crate::{
     advance::{Damping, Nodes, Step, Undamped, advance},
-    element::{QuadMetric, Stiffness},
+    element::{CornerForces, QuadMetric, Stiffness},
     lanes::Vector,
     tile::{Strip, StripReferences, VaryingReferences},
 };
@@ -73,7 +73,7 @@ fn run_or_hold<S: Simd, D: Damping, R: References<S>>(
     }
 }
 
-/// Forces of a group of elements on their right corners: (x, y) of the lower and of the upper row.
+/// Forces of a group of elements on their right corners: (x, y) of the lower row and minus that of the upper one.
 type Right<S> = [[Vector<S>; 2]; 2];
 
 #[inline(always)]
@@ -113,33 +113,34 @@ fn run<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
 #[allow(clippy::too_many_arguments)] // the arrays of one kernel
 fn group<S: Simd, D: Damping, const COMPLETES: bool, const LAST: bool>(
     simd: S,
-    [f1, f2, f3, f4]: [[Vector<S>; 2]; 4],
+    [f1, f2, minus_f3, f4]: CornerForces<Vector<S>>,
     nodes: &mut Nodes<'_>,
     [low, high]: [usize; 2],
     n: usize,
-    [right_low, right_high]: Right<S>,
+    [right_low, minus_high]: Right<S>,
     step: &Step<S>,
     heat: &mut Vector<S>,
 ) -> Right<S> {
-    let [fx4, fy4] = to_nodes(f4, f3, right_high);
+    let [right_x, right_y] = to_right(minus_f3, minus_high);
+    let [fx4, fy4] = [f4[0] - right_x, f4[1] - right_y];
     (Vector::load(simd, nodes.fx, high) + fx4).store(nodes.fx, high);
     (Vector::load(simd, nodes.fy, high) + fy4).store(nodes.fy, high);
-    let [fx1, fy1] = to_nodes(f1, f2, right_low);
-    let fx = Vector::load(simd, nodes.fx, low) + fx1;
-    let fy = Vector::load(simd, nodes.fy, low) + fy1;
+    let [right_x, right_y] = to_right(f2, right_low);
+    let fx = Vector::load(simd, nodes.fx, low) + (f1[0] + right_x);
+    let fy = Vector::load(simd, nodes.fy, low) + (f1[1] + right_y);
     if COMPLETES {
         advance::<S, D, LAST>(simd, nodes, low, 0, n, [fx, fy], [1.0, 1.0], step, heat);
     } else {
         fx.store(nodes.fx, low);
         fy.store(nodes.fy, low);
     }
-    [f2, f3]
+    [f2, minus_f3]
 }
 
-/// Forces [N] at left corners, from those of the elements there and of their neighbours on the left.
+/// Forces [N] on right corners, at the nodes to the right: those of the neighbours on the left.
 #[inline(always)]
-fn to_nodes<S: Simd>(left: [Vector<S>; 2], right: [Vector<S>; 2], before: [Vector<S>; 2]) -> [Vector<S>; 2] {
-    [left[0] + right[0].shifted_in(before[0]), left[1] + right[1].shifted_in(before[1])]
+fn to_right<S: Simd>(right: [Vector<S>; 2], before: [Vector<S>; 2]) -> [Vector<S>; 2] {
+    [right[0].shifted_in(before[0]), right[1].shifted_in(before[1])]
 }
 
 #[inline(always)]
@@ -158,7 +159,7 @@ trait References<S: Simd> {
         row: [usize; 2],
         e: usize,
         k: &Stiffness<Vector<S>>,
-    ) -> [[Vector<S>; 2]; 4];
+    ) -> CornerForces<Vector<S>>;
 }
 
 /// Values at the corners of a group of neighbours.
@@ -181,7 +182,7 @@ impl<S: Simd> References<S> for QuadMetric<Vector<S>> {
         row: [usize; 2],
         e: usize,
         _: &Stiffness<Vector<S>>,
-    ) -> [[Vector<S>; 2]; 4] {
+    ) -> CornerForces<Vector<S>> {
         QuadMetric::forces(self, corners(simd, nodes.x, row, e), corners(simd, nodes.y, row, e))
     }
 }
@@ -201,7 +202,7 @@ impl<S: Simd> References<S> for Each<'_> {
         row: [usize; 2],
         e: usize,
         k: &Stiffness<Vector<S>>,
-    ) -> [[Vector<S>; 2]; 4] {
+    ) -> CornerForces<Vector<S>> {
         let references = self.references.group(simd, self.start, e);
         references.forces(corners(simd, nodes.x, row, e), corners(simd, nodes.y, row, e), k)
     }

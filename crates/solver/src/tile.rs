@@ -7,7 +7,7 @@ use stribeck_mesh::strips::find_strips;
 
 use crate::{
     damping::LaneFrames,
-    element::{QuadGradients, QuadMetric, QuadReference, Stiffness, TriangleReference},
+    element::{QuadMetric, QuadReference, QuadShape, Stiffness, TriangleReference},
     field::Field,
     lanes::{LANES, Vector},
     layout::TileLayout,
@@ -103,7 +103,7 @@ pub(crate) enum StripReferences {
     Varying(usize),
 }
 
-/// Shape gradients of quadrilaterals ([`crate::element::QuadGradients`]) in groups of lanes: eight values of each kind,
+/// Shapes of quadrilaterals ([`crate::element::QuadShape`]) in groups of lanes: eight values of each kind,
 /// one kind after the other, so that a kernel reads them as one stream.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VaryingReferences(Field);
@@ -129,18 +129,17 @@ impl Strip {
 }
 
 impl VaryingReferences {
-    /// b1, b2, s1, s2 and half of the volume.
-    const KINDS: usize = 7;
+    /// Numbers of a [`QuadShape`].
+    const KINDS: usize = 6;
 
-    /// Appends groups with the references of some elements; returns the number of the first group. The last group is
-    /// filled up with its last element, and one more follows, because kernels read a group beyond the end.
-    fn push<'a>(&mut self, elements: impl ExactSizeIterator<Item = &'a QuadReference>) -> usize {
+    /// Appends groups with the shapes of some elements; returns the number of the first group. The last group is filled up
+    /// with its last element, and one more follows, because kernels read a group beyond the end.
+    fn push(&mut self, elements: impl ExactSizeIterator<Item = QuadShape>) -> usize {
         let start = self.0.len() / (Self::KINDS * LANES);
         let groups = elements.len() / LANES + 1;
         let mut kinds = [const { Vec::new() }; Self::KINDS];
-        for q in elements {
-            let values = [q.b1[0], q.b1[1], q.b2[0], q.b2[1], q.s1, q.s2, 0.5 * q.volume];
-            kinds.iter_mut().zip(values).for_each(|(kind, value)| kind.push(value));
+        for QuadShape { rest: [pp, rr, pr], scale, s1, s2 } in elements {
+            kinds.iter_mut().zip([pp, rr, pr, scale, s1, s2]).for_each(|(kind, value)| kind.push(value));
         }
         for group in 0..groups {
             for kind in &kinds {
@@ -155,29 +154,29 @@ impl VaryingReferences {
     fn turn_over(&mut self, start: usize, n: usize) {
         for group in start..=start + n / LANES {
             let at = group * Self::KINDS * LANES;
-            let values = &mut self.0[at..at + Self::KINDS * LANES];
-            for l in 0..LANES {
-                let of = |kind: usize| kind * LANES + l;
-                for k in 0..2 {
-                    (values[of(k)], values[of(2 + k)]) = (-values[of(2 + k)], -values[of(k)]);
-                }
-                values.swap(of(4), of(5));
+            for l in at..at + LANES {
+                // Diagonals change places, and so do their parts of the hourglass vector.
+                self.0.swap(l, LANES + l);
+                self.0.swap(4 * LANES + l, 5 * LANES + l);
             }
         }
     }
 
-    /// References of the elements from `e` on of those whose first group is `start`.
+    /// Shapes of the elements from `e` on of those whose first group is `start`.
     #[inline(always)]
-    pub(crate) fn group<S: Simd>(&self, simd: S, start: usize, e: usize) -> QuadGradients<Vector<S>> {
+    pub(crate) fn group<S: Simd>(&self, simd: S, start: usize, e: usize) -> QuadShape<Vector<S>> {
         let at = (start + e / LANES) * Self::KINDS * LANES;
         let values = &self.0[at..at + Self::KINDS * LANES];
         let lane = e % LANES;
-        QuadGradients {
-            b1: [Vector::load(simd, values, lane), Vector::load(simd, values, LANES + lane)],
-            b2: [Vector::load(simd, values, 2 * LANES + lane), Vector::load(simd, values, 3 * LANES + lane)],
+        QuadShape {
+            rest: [
+                Vector::load(simd, values, lane),
+                Vector::load(simd, values, LANES + lane),
+                Vector::load(simd, values, 2 * LANES + lane),
+            ],
+            scale: Vector::load(simd, values, 3 * LANES + lane),
             s1: Vector::load(simd, values, 4 * LANES + lane),
             s2: Vector::load(simd, values, 5 * LANES + lane),
-            half_volume: Vector::load(simd, values, 6 * LANES + lane),
         }
     }
 }
@@ -238,6 +237,8 @@ impl Tile {
     }
 
     fn add_strips(&mut self, layout: &TileLayout, quads: &[QuadReference]) {
+        let stiffness = self.stiffness;
+        let shape = |e: usize| QuadShape::new(&quads[e], &stiffness);
         let mut gathered = Vec::new();
         let corners: Vec<[u32; 4]> = layout.quads.iter().map(|&(c, _)| c).collect();
         for run in find_strips(&corners) {
@@ -254,11 +255,11 @@ impl Tile {
             let references = if elements.iter().all(|&(_, e)| quads[e].is_congruent(&first)) {
                 StripReferences::Uniform(QuadMetric::new(&first, &self.stiffness))
             } else {
-                StripReferences::Varying(self.varying.push(elements.iter().map(|&(_, e)| &quads[e])))
+                StripReferences::Varying(self.varying.push(elements.iter().map(|&(_, e)| shape(e))))
             };
             self.strips.push(Strip { corners: run.corners, len: run.len, references, completes: false });
         }
-        self.first_gathered = self.varying.push(gathered.iter().map(|&e: &usize| &quads[e]));
+        self.first_gathered = self.varying.push(gathered.into_iter().map(shape));
     }
 
     /// Lists which nodes are complete after which strip: the last one that reads or pushes them.

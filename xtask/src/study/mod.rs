@@ -4,6 +4,7 @@
 //! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
 //! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 
+mod impulse;
 mod kills;
 mod long;
 mod noise;
@@ -44,6 +45,8 @@ enum Study {
     WorkPrecision(work_precision::Options),
     /// Where contact noise comes from and what each cure takes away
     Noise(noise::Options),
+    /// Whether the impulse at the exit is that of a finer mesh, over many starts
+    Impulse(impulse::Options),
 }
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
@@ -54,5 +57,6 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         Study::Stability(options) => stability::run(options),
         Study::WorkPrecision(options) => work_precision::run(options),
         Study::Noise(options) => noise::run(options),
+        Study::Impulse(options) => impulse::run(options),
     }
 }

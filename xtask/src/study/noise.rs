@@ -1,7 +1,7 @@
 //! `cargo xtask study noise`: where contact noise comes from and what each cure takes away.
 
 mod converged;
-mod variants;
+pub(super) mod variants;
 
 use std::process::ExitCode;
 

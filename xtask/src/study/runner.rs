@@ -2,8 +2,8 @@
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
@@ -22,6 +22,10 @@ pub(crate) struct Flags {
     /// Worker threads [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// Runs this many variants at a time, each on one thread, for machines with many cores
+    #[arg(long, value_name = "N", conflicts_with = "threads", default_value_t = 1,
+        value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
     /// Runs only variants whose name contains this; may be repeated. The others are shown when they have been run
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
@@ -123,29 +127,39 @@ impl Runner {
     }
 
     fn run_with(&self, flags: &Flags, variants: &[Variant]) -> Result<Vec<Finished>> {
-        let mut all = Vec::new();
-        for (number, variant) in variants.iter().enumerate() {
-            let scene = variant.scene()?;
-            let folder = self.folder.join(&variant.name);
-            let wanted = flags.wants(&variant.name);
-            let mut failed = None;
-            match state_of(&folder, &scene) {
-                State::Done => {}
-                _ if !wanted || flags.tables_only => continue,
-                state => {
-                    eprintln!("{} of {}: {}", number + 1, variants.len(), variant.name);
-                    if let Err(error) = self.run_one(&scene, &folder, state) {
-                        eprintln!("{}: {error:#}", variant.name);
-                        failed = Some(format!("{error:#}"));
-                    }
-                    if self.interrupted.load(Ordering::Relaxed) {
-                        bail!("interrupted; the same command goes on from here");
-                    }
+        let planned: Vec<Planned> =
+            variants.iter().map(|variant| self.plan(flags, variant)).collect::<Result<_>>()?;
+        let due: Vec<(usize, &Planned)> = planned.iter().enumerate().filter(|(_, p)| p.due).collect();
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(&(number, planned)) = due.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if self.interrupted.load(Ordering::Relaxed) {
+                    return;
+                }
+                eprintln!("{} of {}: {}", number + 1, variants.len(), planned.variant.name);
+                if let Err(error) = self.run_one(planned) {
+                    eprintln!("{}: {error:#}", planned.variant.name);
+                    let _ = planned.failed.set(format!("{error:#}"));
                 }
             }
-            all.push(finished(variant.clone(), folder, scene, failed));
+        };
+        std::thread::scope(|scope| {
+            (1..flags.jobs).for_each(|_| drop(scope.spawn(work)));
+            work();
+        });
+        if self.interrupted.load(Ordering::Relaxed) {
+            bail!("interrupted; the same command goes on from here");
         }
-        Ok(all)
+        Ok(planned.into_iter().filter(|p| p.due || p.state == State::Done).map(finished).collect())
+    }
+
+    /// What is to be done for a variant.
+    fn plan(&self, flags: &Flags, variant: &Variant) -> Result<Planned> {
+        let scene = variant.scene()?;
+        let folder = self.folder.join(&variant.name);
+        let state = state_of(&folder, &scene);
+        let due = state != State::Done && flags.wants(&variant.name) && !flags.tables_only;
+        Ok(Planned { variant: variant.clone(), scene, folder, state, due, failed: OnceLock::new() })
     }
 
     /// As [`Runner::run`]; when not `wanted`, nothing is run and what has been run is returned.
@@ -159,25 +173,43 @@ impl Runner {
         self.run_with(&Flags { tables_only: true, ..self.flags.clone() }, variants)
     }
 
-    fn run_one(&self, scene: &Scene, folder: &Path, state: State) -> Result<()> {
+    fn run_one(&self, planned: &Planned) -> Result<()> {
+        let Planned { scene, folder, .. } = planned;
+        let alone = self.flags.jobs == 1;
+        let threads = if alone { self.threads } else { 1 };
         let mut meter = Meter::new(scene.solver.duration_ms);
         let mut watch = |progress: &Progress| {
-            meter.show(progress);
+            if alone {
+                meter.show(progress);
+            }
             if self.interrupted.load(Ordering::Relaxed) {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())
             }
         };
-        let info = match state {
-            State::Begun => engine::resume(&RunDir::reopen(folder)?, self.threads, &mut watch),
-            _ => engine::simulate(scene, &RunDir::create(folder)?, self.threads, &mut watch),
+        let info = match planned.state {
+            State::Begun => engine::resume(&RunDir::reopen(folder)?, threads, &mut watch),
+            _ => engine::simulate(scene, &RunDir::create(folder)?, threads, &mut watch),
         };
         meter.finish();
         let info = info?;
-        eprintln!("  {:?} after {}", info.status, clock(info.wall_s + info.setup_s));
+        let name = &planned.variant.name;
+        eprintln!("  {name}: {:?} after {}", info.status, clock(info.wall_s + info.setup_s));
         Ok(())
     }
+}
+
+/// A variant and what is to be done for it.
+struct Planned {
+    variant: Variant,
+    scene: Scene,
+    folder: PathBuf,
+    state: State,
+    /// Whether it is to be run.
+    due: bool,
+    /// Why it could not be.
+    failed: OnceLock<String>,
 }
 
 /// How far a variant is.
@@ -205,8 +237,9 @@ fn state_of(folder: &Path, scene: &Scene) -> State {
 }
 
 /// Reads a run again and draws its conclusions anew, so that a table is never older than the analysis.
-fn finished(variant: Variant, folder: PathBuf, scene: Scene, failed: Option<String>) -> Finished {
-    let run = match failed {
+fn finished(planned: Planned) -> Finished {
+    let Planned { variant, folder, scene, failed, .. } = planned;
+    let run = match failed.into_inner() {
         Some(why) => Err(why),
         None => Run::read(&folder).map_err(|error| error.to_string()),
     };

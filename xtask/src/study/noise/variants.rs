@@ -2,8 +2,8 @@
 
 use crate::study::Variant;
 
-pub(super) const LEAN: &str = "fixtures/scenes/lean.ron";
-const UNIFORM: &str = "fixtures/scenes/singh2014.ron";
+pub(in crate::study) const LEAN: &str = "fixtures/scenes/lean.ron";
+pub(in crate::study) const UNIFORM: &str = "fixtures/scenes/singh2014.ron";
 /// One exit and the quiet time until the next entry, no pictures.
 const SHORT: [&str; 2] = ["solver.duration_ms=12.0", "output.frames=None"];
 /// Three exits, two quiet times.
@@ -12,22 +12,22 @@ const LONG: [&str; 2] = ["solver.duration_ms=30.0", "output.frames=None"];
 const EXIT: [&str; 2] = ["solver.duration_ms=11.5", "output.frames=None"];
 
 /// Measured with copies of the roller in one orientation, the default of its time.
-const TRANSLATED: &str = "mesh.roller_copies=translated";
-const ARC: &str = "contact.surface=arc";
+pub(in crate::study) const TRANSLATED: &str = "mesh.roller_copies=translated";
+pub(in crate::study) const ARC: &str = "contact.surface=arc";
 const NAGATA: &str = "contact.surface=nagata";
-const SPLINE: &str = "contact.interpolation=spline";
-const ONSET: &str = "contact.onset_um=8.0";
+pub(in crate::study) const SPLINE: &str = "contact.interpolation=spline";
+pub(in crate::study) const ONSET: &str = "contact.onset_um=8.0";
 /// Hardly wider than points are apart.
 const NARROW: &str = "contact.onset_um=3.0";
 /// As in `singh2014_smooth.ron`.
-const POINTS: &str = "contact.points_per_facet=8";
+pub(in crate::study) const POINTS: &str = "contact.points_per_facet=8";
 const STIFF: &str = "contact.penalty_scale=0.7";
 /// A stiffer contact sinks in less.
 const STIFF_ONSET: &str = "contact.onset_um=0.5";
 /// The first roller a little ahead or behind: ten microseconds.
 const STARTS: [(&str, &str); 3] = [("", "94.0"), ("-ahead", "93.99"), ("-behind", "94.01")];
 /// Elements of half the size under the same contact: stiffness and damping over an area stay.
-const FINE: [&str; 6] = [
+pub(in crate::study) const FINE: [&str; 6] = [
     "mesh.size_mm=0.25",
     "mesh.roller_facets=224",
     "mesh.grading.fine_layers=4",
