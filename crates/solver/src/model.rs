@@ -88,7 +88,9 @@ impl Model {
         e.map(|n| [self.mesh.x[n as usize], self.mesh.y[n as usize]])
     }
 
-    /// References of all quadrilaterals and triangles, in mesh order.
+    /// References of all quadrilaterals and triangles, in mesh order. Quadrilaterals that follow one another with the same
+    /// shape but for rounding have one and the same: whoever computes an element, in a strip or alone, then takes the same
+    /// forces on it, and none is left on the body.
     ///
     /// # Errors
     /// When an element has no positive area.
@@ -98,7 +100,9 @@ impl Model {
         for body in &self.mesh.bodies {
             for e in body.quads.clone() {
                 let corners = self.corners(&self.mesh.quads[e]);
-                quads.push(QuadReference::new(&corners, self.thickness).map_err(bad(&body.name, e))?);
+                let new = QuadReference::new(&corners, self.thickness).map_err(bad(&body.name, e))?;
+                let before = quads.last().copied().filter(|before: &QuadReference| before.is_congruent(&new));
+                quads.push(before.unwrap_or(new));
             }
             for e in body.triangles.clone() {
                 let corners = self.corners(&self.mesh.triangles[e]);

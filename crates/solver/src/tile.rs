@@ -252,7 +252,7 @@ impl Tile {
                 continue;
             }
             let first = quads[elements[0].1];
-            let references = if elements.iter().all(|&(_, e)| quads[e].is_congruent(&first)) {
+            let references = if elements.iter().all(|&(_, e)| quads[e] == first) {
                 StripReferences::Uniform(QuadMetric::new(&first, &self.stiffness))
             } else {
                 StripReferences::Varying(self.varying.push(elements.iter().map(|&(_, e)| shape(e))))

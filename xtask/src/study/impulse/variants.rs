@@ -6,19 +6,6 @@ use crate::study::noise::variants::{ARC, FINE, LEAN, ONSET, POINTS, SPLINE, TRAN
 /// Until a millisecond behind the last start's exit.
 const SHORT: [&str; 2] = ["solver.duration_ms=6.5", "output.frames=None"];
 
-/// Elements of a quarter of the size under the same contact.
-const FINEST: [&str; 6] = [
-    "mesh.size_mm=0.125",
-    "mesh.roller_facets=448",
-    "mesh.grading.fine_layers=8",
-    "contact.penalty_scale=0.0125",
-    "contact.damping_ratio=0.2",
-    "contact.points_per_facet=4",
-];
-
-/// Fewer starts of the most expensive mesh.
-const FINEST_PART: u16 = 4;
-
 /// Name and meaning of each mesh, and its starts; the reference comes last.
 pub(super) fn groups(starts: u16) -> Vec<(&'static str, &'static str, Vec<Variant>)> {
     let cure = [ARC, SPLINE, ONSET];
@@ -28,11 +15,10 @@ pub(super) fn groups(starts: u16) -> Vec<(&'static str, &'static str, Vec<Varian
         ("cured", "0.5 mm, graded, the cure", all("cured", LEAN, &with(&[POINTS]), starts)),
         ("uniform", "0.5 mm throughout, the cure", all("uniform", UNIFORM, &with(&[POINTS]), starts)),
         (
-            "finest",
-            "0.125 mm, graded, the cure with the contact\u{2019}s stiffness and damping over an area and its onset unchanged",
-            all("finest", LEAN, &with(&FINEST), (starts / FINEST_PART).max(2)),
+            "fine",
+            "0.25 mm, graded, the cure with the contact\u{2019}s stiffness and damping over an area and its onset unchanged",
+            all("fine", LEAN, &with(&FINE), starts),
         ),
-        ("fine", "0.25 mm, the same", all("fine", LEAN, &with(&FINE), starts)),
     ]
 }
 
