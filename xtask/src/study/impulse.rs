@@ -87,8 +87,9 @@ fn introduce(sheet: &mut Sheet, groups: &[(&str, &str, Vec<Finished>)]) {
         "The first impulse of the bearing: vertical acceleration within 1 ms of the exit of roller 1, from starts 0.01° of the \
          cage (10 µs) apart. The impulse of a single start says little, for rollers without load rattle, and what each of \
          them does in the exit's millisecond differs from start to start by more than meshes do. So means over the \
-         starts are compared, with their standard errors. A mean's own error is what limits the comparison; a difference below \
-         two of its standard errors is none.",
+         starts are compared, with their standard errors. Differences of more than \
+         two of their standard errors are bold; of the others one cannot say that there is any. A running mean over 50, 100 \
+         and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz.",
     );
     let rows: Vec<Vec<String>> = groups
         .iter()
@@ -134,7 +135,8 @@ fn table(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) {
         let last = &samples[others.len()];
         for ((group, _), sample) in others.iter().zip(&samples) {
             let [off, error] = ratio(sample, last).map(|v| 100.0 * v);
-            row.push(format!("{} ± {}", number(off, 1), number(error, 1)));
+            let bold = if off.abs() > 2.0 * error { "**" } else { "" };
+            row.push(format!("{bold}{} ± {}{bold}", number(off, 1), number(error, 1)));
             sheet.value(sensor, group, &format!("{name}, off {} %", reference.0), Some(off));
             sheet.value(
                 sensor,
