@@ -4,11 +4,11 @@
 mod statistics;
 mod variants;
 
-use std::ops::Range;
 use std::process::ExitCode;
 
 use anyhow::Result;
 use stribeck_analysis::levels::impulse_span;
+use stribeck_analysis::noise;
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
@@ -40,21 +40,19 @@ struct Quantity {
 /// Running means over these times leave what is slower than 8.9, 4.4 and 2.1 kHz (−3 dB) [s].
 const MEANS_S: [f64; 3] = [50e-6, 100e-6, 210e-6];
 
-/// The impulse of one start at one sensor, vertical acceleration within 1 ms of the exit.
+/// The impulse of one start at one sensor.
 struct Impulse {
-    peak_g: f64,
+    whole: noise::Impulse,
     /// Largest magnitude of each running mean.
     means_g: [f64; 3],
-    /// ∫ a² dt.
-    energy_g2_ms: f64,
 }
 
 const QUANTITIES: [Quantity; 5] = [
-    Quantity { name: "peak g", decimals: 0, of: |i| i.peak_g },
+    Quantity { name: "peak g", decimals: 0, of: |i| i.whole.peak_g },
     Quantity { name: "peak below 8.9 kHz g", decimals: 1, of: |i| i.means_g[0] },
     Quantity { name: "peak below 4.4 kHz g", decimals: 1, of: |i| i.means_g[1] },
     Quantity { name: "peak below 2.1 kHz g", decimals: 1, of: |i| i.means_g[2] },
-    Quantity { name: "root of the energy, g √ms", decimals: 1, of: |i| i.energy_g2_ms.sqrt() },
+    Quantity { name: "root of the energy, g √ms", decimals: 1, of: |i| i.whole.energy_g2_ms.sqrt() },
 ];
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
@@ -180,14 +178,12 @@ fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
     run.numbers()?;
     let read = Run::read(&run.folder).ok()?;
     let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages.first()?.exit_s;
-    let record = Record::new(&read);
-    let span: Range<usize> = impulse_span(record.time_s(), exit_s);
-    let whole = record.acceleration_g(&read.scene.output.sensors.get(sensor)?.name, "ay")?;
-    let vertical = whole.get(span)?;
+    let (record, name) = (Record::new(&read), &read.scene.output.sensors.get(sensor)?.name);
+    let vertical = record.acceleration_g(name, "ay")?;
+    let vertical = vertical.get(impulse_span(record.time_s(), exit_s))?;
     let mean = |width| smoothed_peak(vertical, record.interval_s(), width);
     Some(Impulse {
-        peak_g: vertical.iter().fold(0.0, |most: f64, a| most.max(a.abs())),
+        whole: noise::impulse(&record, name, exit_s)?,
         means_g: [mean(MEANS_S[0])?, mean(MEANS_S[1])?, mean(MEANS_S[2])?],
-        energy_g2_ms: 1e3 * record.interval_s() * vertical.iter().map(|a| a * a).sum::<f64>(),
     })
 }
