@@ -7,7 +7,7 @@ use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
-    threads::share_out,
+    threads::{share_out, share_out_with_first},
 };
 
 use crate::{
@@ -81,6 +81,8 @@ pub struct Contacts {
     surfaces: Vec<Surface>,
     trees: Vec<Tree>,
     pairs: Vec<Pair>,
+    /// Room for the forces of a pair.
+    push: Vec<Push>,
     thickness: f64,
     skin: f64,
     search: Schedule,
@@ -95,6 +97,7 @@ struct Pair {
     spec: PairSpec,
     /// The first surface's points against the second, then, if wanted, the other way round.
     passes: Vec<Pass>,
+    /// Forces of the last evaluation, where others come first.
     push: Vec<Push>,
     found: Vec<(u32, u32)>,
     sum: [Sum; 2],
@@ -170,6 +173,7 @@ impl Contacts {
             surfaces,
             trees,
             pairs,
+            push: Vec::new(),
             thickness,
             skin,
             search: Schedule::default(),
@@ -259,7 +263,7 @@ impl Contacts {
         // Who dozes counts on the speed of the search before.
         let slower = (self.search.fastest / fastest).min(1.0);
         let threads = self.threads();
-        let Self { trees, surfaces, pairs, .. } = self;
+        let Self { trees, surfaces, pairs, push, .. } = self;
         let find = |pair: &mut Pair| {
             trees[pair.spec.first].pairs(&trees[pair.spec.second], &mut pair.found);
             for pass in &mut pair.passes {
@@ -273,6 +277,7 @@ impl Contacts {
             pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
         };
         share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
+        push.reserve(pairs.iter().map(|pair| pair.push.capacity()).max().unwrap_or(0));
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
         let next = at.step + rest.clamp(1.0, LONGEST_REST) as u64;
         self.search = Schedule { next, fastest, afresh: self.preload.is_some() };
@@ -334,28 +339,42 @@ fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>, 
     Weights { law, thickness: share * thickness, fastest, softness, together }
 }
 
+/// Adds forces at nodes.
+fn hand_over(push: &mut Vec<Push>, to: &mut NodeForces) {
+    for (slot, [fx, fy]) in push.drain(..) {
+        to.fx[slot as usize] += fx;
+        to.fy[slot as usize] += fy;
+    }
+}
+
 impl Force for Contacts {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
         if at.step >= self.search.next || self.preload.is_some() {
             self.search(&at);
         }
         let threads = self.threads();
-        let Self { surfaces, pairs, thickness, search, preload, together, .. } = self;
-        let evaluate = |pair: &mut Pair| {
+        let Self { surfaces, pairs, thickness, search, preload, together, push, .. } = self;
+        let evaluate = |pair: &mut Pair, push: &mut Vec<Push>| {
             let w = weights(&pair.spec, *thickness, search.fastest, *preload, *together);
-            pair.push.clear();
             pair.passes.iter().for_each(|pass| pass.read_ahead(surfaces, &at));
             for (pass, sum) in pair.passes.iter_mut().zip(&mut pair.sum) {
-                *sum = pass.evaluate(surfaces, &at, &w, &mut pair.push);
+                *sum = pass.evaluate(surfaces, &at, &w, push);
             }
         };
-        share_out(pairs, threads, LEAST_WORK, &Pair::work, &evaluate);
+        // Pushes are added in the order of the pairs. Those of the first ones can be added at once, while they are in cache.
+        let mut at_once = |pair: &mut Pair| {
+            evaluate(pair, push);
+            hand_over(push, force);
+        };
+        let later = |pair: &mut Pair| {
+            let mut push = std::mem::take(&mut pair.push);
+            evaluate(pair, &mut push);
+            pair.push = push;
+        };
+        share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, &mut at_once, &later);
         self.energy.stored = 0.0;
-        for pair in &self.pairs {
-            for &(slot, [fx, fy]) in &pair.push {
-                force.fx[slot as usize] += fx;
-                force.fy[slot as usize] += fy;
-            }
+        for pair in &mut self.pairs {
+            hand_over(&mut pair.push, force);
             for sum in &pair.sum {
                 self.energy.stored += sum.stored;
                 self.energy.friction += sum.friction;

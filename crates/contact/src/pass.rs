@@ -1,7 +1,8 @@
 //! One pass: the points of a secondary surface against the facets of a primary one.
 
-use std::{hint::black_box, ops::Range, sync::Arc};
+use std::{ops::Range, sync::Arc};
 
+use prefetch_index::prefetch_index;
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
 use stribeck_solver::{field::Field, force::RankOne, lanes::LANES, state::Moment};
@@ -318,19 +319,24 @@ impl Pass {
             return;
         }
         let primary = &surfaces[self.primary];
-        let mut sum = 0.0;
         for candidate in candidates.iter().filter(|c| at.step >= c.wake) {
-            let first = candidate.first as usize;
-            let lines = [first, first + LANES];
-            sum += lines.map(|i| doze[i]).iter().sum::<f64>();
-            if let Some(Histories { slip, damping }) = history {
-                sum += lines.map(|i| slip[i] + damping[i]).iter().sum::<f64>();
+            let (first, n) = (candidate.first as usize, candidate.pattern.points as usize);
+            for i in (first..first + n).step_by(LANES) {
+                prefetch_index(&doze[..], i);
+                if let Some(Histories { slip, damping }) = history {
+                    prefetch_index(&slip[..], i);
+                    prefetch_index(&damping[..], i);
+                }
             }
             let (a, b) = primary.ends(nearest[first] as usize);
             let [c, d] = candidate.ends.map(|n| n as usize);
-            sum += [a, b, c, d].map(|n| at.x[n] + at.y[n] + at.vx[n] + at.vy[n]).iter().sum::<f64>();
+            for n in [a, b, c, d] {
+                prefetch_index(at.x, n);
+                prefetch_index(at.y, n);
+                prefetch_index(at.vx, n);
+                prefetch_index(at.vy, n);
+            }
         }
-        black_box(sum);
     }
 
     /// Evaluates the pass: pushes forces and sums.

@@ -14,18 +14,30 @@ pub fn share_out<T: Send>(
     work: &(impl Fn(&T) -> usize + Sync),
     each: &(impl Fn(&mut T) + Sync),
 ) {
+    share_out_with_first(items, threads, least, work, &mut |item| each(item), each);
+}
+
+/// The same; one thread takes items in order from the first on and does to them what `first` does, all others do `other`.
+pub fn share_out_with_first<T: Send>(
+    items: &mut [T],
+    threads: usize,
+    least: usize,
+    work: &(impl Fn(&T) -> usize + Sync),
+    first: &mut (impl FnMut(&mut T) + Send),
+    other: &(impl Fn(&mut T) + Sync),
+) {
     let all: usize = items.iter().map(work).sum();
     if threads < 2 || items.len() < 2 || all < 2 * least {
-        items.iter_mut().for_each(each);
+        items.iter_mut().for_each(first);
     } else if threads == 2 {
-        from_both_ends(items.iter_mut(), each, each);
+        from_both_ends(items.iter_mut(), first, other);
     } else {
         let half = threads / 2;
         let cut = cut(items.iter().map(work), all, half, threads);
-        let (first, second) = items.split_at_mut(cut);
+        let (here, there) = items.split_at_mut(cut);
         micropool::join(
-            || share_out(first, half, least, work, each),
-            || share_out(second, threads - half, least, work, each),
+            || share_out_with_first(here, half, least, work, first, other),
+            || share_out(there, threads - half, least, work, other),
         );
     }
 }
