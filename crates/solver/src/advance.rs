@@ -2,6 +2,7 @@
 
 use std::marker::PhantomData;
 
+use prefetch_index::prefetch_index;
 use pulp::Simd;
 
 use crate::{
@@ -25,6 +26,8 @@ pub(crate) struct Step<S: Simd> {
     frames: LaneFrames,
     /// αΔt: heat over mass and squared velocity.
     loss: f64,
+    /// Whether strips fetch what they read next from far caches.
+    pub(crate) fetch: bool,
 }
 
 impl<S: Simd> Step<S> {
@@ -43,7 +46,13 @@ impl<S: Simd> Step<S> {
             turn: frames.spin.map(|w| given * w),
             frames: frames.clone(),
             loss: 2.0 * half,
+            fetch: false,
         }
+    }
+
+    /// The same with strips that fetch, or do not.
+    pub(crate) fn fetching(self, fetch: bool) -> Self {
+        Self { fetch, ..self }
     }
 
     /// Heat of damping [J] from what [`advance`] counts.
@@ -75,7 +84,22 @@ pub(crate) struct Nodes<'a> {
     pub(crate) mass: &'a [f64],
 }
 
+/// How many nodes ahead a strip fetches: so much of a row that it has come from memory when its turn is there.
+pub(crate) const FETCH: usize = 128;
+
 impl Nodes<'_> {
+    /// Fetches what a strip will read further on: positions of the row `high`, and the rest of the row `low` if it moves.
+    #[inline(always)]
+    pub(crate) fn fetch(&self, low: usize, high: usize, moves: bool) {
+        prefetch_index(&*self.x, high + FETCH);
+        prefetch_index(&*self.y, high + FETCH);
+        if moves {
+            prefetch_index(&*self.vx, low + FETCH);
+            prefetch_index(&*self.vy, low + FETCH);
+            prefetch_index(self.step_over_mass, low + FETCH);
+        }
+    }
+
     /// The same arrays, all of one length that the compiler knows to be one.
     #[inline(always)]
     pub(crate) fn alike<D: Damping>(&mut self) -> Nodes<'_> {

@@ -95,6 +95,10 @@ fn run<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
     let last = elements - elements % len;
     assert!(low.max(high) + last + len < nodes.x.len(), "the last group of a strip lies within its tile");
     for e in (0..last).step_by(len) {
+        if step.fetch {
+            nodes.fetch(low + e, high + e, COMPLETES);
+            references.fetch(e);
+        }
         let forces = references.forces(simd, nodes, [low, high], e, stiffness);
         let at = [low + e, high + e];
         right = group::<S, D, COMPLETES, false>(simd, forces, nodes, at, len, right, step, heat);
@@ -160,6 +164,9 @@ trait References<S: Simd> {
         e: usize,
         k: &Stiffness<Vector<S>>,
     ) -> CornerForces<Vector<S>>;
+
+    /// Fetches those of elements further on than `e`.
+    fn fetch(&self, e: usize);
 }
 
 /// Values at the corners of a group of neighbours.
@@ -185,6 +192,9 @@ impl<S: Simd> References<S> for QuadMetric<Vector<S>> {
     ) -> CornerForces<Vector<S>> {
         QuadMetric::forces(self, corners(simd, nodes.x, row, e), corners(simd, nodes.y, row, e))
     }
+
+    #[inline(always)]
+    fn fetch(&self, _: usize) {}
 }
 
 /// References from group `start` on.
@@ -205,5 +215,10 @@ impl<S: Simd> References<S> for Each<'_> {
     ) -> CornerForces<Vector<S>> {
         let references = self.references.group(simd, self.start, e);
         references.forces(corners(simd, nodes.x, row, e), corners(simd, nodes.y, row, e), k)
+    }
+
+    #[inline(always)]
+    fn fetch(&self, e: usize) {
+        self.references.fetch(self.start, e);
     }
 }

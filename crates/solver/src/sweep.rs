@@ -60,6 +60,8 @@ pub(crate) struct Drive {
     pub(crate) beta: f64,
     /// Whether the heat of damping is counted in this step.
     pub(crate) count_heat: bool,
+    /// Whether a step reads more than near caches hold.
+    pub(crate) fetch: bool,
 }
 
 /// Energies of a step [J], each from half a step before to half a step after the positions' time.
@@ -127,9 +129,9 @@ impl Sweep<'_> {
     #[inline(always)]
     fn run<S: Simd, D: Damping>(self, simd: S) -> Energies {
         let Self { tile, fields, scratch, drive } = self;
-        let Drive { dt, gravity, .. } = drive;
+        let Drive { dt, gravity, fetch, .. } = drive;
         let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
-        let step = &Step::new(simd, dt, gravity, rate, frames);
+        let step = &Step::new(simd, dt, gravity, rate, frames).fetching(fetch);
         let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
         let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
         let n = tile.slots.len();

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
+use prefetch_index::prefetch_index;
 use pulp::Simd;
 use stribeck_mesh::strips::find_strips;
 
 use crate::{
+    advance::FETCH,
     damping::LaneFrames,
     element::{QuadMetric, QuadReference, QuadShape, Stiffness, TriangleReference},
     field::Field,
@@ -162,6 +164,13 @@ impl VaryingReferences {
         }
     }
 
+    /// Fetches shapes of elements further on than `e` of those whose first group is `start`.
+    #[inline(always)]
+    pub(crate) fn fetch(&self, start: usize, e: usize) {
+        let at = (start + (e + FETCH) / LANES) * Self::KINDS * LANES;
+        (0..Self::KINDS).for_each(|kind| prefetch_index(&self.0[..], at + kind * LANES));
+    }
+
     /// Shapes of the elements from `e` on of those whose first group is `start`.
     #[inline(always)]
     pub(crate) fn group<S: Simd>(&self, simd: S, start: usize, e: usize) -> QuadShape<Vector<S>> {
@@ -182,6 +191,13 @@ impl VaryingReferences {
 }
 
 impl Tile {
+    /// About how many bytes a step reads here.
+    pub(crate) fn bytes(&self) -> usize {
+        // Positions, velocities, time step over mass.
+        const FIELDS: usize = 5;
+        size_of::<f64>() * (FIELDS * self.slots.len() + self.varying.0.len())
+    }
+
     /// Prepares a tile. `motion` and `loaded` have one entry for each of its slots.
     pub(crate) fn new(
         layout: &TileLayout,
