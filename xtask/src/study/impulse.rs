@@ -12,10 +12,10 @@ use stribeck_analysis::noise;
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
-use stribeck_analysis::signal::smoothed_peak;
+use stribeck_analysis::signal::{smoothed_peak, smoothed_rms};
 use stribeck_bearing::run_dir::Run;
 
-use self::statistics::{Sample, ratio};
+use self::statistics::{Sample, correlation_within, ratio};
 use super::table::number;
 use super::{Finished, Flags, Runner, Sheet};
 use crate::workspace;
@@ -31,6 +31,7 @@ pub(crate) struct Options {
 }
 
 /// A number of one start.
+#[derive(Clone, Copy)]
 struct Quantity {
     name: &'static str,
     decimals: usize,
@@ -40,19 +41,50 @@ struct Quantity {
 /// Running means over these times leave what is slower than 8.9, 4.4 and 2.1 kHz (−3 dB) [s].
 const MEANS_S: [f64; 3] = [50e-6, 100e-6, 210e-6];
 
+/// The first blow: so long from the first contact behind the groove on. Then the load comes back, and the cage runs into
+/// the roller.
+const BLOW_S: f64 = 0.3e-3;
+
+/// A roller that the outer raceway pushes by so much has met it [N].
+const MET_N: f64 = 20.0;
+
+/// The first contact is looked for from so long before the exit [s].
+const BEFORE_S: f64 = 0.8e-3;
+
 /// The impulse of one start at one sensor.
 struct Impulse {
     whole: noise::Impulse,
     /// Largest magnitude of each running mean.
     means_g: [f64; 3],
+    /// RMS of the first blow, and of two of its running means.
+    blow_g: [f64; 3],
+    roller: Roller,
 }
 
-const QUANTITIES: [Quantity; 5] = [
+/// Roller 1 and its cage.
+#[derive(Clone, Copy)]
+struct Roller {
+    /// How far behind the middle of its pocket the roller is when it meets the raceway [µm].
+    behind_um: f64,
+    /// Largest force of the cage on it within the millisecond from then on [N].
+    cage_n: f64,
+}
+
+const QUANTITIES: [Quantity; 8] = [
     Quantity { name: "peak g", decimals: 0, of: |i| i.whole.peak_g },
     Quantity { name: "peak below 8.9 kHz g", decimals: 1, of: |i| i.means_g[0] },
     Quantity { name: "peak below 4.4 kHz g", decimals: 1, of: |i| i.means_g[1] },
     Quantity { name: "peak below 2.1 kHz g", decimals: 1, of: |i| i.means_g[2] },
     Quantity { name: "root of the energy, g √ms", decimals: 1, of: |i| i.whole.energy_g2_ms.sqrt() },
+    Quantity { name: "first blow, RMS g", decimals: 1, of: |i| i.blow_g[0] },
+    Quantity { name: "first blow below 8.9 kHz, RMS g", decimals: 1, of: |i| i.blow_g[1] },
+    Quantity { name: "first blow below 2.1 kHz, RMS g", decimals: 2, of: |i| i.blow_g[2] },
+];
+
+/// What happens to the roller, the same at all sensors.
+const OF_ROLLER: [Quantity; 2] = [
+    Quantity { name: "behind the middle of its pocket, µm", decimals: 0, of: |i| i.roller.behind_um },
+    Quantity { name: "largest force of the cage, N", decimals: 0, of: |i| i.roller.cage_n },
 ];
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
@@ -71,9 +103,13 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
             .map(|(group, _, runs)| (*group, runs.iter().filter_map(|run| impulse(run, number)).collect()))
             .filter(|(_, impulses): &(&str, Vec<Impulse>)| impulses.len() > 1)
             .collect();
-        table(&mut sheet, sensor, &impulses);
+        sheet.heading(&format!("Sensor {sensor}"));
+        table(&mut sheet, sensor, &QUANTITIES, &impulses);
         if number == 0 {
             picture(&mut sheet, sensor, &impulses)?;
+            sheet.heading("Roller 1 and its cage");
+            table(&mut sheet, "roller 1", &OF_ROLLER, &impulses);
+            what_scatters(&mut sheet, sensor, &impulses);
         }
     }
     println!("{}", workspace::shown(&sheet.write()?));
@@ -87,7 +123,8 @@ fn introduce(sheet: &mut Sheet, groups: &[(&str, &str, Vec<Finished>)]) {
          them does in the exit's millisecond differs from start to start by more than meshes do. So means over the \
          starts are compared, with their standard errors. Differences of more than \
          two of their standard errors are bold; of the others one cannot say that there is any. A running mean over 50, 100 \
-         and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz.",
+         and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz. The first blow is the 0.3 ms from where the roller meets \
+         the raceway again.",
     );
     let rows: Vec<Vec<String>> = groups
         .iter()
@@ -105,16 +142,15 @@ fn introduce(sheet: &mut Sheet, groups: &[(&str, &str, Vec<Finished>)]) {
 }
 
 /// Means of each group, and how far each is off the last but for chance.
-fn table(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) {
+fn table(sheet: &mut Sheet, sensor: &str, quantities: &[Quantity], groups: &[(&str, Vec<Impulse>)]) {
     let Some((reference, others)) = groups.split_last() else { return };
-    sheet.heading(&format!("Sensor {sensor}"));
     let heads: Vec<String> = groups.iter().map(|g| g.0.to_owned()).collect();
     let offs: Vec<String> = others.iter().map(|g| format!("{} − {} %", g.0, reference.0)).collect();
     let names: Vec<&str> = std::iter::once("mean ± standard error (scatter)")
         .chain(heads.iter().chain(&offs).map(String::as_str))
         .collect();
     let mut rows = Vec::new();
-    for Quantity { name, decimals, of } in QUANTITIES {
+    for &Quantity { name, decimals, of } in quantities {
         let samples: Vec<Sample> = groups
             .iter()
             .map(|(_, impulses)| Sample::of(&impulses.iter().map(of).collect::<Vec<f64>>()))
@@ -148,6 +184,27 @@ fn table(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) {
     sheet.table(&names, &rows);
 }
 
+/// Why starts differ: where the roller lies in its pocket, and what the cage does to it.
+fn what_scatters(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) {
+    let slow = QUANTITIES[3];
+    let correlation = |one: fn(&Impulse) -> f64, other: fn(&Impulse) -> f64| {
+        let pairs = |impulses: &Vec<Impulse>| impulses.iter().map(|i| [one(i), other(i)]).collect();
+        correlation_within(&groups.iter().map(|(_, impulses)| pairs(impulses)).collect::<Vec<_>>())
+    };
+    let [behind, cage] = OF_ROLLER.map(|quantity| correlation(quantity.of, slow.of));
+    let blow = correlation(|i| i.blow_g[2], slow.of);
+    let words = [("place in the pocket", behind), ("force of the cage", cage), ("first blow", blow)];
+    for (word, value) in words {
+        sheet.value(sensor, "all", &format!("correlation of {} with {word}", slow.name), Some(value));
+    }
+    sheet.say(&format!(
+        "Within a mesh the peak below 2.1 kHz at the sensor {sensor} goes with where the roller lies in its pocket when it \
+         meets the raceway (correlation {behind:.2}) and with the force of the cage on it ({cage:.2}), less with the first blow \
+         ({blow:.2}): the edge brakes the roller, the cage runs into it from behind, and pushes the other rollers. A roller \
+         that lies against its pocket before takes it softly.",
+    ));
+}
+
 /// The part of the starts whose peak is below a level.
 fn picture(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) -> Result<()> {
     const COLOURS: [Colour; 4] = [Colour::Grey, Colour::Blue, Colour::Orange, Colour::Green];
@@ -179,11 +236,36 @@ fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
     let read = Run::read(&run.folder).ok()?;
     let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages.first()?.exit_s;
     let (record, name) = (Record::new(&read), &read.scene.output.sensors.get(sensor)?.name);
-    let vertical = record.acceleration_g(name, "ay")?;
-    let vertical = vertical.get(impulse_span(record.time_s(), exit_s))?;
-    let mean = |width| smoothed_peak(vertical, record.interval_s(), width);
+    let interval = record.interval_s();
+    let all = record.acceleration_g(name, "ay")?;
+    let vertical = all.get(impulse_span(record.time_s(), exit_s))?;
+    let mean = |width| smoothed_peak(vertical, interval, width);
+    let met = meets(&record, exit_s)?;
+    let blow = |width| smoothed_rms(&all, interval, met, BLOW_S, width);
     Some(Impulse {
         whole: noise::impulse(&record, name, exit_s)?,
         means_g: [mean(MEANS_S[0])?, mean(MEANS_S[1])?, mean(MEANS_S[2])?],
+        blow_g: [blow(interval)?, blow(MEANS_S[0])?, blow(MEANS_S[2])?],
+        roller: roller(&record, met)?,
     })
+}
+
+/// Sample in which roller 1 meets the raceway behind the groove.
+fn meets(record: &Record<'_>, exit_s: f64) -> Option<usize> {
+    let (roller, from) = (record.roller(1)?, exit_s - BEFORE_S);
+    let pushed = roller.outer_fx.iter().zip(roller.outer_fy).map(|(x, y)| x.hypot(*y));
+    record.time_s().iter().zip(pushed).position(|(&time, force)| time >= from && force > MET_N)
+}
+
+/// Roller 1 in its pocket when it meets the raceway in sample `met`.
+fn roller(record: &Record<'_>, met: usize) -> Option<Roller> {
+    let (roller, cage) = (record.roller(1)?, record.channel("cage.angle_rad")?);
+    let [fx, fy] = ["roller.1.cage_fx_n", "roller.1.cage_fy_n"].map(|name| record.channel(name));
+    // It starts in the middle; bearings turn clockwise.
+    let [start, now] = [0, met].map(|i| (roller.x[i], roller.y[i], cage[i]));
+    let turned = (start.0 * now.1 - start.1 * now.0).atan2(start.0 * now.0 + start.1 * now.1);
+    let behind = turned - (now.2 - start.2);
+    let within = met..met + (1e-3 / record.interval_s()).round() as usize;
+    let forces = fx?.get(within.clone())?.iter().zip(fy?.get(within)?).map(|(x, y)| x.hypot(*y));
+    Some(Roller { behind_um: 1e6 * behind * now.0.hypot(now.1), cage_n: forces.fold(0.0, f64::max) })
 }
