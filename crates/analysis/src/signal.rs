@@ -118,13 +118,13 @@ mod tests {
         let signal: Vec<f64> = (0..400).map(|n| tone[n] + f64::from(u8::from(n >= 200))).collect();
         assert!((smoothed_peak(&signal, 1e-5, 20e-5).unwrap() - 1.0).abs() < 1e-12);
         assert_eq!(smoothed_peak(&signal[..10], 1e-5, 20e-5), None);
-        // Means over a period: nothing before the step, one behind it, and a ramp of ten samples to either side.
+        // Means over a period: nothing before the step, one behind it, and a ramp of twenty samples between.
         let rms = |first| smoothed_rms(&signal, 1e-5, first, 50e-5, 20e-5);
         assert!(rms(100).unwrap() < 1e-12);
         assert!((rms(300).unwrap() - 1.0).abs() < 1e-12);
         let ramp: f64 = (1..20).map(|n| (f64::from(n) / 20.0).powi(2)).sum();
-        let expected = ((ramp + 20.0) / 50.0).sqrt();
-        assert!((rms(180).unwrap() - expected).abs() < 0.02, "{:?} {expected}", rms(180));
+        let expected = ((ramp + 21.0) / 50.0).sqrt();
+        assert!((rms(180).unwrap() - expected).abs() < 1e-12, "{:?} {expected}", rms(180));
         assert_eq!((rms(5), rms(380)), (None, None));
         assert!((smoothed_rms(&signal, 1e-5, 100, 100e-5, 1e-5).unwrap() - 3.0 / 2f64.sqrt()).abs() < 1e-12);
     }

@@ -97,7 +97,7 @@ struct Pair {
     spec: PairSpec,
     /// The first surface's points against the second, then, if wanted, the other way round.
     passes: Vec<Pass>,
-    /// Forces of the last evaluation, where others come first.
+    /// Room for forces that are added later; empty between two steps.
     push: Vec<Push>,
     found: Vec<(u32, u32)>,
     sum: [Sum; 2],
@@ -273,7 +273,6 @@ impl Contacts {
                 }
                 pass.take(&pair.found, surfaces, at, slower);
             }
-            pair.push.clear();
             pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
         };
         share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
@@ -339,7 +338,7 @@ fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>, 
     Weights { law, thickness: share * thickness, fastest, softness, together }
 }
 
-/// Adds forces at nodes.
+/// Adds forces at nodes, and leaves none.
 fn hand_over(push: &mut Vec<Push>, to: &mut NodeForces) {
     for (slot, [fx, fy]) in push.drain(..) {
         to.fx[slot as usize] += fx;
@@ -354,23 +353,19 @@ impl Force for Contacts {
         }
         let threads = self.threads();
         let Self { surfaces, pairs, thickness, search, preload, together, push, .. } = self;
-        let evaluate = |pair: &mut Pair, push: &mut Vec<Push>| {
-            let w = weights(&pair.spec, *thickness, search.fastest, *preload, *together);
-            pair.passes.iter().for_each(|pass| pass.read_ahead(surfaces, &at));
-            for (pass, sum) in pair.passes.iter_mut().zip(&mut pair.sum) {
+        let evaluate = |spec: &PairSpec, passes: &mut [Pass], sum: &mut [Sum], push: &mut Vec<Push>| {
+            let w = weights(spec, *thickness, search.fastest, *preload, *together);
+            passes.iter().for_each(|pass| pass.fetch(surfaces, &at));
+            for (pass, sum) in passes.iter_mut().zip(sum) {
                 *sum = pass.evaluate(surfaces, &at, &w, push);
             }
         };
         // Pushes are added in the order of the pairs. Those of the first ones can be added at once, while they are in cache.
         let mut at_once = |pair: &mut Pair| {
-            evaluate(pair, push);
+            evaluate(&pair.spec, &mut pair.passes, &mut pair.sum, push);
             hand_over(push, force);
         };
-        let later = |pair: &mut Pair| {
-            let mut push = std::mem::take(&mut pair.push);
-            evaluate(pair, &mut push);
-            pair.push = push;
-        };
+        let later = |pair: &mut Pair| evaluate(&pair.spec, &mut pair.passes, &mut pair.sum, &mut pair.push);
         share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, &mut at_once, &later);
         self.energy.stored = 0.0;
         for pair in &mut self.pairs {

@@ -310,9 +310,9 @@ impl Pass {
         self.memory.candidates.iter().map(|c| MOST_NODES * (1 + c.pattern.points as usize)).sum()
     }
 
-    /// Reads what an evaluation of rows begins with, of all facets that are awake: between two steps the elements push it out
-    /// of the near caches, and so memory is waited for once and not facet by facet.
-    pub(crate) fn read_ahead(&self, surfaces: &[Surface], at: &Moment<'_>) {
+    /// Fetches what an evaluation of rows begins with, of all facets that are awake: between two steps the elements push it out
+    /// of the near caches, and so it is on its way while the first facets are evaluated.
+    pub(crate) fn fetch(&self, surfaces: &[Surface], at: &Moment<'_>) {
         let Memory { nearest, doze, history, candidates, asleep, .. } = &self.memory;
         // Facets with few points follow one another in memory as they are read.
         if at.step < *asleep || self.points.most <= band::MOST_POINTS {

@@ -53,12 +53,18 @@ impl Shapes {
     }
 
     fn contacts(&self, law: Law, method: Method) -> Contacts {
+        self.contacts_by(&[law], method)
+    }
+
+    /// The same two polygons in a pair for each law.
+    fn contacts_by(&self, laws: &[Law], method: Method) -> Contacts {
         let surface = |i: usize| {
             let slots = self.nodes(i).map(|n| n as u32).collect();
             Surface::new(format!("polygon {i}"), slots, true, &self.x, &self.y).expect("a polygon")
         };
-        let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
-        Contacts::new(vec![surface(0), surface(1)], &[pair], THICKNESS, &self.x, &self.y)
+        let pair = |&law: &Law| PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
+        let pairs: Vec<PairSpec> = laws.iter().map(pair).collect();
+        Contacts::new(vec![surface(0), surface(1)], &pairs, THICKNESS, &self.x, &self.y)
             .expect("two surfaces")
     }
 
@@ -365,7 +371,7 @@ fn invariant_parallel_pairs_give_the_same_bits() {
     run(&mut d, &mut contacts, 1500);
     let energy = contacts.energy();
     assert!(energy.friction > 0.0 && energy.damping > 0.0, "they have met: {energy:?}");
-    for threads in [2, 4] {
+    for threads in [2, 3, 4] {
         let (mut e, mut parallel) = tumbling(MANY);
         parallel.set_parallel(true);
         let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
@@ -373,6 +379,30 @@ fn invariant_parallel_pairs_give_the_same_bits() {
         assert!(checkpoint(&d, &contacts) == checkpoint(&e, &parallel), "{threads} threads");
         assert_eq!(energy, parallel.energy());
     }
+}
+
+#[test]
+fn invariant_forces_on_a_node_add_in_the_order_of_pairs() {
+    let shapes = Shapes::new([300, 280], [1.0, 1.1], [[0.0, 0.0], [1.9, 0.3]], [0.1, 0.2]);
+    let law = |i: u32| Law::penalty(STIFFNESS * 1.37_f64.powi((7 * i % 24) as i32)).expect("a possible law");
+    let laws: Vec<Law> = (0..24).map(law).collect();
+    let bits = |laws: &[Law], threads: usize| -> Vec<u64> {
+        let mut contacts = shapes.contacts_by(laws, Method::Integrated { points: 3 });
+        contacts.set_parallel(threads > 1);
+        let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
+        let force = pool.install(|| {
+            // The first evaluation does not know yet how much work pairs are.
+            shapes.forces(&mut contacts, 0, 1e-6);
+            shapes.forces(&mut contacts, 1, 1e-6)
+        });
+        force.fx.iter().chain(force.fy.iter()).map(|f| f.to_bits()).collect()
+    };
+    let one = bits(&laws, 1);
+    for threads in [2, 3, 4, 5] {
+        assert!(bits(&laws, threads) == one, "{threads} threads");
+    }
+    let other: Vec<Law> = laws.into_iter().rev().collect();
+    assert!(bits(&other, 1) != one, "the order shows");
 }
 
 #[test]

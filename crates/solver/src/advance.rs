@@ -8,6 +8,7 @@ use pulp::Simd;
 use crate::{
     damping::LaneFrames,
     lanes::{LANES, Number, Vector},
+    sweep::Drive,
 };
 
 /// What is the same for all nodes of a tile.
@@ -31,8 +32,9 @@ pub(crate) struct Step<S: Simd> {
 }
 
 impl<S: Simd> Step<S> {
-    /// A step [s] under gravity [m/s²] with damping at `rate` [1/s].
-    pub(crate) fn new(simd: S, dt: f64, gravity: [f64; 2], rate: f64, frames: &LaneFrames) -> Self {
+    /// A step with damping at `rate` [1/s].
+    pub(crate) fn new(simd: S, drive: &Drive, rate: f64, frames: &LaneFrames) -> Self {
+        let &Drive { dt, gravity, fetch, .. } = drive;
         let half = 0.5 * rate * dt;
         let gain = gain(rate, dt);
         let fall = gravity.map(|g| dt * gain * g);
@@ -46,13 +48,8 @@ impl<S: Simd> Step<S> {
             turn: frames.spin.map(|w| given * w),
             frames: frames.clone(),
             loss: 2.0 * half,
-            fetch: false,
+            fetch,
         }
-    }
-
-    /// The same with strips that fetch, or do not.
-    pub(crate) fn fetching(self, fetch: bool) -> Self {
-        Self { fetch, ..self }
     }
 
     /// Heat of damping [J] from what [`advance`] counts.

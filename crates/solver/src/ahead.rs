@@ -63,7 +63,7 @@ impl WithSimd for LookAhead<'_> {
             return 0.0;
         }
         let k = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let step = &Step::new(simd, drive.dt, drive.gravity, 0.0, &LaneFrames::REST);
+        let step = &Step::new(simd, &drive, 0.0, &LaneFrames::REST);
         seen.fx[..n].fill(0.0);
         seen.fy[..n].fill(0.0);
         // Forces where elements see the nodes less those where the nodes are: −f of the latter, plus f of the former.

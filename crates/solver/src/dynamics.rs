@@ -24,7 +24,8 @@ use crate::{
 /// The heat of damping is counted in every so manyth step: it costs as much as damping itself.
 const HEAT_EVERY: u64 = 4;
 
-/// Bytes that a second-level cache holds: a step that reads less has all of it near.
+/// Bytes that a thread's second-level cache is taken to hold: where its part of a step reads less, nothing need be fetched,
+/// and asking would cost some per cent.
 const NEAR: usize = 2 << 20;
 
 /// Nodes or elements that are worth another thread, for sums that are taken now and then.
@@ -43,8 +44,8 @@ pub struct Dynamics {
     pub heat: Accumulated,
     layout: Layout,
     pub(crate) tiles: Vec<Tile>,
-    /// About how many bytes a step reads.
-    bytes: usize,
+    /// Whether a step reads more than near caches hold.
+    fetch: bool,
     rigid_bodies: Vec<RigidBody>,
     mass: Field,
     motion: Vec<Motion>,
@@ -188,7 +189,7 @@ impl Dynamics {
             forces: NodeForces::zeros(n),
             scratch: (0..threads.max(1)).map(|_| Scratch::new(largest)).collect(),
             counted: vec![Energies::default(); tiles.len()],
-            bytes: tiles.iter().map(Tile::bytes).sum(),
+            fetch: tiles.iter().map(Tile::bytes).sum::<usize>() > NEAR * threads.max(1),
             tiles,
             time_step: 0.0,
             gravity: model.gravity,
@@ -382,7 +383,6 @@ impl Dynamics {
     }
 
     fn sweep_tiles(&mut self) {
-        let fetch = self.bytes > NEAR * self.threads();
         let fields = TileFields {
             x: &mut self.state.x,
             y: &mut self.state.y,
@@ -392,7 +392,10 @@ impl Dynamics {
             fy: &mut self.forces.fy,
         };
         let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
-        let drive = Drive { dt: self.time_step, gravity: self.gravity, beta: self.beta, count_heat, fetch };
+        let (dt, gravity, beta) = (self.time_step, self.gravity, self.beta);
+        // With stiffness damping a pass before has just read all of a tile.
+        let fetch = self.fetch && beta == 0.0;
+        let drive = Drive { dt, gravity, beta, count_heat, fetch };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
         sweep_all(Runs { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
         // In the order of the tiles, whatever thread each was on.

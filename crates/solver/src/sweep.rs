@@ -60,7 +60,7 @@ pub(crate) struct Drive {
     pub(crate) beta: f64,
     /// Whether the heat of damping is counted in this step.
     pub(crate) count_heat: bool,
-    /// Whether a step reads more than near caches hold.
+    /// Whether strips fetch what they read next from far caches.
     pub(crate) fetch: bool,
 }
 
@@ -129,9 +129,9 @@ impl Sweep<'_> {
     #[inline(always)]
     fn run<S: Simd, D: Damping>(self, simd: S) -> Energies {
         let Self { tile, fields, scratch, drive } = self;
-        let Drive { dt, gravity, fetch, .. } = drive;
+        let Drive { dt, gravity, .. } = drive;
         let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
-        let step = &Step::new(simd, dt, gravity, rate, frames).fetching(fetch);
+        let step = &Step::new(simd, &drive, rate, frames);
         let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
         let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
         let n = tile.slots.len();

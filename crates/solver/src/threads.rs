@@ -17,7 +17,8 @@ pub fn share_out<T: Send>(
     share_out_with_first(items, threads, least, work, &mut |item| each(item), each);
 }
 
-/// The same; one thread takes items in order from the first on and does to them what `first` does, all others do `other`.
+/// The same, but one thread does `first` to items in order from the first one on, and all others do `other` to the rest. How
+/// many items either gets may differ from call to call.
 pub fn share_out_with_first<T: Send>(
     items: &mut [T],
     threads: usize,
@@ -80,4 +81,33 @@ pub(crate) fn from_both_ends<I: DoubleEndedIterator + Send>(
             }
         },
     );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_first_takes_items_from_the_first_one_on_in_order() {
+        for threads in 1..=5 {
+            let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
+            for count in [0, 1, 2, 7, 40] {
+                // Who did it, and how often.
+                let mut items: Vec<(usize, [u32; 2])> = (0..count).map(|i| (i, [0, 0])).collect();
+                let mut taken = Vec::new();
+                let mut first = |item: &mut (usize, [u32; 2])| {
+                    taken.push(item.0);
+                    item.1[0] += 1;
+                };
+                let other = |item: &mut (usize, [u32; 2])| item.1[1] += 1;
+                pool.install(|| {
+                    share_out_with_first(&mut items, threads, 2, &|item| 1 + item.0 % 3, &mut first, &other);
+                });
+                assert!(taken.iter().copied().eq(0..taken.len()), "{threads} threads: {taken:?}");
+                let done =
+                    |(i, done): &(usize, [u32; 2])| *done == if *i < taken.len() { [1, 0] } else { [0, 1] };
+                assert!(items.iter().all(done), "{threads} threads: {items:?}");
+            }
+        }
+    }
 }

@@ -48,6 +48,9 @@ const BLOW_S: f64 = 0.3e-3;
 /// A roller that the outer raceway pushes by so much has met it [N].
 const MET_N: f64 = 20.0;
 
+/// The cage strikes within so long after the first contact [s].
+const STRIKES_S: f64 = 1e-3;
+
 /// The first contact is looked for from so long before the exit [s].
 const BEFORE_S: f64 = 0.8e-3;
 
@@ -70,6 +73,9 @@ struct Roller {
     cage_n: f64,
 }
 
+/// The peak below 2.1 kHz among them.
+const SLOW: usize = 3;
+
 const QUANTITIES: [Quantity; 8] = [
     Quantity { name: "peak g", decimals: 0, of: |i| i.whole.peak_g },
     Quantity { name: "peak below 8.9 kHz g", decimals: 1, of: |i| i.means_g[0] },
@@ -87,36 +93,38 @@ const OF_ROLLER: [Quantity; 2] = [
     Quantity { name: "largest force of the cage, N", decimals: 0, of: |i| i.roller.cage_n },
 ];
 
+/// A mesh and what became of its starts.
+struct Group {
+    name: &'static str,
+    runs: Vec<Finished>,
+}
+
+/// Impulses of a mesh at one sensor.
+type Impulses = (&'static str, Vec<Impulse>);
+
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let runner = Runner::new("impulse", &options.flags)?;
-    let mut groups = Vec::new();
-    for (group, shows, list) in variants::groups(options.starts) {
-        groups.push((group, shows, runner.run(&list)?));
-    }
     let mut sheet = Sheet::new("impulse", "The impulse at the exit against finer meshes");
-    introduce(&mut sheet, &groups);
-    let scene = groups.iter().flat_map(|(_, _, runs)| runs).map(|run| &run.scene).next();
-    let sensors = scene.map_or(&[][..], |scene| &scene.output.sensors);
-    for (number, sensor) in sensors.iter().map(|sensor| &sensor.name).enumerate() {
-        let impulses: Vec<(&str, Vec<Impulse>)> = groups
-            .iter()
-            .map(|(group, _, runs)| (*group, runs.iter().filter_map(|run| impulse(run, number)).collect()))
-            .filter(|(_, impulses): &(&str, Vec<Impulse>)| impulses.len() > 1)
-            .collect();
-        sheet.heading(&format!("Sensor {sensor}"));
-        table(&mut sheet, sensor, &QUANTITIES, &impulses);
-        if number == 0 {
-            picture(&mut sheet, sensor, &impulses)?;
-            sheet.heading("Roller 1 and its cage");
-            table(&mut sheet, "roller 1", &OF_ROLLER, &impulses);
-            what_scatters(&mut sheet, sensor, &impulses);
+    let (mut meshes, mut families) = (Vec::new(), Vec::new());
+    for family in variants::families(options.starts) {
+        let mut groups = Vec::new();
+        for mesh in family.meshes {
+            let runs = runner.run(&mesh.starts)?;
+            let measured = runs.iter().filter(|run| impulse(run, 0).is_some()).count();
+            meshes.push(vec![mesh.name.to_owned(), mesh.shows.to_owned(), measured.to_string()]);
+            groups.push(Group { name: mesh.name, runs });
         }
+        families.push((family.name, groups));
+    }
+    introduce(&mut sheet, &meshes, families.iter().flat_map(|(_, groups)| groups));
+    for (family, groups) in &families {
+        show(&mut sheet, family, groups)?;
     }
     println!("{}", workspace::shown(&sheet.write()?));
     Ok(ExitCode::SUCCESS)
 }
 
-fn introduce(sheet: &mut Sheet, groups: &[(&str, &str, Vec<Finished>)]) {
+fn introduce<'a>(sheet: &mut Sheet, meshes: &[Vec<String>], groups: impl Iterator<Item = &'a Group>) {
     sheet.say(
         "The first impulse of the bearing: vertical acceleration within 1 ms of the exit of roller 1, from starts 0.01° of the \
          cage (10 µs) apart. The impulse of a single start says little, for rollers without load rattle, and what each of \
@@ -126,87 +134,114 @@ fn introduce(sheet: &mut Sheet, groups: &[(&str, &str, Vec<Finished>)]) {
          and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz. The first blow is the 0.3 ms from where the roller meets \
          the raceway again.",
     );
-    let rows: Vec<Vec<String>> = groups
-        .iter()
-        .map(|(group, shows, runs)| {
-            let complete = runs.iter().filter(|run| run.numbers().is_some()).count();
-            vec![(*group).to_owned(), (*shows).to_owned(), complete.to_string()]
-        })
-        .collect();
-    sheet.table(&["mesh", "what it is", "starts"], &rows);
-    for run in groups.iter().flat_map(|(_, _, runs)| runs) {
+    sheet.table(&["mesh", "what it is", "starts"], meshes);
+    for run in groups.flat_map(|group| &group.runs) {
         if let Err(why) = &run.summary {
             sheet.say(&format!("`{}`: no numbers. {why}", run.variant.name));
         }
     }
 }
 
-/// Means of each group, and how far each is off the last but for chance.
-fn table(sheet: &mut Sheet, sensor: &str, quantities: &[Quantity], groups: &[(&str, Vec<Impulse>)]) {
-    let Some((reference, others)) = groups.split_last() else { return };
-    let heads: Vec<String> = groups.iter().map(|g| g.0.to_owned()).collect();
-    let offs: Vec<String> = others.iter().map(|g| format!("{} − {} %", g.0, reference.0)).collect();
-    let names: Vec<&str> = std::iter::once("mean ± standard error (scatter)")
-        .chain(heads.iter().chain(&offs).map(String::as_str))
-        .collect();
-    let mut rows = Vec::new();
-    for &Quantity { name, decimals, of } in quantities {
-        let samples: Vec<Sample> = groups
+/// All sensors under one cage.
+fn show(sheet: &mut Sheet, family: &str, groups: &[Group]) -> Result<()> {
+    let Some(scene) = groups.iter().flat_map(|group| &group.runs).map(|run| &run.scene).next() else {
+        return Ok(());
+    };
+    for (number, sensor) in scene.output.sensors.iter().map(|sensor| &sensor.name).enumerate() {
+        let impulses: Vec<Impulses> = groups
             .iter()
-            .map(|(_, impulses)| Sample::of(&impulses.iter().map(of).collect::<Vec<f64>>()))
+            .map(|group| (group.name, group.runs.iter().filter_map(|run| impulse(run, number)).collect()))
+            .filter(|(_, impulses): &Impulses| impulses.len() > 1)
             .collect();
-        let mut row = vec![name.to_owned()];
-        for ((group, _), sample) in groups.iter().zip(&samples) {
-            let [mean, error, scatter] =
-                [sample.mean, sample.error(), sample.scatter].map(|v| number(v, decimals));
-            row.push(format!("{mean} ± {error} ({scatter})"));
-            let words =
-                [("mean", sample.mean), ("standard error", sample.error()), ("scatter", sample.scatter)];
-            for (word, value) in words {
-                sheet.value(sensor, group, &format!("{name}, {word}"), Some(value));
-            }
+        if impulses.is_empty() {
+            continue;
         }
+        sheet.heading(&format!("Sensor {sensor}, {family}"));
+        compare(sheet, sensor, &impulses);
+        if number == 0 {
+            picture(sheet, sensor, &impulses)?;
+            sheet.heading(&format!("Roller 1 and its cage, {family}"));
+            of_roller(sheet, sensor, &impulses);
+        }
+    }
+    Ok(())
+}
+
+/// Means of each mesh, and how far each is off the last but for chance.
+fn compare(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
+    let Some((reference, others)) = groups.split_last() else { return };
+    let offs: Vec<String> = others.iter().map(|g| format!("{} − {} %", g.0, reference.0)).collect();
+    let mut rows = Vec::new();
+    for quantity in QUANTITIES {
+        let (mut row, samples) = means(sheet, sensor, quantity, groups);
         let last = &samples[others.len()];
         for ((group, _), sample) in others.iter().zip(&samples) {
             let [off, error] = ratio(sample, last).map(|v| 100.0 * v);
             let bold = if off.abs() > 2.0 * error { "**" } else { "" };
             row.push(format!("{bold}{} ± {}{bold}", number(off, 1), number(error, 1)));
-            sheet.value(sensor, group, &format!("{name}, off {} %", reference.0), Some(off));
-            sheet.value(
-                sensor,
-                group,
-                &format!("{name}, off {} %, standard error", reference.0),
-                Some(error),
-            );
+            let name = format!("{}, off {} %", quantity.name, reference.0);
+            sheet.value(sensor, group, &name, Some(off));
+            sheet.value(sensor, group, &format!("{name}, standard error"), Some(error));
         }
         rows.push(row);
     }
-    sheet.table(&names, &rows);
+    sheet.table(&heads(groups, &offs), &rows);
 }
 
-/// Why starts differ: where the roller lies in its pocket, and what the cage does to it.
-fn what_scatters(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) {
-    let slow = QUANTITIES[3];
-    let correlation = |one: fn(&Impulse) -> f64, other: fn(&Impulse) -> f64| {
-        let pairs = |impulses: &Vec<Impulse>| impulses.iter().map(|i| [one(i), other(i)]).collect();
+/// Where the roller lies in its pocket, what the cage does to it, and what the slow part of the impulse goes with.
+fn of_roller(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
+    let rows: Vec<Vec<String>> =
+        OF_ROLLER.iter().map(|&quantity| means(sheet, "roller 1", quantity, groups).0).collect();
+    sheet.table(&heads(groups, &[]), &rows);
+    let slow = QUANTITIES[SLOW];
+    let correlation = |of: fn(&Impulse) -> f64| {
+        let pairs = |impulses: &Vec<Impulse>| impulses.iter().map(|i| [of(i), (slow.of)(i)]).collect();
         correlation_within(&groups.iter().map(|(_, impulses)| pairs(impulses)).collect::<Vec<_>>())
     };
-    let [behind, cage] = OF_ROLLER.map(|quantity| correlation(quantity.of, slow.of));
-    let blow = correlation(|i| i.blow_g[2], slow.of);
-    let words = [("place in the pocket", behind), ("force of the cage", cage), ("first blow", blow)];
-    for (word, value) in words {
-        sheet.value(sensor, "all", &format!("correlation of {} with {word}", slow.name), Some(value));
-    }
+    let [behind, cage] = OF_ROLLER.map(|quantity| correlation(quantity.of));
+    let blow = correlation(|i| i.blow_g[2]);
+    let [behind, cage, blow] = [behind, cage, blow].map(|value| number(value, 2));
     sheet.say(&format!(
-        "Within a mesh the peak below 2.1 kHz at the sensor {sensor} goes with where the roller lies in its pocket when it \
-         meets the raceway (correlation {behind:.2}) and with the force of the cage on it ({cage:.2}), less with the first blow \
-         ({blow:.2}): the edge brakes the roller, the cage runs into it from behind, and pushes the other rollers. A roller \
-         that lies against its pocket before takes it softly.",
+        "Correlations within meshes of the peak below 2.1 kHz at the sensor {sensor}: {behind} with the roller's place in its \
+         pocket, {cage} with the force of the cage, {blow} with the first blow below 2.1 kHz.",
     ));
 }
 
+/// Names of the columns of a table of means, and more.
+fn heads<'a>(groups: &[Impulses], more: &'a [String]) -> Vec<&'a str> {
+    let names = groups.iter().map(|(name, _)| *name);
+    ["mean ± standard error (scatter)"]
+        .into_iter()
+        .chain(names)
+        .chain(more.iter().map(String::as_str))
+        .collect()
+}
+
+/// The row of means of a quantity.
+fn means(
+    sheet: &mut Sheet,
+    table: &str,
+    quantity: Quantity,
+    groups: &[Impulses],
+) -> (Vec<String>, Vec<Sample>) {
+    let Quantity { name, decimals, of } = quantity;
+    let sample = |impulses: &Vec<Impulse>| Sample::of(&impulses.iter().map(of).collect::<Vec<f64>>());
+    let samples: Vec<Sample> = groups.iter().map(|(_, impulses)| sample(impulses)).collect();
+    let mut row = vec![name.to_owned()];
+    for ((group, _), sample) in groups.iter().zip(&samples) {
+        let [mean, error, scatter] =
+            [sample.mean, sample.error(), sample.scatter].map(|v| number(v, decimals));
+        row.push(format!("{mean} ± {error} ({scatter})"));
+        let words = [("mean", sample.mean), ("standard error", sample.error()), ("scatter", sample.scatter)];
+        for (word, value) in words {
+            sheet.value(table, group, &format!("{name}, {word}"), Some(value));
+        }
+    }
+    (row, samples)
+}
+
 /// The part of the starts whose peak is below a level.
-fn picture(sheet: &mut Sheet, sensor: &str, groups: &[(&str, Vec<Impulse>)]) -> Result<()> {
+fn picture(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) -> Result<()> {
     const COLOURS: [Colour; 4] = [Colour::Grey, Colour::Blue, Colour::Orange, Colour::Green];
     for (id, title, of) in [
         ("peaks", "Peak of the impulse", QUANTITIES[0].of),
@@ -259,13 +294,32 @@ fn meets(record: &Record<'_>, exit_s: f64) -> Option<usize> {
 
 /// Roller 1 in its pocket when it meets the raceway in sample `met`.
 fn roller(record: &Record<'_>, met: usize) -> Option<Roller> {
-    let (roller, cage) = (record.roller(1)?, record.channel("cage.angle_rad")?);
+    let roller = record.roller(1)?;
+    let [x, y, angle] = ["x_m", "y_m", "angle_rad"].map(|what| record.channel(&format!("cage.{what}")));
+    let (x, y, angle) = (x?, y?, angle?);
+    let seen = |i: usize| ([roller.x[i] - x[i], roller.y[i] - y[i]], angle[i]);
     let [fx, fy] = ["roller.1.cage_fx_n", "roller.1.cage_fy_n"].map(|name| record.channel(name));
-    // It starts in the middle; bearings turn clockwise.
-    let [start, now] = [0, met].map(|i| (roller.x[i], roller.y[i], cage[i]));
-    let turned = (start.0 * now.1 - start.1 * now.0).atan2(start.0 * now.0 + start.1 * now.1);
-    let behind = turned - (now.2 - start.2);
-    let within = met..met + (1e-3 / record.interval_s()).round() as usize;
+    let within = met..met + (STRIKES_S / record.interval_s()).round() as usize;
     let forces = fx?.get(within.clone())?.iter().zip(fy?.get(within)?).map(|(x, y)| x.hypot(*y));
-    Some(Roller { behind_um: 1e6 * behind * now.0.hypot(now.1), cage_n: forces.fold(0.0, f64::max) })
+    Some(Roller { behind_um: 1e6 * behind(seen(0), seen(met)), cage_n: forces.fold(0.0, f64::max) })
+}
+
+/// How far a roller lies behind the middle of its pocket [m], where it was at the start, in a bearing that turns clockwise:
+/// from its place seen from the cage's centre [m] and the cage's angle [rad], then and now.
+fn behind(([x0, y0], angle0): ([f64; 2], f64), ([x, y], angle): ([f64; 2], f64)) -> f64 {
+    let turned = (x0 * y - y0 * x).atan2(x0 * x + y0 * y);
+    (turned - (angle - angle0)) * x.hypot(y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_place_in_a_pocket_of_a_cage_that_has_turned() {
+        let at = |angle: f64| [0.09 * angle.cos(), 0.09 * angle.sin()];
+        assert!(behind((at(1.6), 0.2), (at(1.5), 0.1)).abs() < 1e-15);
+        // Clockwise is backwards in angle: who has turned less is behind.
+        assert!((behind((at(1.6), 0.0), (at(1.501), -0.1)) - 0.09e-3).abs() < 1e-15);
+    }
 }
