@@ -16,6 +16,7 @@ use stribeck_analysis::signal::{smoothed_peak, smoothed_rms};
 use stribeck_bearing::run_dir::Run;
 
 use self::statistics::{Sample, correlation_within, ratio};
+use self::variants::Family;
 use super::table::number;
 use super::{Finished, Flags, Runner, Sheet};
 use crate::workspace;
@@ -105,20 +106,20 @@ type Impulses = (&'static str, Vec<Impulse>);
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let runner = Runner::new("impulse", &options.flags)?;
     let mut sheet = Sheet::new("impulse", "The impulse at the exit against finer meshes");
-    let (mut meshes, mut families) = (Vec::new(), Vec::new());
-    for family in variants::families(options.starts) {
+    let (mut meshes, mut shown) = (Vec::new(), Vec::new());
+    for Family { name, id, meshes: list } in variants::families(options.starts) {
         let mut groups = Vec::new();
-        for mesh in family.meshes {
+        for mesh in list {
             let runs = runner.run(&mesh.starts)?;
             let measured = runs.iter().filter(|run| impulse(run, 0).is_some()).count();
             meshes.push(vec![mesh.name.to_owned(), mesh.shows.to_owned(), measured.to_string()]);
             groups.push(Group { name: mesh.name, runs });
         }
-        families.push((family.name, groups));
+        shown.push((name, id, groups));
     }
-    introduce(&mut sheet, &meshes, families.iter().flat_map(|(_, groups)| groups));
-    for (family, groups) in &families {
-        show(&mut sheet, family, groups)?;
+    introduce(&mut sheet, &meshes, shown.iter().flat_map(|(.., groups)| groups));
+    for (family, id, groups) in &shown {
+        show(&mut sheet, family, id, groups)?;
     }
     println!("{}", workspace::shown(&sheet.write()?));
     Ok(ExitCode::SUCCESS)
@@ -143,7 +144,7 @@ fn introduce<'a>(sheet: &mut Sheet, meshes: &[Vec<String>], groups: impl Iterato
 }
 
 /// All sensors under one cage.
-fn show(sheet: &mut Sheet, family: &str, groups: &[Group]) -> Result<()> {
+fn show(sheet: &mut Sheet, family: &str, id: &str, groups: &[Group]) -> Result<()> {
     let Some(scene) = groups.iter().flat_map(|group| &group.runs).map(|run| &run.scene).next() else {
         return Ok(());
     };
@@ -159,7 +160,7 @@ fn show(sheet: &mut Sheet, family: &str, groups: &[Group]) -> Result<()> {
         sheet.heading(&format!("Sensor {sensor}, {family}"));
         compare(sheet, sensor, &impulses);
         if number == 0 {
-            picture(sheet, sensor, &impulses)?;
+            picture(sheet, id, sensor, family, &impulses)?;
             sheet.heading(&format!("Roller 1 and its cage, {family}"));
             of_roller(sheet, sensor, &impulses);
         }
@@ -241,15 +242,15 @@ fn means(
 }
 
 /// The part of the starts whose peak is below a level.
-fn picture(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) -> Result<()> {
+fn picture(sheet: &mut Sheet, prefix: &str, sensor: &str, family: &str, groups: &[Impulses]) -> Result<()> {
     const COLOURS: [Colour; 4] = [Colour::Grey, Colour::Blue, Colour::Orange, Colour::Green];
     for (id, title, of) in [
         ("peaks", "Peak of the impulse", QUANTITIES[0].of),
         ("slow-peaks", "Peak of the impulse below 8.9 kHz", QUANTITIES[1].of),
     ] {
         let mut figure = Figure::new(
-            id,
-            &format!("{title}, {sensor}"),
+            &format!("{prefix}{id}"),
+            &format!("{title}, {sensor}, {family}"),
             Axis::plain("Peak", "g"),
             Axis::plain("Part of the starts below it", "%"),
         );

@@ -12,6 +12,8 @@ const TIGHT: &str = "cage.pocket_clearance_um=10.0";
 /// Meshes under one cage; the reference comes last.
 pub(super) struct Family {
     pub(super) name: &'static str,
+    /// What the names of its pictures begin with.
+    pub(super) id: &'static str,
     pub(super) meshes: Vec<Mesh>,
 }
 
@@ -46,8 +48,8 @@ pub(super) fn families(starts: u16) -> [Family; 2] {
         all("tight-fine", "as fine, in tight pockets", LEAN, &tight(&fine), few),
     ];
     [
-        Family { name: "pockets with 0.1 mm of room", meshes: pockets },
-        Family { name: "pockets with 0.01 mm of room", meshes: tight_pockets },
+        Family { name: "pockets with 0.1 mm of room", id: "", meshes: pockets },
+        Family { name: "pockets with 0.01 mm of room", id: "tight-", meshes: tight_pockets },
     ]
 }
 
