@@ -16,9 +16,10 @@ use crate::{
     moments::{LaneMoments, Moments, lane_moments},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
-    sweep::{Drive, Energies, Scratch, TileFields, sweep},
-    threads::{cut, from_both_ends, share_out},
+    sweep::{Drive, Energies, Scratch, TileFields},
+    threads::share_out,
     tile::{Tile, TileDamping},
+    tile_runs::{TileRuns, sweep_all},
 };
 
 /// The heat of damping is counted in every so manyth step: it costs as much as damping itself.
@@ -397,7 +398,7 @@ impl Dynamics {
         let fetch = self.fetch && beta == 0.0;
         let drive = Drive { dt, gravity, beta, count_heat, fetch };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        sweep_all(Runs { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
+        sweep_all(TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
         // In the order of the tiles, whatever thread each was on.
         let Energies { work, heat } = self.counted.iter().fold(Energies::default(), |sum, &e| sum + e);
         self.drive.add(work);
@@ -496,91 +497,6 @@ fn pad(layout: &Layout, state: &mut State) {
             state.x[slot] = state.x[slot - 1];
             state.y[slot] = state.y[slot - 1];
         }
-    }
-}
-
-/// Tiles, their parts of the fields and where their energies go, from either end.
-struct Runs<'a> {
-    tiles: &'a [Tile],
-    fields: TileFields<'a>,
-    counted: &'a mut [Energies],
-}
-
-impl<'a> Runs<'a> {
-    fn split_at(self, tile: usize) -> (Self, Self) {
-        let (left, right) = self.tiles.split_at(tile);
-        let nodes = match (left.first(), right.first()) {
-            (Some(first), Some(next)) => next.slots.start - first.slots.start,
-            (None, _) => 0,
-            (_, None) => self.fields.x.len(),
-        };
-        let (a, b) = self.fields.split_at(nodes);
-        let (p, q) = self.counted.split_at_mut(tile);
-        (Self { tiles: left, fields: a, counted: p }, Self { tiles: right, fields: b, counted: q })
-    }
-
-    fn take(&mut self) -> Self {
-        std::mem::replace(self, Self { tiles: &[], fields: TileFields::default(), counted: &mut [] })
-    }
-
-    /// Sweeps all that are left.
-    fn sweep(self, scratch: &mut Scratch, drive: Drive) {
-        self.for_each(|one| one.sweep_one(scratch, drive));
-    }
-
-    fn sweep_one(self, scratch: &mut Scratch, drive: Drive) {
-        if let ([tile], [energies]) = (self.tiles, self.counted) {
-            *energies = sweep(tile, self.fields, scratch, drive);
-        }
-    }
-}
-
-impl<'a> Iterator for Runs<'a> {
-    type Item = Self;
-
-    fn next(&mut self) -> Option<Self> {
-        let (one, rest) = (!self.tiles.is_empty()).then(|| self.take().split_at(1))?;
-        *self = rest;
-        Some(one)
-    }
-}
-
-impl DoubleEndedIterator for Runs<'_> {
-    fn next_back(&mut self) -> Option<Self> {
-        let last = self.tiles.len().checked_sub(1)?;
-        let (rest, one) = self.take().split_at(last);
-        *self = rest;
-        Some(one)
-    }
-}
-
-/// Sweeps tiles, two threads from either end; more share runs of about equal work.
-fn sweep_all(runs: Runs<'_>, scratch: &mut [Scratch], drive: Drive) {
-    match scratch {
-        [] => {}
-        [one] => runs.sweep(one, drive),
-        [one, other] => {
-            from_both_ends(runs, |run| run.sweep_one(one, drive), |run| run.sweep_one(other, drive));
-        }
-        _ => {
-            let (threads, half) = (scratch.len(), scratch.len() / 2);
-            let work = runs.tiles.iter().map(|tile| tile.work);
-            let (left, right) = runs.split_at(cut(work.clone(), work.sum(), half, threads));
-            let (here, there) = scratch.split_at_mut(half);
-            micropool::join(|| sweep_all(left, here, drive), || sweep_all(right, there, drive));
-        }
-    }
-}
-
-impl<'a> TileFields<'a> {
-    fn split_at(self, at: usize) -> (TileFields<'a>, TileFields<'a>) {
-        let (x, x2) = self.x.split_at_mut(at);
-        let (y, y2) = self.y.split_at_mut(at);
-        let (vx, vx2) = self.vx.split_at_mut(at);
-        let (vy, vy2) = self.vy.split_at_mut(at);
-        let (fx, fx2) = self.fx.split_at_mut(at);
-        let (fy, fy2) = self.fy.split_at_mut(at);
-        (TileFields { x, y, vx, vy, fx, fy }, TileFields { x: x2, y: y2, vx: vx2, vy: vy2, fx: fx2, fy: fy2 })
     }
 }
 

@@ -114,6 +114,7 @@ mod strip;
 mod sweep;
 pub mod threads;
 mod tile;
+mod tile_runs;
 
 pub use dynamics::Dynamics;
 pub use error::Error;

@@ -26,7 +26,7 @@ use crate::workspace;
 pub(crate) struct Options {
     #[command(flatten)]
     flags: Flags,
-    /// Starts of each mesh, 0.01° of the cage apart
+    /// Starts of each mesh, 0.01° of the cage apart; half as many in tight pockets
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(2..=1000))]
     starts: u16,
 }
