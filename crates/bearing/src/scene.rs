@@ -426,7 +426,7 @@ impl Default for SolverScene {
     fn default() -> Self {
         Self {
             duration_ms: 30.0,
-            time_step_factor: 0.95,
+            time_step_factor: 0.98,
             hourglass_scale: 1.0,
             mass_damping_per_s: 5000.0,
             damping_frame: DampingFrame::Rolling,

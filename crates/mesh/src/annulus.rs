@@ -12,7 +12,7 @@ use crate::{Error, Part};
 ///
 /// Row 0 of the nodes is the inner surface, the last row the outer one; each row runs counter-clockwise and
 /// node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
-/// (counter-clockwise, its first node at `start_angle`).
+/// (counter-clockwise, its first node at `start_angle`, or less than two facets beside it where there is a groove).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Annulus {
     /// Radius of the inner circle [m].
@@ -23,7 +23,7 @@ pub struct Annulus {
     pub facets: usize,
     /// Elements through the thickness, equally thick where there is no groove.
     pub layers: usize,
-    /// Angle of the first node of the outer surface [rad], and of every row when there is no groove.
+    /// Angle of the first node of every row [rad]; a groove moves nodes along the circumference.
     pub start_angle: f64,
     /// Rectangular groove in the inner surface.
     pub groove: Option<Groove>,

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::annulus::{Annulus, Place};
 use crate::error::{MOST, finite, positive};
-use crate::fair::raise_assembled_step;
+use crate::fair::{SHARPNESS, raise_assembled_step};
 use crate::relax::{inside_out, raise_critical_step_to};
 use crate::{Error, Part};
 
@@ -13,8 +13,10 @@ use crate::{Error, Part};
 /// No element is removed, so the rows stay strips: two neighbouring nodes of the inner surface stand at the
 /// same angle, one on the inner radius and one on the floor, and the facet between them is the wall. The
 /// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
-/// and equally long on the rest of the inner surface. The rows below follow smoothly, so that the assembled
-/// elements keep nine tenths of the critical time step of squares; shallow, short and deep grooves keep two thirds
+/// and equally long on the rest of the inner surface. Columns at some distance from the groove are radial and equally
+/// wide, so that the cells of a row are alike there; the facets of the outer surface are a few per cent shorter behind the
+/// groove than elsewhere. The rows below follow smoothly, so that the assembled
+/// elements keep nine tenths of the critical time step of squares, short grooves four fifths and deep ones two thirds
 /// (THEORY §2.4).
 ///
 /// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
@@ -45,6 +47,10 @@ const LENGTH: f64 = 0.95;
 /// Columns on each side of a wall, and rows below it, whose nodes may move.
 const REACH: usize = 12;
 
+/// Columns beside the groove that are not radial, in thicknesses of the annulus: what the groove displaces has faded by a
+/// factor of 500 there.
+const FADES: usize = 2;
+
 /// Cuts the groove into an annulus by moving its nodes. The first of them are those of the inner surface,
 /// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
 /// become larger.
@@ -59,7 +65,7 @@ pub(crate) fn cut(
     let (n, layers) = (annulus.facets, annulus.layers);
     let plain = part.clone();
     let (angle, radius) = spread(&plan, n, layers);
-    for (at, place) in places.iter().enumerate().filter(|(_, p)| p.row < layers as f64) {
+    for (at, place) in places.iter().enumerate() {
         let (sin, cos) = (annulus.column_angle(place.column) + between_rows(&angle, n, *place)).sin_cos();
         let r = annulus.row_radius(place.row) + between_rows(&radius, n, *place);
         (part.x[at], part.y[at]) = (r * cos, r * sin);
@@ -68,17 +74,20 @@ pub(crate) fn cut(
     let movable = plan.movable(annulus, groove, places);
     let layer = (annulus.outer_radius - annulus.inner_radius) / layers as f64;
     let length = LENGTH * layer.min(TAU * annulus.inner_radius / n as f64);
-    let start = part.clone();
-    raise_assembled_step(part, &plain, &movable, POISSON, length);
-    if inside_out(part).is_some() {
-        // Rows that a deep groove has tangled, or the search itself, are put into order cell by cell.
-        *part = start;
+    let mut ordered = part.clone();
+    let fair =
+        |part: &mut Part, sharpness| raise_assembled_step(part, &plain, &movable, POISSON, length, sharpness);
+    let (gentle, harsh) = SHARPNESS.split_at(1);
+    if fair(part, gentle).is_none() {
+        // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
+        // another search, whichever comes out better.
+        let turned_back = fair(part, harsh);
         let deep = (groove.depth / layer) as usize;
-        raise_critical_step_to(enough, part, &movable, POISSON, SWEEPS * (1 + deep));
-        let searched = part.clone();
-        raise_assembled_step(part, &plain, &movable, POISSON, length);
-        if inside_out(part).is_some() {
-            *part = searched;
+        raise_critical_step_to(enough, &mut ordered, &movable, POISSON, SWEEPS * (1 + deep));
+        let searched = ordered.clone();
+        let again = fair(&mut ordered, gentle);
+        if turned_back.is_none() || again.is_some_and(|cost| turned_back.is_none_or(|other| cost < other)) {
+            *part = if again.is_some() { ordered } else { searched };
         }
     }
     match inside_out(part) {
@@ -99,6 +108,12 @@ struct Plan {
     /// Angular displacement of each inner node [rad], and its rise onto the floor [m].
     angle: Vec<f64>,
     rise: Vec<f64>,
+    /// Angular displacement of each outer node [rad].
+    back: Vec<f64>,
+    /// Columns on each side of a wall whose nodes the search may move.
+    columns: usize,
+    /// Columns from which on they are not radial, in order.
+    bent: Vec<usize>,
 }
 
 impl Plan {
@@ -130,7 +145,25 @@ impl Plan {
             angle[(first + m) % n] = target - uniform;
             rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { groove.depth } else { 0.0 };
         }
-        Ok(Plan { first, floor, angle, rise })
+        let layer = (annulus.outer_radius - annulus.inner_radius) / annulus.layers as f64;
+        let cell = TAU * annulus.inner_radius / n as f64;
+        // A groove of several layers disturbs as many columns as it is deep.
+        let columns = REACH + (groove.depth / cell).ceil() as usize;
+        let thickness = (annulus.layers as f64 * layer / cell).ceil() as usize;
+        let beside = (FADES * thickness).max(columns + 3);
+        let (back, bent) = if floor + 2 * beside + 4 < n {
+            let (from, bent) = (first + n - beside, floor + 2 + 2 * beside);
+            let column = |m: usize| (from + m) % n;
+            let mut back = angle.clone();
+            let (a, b) = (angle[column(0)], angle[column(bent)]);
+            for m in 1..bent {
+                back[column(m)] = a + (b - a) * m as f64 / bent as f64;
+            }
+            (back, (1..bent).map(column).collect())
+        } else {
+            (vec![0.0; n], (0..n).collect())
+        };
+        Ok(Plan { first, floor, angle, rise, back, columns, bent })
     }
 
     /// Writes the four wall nodes out, so that no rounding tilts a wall.
@@ -152,11 +185,8 @@ impl Plan {
 
     /// Interior nodes near the walls.
     fn movable(&self, annulus: &Annulus, groove: &Groove, places: &[Place]) -> Vec<bool> {
-        let (n, layers) = (annulus.facets, annulus.layers);
-        let cell = TAU * annulus.inner_radius / n as f64;
+        let (n, layers, columns) = (annulus.facets, annulus.layers, self.columns);
         let layer = (annulus.outer_radius - annulus.inner_radius) / layers as f64;
-        // A groove of several layers disturbs as many columns as it is deep.
-        let columns = REACH + (groove.depth / cell).ceil() as usize;
         let rows = REACH + (groove.depth / layer).ceil() as usize;
         let near_wall = |column: usize, wall: usize| {
             let right = (column + 2 * n - wall % n) % n;
@@ -178,16 +208,20 @@ fn between_rows(field: &[f64], n: usize, place: Place) -> f64 {
     if part == 0.0 { field[here] } else { (1.0 - part) * field[here] + part * field[here + n] }
 }
 
-/// Displacement of all nodes (angle [rad], radius [m]): given on the inner row, zero on the outer one,
-/// and harmonic between them, which keeps it smooth and between its extremes.
+/// Displacement of all nodes (angle [rad], radius [m]): given on the inner and the outer row, the same along radial columns,
+/// and harmonic where they are bent, which keeps it smooth and between its extremes.
 fn spread(plan: &Plan, n: usize, layers: usize) -> (Vec<f64>, Vec<f64>) {
-    let start = |inner: &[f64]| -> Vec<f64> {
-        (0..n * (layers + 1)).map(|i| inner[i % n] * (1.0 - (i / n) as f64 / layers as f64)).collect()
+    let start = |inner: &[f64], outer: &[f64]| -> Vec<f64> {
+        let between = |i: usize| {
+            let (a, b) = (inner[i % n], outer[i % n]);
+            a + (b - a) * ((i / n) as f64 / layers as f64)
+        };
+        (0..n * (layers + 1)).map(between).collect()
     };
-    let (mut angle, mut radius) = (start(&plan.angle), start(&plan.rise));
+    let (mut angle, mut radius) = (start(&plan.angle, &plan.back), start(&plan.rise, &vec![0.0; n]));
     for _ in 0..SPREAD {
         for row in 1..layers {
-            for column in 0..n {
+            for &column in &plan.bent {
                 let (here, left, right) =
                     (row * n + column, row * n + (column + n - 1) % n, row * n + (column + 1) % n);
                 for field in [&mut angle, &mut radius] {

@@ -1,13 +1,15 @@
 //! The kernel over a strip: element forces, sums at nodes, and the motion of the row that the strip completes, as many
 //! neighbours at a time as one instruction takes, in one pass (PERFORMANCE.md).
 
+use std::ops::Range;
+
 use pulp::Simd;
 
 use crate::{
     advance::{Damping, Nodes, Step, Undamped, advance},
     element::{CornerForces, QuadMetric, Stiffness},
     lanes::Vector,
-    tile::{Strip, StripReferences, VaryingReferences},
+    tile::{Strip, VaryingReferences},
 };
 
 /// Adds the forces of one strip, and moves its lower row if the strip completes it.
@@ -21,15 +23,10 @@ pub(crate) fn strip<S: Simd, D: Damping>(
     step: &Step<S>,
     heat: &mut Vector<S>,
 ) {
-    match strip.references {
-        StripReferences::Uniform(q) => {
-            let same = q.of(Vector::all(simd, 0.0));
-            run_or_hold::<S, D, _>(simd, &same, strip, stiffness, nodes, step, heat);
-        }
-        StripReferences::Varying(start) => {
-            let each = Each { references: varying, start };
-            run_or_hold::<S, D, _>(simd, &each, strip, stiffness, nodes, step, heat);
-        }
+    if strip.completes {
+        run::<S, D, true>(simd, strip, varying, stiffness, nodes, step, heat);
+    } else {
+        run::<S, D, false>(simd, strip, varying, stiffness, nodes, step, heat);
     }
 }
 
@@ -44,43 +41,18 @@ pub(crate) fn strip_forces<S: Simd>(
     step: &Step<S>,
 ) {
     let heat = &mut Vector::all(simd, 0.0);
-    match strip.references {
-        StripReferences::Uniform(q) => {
-            let same = q.of(Vector::all(simd, 0.0));
-            run::<S, Undamped, _, false>(simd, &same, strip, stiffness, nodes, step, heat);
-        }
-        StripReferences::Varying(start) => {
-            let each = Each { references: varying, start };
-            run::<S, Undamped, _, false>(simd, &each, strip, stiffness, nodes, step, heat);
-        }
-    }
-}
-
-#[inline(always)]
-fn run_or_hold<S: Simd, D: Damping, R: References<S>>(
-    simd: S,
-    references: &R,
-    strip: &Strip,
-    stiffness: &Stiffness<Vector<S>>,
-    nodes: &mut Nodes<'_>,
-    step: &Step<S>,
-    heat: &mut Vector<S>,
-) {
-    if strip.completes {
-        run::<S, D, R, true>(simd, references, strip, stiffness, nodes, step, heat);
-    } else {
-        run::<S, D, R, false>(simd, references, strip, stiffness, nodes, step, heat);
-    }
+    run::<S, Undamped, false>(simd, strip, varying, stiffness, nodes, step, heat);
 }
 
 /// Forces of a group of elements on their right corners: (x, y) of the lower row and minus that of the upper one.
 type Right<S> = [[Vector<S>; 2]; 2];
 
+/// Elements before those that are alike, those, and elements after them.
 #[inline(always)]
-fn run<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
+fn run<S: Simd, D: Damping, const COMPLETES: bool>(
     simd: S,
-    references: &R,
     strip: &Strip,
+    varying: &VaryingReferences,
     stiffness: &Stiffness<Vector<S>>,
     nodes: &mut Nodes<'_>,
     step: &Step<S>,
@@ -88,27 +60,60 @@ fn run<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
 ) {
     let nodes = &mut nodes.alike::<D>();
     let len = Vector::<S>::LEN;
-    let mut right = [[Vector::all(simd, 0.0); 2]; 2];
     let [low, _, _, high] = strip.corners.map(|c| c as usize);
     // Said once, so that the compiler need not ask in every group.
     let elements = strip.len as u32 as usize;
     let last = elements - elements % len;
     assert!(low.max(high) + last + len < nodes.x.len(), "the last group of a strip lies within its tile");
-    for e in (0..last).step_by(len) {
+    let same = strip.metric.of(Vector::all(simd, 0.0));
+    let before = Each { references: varying, start: strip.varying, skipped: 0 };
+    let after = Each { skipped: strip.alike.len(), ..before };
+    let Range { start, end } = strip.alike.start.min(last)..strip.alike.end.min(last);
+    let rows = [low, high];
+    let right = [[Vector::all(simd, 0.0); 2]; 2];
+    let right =
+        groups::<S, D, _, COMPLETES>(simd, &before, 0..start, rows, right, stiffness, nodes, step, heat);
+    let right =
+        groups::<S, D, _, COMPLETES>(simd, &same, start..end, rows, right, stiffness, nodes, step, heat);
+    let right =
+        groups::<S, D, _, COMPLETES>(simd, &after, end..last, rows, right, stiffness, nodes, step, heat);
+    // What is left of the elements, and the node at the right end.
+    let rest = elements - last;
+    let [f1, f2, f3, f4] = if strip.alike.end == elements {
+        same.at(simd, nodes, rows, last, stiffness)
+    } else {
+        after.at(simd, nodes, rows, last, stiffness)
+    };
+    let forces = [first(f1, rest), first(f2, rest), first(f3, rest), first(f4, rest)];
+    let at = [low + last, high + last];
+    group::<S, D, COMPLETES, true>(simd, forces, nodes, at, rest + 1, right, step, heat);
+}
+
+/// Whole groups of elements; hands on what the last one does to its right corners.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)] // the arrays of one kernel
+fn groups<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
+    simd: S,
+    references: &R,
+    elements: Range<usize>,
+    [low, high]: [usize; 2],
+    mut right: Right<S>,
+    stiffness: &Stiffness<Vector<S>>,
+    nodes: &mut Nodes<'_>,
+    step: &Step<S>,
+    heat: &mut Vector<S>,
+) -> Right<S> {
+    let len = Vector::<S>::LEN;
+    for e in elements.step_by(len) {
         if step.fetch {
             nodes.fetch(low + e, high + e, COMPLETES);
             references.fetch(e);
         }
-        let forces = references.forces(simd, nodes, [low, high], e, stiffness);
-        let at = [low + e, high + e];
-        right = group::<S, D, COMPLETES, false>(simd, forces, nodes, at, len, right, step, heat);
+        let forces = references.at(simd, nodes, [low, high], e, stiffness);
+        right =
+            group::<S, D, COMPLETES, false>(simd, forces, nodes, [low + e, high + e], len, right, step, heat);
     }
-    // What is left of the elements, and the node at the right end.
-    let rest = elements - last;
-    let [f1, f2, f3, f4] = references.forces(simd, nodes, [low, high], last, stiffness);
-    let forces = [first(f1, rest), first(f2, rest), first(f3, rest), first(f4, rest)];
-    let at = [low + last, high + last];
-    group::<S, D, COMPLETES, true>(simd, forces, nodes, at, rest + 1, right, step, heat);
+    right
 }
 
 /// Brings corner forces of a group of neighbouring elements to the nodes at their left corners; `right` are those of the
@@ -156,7 +161,7 @@ fn first<S: Simd>(f: [Vector<S>; 2], n: usize) -> [Vector<S>; 2] {
 trait References<S: Simd> {
     /// Forces [N] on the corners of the group that begins with element `e` of the strip, whose lower and upper rows of
     /// nodes begin at `row`.
-    fn forces(
+    fn at(
         &self,
         simd: S,
         nodes: &Nodes<'_>,
@@ -182,7 +187,7 @@ fn corners<S: Simd>(simd: S, v: &[f64], [low, high]: [usize; 2], e: usize) -> [V
 
 impl<S: Simd> References<S> for QuadMetric<Vector<S>> {
     #[inline(always)]
-    fn forces(
+    fn at(
         &self,
         simd: S,
         nodes: &Nodes<'_>,
@@ -197,15 +202,16 @@ impl<S: Simd> References<S> for QuadMetric<Vector<S>> {
     fn fetch(&self, _: usize) {}
 }
 
-/// References from group `start` on.
+/// References from group `start` on, but for so many elements.
 struct Each<'a> {
     references: &'a VaryingReferences,
     start: usize,
+    skipped: usize,
 }
 
 impl<S: Simd> References<S> for Each<'_> {
     #[inline(always)]
-    fn forces(
+    fn at(
         &self,
         simd: S,
         nodes: &Nodes<'_>,
@@ -213,12 +219,12 @@ impl<S: Simd> References<S> for Each<'_> {
         e: usize,
         k: &Stiffness<Vector<S>>,
     ) -> CornerForces<Vector<S>> {
-        let references = self.references.group(simd, self.start, e);
+        let references = self.references.group(simd, self.start, e - self.skipped);
         references.forces(corners(simd, nodes.x, row, e), corners(simd, nodes.y, row, e), k)
     }
 
     #[inline(always)]
     fn fetch(&self, e: usize) {
-        self.references.fetch(self.start, e);
+        self.references.fetch(self.start, e - self.skipped);
     }
 }

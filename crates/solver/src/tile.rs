@@ -78,12 +78,39 @@ fn runs(flags: &[bool]) -> Vec<Range<usize>> {
     runs
 }
 
+/// Fewer elements that are alike are not worth a loop of their own.
+const LEAST_ALIKE: usize = 4 * LANES;
+
+/// The longest run of `n` elements that are the same, in groups of lanes: it begins with one and ends with one or with the last
+/// element. Empty where no run is long.
+fn alike(n: usize, same: impl Fn(usize, usize) -> bool) -> Range<usize> {
+    let (mut longest, mut from) = (0..0, 0);
+    for end in 1..=n {
+        if end < n && same(from, end) {
+            continue;
+        }
+        let to = if end == n { n } else { end - end % LANES };
+        let run = from.next_multiple_of(LANES)..to;
+        if run.len() > longest.len() {
+            longest = run;
+        }
+        from = end;
+    }
+    if longest.len() < LEAST_ALIKE.min(n) { 0..0 } else { longest }
+}
+
 /// A run of quadrilaterals whose corners all advance by one.
 #[derive(Debug, Clone)]
 pub(crate) struct Strip {
     pub(crate) corners: [u32; 4],
     pub(crate) len: usize,
-    pub(crate) references: StripReferences,
+    /// Neighbours that are all alike, as on a square grid or along a ring's row; from whole groups of lanes on, and as many
+    /// unless they are the last.
+    pub(crate) alike: Range<usize>,
+    /// Reference of those.
+    pub(crate) metric: QuadMetric,
+    /// References of all others: from this group of the tile's [`VaryingReferences`] on.
+    pub(crate) varying: usize,
     /// The whole row of corners 1 and 2 is free and complete after this strip: it moves with it.
     pub(crate) completes: bool,
 }
@@ -94,15 +121,6 @@ pub(crate) struct CongruentRun {
     /// Corners 1 and 4 of the first element.
     pub(crate) left: [u32; 2],
     pub(crate) quads: Range<usize>,
-}
-
-/// References of a strip's elements.
-#[derive(Debug, Clone)]
-pub(crate) enum StripReferences {
-    /// All alike: a ring's row, a square grid.
-    Uniform(QuadMetric),
-    /// From this group of the tile's [`VaryingReferences`] on.
-    Varying(usize),
 }
 
 /// Shapes of quadrilaterals ([`crate::element::QuadShape`]) in groups of lanes: eight values of each kind,
@@ -123,10 +141,8 @@ impl Strip {
     /// Renumbers the corners 4, 3, 2, 1: the upper row becomes the lower one.
     fn turn_over(&mut self, varying: &mut VaryingReferences) {
         self.corners.reverse();
-        match &mut self.references {
-            StripReferences::Uniform(q) => *q = q.turned_over(),
-            StripReferences::Varying(start) => varying.turn_over(*start, self.len),
-        }
+        self.metric = self.metric.turned_over();
+        varying.turn_over(self.varying, self.len - self.alike.len());
     }
 }
 
@@ -154,6 +170,9 @@ impl VaryingReferences {
 
     /// Renumbers the corners 4, 3, 2, 1 of `n` elements from group `start` on.
     fn turn_over(&mut self, start: usize, n: usize) {
+        if n == 0 {
+            return;
+        }
         for group in start..=start + n / LANES {
             let at = group * Self::KINDS * LANES;
             for l in at..at + LANES {
@@ -267,13 +286,13 @@ impl Tile {
                 gathered.extend(elements.iter().map(|&(_, e)| e));
                 continue;
             }
-            let first = quads[elements[0].1];
-            let references = if elements.iter().all(|&(_, e)| quads[e] == first) {
-                StripReferences::Uniform(QuadMetric::new(&first, &self.stiffness))
-            } else {
-                StripReferences::Varying(self.varying.push(elements.iter().map(|&(_, e)| shape(e))))
-            };
-            self.strips.push(Strip { corners: run.corners, len: run.len, references, completes: false });
+            let alike = alike(elements.len(), |i, j| quads[elements[i].1] == quads[elements[j].1]);
+            let metric = QuadMetric::new(&quads[elements[alike.start].1], &self.stiffness);
+            let others = elements[..alike.start].iter().chain(&elements[alike.end..]);
+            let others: Vec<QuadShape> = others.map(|&(_, e)| shape(e)).collect();
+            let varying = if others.is_empty() { 0 } else { self.varying.push(others.into_iter()) };
+            let (corners, len) = (run.corners, run.len);
+            self.strips.push(Strip { corners, len, alike, metric, varying, completes: false });
         }
         self.first_gathered = self.varying.push(gathered.into_iter().map(shape));
     }
