@@ -50,10 +50,11 @@ impl Tangent {
         if self.laid_out.is_none() {
             self.couplings = couplings(d, forces);
         }
+        let mut done_with = None;
         loop {
             let laid_out = match self.laid_out.take() {
                 Some(laid_out) => laid_out,
-                None => self.lay_out(unknowns, d)?,
+                None => self.lay_out(unknowns, d, done_with.take())?,
             };
             let laid_out = self.laid_out.insert(laid_out);
             laid_out.matrix.values.copy_from_slice(&laid_out.elastic);
@@ -65,7 +66,7 @@ impl Tangent {
             self.couplings.extend(missing);
             self.couplings.sort_unstable();
             self.couplings.dedup();
-            self.laid_out = None;
+            done_with = self.laid_out.take().map(|laid_out| laid_out.factor);
         }
     }
 
@@ -93,20 +94,26 @@ impl Tangent {
         step
     }
 
-    /// Pattern, order of elimination and elastic stiffness.
-    fn lay_out(&mut self, unknowns: &mut Unknowns, d: &Dynamics) -> Result<LaidOut, Error> {
+    /// Pattern, order of elimination and elastic stiffness, in the memory of a factor that is done with.
+    fn lay_out(
+        &mut self,
+        unknowns: &mut Unknowns,
+        d: &Dynamics,
+        mut done_with: Option<Factor>,
+    ) -> Result<LaidOut, Error> {
         let mut graph = unknowns.graph(d, &self.couplings);
         if let Some(before) = self.ordered {
             let matrix = Matrix::new(&graph);
-            let factor = Factor::new(&matrix)?;
+            let factor = Factor::new(&matrix, done_with)?;
             if factor.entries() as f64 <= FILL * before as f64 {
                 return Ok(LaidOut::new(matrix, factor, unknowns, d));
             }
+            done_with = Some(factor);
         }
         unknowns.reorder(d, &graph);
         graph = unknowns.graph(d, &self.couplings);
         let matrix = Matrix::new(&graph);
-        let factor = Factor::new(&matrix)?;
+        let factor = Factor::new(&matrix, done_with)?;
         self.ordered = Some(factor.entries());
         Ok(LaidOut::new(matrix, factor, unknowns, d))
     }
