@@ -396,7 +396,8 @@ impl Dynamics {
         let (dt, gravity, beta) = (self.time_step, self.gravity, self.beta);
         // With stiffness damping a pass before has just read all of a tile.
         let fetch = self.fetch && beta == 0.0;
-        let drive = Drive { dt, gravity, beta, count_heat, fetch };
+        let back = !self.state.step.is_multiple_of(2);
+        let drive = Drive { dt, gravity, beta, count_heat, fetch, back };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
         sweep_all(TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
         // In the order of the tiles, whatever thread each was on.

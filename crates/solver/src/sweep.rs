@@ -43,11 +43,13 @@ pub(crate) struct Scratch {
     fy: Field,
     /// Where elements see the nodes; empty without stiffness damping.
     pub(crate) seen: Seen,
+    /// Tiles that this thread took in the last step.
+    pub(crate) taken: usize,
 }
 
 impl Scratch {
     pub(crate) fn new(slots: usize) -> Self {
-        Self { fx: Field::zeros(slots), fy: Field::zeros(slots), seen: Seen::default() }
+        Self { fx: Field::zeros(slots), fy: Field::zeros(slots), seen: Seen::default(), taken: 0 }
     }
 }
 
@@ -62,6 +64,8 @@ pub(crate) struct Drive {
     pub(crate) count_heat: bool,
     /// Whether strips fetch what they read next from far caches.
     pub(crate) fetch: bool,
+    /// Whether tiles are swept in the opposite order, the last ones of the step before first.
+    pub(crate) back: bool,
 }
 
 /// Energies of a step [J], each from half a step before to half a step after the positions' time.

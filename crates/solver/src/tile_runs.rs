@@ -30,9 +30,9 @@ impl<'a> TileRuns<'a> {
         std::mem::replace(self, Self { tiles: &[], fields: TileFields::default(), counted: &mut [] })
     }
 
-    /// Sweeps all that are left.
-    fn sweep(self, scratch: &mut Scratch, drive: Drive) {
-        self.for_each(|one| one.sweep_one(scratch, drive));
+    /// From the first one on, or backwards.
+    fn turned(self, back: bool) -> Turned<'a> {
+        Turned { runs: self, back }
     }
 
     fn sweep_one(self, scratch: &mut Scratch, drive: Drive) {
@@ -61,13 +61,46 @@ impl DoubleEndedIterator for TileRuns<'_> {
     }
 }
 
+/// Tiles from the first one on, or backwards.
+struct Turned<'a> {
+    runs: TileRuns<'a>,
+    back: bool,
+}
+
+impl<'a> Iterator for Turned<'a> {
+    type Item = TileRuns<'a>;
+
+    fn next(&mut self) -> Option<TileRuns<'a>> {
+        if self.back { self.runs.next_back() } else { self.runs.next() }
+    }
+}
+
+impl DoubleEndedIterator for Turned<'_> {
+    fn next_back(&mut self) -> Option<Self::Item> {
+        if self.back { self.runs.next() } else { self.runs.next_back() }
+    }
+}
+
+/// Tiles on either side of where two threads met last that are swept last in every step, so that they may meet elsewhere.
+const UNDECIDED: usize = 1;
+
 /// Sweeps tiles, two threads from either end; more share runs of about equal work.
 pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], drive: Drive) {
     match scratch {
         [] => {}
-        [one] => runs.sweep(one, drive),
+        [one] => runs.turned(drive.back).for_each(|run| run.sweep_one(one, drive)),
         [one, other] => {
-            from_both_ends(runs, |run| run.sweep_one(one, drive), |run| run.sweep_one(other, drive));
+            let tiles = runs.tiles.len();
+            let (from, to) = (one.taken.saturating_sub(UNDECIDED), (one.taken + UNDECIDED).min(tiles));
+            let (runs, right) = runs.split_at(to);
+            let (left, between) = runs.split_at(from);
+            one.taken = 0;
+            let here = |run: TileRuns<'_>| {
+                one.taken += 1;
+                run.sweep_one(one, drive);
+            };
+            let order = left.turned(drive.back).chain(between).chain(right.turned(drive.back));
+            from_both_ends(order, here, |run| run.sweep_one(other, drive));
         }
         _ => {
             let (threads, half) = (scratch.len(), scratch.len() / 2);
