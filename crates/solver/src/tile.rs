@@ -343,3 +343,31 @@ impl Tile {
         self.finish.sort_by_key(|f| (f.after, f.nodes.start));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn invariant_elements_that_are_alike_are_whole_groups_or_the_last() {
+        let of = |shapes: &[(u8, usize)]| {
+            let shapes: Vec<u8> = shapes.iter().flat_map(|&(shape, n)| vec![shape; n]).collect();
+            alike(shapes.len(), |i, j| shapes[i] == shapes[j])
+        };
+        for (shapes, expected) in [
+            (&[(0, 5)][..], 0..5),
+            (&[(0, 100)], 0..100),
+            (&[(0, 3), (1, 100)], 8..103),
+            (&[(0, 100), (1, 3)], 0..96),
+            (&[(0, 96), (1, 1)], 0..96),
+            (&[(0, 40), (1, 1), (0, 60)], 48..101),
+            (&[(0, 64), (1, 1), (0, 40)], 0..64),
+            (&[(0, 9), (1, 38), (2, 9)], 0..0),
+            (&[(0, 9), (1, 40), (2, 9)], 16..48),
+            (&[(0, 9), (1, 47), (2, 9)], 16..56),
+            (&[(0, 1), (1, 1), (2, 1)], 0..0),
+        ] {
+            assert_eq!(of(shapes), expected, "{shapes:?}");
+        }
+    }
+}

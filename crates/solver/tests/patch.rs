@@ -232,7 +232,17 @@ fn patch_tiles_of_one_body_agree_with_the_plain_sum() {
         start_angle: 0.1,
         groove: Some(Groove { centre_angle: 1.0, length: 0.02, depth: 1e-3 }),
     };
-    for part in [plate, ring.part().expect("a ring with a groove")] {
+    // Rows of squares with others among them, at either end and in the middle.
+    let squares = rectangle(0.12, 0.1, 120, 100);
+    let odd = |columns: std::ops::Range<usize>| {
+        let mut part = squares.clone();
+        for n in (0..part.x.len()).filter(|n| columns.contains(&(n % 121))) {
+            part.y[n] += 0.1 * CELL * (n as f64).sin();
+        }
+        part
+    };
+    let ring = ring.part().expect("a ring with a groove");
+    for part in [plate, ring, odd(0..3), odd(61..64), odd(50..52), odd(110..121), odd(32..90)] {
         let model = body(&part);
         let mut d = ready(&model, 0.5);
         assert!(d.layout().len() > model.mesh.x.len() + 60, "there are ghosts");
