@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use stribeck_analysis::filtering::Filter;
-use stribeck_analysis::noise::{Impulse, Noise, force_ripple, impulse, measure, spectrum_g};
+use stribeck_analysis::noise::{Noise, force_ripple, measure, spectrum_g};
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
@@ -33,9 +33,8 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
          roller meets the defect: 4.3 ms resolve 230 Hz, so the line holds the race nodes\u{2019} too. *Background* is what the \
          same measure gives at four neighbouring frequencies, 0.7 and 1.4 kHz away on either side, where the mesh has no line \
          (root of the mean square): a line that does not stand above it is not there. *Ringing* is the root mean square \
-         above 20 kHz, *start* that of the first 0.3 ms. *Impulse*, its energy and its mean over 0.21 ms (which takes the line out) are of a_y \
-         within 1 ms of the exit. *Ripple* is the rms of the force on the most loaded roller about a cubic in time over its \
-         mean, 2.4 to 4.3 ms. What a step of the cure costs is measured by itself: [PERFORMANCE](../PERFORMANCE.md), §6.",
+         above 20 kHz, *start* that of the first 0.3 ms. *Ripple* is the rms of the force on the most loaded roller about a \
+         cubic in time over its mean, 2.4 to 4.3 ms. Impulses need more starts: [impulse](impulse.md). What a step of the cure costs is measured by itself: [PERFORMANCE](../PERFORMANCE.md), §6.",
     );
     let mut ends = Vec::new();
     for (table, title, list) in [
@@ -56,7 +55,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
              Line, background and level between the impulses [g] at each sensor:",
         );
         sheet.runs(table, &rows, &LEVELS);
-        sheet.say("Impulse at the leading sensor, forces and cost; *points* is the line of the contact points, their number on a facet times the vertices\u{2019} line:");
+        sheet.say("Effects, forces and cost; *points* is the line of the contact points, their number on a facet times the vertices\u{2019} line:");
         sheet.runs(&format!("{table}-effects"), &rows, &EFFECTS);
         ends.extend(runs);
     }
@@ -193,13 +192,6 @@ fn quiet(time_s: &[f64]) -> std::ops::Range<usize> {
     time_s.partition_point(|&t| t < 7.1e-3)..time_s.partition_point(|&t| t < 11.4e-3)
 }
 
-/// The first impulse at the leading sensor.
-fn first_impulse(run: &Finished) -> Option<Impulse> {
-    let read = Run::read(&run.folder).ok()?;
-    let passage = Prediction::of(&read.scene, &read.info.mesh).passages.first().map(|p| p.exit_s)?;
-    impulse(&Record::new(&read), &read.scene.output.sensors.first()?.name, passage)
-}
-
 /// Root of the sum of squares over the sensors.
 fn together(run: &Finished, hz: Option<f64>, of: impl Fn(&Noise) -> f64) -> Option<f64> {
     let all: Vec<Noise> = (0..4).map(|sensor| noise_at(run, sensor, hz)).collect::<Option<_>>()?;
@@ -251,14 +243,11 @@ const RESIDUE: [Column; 6] = [
     Column { name: "at 4671 Hz g", decimals: 2, of: |r| together(r, Some(4671.0), |n| n.line_g) },
 ];
 
-const EFFECTS: [Column; 11] = [
+const EFFECTS: [Column; 8] = [
     Column { name: "second harmonic g", decimals: 2, of: |r| noise(r, 0).map(|n| n.second_g) },
     Column { name: "ringing g", decimals: 2, of: |r| noise(r, 0).map(|n| n.ringing_g) },
     Column { name: "points at the seat g", decimals: 2, of: points_line_g },
     Column { name: "start g", decimals: 1, of: |r| noise(r, 0).map(|n| n.start_g) },
-    Column { name: "impulse g", decimals: 0, of: |r| first_impulse(r).map(|i| i.peak_g) },
-    Column { name: "impulse g² ms", decimals: 0, of: |r| first_impulse(r).map(|i| i.energy_g2_ms) },
-    Column { name: "impulse, mean g", decimals: 1, of: |r| first_impulse(r).map(|i| i.mean_g) },
     Column { name: "spall mm", decimals: 2, of: |r| r.numbers()?.events.first()?.spall_mm },
     Column { name: "ripple %", decimals: 3, of: ripple_percent },
     Column {

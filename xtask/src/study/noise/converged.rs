@@ -3,7 +3,7 @@
 use stribeck_analysis::record::Record;
 use stribeck_bearing::run_dir::Run;
 
-use super::{first_impulse, noise};
+use super::noise;
 use crate::study::table::number;
 use crate::study::{Finished, Sheet};
 
@@ -16,14 +16,11 @@ const CARRIES_N: f64 = 1000.0;
 /// A number of a run.
 type Quantity = (&'static str, usize, fn(&Finished) -> Option<f64>);
 
-const QUANTITIES: [Quantity; 11] = [
+const QUANTITIES: [Quantity; 8] = [
     ("unloads ms", 3, |r| r.numbers()?.events.first()?.entry_ms),
     ("is loaded again ms", 3, |r| r.numbers()?.events.first()?.exit_ms),
     ("force of roller 2 N", 0, |r| forces(r).get(1).copied()),
     ("force of roller 24 N", 0, |r| forces(r).get(23).copied()),
-    ("impulse, peak g", 0, |r| first_impulse(r).map(|i| i.peak_g)),
-    ("impulse, energy g² ms", 0, |r| first_impulse(r).map(|i| i.energy_g2_ms)),
-    ("impulse, mean over 0.21 ms g", 1, |r| first_impulse(r).map(|i| i.mean_g)),
     ("between the impulses, side g", 1, |r| noise(r, 0).map(|n| n.quiet_rms_g)),
     ("between, shoulder g", 1, |r| noise(r, 1).map(|n| n.quiet_rms_g)),
     ("between, seat g", 1, |r| noise(r, 2).map(|n| n.quiet_rms_g)),
