@@ -277,9 +277,14 @@ fn analytic_what_cannot_go_on_says_why() {
         }
     };
 
-    let mut newer = checkpoint.clone();
-    newer[20..24].copy_from_slice(&9_u32.to_le_bytes());
-    says(with("checkpoint", &newer), &["version 9", "program that began it", "run.json"]);
+    for version in [5_u32, 9] {
+        let mut other = checkpoint.clone();
+        other[20..24].copy_from_slice(&version.to_le_bytes());
+        says(
+            with("checkpoint", &other),
+            &[&format!("version {version}"), "program that began it", "run.json"],
+        );
+    }
 
     let other = coarse(0.2);
     says(

@@ -12,7 +12,7 @@ use crate::{Error, Part};
 ///
 /// Row 0 of the nodes is the inner surface, the last row the outer one; each row runs counter-clockwise and
 /// node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
-/// (counter-clockwise, its first node at `start_angle`, or less than two facets beside it where there is a groove).
+/// (counter-clockwise, its first node at `start_angle`, or two facets or so beside it where there is a groove).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Annulus {
     /// Radius of the inner circle [m].

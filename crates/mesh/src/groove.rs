@@ -14,8 +14,8 @@ use crate::{Error, Part};
 /// same angle, one on the inner radius and one on the floor, and the facet between them is the wall. The
 /// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
 /// and equally long on the rest of the inner surface. Columns at some distance from the groove are radial and equally
-/// wide, so that the cells of a row are alike there; the facets of the outer surface are a few per cent shorter behind the
-/// groove than elsewhere. The rows below follow smoothly, so that the assembled
+/// wide, so that the cells of a row are alike there, and the facets of the outer surface are some per cent shorter behind the
+/// groove than elsewhere; in rings that have no room for that the outer surface stays as it is. The rows below follow smoothly, so that the assembled
 /// elements keep nine tenths of the critical time step of squares, short grooves four fifths and deep ones two thirds
 /// (THEORY §2.4).
 ///
@@ -50,6 +50,9 @@ const REACH: usize = 12;
 /// Columns beside the groove that are not radial, in thicknesses of the annulus: what the groove displaces has faded by a
 /// factor of 500 there.
 const FADES: usize = 2;
+
+/// Fewer radial columns are not worth moving the outer surface for.
+const LEAST_RADIAL: usize = 32;
 
 /// Cuts the groove into an annulus by moving its nodes. The first of them are those of the inner surface,
 /// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
@@ -145,13 +148,12 @@ impl Plan {
             angle[(first + m) % n] = target - uniform;
             rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { groove.depth } else { 0.0 };
         }
-        let layer = (annulus.outer_radius - annulus.inner_radius) / annulus.layers as f64;
         let cell = TAU * annulus.inner_radius / n as f64;
         // A groove of several layers disturbs as many columns as it is deep.
         let columns = REACH + (groove.depth / cell).ceil() as usize;
-        let thickness = (annulus.layers as f64 * layer / cell).ceil() as usize;
+        let thickness = ((annulus.outer_radius - annulus.inner_radius) / cell).ceil() as usize;
         let beside = (FADES * thickness).max(columns + 3);
-        let (back, bent) = if floor + 2 * beside + 4 < n {
+        let (back, bent) = if floor + 2 * beside + 4 + LEAST_RADIAL < n {
             let (from, bent) = (first + n - beside, floor + 2 + 2 * beside);
             let column = |m: usize| (from + m) % n;
             let mut back = angle.clone();

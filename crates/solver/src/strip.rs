@@ -68,7 +68,7 @@ fn run<S: Simd, D: Damping, const COMPLETES: bool>(
     let same = strip.metric.of(Vector::all(simd, 0.0));
     let before = Each { references: varying, start: strip.varying, skipped: 0 };
     let after = Each { skipped: strip.alike.len(), ..before };
-    let Range { start, end } = strip.alike.start.min(last)..strip.alike.end.min(last);
+    let Range { start, end } = strip.alike.start..strip.alike.end.min(last);
     let rows = [low, high];
     let right = [[Vector::all(simd, 0.0); 2]; 2];
     let right =

@@ -43,7 +43,7 @@ pub(crate) struct Scratch {
     fy: Field,
     /// Where elements see the nodes; empty without stiffness damping.
     pub(crate) seen: Seen,
-    /// Tiles that this thread took in the last step.
+    /// Tiles that this thread, the first of two, took in the last step.
     pub(crate) taken: usize,
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct Tile {
     pub(crate) own: usize,
     pub(crate) stiffness: Stiffness,
     pub(crate) strips: Vec<Strip>,
-    /// References of strips whose elements differ, one array a component.
+    /// References of elements of strips that are not alike, and of those outside strips.
     pub(crate) varying: VaryingReferences,
     /// Quadrilaterals outside strips; their references stand in `varying` from group `first_gathered` on.
     pub(crate) quads: Vec<[u32; 4]>,
@@ -82,7 +82,7 @@ fn runs(flags: &[bool]) -> Vec<Range<usize>> {
 const LEAST_ALIKE: usize = 4 * LANES;
 
 /// The longest run of `n` elements that are the same, in groups of lanes: it begins with one and ends with one or with the last
-/// element. Empty where no run is long.
+/// element. Empty where no run is long and not all are the same.
 fn alike(n: usize, same: impl Fn(usize, usize) -> bool) -> Range<usize> {
     let (mut longest, mut from) = (0..0, 0);
     for end in 1..=n {

@@ -84,14 +84,16 @@ impl DoubleEndedIterator for Turned<'_> {
 /// Tiles on either side of where two threads met last that are swept last in every step, so that they may meet elsewhere.
 const UNDECIDED: usize = 1;
 
-/// Sweeps tiles, two threads from either end; more share runs of about equal work.
+/// Sweeps tiles; two threads from either end to where they meet, in every second step from there outwards but for the tiles
+/// about it, which come last. More threads share runs of about equal work.
 pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], drive: Drive) {
     match scratch {
         [] => {}
         [one] => runs.turned(drive.back).for_each(|run| run.sweep_one(one, drive)),
         [one, other] => {
             let tiles = runs.tiles.len();
-            let (from, to) = (one.taken.saturating_sub(UNDECIDED), (one.taken + UNDECIDED).min(tiles));
+            let to = (one.taken + UNDECIDED).min(tiles);
+            let from = one.taken.saturating_sub(UNDECIDED).min(to);
             let (runs, right) = runs.split_at(to);
             let (left, between) = runs.split_at(from);
             one.taken = 0;

@@ -20,9 +20,9 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// Lays out the factor of matrices with this pattern, eliminated in the order in which they are numbered. It takes over
-    /// the memory of one that is done with: fresh memory costs as much as half a factorisation.
-    pub(super) fn new(matrix: &Matrix, done_with: Option<Self>) -> Result<Self, Error> {
+    /// Lays out the factor of matrices with this pattern, eliminated in the order in which they are numbered. Its numbers
+    /// take over the memory of those of a factor that is done with: fresh memory costs as much as half a factorisation.
+    pub(super) fn new(matrix: &Matrix, memory: Vec<f64>) -> Result<Self, Error> {
         // Without an ordering the analysis wants the upper triangle and the numbers the lower one.
         let upper = matrix.pattern().transpose().to_col_major().map_err(failed)?;
         let order = SymmetricOrdering::Identity;
@@ -33,8 +33,12 @@ impl Factor {
             symbolic.solve_in_place_scratch::<f64>(1, PAR),
         ]);
         let scratch = MemBuffer::try_new(scratch).map_err(failed)?;
-        let values = done_with.map(|factor| factor.values).unwrap_or_default();
-        Ok(Self { symbolic, values, scratch })
+        Ok(Self { symbolic, values: memory, scratch })
+    }
+
+    /// The memory of its numbers.
+    pub(super) fn into_memory(self) -> Vec<f64> {
+        self.values
     }
 
     /// Numbers of the factor.

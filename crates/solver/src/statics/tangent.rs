@@ -50,11 +50,11 @@ impl Tangent {
         if self.laid_out.is_none() {
             self.couplings = couplings(d, forces);
         }
-        let mut done_with = None;
+        let mut memory = Vec::new();
         loop {
             let laid_out = match self.laid_out.take() {
                 Some(laid_out) => laid_out,
-                None => self.lay_out(unknowns, d, done_with.take())?,
+                None => self.lay_out(unknowns, d, std::mem::take(&mut memory))?,
             };
             let laid_out = self.laid_out.insert(laid_out);
             laid_out.matrix.values.copy_from_slice(&laid_out.elastic);
@@ -66,7 +66,7 @@ impl Tangent {
             self.couplings.extend(missing);
             self.couplings.sort_unstable();
             self.couplings.dedup();
-            done_with = self.laid_out.take().map(|laid_out| laid_out.factor);
+            memory = self.laid_out.take().map(|laid_out| laid_out.factor.into_memory()).unwrap_or_default();
         }
     }
 
@@ -99,21 +99,21 @@ impl Tangent {
         &mut self,
         unknowns: &mut Unknowns,
         d: &Dynamics,
-        mut done_with: Option<Factor>,
+        mut memory: Vec<f64>,
     ) -> Result<LaidOut, Error> {
         let mut graph = unknowns.graph(d, &self.couplings);
         if let Some(before) = self.ordered {
             let matrix = Matrix::new(&graph);
-            let factor = Factor::new(&matrix, done_with)?;
+            let factor = Factor::new(&matrix, memory)?;
             if factor.entries() as f64 <= FILL * before as f64 {
                 return Ok(LaidOut::new(matrix, factor, unknowns, d));
             }
-            done_with = Some(factor);
+            memory = factor.into_memory();
         }
         unknowns.reorder(d, &graph);
         graph = unknowns.graph(d, &self.couplings);
         let matrix = Matrix::new(&graph);
-        let factor = Factor::new(&matrix, done_with)?;
+        let factor = Factor::new(&matrix, memory)?;
         self.ordered = Some(factor.entries());
         Ok(LaidOut::new(matrix, factor, unknowns, d))
     }
