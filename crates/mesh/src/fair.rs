@@ -271,14 +271,14 @@ mod tests {
     #[test]
     fn invariant_grooves_keep_the_time_step() {
         let graded = Grading { fine: Circle::Inner, fine_layers: 2, transitions: 1 };
-        for (facets, layers) in [(1257, 20), (628, 10)] {
+        for (mesh, (facets, layers)) in [(1257, 20), (628, 10)].into_iter().enumerate() {
             for (length, depth, least) in [
-                (0.01, 0.2e-3, 0.87),
-                (0.01, 0.05e-3, 0.87),
-                (0.001, 0.2e-3, 0.79),
-                (0.04, 0.5e-3, 0.89),
-                (0.01, 1e-3, 0.89),
-                (0.02, 3e-3, 0.69),
+                (0.01, 0.2e-3, [0.89, 0.87]),
+                (0.01, 0.05e-3, [0.89, 0.87]),
+                (0.001, 0.2e-3, [0.88, 0.79]),
+                (0.04, 0.5e-3, [0.89; 2]),
+                (0.01, 1e-3, [0.89; 2]),
+                (0.02, 3e-3, [0.69; 2]),
             ] {
                 let groove = Groove { centre_angle: 0.25 * TAU, length, depth };
                 let (inner_radius, outer_radius) = (0.1, 0.11);
@@ -288,7 +288,10 @@ mod tests {
                 for part in [ring.part(), ring.graded_part(&graded)] {
                     let part = part.expect("a groove that can be cut");
                     let kept = assembled_length(&part, &groove, 0.01 / layers as f64);
-                    assert!(kept > least, "{facets} facets, {groove:?}: {kept:.3} of the length of squares");
+                    assert!(
+                        kept > least[mesh],
+                        "{facets} facets, {groove:?}: {kept:.3} of the length of squares"
+                    );
                 }
             }
         }

@@ -75,7 +75,8 @@ fn analytic_the_hash_is_fnv_1a_of_the_content() {
 
 #[test]
 fn invariant_a_later_field_changes_the_hash_only_where_it_is_used() {
-    // The hash of the paper's scene before there was stiffness damping: its runs and checkpoints stay its own.
+    // The hash of the paper's scene before there was stiffness damping, with what were defaults then: a field that it does not
+    // use leaves it alone.
     let hash = |solver: &str| {
         let scene =
             format!("(mesh: (roller_copies: translated), solver: (time_step_factor: 0.95, {solver}))");
