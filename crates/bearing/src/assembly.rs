@@ -1,6 +1,9 @@
 //! From a scene to a model: bodies, constraints, contact pairs.
 
-use std::f64::consts::{PI, TAU};
+use std::{
+    f64::consts::{PI, TAU},
+    ops::Range,
+};
 
 use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
 use stribeck_mesh::{
@@ -71,10 +74,8 @@ pub struct Machine {
     pub cage: Option<usize>,
     /// Slots on the outer surface of the outer ring.
     pub housing: Vec<u32>,
-    /// Pairs of each roller.
-    pub roller_pairs: Vec<RollerPairs>,
-    /// Pair of outer ring and adapter.
-    pub seat_pair: usize,
+    /// Contact pairs by what touches.
+    pub pairs: Pairs,
 }
 
 /// Slots of one roller.
@@ -90,15 +91,38 @@ pub struct RollerSlots {
     pub rim: u32,
 }
 
-/// Contact pairs of one roller; the resultant is the force on the roller.
+/// Which contact pair is whose; the resultant of a roller's is the force on the roller.
+///
+/// They follow one another from the outside in. The seat, much larger than all others, comes first, as
+/// [`Contacts`] advises; what touches one body stands together, so that it mostly stays with one thread.
 #[derive(Debug, Clone, Copy)]
-pub struct RollerPairs {
-    /// With the outer raceway.
-    pub outer: usize,
-    /// With the inner raceway.
-    pub inner: usize,
-    /// With the two walls of its pocket.
-    pub cage: Option<[usize; 2]>,
+pub struct Pairs {
+    rollers: usize,
+    /// Walls of a roller's pocket: two, or none.
+    walls: usize,
+}
+
+impl Pairs {
+    /// Of outer ring and adapter; the force on the ring.
+    pub fn seat(&self) -> usize {
+        0
+    }
+
+    /// Of a roller, from 0, and the outer raceway.
+    pub fn outer(&self, roller: usize) -> usize {
+        1 + roller
+    }
+
+    /// Of a roller and the two walls of its pocket; none without a cage.
+    pub fn cage(&self, roller: usize) -> Range<usize> {
+        let first = self.outer(self.rollers) + self.walls * roller;
+        first..first + self.walls
+    }
+
+    /// Of a roller and the inner raceway.
+    pub fn inner(&self, roller: usize) -> usize {
+        self.cage(self.rollers).start + roller
+    }
 }
 
 /// Angle of roller `i` (from 0) at the start [rad].
@@ -287,9 +311,8 @@ impl Assembly {
             })
             .collect::<Result<Vec<_>, _>>()?;
 
-        let (pairs, roller_pairs) = self.pairs(scene, first_piece)?;
-        let seat_pair = pairs.len() - 1;
-        let mut contacts = Contacts::new(surfaces, &pairs, model.thickness, x, y)?;
+        let (specs, pairs) = self.pairs(scene, first_piece)?;
+        let mut contacts = Contacts::new(surfaces, &specs, model.thickness, x, y)?;
         contacts.set_parallel(threads > 1);
 
         let rollers = self
@@ -312,14 +335,13 @@ impl Assembly {
             rollers,
             cage: self.cage.as_ref().map(|_| 0),
             housing: slots(surface(&self.outer, "outer")),
-            roller_pairs,
-            seat_pair,
+            pairs,
             dynamics,
         })
     }
 
-    /// Contact pairs, the seat last.
-    fn pairs(&self, scene: &Scene, first_piece: usize) -> Result<(Vec<PairSpec>, Vec<RollerPairs>), Error> {
+    /// All contact pairs, in the order of [`Pairs`].
+    fn pairs(&self, scene: &Scene, first_piece: usize) -> Result<(Vec<PairSpec>, Pairs), Error> {
         let c = &scene.contact;
         let size = 1e-3 * scene.mesh.size_mm;
         let steel = self.model.materials[0];
@@ -328,48 +350,27 @@ impl Assembly {
         let base = base.with_damping(c.damping_ratio, 0.5 * steel.density() * size)?;
         let rolling = base.with_friction(c.friction)?.with_onset(1e-6 * c.onset_um)?;
         let seat = base.with_friction(c.seat_friction)?;
-        let method = |points| match c.method {
+        let method = match c.method {
             ContactMethod::Collocated => Method::Collocated,
-            ContactMethod::Integrated => Method::Integrated { points },
+            ContactMethod::Integrated => Method::Integrated { points: c.points_per_facet },
         };
         let sides = match c.passes {
             ContactPasses::Two => Sides::Both,
             ContactPasses::One => Sides::First,
         };
-        let mut pairs = Vec::new();
-        let mut roller_pairs = Vec::new();
         let n = self.rollers.len();
-        for i in 0..n {
-            let first = 4 + i;
-            let mut pair = |second| {
-                pairs.push(PairSpec {
-                    first,
-                    second,
-                    law: rolling,
-                    method: method(c.points_per_facet),
-                    sides,
-                });
-                pairs.len() - 1
-            };
-            roller_pairs.push(RollerPairs {
-                outer: pair(OUTER_RACEWAY),
-                inner: pair(INNER_RACEWAY),
-                cage: self
-                    .cage
-                    .as_ref()
-                    .map(|_| [pair(first_piece + (i + n - 1) % n), pair(first_piece + i)]),
-            });
-        }
+        let of_roller = |i: usize, second| PairSpec { first: 4 + i, second, law: rolling, method, sides };
         // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
-        let points = SEAT_POINTS;
-        pairs.push(PairSpec {
-            first: 1,
-            second: 3,
-            law: seat,
-            method: Method::Integrated { points },
-            sides: Sides::Both,
-        });
-        Ok((pairs, roller_pairs))
+        let seat_method = Method::Integrated { points: SEAT_POINTS };
+        let mut specs =
+            vec![PairSpec { first: 1, second: 3, law: seat, method: seat_method, sides: Sides::Both }];
+        specs.extend((0..n).map(|i| of_roller(i, OUTER_RACEWAY)));
+        if self.cage.is_some() {
+            let walls = |i| [first_piece + (i + n - 1) % n, first_piece + i];
+            specs.extend((0..n).flat_map(|i| walls(i).map(|wall| of_roller(i, wall))));
+        }
+        specs.extend((0..n).map(|i| of_roller(i, INNER_RACEWAY)));
+        Ok((specs, Pairs { rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } }))
     }
 }
 

@@ -257,8 +257,8 @@ impl Guards {
     fn support(&self, info: &mut RunInfo, machine: &Machine) {
         let force: Vec<[f64; 2]> = machine.contacts.resultants().map(|r| r.force).collect();
         let enough = CARRIES * info.expected_support_n;
-        let carried =
-            machine.roller_pairs.iter().map(|p| force[p.outer]).any(|[fx, fy]| fx.hypot(fy) > enough);
+        let outer = (0..machine.rollers.len()).map(|i| force[machine.pairs.outer(i)]);
+        let carried = outer.map(|[fx, fy]| fx.hypot(fy)).any(|f| f > enough);
         let seen = &mut info.guards;
         seen.unsupported_samples = if carried { 0 } else { seen.unsupported_samples + 1 };
         let time = seen.unsupported_samples as f64 * info.interval_s;
@@ -321,18 +321,16 @@ fn when(info: &RunInfo) -> String {
 }
 
 fn pair_name(machine: &Machine, pair: usize) -> String {
-    if pair == machine.seat_pair {
+    let pairs = &machine.pairs;
+    if pair == pairs.seat() {
         return "the adapter and the outer ring".to_owned();
     }
     let with = |i: usize, what: &str| format!("roller {} and the {what}", i + 1);
-    machine
-        .roller_pairs
-        .iter()
-        .enumerate()
-        .find_map(|(i, p)| match () {
-            () if p.outer == pair => Some(with(i, "outer raceway")),
-            () if p.inner == pair => Some(with(i, "inner raceway")),
-            () if p.cage.is_some_and(|c| c.contains(&pair)) => Some(with(i, "cage")),
+    (0..machine.rollers.len())
+        .find_map(|i| match () {
+            () if pairs.outer(i) == pair => Some(with(i, "outer raceway")),
+            () if pairs.inner(i) == pair => Some(with(i, "inner raceway")),
+            () if pairs.cage(i).contains(&pair) => Some(with(i, "cage")),
             () => None,
         })
         .unwrap_or_else(|| format!("the surfaces of pair {pair}"))

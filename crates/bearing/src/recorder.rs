@@ -1,5 +1,7 @@
 //! What is sampled: sensors, contact forces, places. Column names are a contract with the report.
 
+use std::ops::Range;
+
 use serde::{Deserialize, Serialize};
 use stribeck_contact::Resultant;
 
@@ -135,8 +137,8 @@ impl Recorder {
             }
             at_sample[i] = now;
         }
-        let mean = |pairs: &[usize]| -> [f64; 2] {
-            let sum = |c: usize| pairs.iter().map(|&p| self.force[p][c]).sum::<f64>();
+        let mean = |pairs: Range<usize>| -> [f64; 2] {
+            let sum = |c: usize| self.force[pairs.clone()].iter().map(|f| f[c]).sum::<f64>();
             [sum(0) / self.steps as f64, sum(1) / self.steps as f64]
         };
         for (i, roller) in machine.rollers.iter().enumerate() {
@@ -147,19 +149,20 @@ impl Recorder {
             spin[i] += turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
             last_angle[i] = angle;
             self.row.extend([state.x[c], state.y[c], spin[i]]);
-            let pairs = &machine.roller_pairs[i];
-            self.row.extend(mean(&[pairs.outer]));
-            self.row.extend(mean(&[pairs.inner]));
-            if let Some(walls) = pairs.cage {
-                self.row.extend(mean(&walls));
+            let pairs = &machine.pairs;
+            for ring in [pairs.outer(i), pairs.inner(i)] {
+                self.row.extend(mean(ring..ring + 1));
+            }
+            if machine.cage.is_some() {
+                self.row.extend(mean(pairs.cage(i)));
             }
         }
         if let Some(cage) = machine.cage {
             let at = &machine.dynamics.rigid[cage];
             self.row.extend([at.centre[0], at.centre[1], at.angle]);
         }
-        let seat = mean(&[machine.seat_pair]);
-        self.row.extend(seat);
+        let seat = machine.pairs.seat();
+        self.row.extend(mean(seat..seat + 1));
         self.force.fill([0.0; 2]);
         self.steps = 0;
         &self.row

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use stribeck_solver::{Force, field::Field, rigid::RigidState};
+use stribeck_solver::{Force, Velocities};
 
 use crate::{
     assembly::{Assembly, Machine},
@@ -41,16 +41,9 @@ pub(crate) struct Run<'a> {
     energy: TraceWriter,
     frames: Option<Frames>,
     reference: Reference,
-    before: Before,
+    /// Velocities before a step, for the kinetic energy at its start.
+    before: Velocities,
     guards: Guards,
-}
-
-/// Velocities before a step, for the kinetic energy at its start.
-#[derive(Default)]
-struct Before {
-    vx: Field,
-    vy: Field,
-    rigid: Vec<RigidState>,
 }
 
 /// When a run was last saved, and what that cost.
@@ -87,7 +80,7 @@ impl<'a> Run<'a> {
             energy: TraceWriter::create(dir.energy(), &COLUMNS)?,
             frames: Frames::of(scene, dir.frames()),
             reference: Reference::default(),
-            before: Before::default(),
+            before: Velocities::default(),
             guards: Guards::new(scene, assembly, &machine),
             info,
             assembly,
@@ -122,7 +115,7 @@ impl<'a> Run<'a> {
             energy: TraceWriter::resume(dir.energy(), &COLUMNS, rows)?,
             frames: Frames::of(scene, dir.frames()),
             reference: saved.reference,
-            before: Before::default(),
+            before: Velocities::default(),
             guards: Guards::new(scene, assembly, &machine),
             info: saved.info,
             assembly,
@@ -271,16 +264,14 @@ impl<'a> Run<'a> {
 
     fn step_with_ledger(&mut self) -> Ledger {
         let d = &self.machine.dynamics;
-        self.before.vx.clone_from(&d.state.vx);
-        self.before.vy.clone_from(&d.state.vy);
-        self.before.rigid.clone_from(&d.rigid);
+        d.velocities_into(&mut self.before);
         let elastic = d.elastic_energy();
         let gravity = d.gravity_work();
         self.step();
         let m = &self.machine;
         let contact = m.contacts.energy();
         Ledger {
-            kinetic: m.dynamics.kinetic_energy(&self.before.vx, &self.before.vy, &self.before.rigid),
+            kinetic: m.dynamics.kinetic_energy(&self.before),
             strain: elastic.strain,
             hourglass: elastic.hourglass,
             contact: contact.stored,

@@ -97,10 +97,22 @@ struct Pair {
     spec: PairSpec,
     /// The first surface's points against the second, then, if wanted, the other way round.
     passes: Vec<Pass>,
-    /// Room for forces that are added later; empty between two steps.
-    push: Vec<Push>,
     found: Vec<(u32, u32)>,
+    result: PairResult,
+}
+
+/// What a pair came to in the last step. It lies together, and a pair that sleeps leaves it alone: one thread reads that of all
+/// pairs, and lines that another has written are slow to come.
+#[derive(Debug, Default)]
+struct PairResult {
+    /// Nothing acts before this step.
+    asleep: u64,
+    /// How long it took, in units of some ten nanoseconds; zero for a pair that slept.
+    work: usize,
+    /// Of each pass.
     sum: [Sum; 2],
+    /// Forces that are added later; empty between two steps.
+    push: Vec<Push>,
 }
 
 /// Points of all surfaces. Surfaces of one shape share theirs, so that they stay in cache from one pass to the next.
@@ -163,9 +175,8 @@ impl Contacts {
                         Sides::Both => vec![pass(spec.first, spec.second), pass(spec.second, spec.first)],
                         Sides::First => vec![pass(spec.first, spec.second)],
                     },
-                    push: Vec::new(),
                     found: Vec::new(),
-                    sum: [Sum::default(); 2],
+                    result: PairResult::default(),
                 }
             })
             .collect();
@@ -206,7 +217,7 @@ impl Contacts {
     /// What each pair does, in the order given.
     pub fn resultants(&self) -> impl Iterator<Item = Resultant> {
         self.pairs.iter().map(|p| {
-            let [a, b] = &p.sum;
+            let [a, b] = &p.result.sum;
             Resultant {
                 force: [a.force[0] - b.force[0], a.force[1] - b.force[1]],
                 penetration: a.penetration.max(b.penetration),
@@ -238,6 +249,7 @@ impl Contacts {
         for (pass, memory) in self.pairs.iter_mut().flat_map(|p| &mut p.passes).zip(state.passes) {
             pass.remember(memory);
         }
+        self.pairs.iter_mut().for_each(|pair| pair.result.asleep = 0);
         self.search = state.search;
         self.energy.friction = state.friction;
         self.energy.damping = state.damping;
@@ -273,10 +285,11 @@ impl Contacts {
                 }
                 pass.take(&pair.found, surfaces, at, slower);
             }
-            pair.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
+            pair.result.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
+            pair.result.asleep = 0;
         };
         share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
-        push.reserve(pairs.iter().map(|pair| pair.push.capacity()).max().unwrap_or(0));
+        push.reserve(pairs.iter().map(|pair| pair.result.push.capacity()).max().unwrap_or(0));
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
         let next = at.step + rest.clamp(1.0, LONGEST_REST) as u64;
         self.search = Schedule { next, fastest, afresh: self.preload.is_some() };
@@ -295,7 +308,32 @@ impl Contacts {
 impl Pair {
     /// About how much there is to do, judged by the step before.
     fn work(&self) -> usize {
-        1 + self.passes.iter().map(|pass| pass.work).sum::<usize>()
+        1 + self.result.work
+    }
+
+    /// Evaluates both passes.
+    fn evaluate(
+        &mut self,
+        surfaces: &[Surface],
+        at: &Moment<'_>,
+        weights: &impl Fn(&PairSpec) -> Weights,
+        push: &mut Vec<Push>,
+    ) {
+        let result = &mut self.result;
+        if at.step < result.asleep {
+            if result.work > 0 {
+                (result.work, result.sum) = (0, [Sum::default(); 2]);
+            }
+            return;
+        }
+        let w = weights(&self.spec);
+        self.passes.iter().for_each(|pass| pass.fetch(surfaces, at));
+        (result.work, result.asleep) = (0, u64::MAX);
+        for (pass, sum) in self.passes.iter_mut().zip(&mut result.sum) {
+            *sum = pass.evaluate(surfaces, at, &w, push);
+            result.work += pass.work;
+            result.asleep = result.asleep.min(pass.memory.asleep);
+        }
     }
 }
 
@@ -353,24 +391,24 @@ impl Force for Contacts {
         }
         let threads = self.threads();
         let Self { surfaces, pairs, thickness, search, preload, together, push, .. } = self;
-        let evaluate = |spec: &PairSpec, passes: &mut [Pass], sum: &mut [Sum], push: &mut Vec<Push>| {
-            let w = weights(spec, *thickness, search.fastest, *preload, *together);
-            passes.iter().for_each(|pass| pass.fetch(surfaces, &at));
-            for (pass, sum) in passes.iter_mut().zip(sum) {
-                *sum = pass.evaluate(surfaces, &at, &w, push);
-            }
-        };
+        let weights = |spec: &PairSpec| weights(spec, *thickness, search.fastest, *preload, *together);
         // Pushes are added in the order of the pairs. Those of the first ones can be added at once, while they are in cache.
         let mut at_once = |pair: &mut Pair| {
-            evaluate(&pair.spec, &mut pair.passes, &mut pair.sum, push);
+            pair.evaluate(surfaces, &at, &weights, push);
             hand_over(push, force);
         };
-        let later = |pair: &mut Pair| evaluate(&pair.spec, &mut pair.passes, &mut pair.sum, &mut pair.push);
+        let later = |pair: &mut Pair| {
+            let mut push = std::mem::take(&mut pair.result.push);
+            pair.evaluate(surfaces, &at, &weights, &mut push);
+            pair.result.push = push;
+        };
         share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, &mut at_once, &later);
         self.energy.stored = 0.0;
-        for pair in &mut self.pairs {
-            hand_over(&mut pair.push, force);
-            for sum in &pair.sum {
+        for PairResult { push, sum, .. } in
+            self.pairs.iter_mut().map(|pair| &mut pair.result).filter(|r| r.work > 0)
+        {
+            hand_over(push, force);
+            for sum in sum {
                 self.energy.stored += sum.stored;
                 self.energy.friction += sum.friction;
                 self.energy.damping += sum.damping;

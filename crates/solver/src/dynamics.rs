@@ -6,7 +6,8 @@ use crate::{
     advance::gain,
     ahead::Seen,
     damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
-    element::{QuadReference, Stiffness, TriangleReference, quad_energy, triangle_energy},
+    element::{QuadReference, Stiffness, TriangleReference},
+    energies::LEAST_WORK,
     error::{Error, check, check_count},
     field::Field,
     force::Force,
@@ -28,9 +29,6 @@ const HEAT_EVERY: u64 = 4;
 /// Bytes that a thread's second-level cache is taken to hold: where its part of a step reads less, nothing need be fetched,
 /// and asking would cost some per cent.
 const NEAR: usize = 2 << 20;
-
-/// Nodes or elements that are worth another thread, for sums that are taken now and then.
-const LEAST_WORK: usize = 4000;
 
 /// A model in motion.
 #[derive(Debug)]
@@ -106,15 +104,6 @@ pub(crate) struct ElasticBody {
     pub(crate) quads: std::ops::Range<usize>,
     pub(crate) triangles: std::ops::Range<usize>,
     pub(crate) stiffness: Stiffness,
-}
-
-/// Elastic energy [J].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct ElasticEnergy {
-    /// Strain energy.
-    pub strain: f64,
-    /// Energy in the hourglass stiffness.
-    pub hourglass: f64,
 }
 
 impl Dynamics {
@@ -213,6 +202,10 @@ impl Dynamics {
     /// All elements, in slot numbers.
     pub(crate) fn elements(&self) -> &Elements {
         &self.elements
+    }
+
+    pub(crate) fn rigid_bodies(&self) -> &[RigidBody] {
+        &self.rigid_bodies
     }
 
     /// Own slots of elastic bodies: what moves by mass and force.
@@ -411,63 +404,9 @@ impl Dynamics {
         }
     }
 
-    /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from within the pool.
-    pub fn elastic_energy(&self) -> ElasticEnergy {
-        let mut bodies: Vec<_> = self.elements.bodies.iter().map(|b| (b, ElasticEnergy::default())).collect();
-        let elements = |(body, _): &(&ElasticBody, _)| body.quads.len() + body.triangles.len();
-        let find = |(body, energy): &mut (&ElasticBody, _)| *energy = self.energy_of(body);
-        share_out(&mut bodies, self.threads(), LEAST_WORK, &elements, &find);
-        let sum = |a: ElasticEnergy, b: &ElasticEnergy| ElasticEnergy {
-            strain: a.strain + b.strain,
-            hourglass: a.hourglass + b.hourglass,
-        };
-        bodies.iter().map(|(_, energy)| energy).fold(ElasticEnergy::default(), sum)
-    }
-
-    fn energy_of(&self, body: &ElasticBody) -> ElasticEnergy {
-        let (x, y, k) = (&self.state.x, &self.state.y, &body.stiffness);
-        let mut sum = ElasticEnergy::default();
-        for (c, reference) in &self.elements.quads[body.quads.clone()] {
-            let [strain, hourglass] =
-                quad_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
-            sum.strain += strain;
-            sum.hourglass += hourglass;
-        }
-        for (c, reference) in &self.elements.triangles[body.triangles.clone()] {
-            sum.strain += triangle_energy(c.map(|n| x[n as usize]), c.map(|n| y[n as usize]), reference, k);
-        }
-        sum
-    }
-
     /// Threads that take part.
-    fn threads(&self) -> usize {
+    pub(crate) fn threads(&self) -> usize {
         if self.parallel { self.scratch.len() } else { 1 }
-    }
-
-    /// Kinetic energy [J] at the positions before the last step, given the velocities and rigid states before it:
-    /// ½ m v⁻·v⁺, the form that a linear model conserves exactly (THEORY §2.5).
-    pub fn kinetic_energy(&self, vx: &[f64], vy: &[f64], rigid: &[RigidState]) -> f64 {
-        let s = &self.state;
-        let mut sum = 0.0;
-        for tile in self.tiles.iter().filter(|t| t.elastic) {
-            for n in tile.slots.clone() {
-                sum += 0.5 * self.mass[n] * (vx[n] * s.vx[n] + vy[n] * s.vy[n]);
-            }
-        }
-        for ((body, before), after) in self.rigid_bodies.iter().zip(rigid).zip(&self.rigid) {
-            sum += body.kinetic(before, after);
-        }
-        sum
-    }
-
-    /// Work of gravity [J] if every node had come from the origin: −(potential energy).
-    pub fn gravity_work(&self) -> f64 {
-        let [gx, gy] = self.gravity;
-        if gx == 0.0 && gy == 0.0 {
-            return 0.0;
-        }
-        let s = &self.state;
-        (0..self.mass.len()).map(|n| self.mass[n] * (gx * s.x[n] + gy * s.y[n])).sum()
     }
 
     /// The rigid part of a body's motion, from the nodes of the given slots.

@@ -398,12 +398,34 @@ pub fn energy_density([exx, eyy, exy]: [f64; 3], k: &Stiffness) -> f64 {
 
 /// Strain and hourglass energy [J] of one quadrilateral.
 pub fn quad_energy(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [f64; 2] {
+    any_quad_energy(x, y, [q.b1, q.b2], [q.s1, q.s2], q.volume, k)
+}
+
+/// The same for numbers of any kind.
+#[inline(always)]
+pub(crate) fn any_quad_energy<T: Number>(
+    x: [T; 4],
+    y: [T; 4],
+    [b1, b2]: [[T; 2]; 2],
+    [s1, s2]: [T; 2],
+    volume: T,
+    k: &Stiffness<T>,
+) -> [T; 2] {
     let p = [x[0] - x[2], y[0] - y[2]];
     let r = [x[1] - x[3], y[1] - y[3]];
-    let hx = ((x[0] + x[2]) - (x[1] + x[3])) - q.s1 * p[0] - q.s2 * r[0];
-    let hy = ((y[0] + y[2]) - (y[1] + y[3])) - q.s1 * p[1] - q.s2 * r[1];
-    let strain = strain(p, r, q.b1, q.b2);
-    [q.volume * energy_density(strain, k), 0.5 * k.hourglass * (hx * hx + hy * hy)]
+    let [hx, hy] = hourglass(x, y, p, r, s1, s2);
+    let fxx = p[0].times_plus(b1[0], r[0] * b2[0]);
+    let fxy = p[0].times_plus(b1[1], r[0] * b2[1]);
+    let fyx = p[1].times_plus(b1[0], r[1] * b2[0]);
+    let fyy = p[1].times_plus(b1[1], r[1] * b2[1]);
+    let (half, one) = (volume.constant(0.5), volume.constant(1.0));
+    let exx = half * (fxx.times_plus(fxx, fyx * fyx) - one);
+    let eyy = half * (fxy.times_plus(fxy, fyy * fyy) - one);
+    let twice_exy = fxx.times_plus(fxy, fyx * fyy);
+    let trace = exx + eyy;
+    let squares = exx.times_plus(exx, eyy.times_plus(eyy, half * twice_exy * twice_exy));
+    let density = half * (k.lame * trace).times_plus(trace, k.two_shear * squares);
+    [volume * density, half * k.hourglass * hx.times_plus(hx, hy * hy)]
 }
 
 /// Strain energy [J] of one triangle.

@@ -81,6 +81,7 @@
 //! | What does it take to continue a run? | `snapshot.rs` |
 //! | What force does an element make? | `element.rs` |
 //! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs`, `ahead.rs` |
+//! | What energies are there? | `energies.rs` |
 //! | How long may a step be? | `critical.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
 //! | How is equilibrium found? | `statics.rs`, `statics/` |
@@ -95,6 +96,7 @@ pub mod damping;
 pub mod distortion;
 pub mod dynamics;
 pub mod element;
+pub mod energies;
 mod error;
 pub mod field;
 pub mod force;
@@ -117,6 +119,7 @@ mod tile;
 mod tile_runs;
 
 pub use dynamics::Dynamics;
+pub use energies::Velocities;
 pub use error::Error;
 pub use force::Force;
 pub use material::Elastic;

@@ -75,21 +75,19 @@ impl RigidBody {
         at.centre[0] += dt * at.velocity[0];
         at.centre[1] += dt * at.velocity[1];
         at.angle += dt * at.spin;
-        self.place(at, state, Some(dt));
+        self.place(at, state, dt);
     }
 
-    /// Puts the nodes where the body is; with a time step, also sets their velocities.
-    pub(crate) fn place(&self, at: &RigidState, state: &mut State, dt: Option<f64>) {
+    /// Puts the nodes where the body is, a time step later.
+    fn place(&self, at: &RigidState, state: &mut State, dt: f64) {
         let (s, c) = at.angle.sin_cos();
-        for (n, a) in self.slots.clone().zip(&self.arm) {
-            let x = at.centre[0] + c * a[0] - s * a[1];
-            let y = at.centre[1] + s * a[0] + c * a[1];
-            if let Some(dt) = dt {
-                state.vx[n] = (x - state.x[n]) / dt;
-                state.vy[n] = (y - state.y[n]) / dt;
-            }
-            state.x[n] = x;
-            state.y[n] = y;
+        let slots = self.slots.clone();
+        let (x, y) = (&mut state.x[slots.clone()], &mut state.y[slots.clone()]);
+        let (vx, vy) = (&mut state.vx[slots.clone()], &mut state.vy[slots]);
+        for ((((a, x), y), vx), vy) in self.arm.iter().zip(x).zip(y).zip(vx).zip(vy) {
+            let new = [at.centre[0] + c * a[0] - s * a[1], at.centre[1] + s * a[0] + c * a[1]];
+            (*vx, *vy) = ((new[0] - *x) / dt, (new[1] - *y) / dt);
+            [*x, *y] = new;
         }
     }
 

@@ -204,10 +204,10 @@ impl Rig {
     pub(crate) fn step_with_energies(&mut self) -> Energies {
         let d = &self.dynamics;
         let (elastic, fall) = (d.elastic_energy(), d.gravity_work());
-        let (vx, vy, rigid) = (d.state.vx.clone(), d.state.vy.clone(), d.rigid.clone());
+        let before = d.velocities();
         self.step();
         let d = &self.dynamics;
-        let (contact, kinetic) = (self.contacts.energy(), d.kinetic_energy(&vx, &vy, &rigid));
+        let (contact, kinetic) = (self.contacts.energy(), d.kinetic_energy(&before));
         let inside = kinetic + elastic.strain + elastic.hourglass + contact.stored;
         let gone = contact.friction + contact.damping + d.heat.at_last_positions();
         let balance = inside + gone - self.load.supplied - fall - d.drive.at_last_positions();

@@ -153,10 +153,10 @@ pub(crate) struct Balance {
 pub(crate) fn step_and_balance(d: &mut Dynamics, contacts: &mut Contacts) -> Balance {
     let elastic = d.elastic_energy();
     let fall = d.gravity_work();
-    let (vx, vy, rigid) = (d.state.vx.clone(), d.state.vy.clone(), d.rigid.clone());
+    let before = d.velocities();
     d.step(&mut [contacts]);
     let contact = contacts.energy();
-    let kinetic = d.kinetic_energy(&vx, &vy, &rigid);
+    let kinetic = d.kinetic_energy(&before);
     Balance {
         mechanical: kinetic + elastic.strain + elastic.hourglass + contact.stored - fall,
         heat: [contact.friction, contact.damping],

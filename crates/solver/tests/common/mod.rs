@@ -120,10 +120,10 @@ impl Balance {
 /// Takes one step and says what the energies were at the positions before it.
 pub(crate) fn step_and_balance(d: &mut Dynamics, forces: &mut [&mut dyn Force]) -> Balance {
     let (elastic, gravity_work) = (d.elastic_energy(), d.gravity_work());
-    let (vx, vy, rigid) = (d.state.vx.clone(), d.state.vy.clone(), d.rigid.clone());
+    let before = d.velocities();
     d.step(forces);
     Balance {
-        kinetic: d.kinetic_energy(&vx, &vy, &rigid),
+        kinetic: d.kinetic_energy(&before),
         strain: elastic.strain,
         hourglass: elastic.hourglass,
         gravity_work,

@@ -1,0 +1,292 @@
+//! Energies of a moment: sums over all elements and nodes, shared out over threads and taken in vectors. A run asks for them
+//! at every sample.
+//!
+//! Sums have as many columns as [`LANES`] whatever the instruction set, and parts are added in one order, so that threads
+//! and vectors change no bit.
+
+use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
+
+use crate::{
+    dynamics::{Dynamics, ElasticBody, Elements},
+    element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
+    field::Field,
+    lanes::{LANES, Number, Vector},
+    rigid::RigidState,
+    threads::share_out,
+};
+
+/// Elastic energy [J].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ElasticEnergy {
+    /// Strain energy.
+    pub strain: f64,
+    /// Energy in the hourglass stiffness.
+    pub hourglass: f64,
+}
+
+/// Velocities of one moment.
+#[derive(Debug, Clone, Default)]
+pub struct Velocities {
+    vx: Field,
+    vy: Field,
+    rigid: Vec<RigidState>,
+}
+
+impl Dynamics {
+    /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from within the pool.
+    pub fn elastic_energy(&self) -> ElasticEnergy {
+        let Elements { bodies, .. } = self.elements();
+        let mut parts: Vec<Part> = bodies.iter().flat_map(Part::of).collect();
+        let len = |part: &Part| part.quads.len() + part.triangles.len();
+        self.share_out(&mut parts, &len, &|part| part.energy = self.energy_of(part));
+        let mut all = ElasticEnergy::default();
+        for Part { energy, .. } in parts {
+            all.strain += energy.strain;
+            all.hourglass += energy.hourglass;
+        }
+        all
+    }
+
+    fn energy_of(&self, part: &Part) -> ElasticEnergy {
+        let (elements, x, y) = (self.elements(), &self.state.x[..], &self.state.y[..]);
+        let quads = &elements.quads[part.quads.clone()];
+        let mut energy = Arch::new().dispatch(QuadSum { quads, stiffness: &part.stiffness, x, y });
+        for (c, reference) in &elements.triangles[part.triangles.clone()] {
+            let c = c.map(|n| n as usize);
+            energy.strain += triangle_energy(c.map(|n| x[n]), c.map(|n| y[n]), reference, &part.stiffness);
+        }
+        energy
+    }
+
+    /// Copies the present velocities, for [`Dynamics::kinetic_energy`].
+    pub fn velocities_into(&self, to: &mut Velocities) {
+        to.vx.resize(self.state.vx.len());
+        to.vy.resize(self.state.vy.len());
+        to.rigid.clone_from(&self.rigid);
+        let (mut parts, mut vx, mut vy) = (Vec::new(), &mut to.vx[..], &mut to.vy[..]);
+        for slots in self.tiles.iter().map(|tile| tile.slots.clone()) {
+            let ((first_x, rest_x), (first_y, rest_y)) =
+                (vx.split_at_mut(slots.len()), vy.split_at_mut(slots.len()));
+            (vx, vy) = (rest_x, rest_y);
+            parts.push((slots, first_x, first_y));
+        }
+        self.share_out(&mut parts, &|(slots, ..)| slots.len(), &|(slots, vx, vy)| {
+            vx.copy_from_slice(&self.state.vx[slots.clone()]);
+            vy.copy_from_slice(&self.state.vy[slots.clone()]);
+        });
+    }
+
+    /// The present velocities.
+    pub fn velocities(&self) -> Velocities {
+        let mut velocities = Velocities::default();
+        self.velocities_into(&mut velocities);
+        velocities
+    }
+
+    /// Kinetic energy [J] at the positions before the last step, given the velocities before it: ½ m v⁻·v⁺, the form that
+    /// a linear model conserves exactly (THEORY §2.5).
+    pub fn kinetic_energy(&self, before: &Velocities) -> f64 {
+        let s = &self.state;
+        let elastic = 0.5
+            * self.sum(
+                |tile| tile.elastic,
+                |slots| {
+                    let [ux, uy] = [&before.vx, &before.vy].map(|v| Term::Each(&v[slots.clone()]));
+                    let [vx, vy] = [&s.vx, &s.vy].map(|v| Term::Each(&v[slots.clone()]));
+                    [[ux, vx], [uy, vy]]
+                },
+            );
+        let bodies = self.rigid_bodies().iter().zip(&before.rigid).zip(&self.rigid);
+        bodies.fold(elastic, |sum, ((body, before), after)| sum + body.kinetic(before, after))
+    }
+
+    /// Work of gravity [J] if every node had come from the origin: −(potential energy).
+    pub fn gravity_work(&self) -> f64 {
+        let [gx, gy] = self.gravity();
+        if gx == 0.0 && gy == 0.0 {
+            return 0.0;
+        }
+        let s = &self.state;
+        self.sum(
+            |_| true,
+            |slots| {
+                [[Term::Same(gx), Term::Each(&s.x[slots.clone()])], [Term::Same(gy), Term::Each(&s.y[slots])]]
+            },
+        )
+    }
+
+    /// Σ m (a·b) over the slots of chosen tiles; `products` gives the factors of both products.
+    fn sum<'a>(
+        &'a self,
+        chosen: impl Fn(&crate::tile::Tile) -> bool,
+        products: impl Fn(Range<usize>) -> [[Term<'a>; 2]; 2] + Sync,
+    ) -> f64 {
+        let tiles = self.tiles.iter().filter(|tile| chosen(tile));
+        let mut parts: Vec<(Range<usize>, f64)> = tiles.map(|tile| (tile.slots.clone(), 0.0)).collect();
+        self.share_out(&mut parts, &|(slots, _)| slots.len(), &|(slots, sum)| {
+            let (mass, products) = (&self.mass()[slots.clone()], products(slots.clone()));
+            *sum = Arch::new().dispatch(MassSum { mass, products });
+        });
+        parts.iter().map(|(_, sum)| sum).sum()
+    }
+
+    fn share_out<T: Send>(
+        &self,
+        parts: &mut [T],
+        work: &(impl Fn(&T) -> usize + Sync),
+        each: &(impl Fn(&mut T) + Sync),
+    ) {
+        share_out(parts, self.threads(), LEAST_WORK, work, each);
+    }
+}
+
+/// Nodes or elements that are worth another thread.
+pub(crate) const LEAST_WORK: usize = 4000;
+
+/// Quadrilaterals of a part: enough that parts are few, few enough that threads end together.
+const PART: usize = 4096;
+
+/// Some elements of one body, and their energy.
+struct Part {
+    quads: Range<usize>,
+    triangles: Range<usize>,
+    stiffness: Stiffness,
+    energy: ElasticEnergy,
+}
+
+impl Part {
+    /// All of a body: its quadrilaterals in parts, its triangles with the first.
+    fn of(body: &ElasticBody) -> impl Iterator<Item = Self> {
+        let ElasticBody { quads, triangles, stiffness } = body;
+        let parts = quads.len().div_ceil(PART).max(1);
+        (0..parts).map(move |i| {
+            let first = (quads.start + i * PART).min(quads.end);
+            Self {
+                quads: first..(first + PART).min(quads.end),
+                triangles: if i == 0 { triangles.clone() } else { 0..0 },
+                stiffness: *stiffness,
+                energy: ElasticEnergy::default(),
+            }
+        })
+    }
+}
+
+/// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
+/// way to memory.
+const BLOCK: usize = 8 * LANES;
+
+/// Numbers of a block of elements.
+type Row = [f64; BLOCK];
+
+/// Energies of quadrilaterals.
+struct QuadSum<'a> {
+    quads: &'a [([u32; 4], QuadReference)],
+    stiffness: &'a Stiffness,
+    x: &'a [f64],
+    y: &'a [f64],
+}
+
+impl WithSimd for QuadSum<'_> {
+    type Output = ElasticEnergy;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> ElasticEnergy {
+        let Self { quads, stiffness, x, y } = self;
+        let k = &stiffness.of(Vector::all(simd, 0.0));
+        let (mut xs, mut ys): ([Row; 4], [Row; 4]) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
+        let mut references: [Row; 7] = [[0.0; BLOCK]; 7];
+        let (mut strain, mut hourglass) = ([0.0; LANES], [0.0; LANES]);
+        for block in quads.chunks(BLOCK) {
+            for (l, (corners, q)) in block.iter().enumerate() {
+                for c in 0..4 {
+                    xs[c][l] = x[corners[c] as usize];
+                    ys[c][l] = y[corners[c] as usize];
+                }
+                let numbers = [q.b1[0], q.b1[1], q.b2[0], q.b2[1], q.s1, q.s2, q.volume];
+                for i in 0..7 {
+                    references[i][l] = numbers[i];
+                }
+            }
+            // Elements that the last block lacks have no volume and lie in one point.
+            for l in block.len()..BLOCK {
+                xs.iter_mut().chain(&mut ys).chain(&mut references).for_each(|row| row[l] = 0.0);
+            }
+            for at in (0..BLOCK).step_by(Vector::<S>::LEN) {
+                let [a, b, c, d] = &xs;
+                let xs = [load(simd, a, at), load(simd, b, at), load(simd, c, at), load(simd, d, at)];
+                let [a, b, c, d] = &ys;
+                let ys = [load(simd, a, at), load(simd, b, at), load(simd, c, at), load(simd, d, at)];
+                let [a, b, c, d, e, f, g] = &references;
+                let b1 = [load(simd, a, at), load(simd, b, at)];
+                let b2 = [load(simd, c, at), load(simd, d, at)];
+                let s = [load(simd, e, at), load(simd, f, at)];
+                let [of_strain, of_hourglass] = any_quad_energy(xs, ys, [b1, b2], s, load(simd, g, at), k);
+                let column = at % LANES;
+                (load(simd, &strain, column) + of_strain).store(&mut strain, column);
+                (load(simd, &hourglass, column) + of_hourglass).store(&mut hourglass, column);
+            }
+        }
+        ElasticEnergy { strain: strain.iter().sum(), hourglass: hourglass.iter().sum() }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, from: &[f64], at: usize) -> Vector<S> {
+    Vector::load(simd, from, at)
+}
+
+/// A factor at each slot.
+#[derive(Clone, Copy)]
+enum Term<'a> {
+    Each(&'a [f64]),
+    Same(f64),
+}
+
+impl Term<'_> {
+    #[inline(always)]
+    fn one(&self, slot: usize) -> f64 {
+        match self {
+            Self::Each(values) => values[slot],
+            Self::Same(value) => *value,
+        }
+    }
+
+    #[inline(always)]
+    fn vector<S: Simd>(&self, simd: S, slot: usize) -> Vector<S> {
+        match self {
+            Self::Each(values) => load(simd, values, slot),
+            Self::Same(value) => Vector::all(simd, *value),
+        }
+    }
+}
+
+/// Σ m (a b + c d) over slots.
+struct MassSum<'a> {
+    mass: &'a [f64],
+    products: [[Term<'a>; 2]; 2],
+}
+
+impl WithSimd for MassSum<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Self { mass, products: [[a, b], [c, d]] } = self;
+        let mut columns = [0.0; LANES];
+        let whole = mass.len() / LANES * LANES;
+        for first in (0..LANES).step_by(Vector::<S>::LEN) {
+            let mut sum = Vector::all(simd, 0.0);
+            for i in (first..whole).step_by(LANES) {
+                let product =
+                    a.vector(simd, i).times_plus(b.vector(simd, i), c.vector(simd, i) * d.vector(simd, i));
+                sum = load(simd, mass, i).times_plus(product, sum);
+            }
+            sum.store(&mut columns, first);
+        }
+        // Rigid bodies have no whole lines of slots.
+        let rest = (whole..mass.len()).map(|i| mass[i] * (a.one(i) * b.one(i) + c.one(i) * d.one(i)));
+        columns.into_iter().chain(rest).sum()
+    }
+}
