@@ -7,7 +7,7 @@ use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
-    threads::{share_out, share_out_with_first},
+    threads::{Met, share_out, share_out_with_first},
 };
 
 use crate::{
@@ -83,6 +83,8 @@ pub struct Contacts {
     pairs: Vec<Pair>,
     /// Room for the forces of a pair.
     push: Vec<Push>,
+    /// Where two threads met among the pairs.
+    met: Met,
     thickness: f64,
     skin: f64,
     search: Schedule,
@@ -185,6 +187,7 @@ impl Contacts {
             trees,
             pairs,
             push: Vec::new(),
+            met: Met::default(),
             thickness,
             skin,
             search: Schedule::default(),
@@ -390,7 +393,7 @@ impl Force for Contacts {
             self.search(&at);
         }
         let threads = self.threads();
-        let Self { surfaces, pairs, thickness, search, preload, together, push, .. } = self;
+        let Self { surfaces, pairs, thickness, search, preload, together, push, met, .. } = self;
         let weights = |spec: &PairSpec| weights(spec, *thickness, search.fastest, *preload, *together);
         // Pushes are added in the order of the pairs. Those of the first ones can be added at once, while they are in cache.
         let mut at_once = |pair: &mut Pair| {
@@ -402,7 +405,7 @@ impl Force for Contacts {
             pair.evaluate(surfaces, &at, &weights, &mut push);
             pair.result.push = push;
         };
-        share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, &mut at_once, &later);
+        share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, met, &mut at_once, &later);
         self.energy.stored = 0.0;
         for PairResult { push, sum, .. } in
             self.pairs.iter_mut().map(|pair| &mut pair.result).filter(|r| r.work > 0)

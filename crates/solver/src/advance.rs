@@ -6,7 +6,7 @@ use prefetch_index::prefetch_index;
 use pulp::Simd;
 
 use crate::{
-    damping::LaneFrames,
+    damping::{LaneFrames, LaneMotion},
     lanes::{LANES, Number, Vector},
     sweep::Drive,
 };
@@ -23,8 +23,8 @@ pub(crate) struct Step<S: Simd> {
     drift_x: [f64; LANES],
     drift_y: [f64; LANES],
     turn: [f64; LANES],
-    /// The frames themselves.
-    frames: LaneFrames,
+    /// How the frames move.
+    frames: LaneMotion,
     /// αΔt: heat over mass and squared velocity.
     loss: f64,
     /// Whether strips fetch what they read next from far caches.
@@ -34,7 +34,8 @@ pub(crate) struct Step<S: Simd> {
 impl<S: Simd> Step<S> {
     /// A step with damping at `rate` [1/s].
     pub(crate) fn new(simd: S, drive: &Drive, rate: f64, frames: &LaneFrames) -> Self {
-        let &Drive { dt, gravity, fetch, .. } = drive;
+        let &Drive { dt, gravity, fetch, since_placed, .. } = drive;
+        let frames = frames.after(since_placed);
         let half = 0.5 * rate * dt;
         let gain = gain(rate, dt);
         let fall = gravity.map(|g| dt * gain * g);
@@ -46,7 +47,7 @@ impl<S: Simd> Step<S> {
             drift_x: frames.origin_x.map(|v| fall[0] + given * v),
             drift_y: frames.origin_y.map(|v| fall[1] + given * v),
             turn: frames.spin.map(|w| given * w),
-            frames: frames.clone(),
+            frames,
             loss: 2.0 * half,
             fetch,
         }

@@ -66,7 +66,12 @@ pub(crate) struct LaneFrames {
     frames: [Frame; LANES],
     centre: [[f64; 2]; LANES],
     velocity: [[f64; 2]; LANES],
-    /// Velocity at the origin and angular velocity of each lane, for the step at hand.
+    spin: [f64; LANES],
+}
+
+/// How the frames of a tile's bodies move in one step: velocity at the origin [m/s] and angular velocity [rad/s].
+#[derive(Debug, Clone)]
+pub(crate) struct LaneMotion {
     pub(crate) origin_x: [f64; LANES],
     pub(crate) origin_y: [f64; LANES],
     pub(crate) spin: [f64; LANES],
@@ -78,8 +83,6 @@ impl LaneFrames {
         frames: [Frame::Rest; LANES],
         centre: [[0.0; 2]; LANES],
         velocity: [[0.0; 2]; LANES],
-        origin_x: [0.0; LANES],
-        origin_y: [0.0; LANES],
         spin: [0.0; LANES],
     };
 
@@ -120,13 +123,15 @@ impl LaneFrames {
         PlacedFrame { centre: self.centre[lane], velocity: self.velocity[lane], spin: self.spin[lane] }
     }
 
-    /// Moves the frames on by `span` [s] since they were placed.
-    pub(crate) fn advance(&mut self, span: f64) {
+    /// How the frames move `span` [s] after they were placed.
+    pub(crate) fn after(&self, span: f64) -> LaneMotion {
+        let mut motion = LaneMotion { origin_x: [0.0; LANES], origin_y: [0.0; LANES], spin: self.spin };
         for l in 0..LANES {
             let (v, w) = (self.velocity[l], self.spin[l]);
             let c = [self.centre[l][0] + span * v[0], self.centre[l][1] + span * v[1]];
-            self.origin_x[l] = v[0] + w * c[1];
-            self.origin_y[l] = v[1] - w * c[0];
+            motion.origin_x[l] = v[0] + w * c[1];
+            motion.origin_y[l] = v[1] - w * c[0];
         }
+        motion
     }
 }

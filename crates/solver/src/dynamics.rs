@@ -341,7 +341,7 @@ impl Dynamics {
         self.beta
     }
 
-    /// Places the damping frames now and then, and moves them on in between.
+    /// Places the damping frames now and then; in between the tiles move them on.
     fn place_damping_frames(&mut self) {
         let Some(damped) = self.damped.take() else { return };
         let step = self.state.step;
@@ -370,9 +370,6 @@ impl Dynamics {
                 }
             }
         }
-        for d in tiles.iter_mut().filter_map(|t| t.damping.as_mut()) {
-            d.frames.advance((step - placed) as f64 * self.time_step);
-        }
         (self.tiles, self.damped) = (tiles, Some(damped));
     }
 
@@ -390,9 +387,11 @@ impl Dynamics {
         // With stiffness damping a pass before has just read all of a tile.
         let fetch = self.fetch && beta == 0.0;
         let back = !self.state.step.is_multiple_of(2);
-        let drive = Drive { dt, gravity, beta, count_heat, fetch, back };
+        let since_placed = self.frames_placed.map_or(0.0, |placed| (self.state.step - placed) as f64 * dt);
+        let drive = Drive { dt, gravity, beta, since_placed, count_heat, fetch, back };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        sweep_all(TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted }, scratch, drive);
+        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted };
+        sweep_all(runs, scratch, drive);
         // In the order of the tiles, whatever thread each was on.
         let Energies { work, heat } = self.counted.iter().fold(Energies::default(), |sum, &e| sum + e);
         self.drive.add(work);

@@ -12,6 +12,7 @@ use crate::{
     lanes::Vector,
     model::Motion,
     strip::strip,
+    threads::Met,
     tile::Tile,
 };
 
@@ -43,13 +44,13 @@ pub(crate) struct Scratch {
     fy: Field,
     /// Where elements see the nodes; empty without stiffness damping.
     pub(crate) seen: Seen,
-    /// Tiles that this thread, the first of two, took in the last step.
-    pub(crate) taken: usize,
+    /// Where this thread, the first of two, met the other.
+    pub(crate) met: Met,
 }
 
 impl Scratch {
     pub(crate) fn new(slots: usize) -> Self {
-        Self { fx: Field::zeros(slots), fy: Field::zeros(slots), seen: Seen::default(), taken: 0 }
+        Self { fx: Field::zeros(slots), fy: Field::zeros(slots), seen: Seen::default(), met: Met::default() }
     }
 }
 
@@ -60,6 +61,8 @@ pub(crate) struct Drive {
     pub(crate) gravity: [f64; 2],
     /// β of the stiffness damping [s].
     pub(crate) beta: f64,
+    /// Time since damping frames were placed [s].
+    pub(crate) since_placed: f64,
     /// Whether the heat of damping is counted in this step.
     pub(crate) count_heat: bool,
     /// Whether strips fetch what they read next from far caches.

@@ -1,6 +1,12 @@
 //! Work shared out over the threads of the pool that the caller is in.
 
-use std::sync::{Mutex, PoisonError};
+use std::{
+    ops::Range,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
+
+/// Items on either side of where two threads met that they share the next time.
+const MARGIN: usize = 2;
 
 /// Does something to every item, on up to `threads` threads; what happens to an item does not depend on how many.
 ///
@@ -14,16 +20,17 @@ pub fn share_out<T: Send>(
     work: &(impl Fn(&T) -> usize + Sync),
     each: &(impl Fn(&mut T) + Sync),
 ) {
-    share_out_with_first(items, threads, least, work, &mut |item| each(item), each);
+    share_out_with_first(items, threads, least, work, &mut Met::default(), &mut |item| each(item), each);
 }
 
 /// The same, but one thread does `first` to items in order from the first one on, and all others do `other` to the rest. How
-/// many items either gets may differ from call to call.
+/// many items either gets may differ from call to call; `met` remembers it for the next one.
 pub fn share_out_with_first<T: Send>(
     items: &mut [T],
     threads: usize,
     least: usize,
     work: &(impl Fn(&T) -> usize + Sync),
+    met: &mut Met,
     first: &mut (impl FnMut(&mut T) + Send),
     other: &(impl Fn(&mut T) + Sync),
 ) {
@@ -31,13 +38,16 @@ pub fn share_out_with_first<T: Send>(
     if threads < 2 || items.len() < 2 || all < 2 * least {
         items.iter_mut().for_each(first);
     } else if threads == 2 {
-        from_both_ends(items.iter_mut(), first, other);
+        let open = met.open(MARGIN, items.len());
+        let (left, right) = items.split_at_mut(open.end);
+        let (left, between) = left.split_at_mut(open.start);
+        *met = from_both_ends([left, between, right].map(|part| part.iter_mut()), first, other);
     } else {
         let half = threads / 2;
         let cut = cut(items.iter().map(work), all, half, threads);
         let (here, there) = items.split_at_mut(cut);
         micropool::join(
-            || share_out_with_first(here, half, least, work, first, other),
+            || share_out_with_first(here, half, least, work, met, first, other),
             || share_out(there, threads - half, least, work, other),
         );
     }
@@ -60,27 +70,55 @@ pub(crate) fn cut(
     first.count().clamp(1.min(last), last)
 }
 
-/// Two threads take items from either end until none is left, each in its own way.
-pub(crate) fn from_both_ends<I: DoubleEndedIterator + Send>(
-    items: I,
-    mut here: impl FnMut(I::Item) + Send,
-    mut there: impl FnMut(I::Item) + Send,
-) {
-    // Nobody can leave an iterator half advanced: taking an item cannot fail.
-    let items = Mutex::new(items);
-    let rest = || items.lock().unwrap_or_else(PoisonError::into_inner);
+/// Where two threads met the last time they shared items out between them.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Met(usize);
+
+impl Met {
+    /// Items up to which one thread will come for certain, and from which on the other will have come, by the last time:
+    /// `margin` items on either side of where they met are open.
+    pub(crate) fn open(self, margin: usize, items: usize) -> Range<usize> {
+        let to = (self.0 + margin).min(items);
+        self.0.saturating_sub(margin).min(to)..to
+    }
+}
+
+/// An iterator of which two threads take, in a line of cache of its own: one that another thread has just written is slow to
+/// come.
+#[repr(align(128))]
+struct Shared<I>(Mutex<I>);
+
+impl<I: DoubleEndedIterator> Shared<I> {
+    fn lock(&self) -> MutexGuard<'_, I> {
+        // Nobody can leave an iterator half advanced: taking an item cannot fail.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Two threads take items from either end until none is left, each in its own way: one first from the `left` part, the other
+/// from the `right` one, then both from what lies `between`, and who is done there helps the other. Returns how many the
+/// first one took.
+pub(crate) fn from_both_ends<I: Send>(
+    [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
+    mut here: impl FnMut(I) + Send,
+    mut there: impl FnMut(I) + Send,
+) -> Met {
+    let parts = [left, between, right].map(|part| Shared(Mutex::new(part)));
+    let mut taken = 0;
     micropool::join(
         || {
-            while let Some(item) = { rest().next() } {
+            while let Some(item) = parts.iter().find_map(|part| part.lock().next()) {
+                taken += 1;
                 here(item);
             }
         },
         || {
-            while let Some(item) = { rest().next_back() } {
+            while let Some(item) = parts.iter().rev().find_map(|part| part.lock().next_back()) {
                 there(item);
             }
         },
     );
+    Met(taken)
 }
 
 #[cfg(test)]
@@ -91,7 +129,8 @@ mod tests {
     fn invariant_first_takes_items_from_the_first_one_on_in_order() {
         for threads in 1..=5 {
             let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
-            for count in [0, 1, 2, 7, 40] {
+            let mut met = Met::default();
+            for count in [0, 1, 2, 7, 40, 40, 3] {
                 // Who did it, and how often.
                 let mut items: Vec<(usize, [u32; 2])> = (0..count).map(|i| (i, [0, 0])).collect();
                 let mut taken = Vec::new();
@@ -101,7 +140,15 @@ mod tests {
                 };
                 let other = |item: &mut (usize, [u32; 2])| item.1[1] += 1;
                 pool.install(|| {
-                    share_out_with_first(&mut items, threads, 2, &|item| 1 + item.0 % 3, &mut first, &other);
+                    share_out_with_first(
+                        &mut items,
+                        threads,
+                        2,
+                        &|item| 1 + item.0 % 3,
+                        &mut met,
+                        &mut first,
+                        &other,
+                    );
                 });
                 assert!(taken.iter().copied().eq(0..taken.len()), "{threads} threads: {taken:?}");
                 let done =

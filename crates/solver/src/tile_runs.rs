@@ -91,18 +91,12 @@ pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], drive: Driv
         [] => {}
         [one] => runs.turned(drive.back).for_each(|run| run.sweep_one(one, drive)),
         [one, other] => {
-            let tiles = runs.tiles.len();
-            let to = (one.taken + UNDECIDED).min(tiles);
-            let from = one.taken.saturating_sub(UNDECIDED).min(to);
-            let (runs, right) = runs.split_at(to);
-            let (left, between) = runs.split_at(from);
-            one.taken = 0;
-            let here = |run: TileRuns<'_>| {
-                one.taken += 1;
-                run.sweep_one(one, drive);
-            };
-            let order = left.turned(drive.back).chain(between).chain(right.turned(drive.back));
-            from_both_ends(order, here, |run| run.sweep_one(other, drive));
+            let open = one.met.open(UNDECIDED, runs.tiles.len());
+            let (runs, right) = runs.split_at(open.end);
+            let (left, between) = runs.split_at(open.start);
+            let parts = [left.turned(drive.back), between.turned(false), right.turned(drive.back)];
+            one.met =
+                from_both_ends(parts, |run| run.sweep_one(one, drive), |run| run.sweep_one(other, drive));
         }
         _ => {
             let (threads, half) = (scratch.len(), scratch.len() / 2);
