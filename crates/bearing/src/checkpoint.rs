@@ -21,7 +21,7 @@ use crate::{error::Error, ledger::Reference, recorder, run_info::RunInfo};
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file; a program continues only what it understands to the last bit.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;

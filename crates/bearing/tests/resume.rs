@@ -277,7 +277,7 @@ fn analytic_what_cannot_go_on_says_why() {
         }
     };
 
-    for version in [5_u32, 9] {
+    for version in [6_u32, 9] {
         let mut other = checkpoint.clone();
         other[20..24].copy_from_slice(&version.to_le_bytes());
         says(

@@ -9,10 +9,9 @@ use stribeck_solver::{
 };
 
 use crate::{
-    meeting::{Chord, Meeting, Spots, gather},
+    meeting::{Chord, Joined, Joints, Meeting, Spots, gather},
     pass::Candidate,
     points::Points,
-    row::Outcome,
     shape::Push,
     surface::Surface,
     touch::Histories,
@@ -22,16 +21,26 @@ use crate::{
 /// Facets with more points than this fill vectors of their own.
 pub(crate) const MOST_POINTS: usize = 4;
 
-/// Some facets of a pass, at most as many as there are lanes.
+/// Some facets of a pass, at most as many as there are lanes, whose points lie side by side.
 pub(crate) struct Band<'a> {
     pub(crate) points: &'a Points,
-    /// Facets, and bits of those that are awake.
     pub(crate) candidates: &'a [Candidate],
-    pub(crate) awake: u64,
     /// Of all points of the pass: where they were found last, until when they doze, what they remember.
     pub(crate) nearest: &'a [u32],
     pub(crate) doze: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
+}
+
+/// What became of a band's facets; bits are those of lanes.
+pub(crate) struct BandOutcome<V: Simd> {
+    /// Facets of which a point touches.
+    pub(crate) touched: u64,
+    /// Facets whose first, second and so on point is awake and left over.
+    pub(crate) left: [u64; MOST_POINTS],
+    /// When the first point of each facet wakes; of use where none touches and none is left.
+    pub(crate) soonest: Vector<V>,
+    /// Sum of the forces on the facets [N].
+    pub(crate) force: [f64; 2],
 }
 
 impl Band<'_> {
@@ -47,113 +56,123 @@ impl Band<'_> {
         at: &Moment<'_>,
         work: &mut Work<V>,
         push: &mut Vec<Push>,
-    ) -> [Outcome; LANES] {
-        let Self { points, candidates, awake, nearest, doze, history } = self;
-        let mut outcomes = [Outcome::default(); LANES];
-        let mut own = [[0; LANES]; 2];
-        let (mut begin, mut pattern) = ([0; LANES], [0; LANES]);
-        let mut len = [0; LANES];
+    ) -> BandOutcome<V> {
+        let Self { points, candidates, nearest, doze, history } = self;
+        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
+        let soon = Vector::all(simd, now + 1.0);
+        let base = candidates[0].first as usize;
+        let (mut own, mut pattern) = ([[0; LANES]; 2], [0; LANES]);
         for l in 0..LANES {
-            // Lanes without a facet go along with the first one, closed.
+            // Lanes without a facet go along with the first one; their points never wake.
             let candidate = candidates.get(l).unwrap_or(&candidates[0]);
             [own[0][l], own[1][l]] = candidate.ends;
-            (begin[l], pattern[l], len[l]) =
-                (candidate.first, candidate.pattern.first, candidate.pattern.points);
+            pattern[l] = candidate.pattern.first;
         }
         let alike = pattern == [pattern[0]; LANES];
-        let chord = Chord::each(simd, at, &own);
+        let own = Joined::new(own, Vector::<V>::LEN);
+        let mut chord = None;
         let mut on_own = OnChords::none(simd, own);
         let mut met: Option<(Meeting<V>, OnChords<V>)> = None;
-        for k in 0..points.most as u32 {
-            let mut other = [[0; LANES]; 2];
-            let mut point = begin;
-            let mut open = 0;
-            for l in 0..LANES {
-                let there = awake >> l & 1 == 1 && k < len[l];
-                // So do lanes without a point, with the first one of their facet.
-                let step = if there { k } else { 0 };
-                point[l] += step;
-                let i = point[l] as usize;
-                let facet = nearest[i] as usize;
-                if there && doze[i] < now + 1.0 {
-                    outcomes[l].left |= 1 << k;
-                    open |= u64::from(!primary.beside_corner[facet]) << l;
-                }
-                let (a, b) = primary.ends(facet);
-                (other[0][l], other[1][l]) = (a as u32, b as u32);
+        let mut facing = Facing::default();
+        let (mut touched, mut left) = (0, [0; MOST_POINTS]);
+        let mut soonest = Vector::all(simd, f64::INFINITY);
+        for k in 0..points.most {
+            let i = base + k * LANES;
+            let mut dozes = Vector::load(simd, doze, i);
+            let awake = dozes.choose_below(soon, one, zero);
+            left[k] = awake.bits();
+            if left[k] == 0 {
+                soonest = soonest.min(dozes);
+                continue;
             }
-            let (place, weight) = if alike {
-                let i = (pattern[0] + k) as usize;
-                (Vector::all(simd, points.place[i]), Vector::all(simd, points.weight[i]))
-            } else {
-                let mut i = pattern;
-                i.iter_mut().zip(&len).for_each(|(i, len)| *i += if k < *len { k } else { 0 });
-                (gather(simd, &points.place, &i), gather(simd, &points.weight, &i))
-            };
-            let zero = Vector::all(simd, 0.0);
-            let spots = Spots {
-                open: Vector::ones(simd, open),
-                place,
-                weight,
-                slip: if MEMORY { gather(simd, &history.slip, &point) } else { zero },
-                damping: if MEMORY { gather(simd, &history.damping, &point) } else { zero },
-            };
             // Points of a facet mostly meet the same chord.
-            if met.as_ref().is_none_or(|(_, on_other)| on_other.ends != other) {
+            let facets = &nearest[i..i + Vector::<V>::LEN];
+            if met.is_none() || facing.facets[..facets.len()] != *facets {
+                facing = Facing::new(primary, facets);
                 if let Some((_, on_other)) = &met {
                     on_other.flush(push);
                 }
-                let meeting = Meeting::new(&chord, &Chord::each(simd, at, &other));
-                met = Some((meeting, OnChords::none(simd, other)));
+                let other = Joined::new(facing.ends, Vector::<V>::LEN);
+                let mine = match chord {
+                    Some(mine) => mine,
+                    None => Chord::each(simd, at, &own),
+                };
+                chord = Some(mine);
+                met =
+                    Some((Meeting::new(&mine, &Chord::each(simd, at, &other)), OnChords::none(simd, other)));
             }
             let Some((meeting, on_other)) = &mut met else { continue };
+            let (place, weight) = if alike {
+                let i = pattern[0] as usize + k;
+                (Vector::all(simd, points.place[i]), Vector::all(simd, points.weight[i]))
+            } else {
+                // Facets with fewer points never wake here.
+                let of = pattern.map(|first| (first + k as u32).min(points.place.len() as u32 - 1));
+                (gather(simd, &points.place, &of), gather(simd, &points.weight, &of))
+            };
+            let spots = Spots {
+                open: Vector::ones(simd, left[k] & !facing.beside_corner),
+                place,
+                weight,
+                slip: if MEMORY { Vector::load(simd, &history.slip, i) } else { zero },
+                damping: if MEMORY { Vector::load(simd, &history.damping, i) } else { zero },
+            };
             let acting = meeting.act::<MEMORY>(law, &spots, work);
             let (on, apart) = (acting.acts.on.bits(), acting.acts.apart.bits());
             if apart != 0 {
-                let mut dozes = [0.0; LANES];
-                acting.acts.doze.store(&mut dozes, 0);
-                for l in (0..Vector::<V>::LEN).filter(|l| apart >> l & 1 == 1) {
-                    doze[point[l] as usize] = dozes[l];
-                    outcomes[l].left &= !(1 << k);
-                }
+                dozes = zero.choose_below(acting.acts.apart, acting.acts.doze, dozes);
+                dozes.store(doze, i);
             }
+            soonest = soonest.min(dozes);
+            left[k] &= !(on | apart);
             if on == 0 {
                 continue;
+            }
+            touched |= on;
+            if MEMORY {
+                acting.acts.slip.store(&mut history.slip, i);
+                acting.acts.damping.store(&mut history.damping, i);
             }
             let [fx, fy] = acting.force;
             on_own.add(on, [fx, fy], spots.place);
             on_other.add(on, [-fx, -fy], acting.foot);
-            let [mut slip, mut damping] = [[0.0; LANES]; 2];
-            if MEMORY {
-                acting.acts.slip.store(&mut slip, 0);
-                acting.acts.damping.store(&mut damping, 0);
-            }
-            for l in (0..Vector::<V>::LEN).filter(|l| on >> l & 1 == 1) {
-                let i = point[l] as usize;
-                if MEMORY {
-                    (history.slip[i], history.damping[i]) = (slip[l], damping[l]);
-                }
-                outcomes[l].touched = true;
-                outcomes[l].left &= !(1 << k);
-            }
         }
         if let Some((_, on_other)) = &met {
             on_other.flush(push);
         }
-        let [mut fx, mut fy] = [[0.0; LANES]; 2];
-        on_own.force[0].store(&mut fx, 0);
-        on_own.force[1].store(&mut fy, 0);
-        (0..Vector::<V>::LEN).for_each(|l| outcomes[l].force = [fx[l], fy[l]]);
         on_own.flush(push);
-        outcomes
+        BandOutcome { touched, left, soonest, force: [on_own.force[0].sum(), on_own.force[1].sum()] }
+    }
+}
+
+/// The chords that a band's points face.
+#[derive(Default)]
+struct Facing {
+    facets: [u32; LANES],
+    /// Slots of their ends.
+    ends: [[u32; LANES]; 2],
+    /// Bits of those beside a corner.
+    beside_corner: u64,
+}
+
+impl Facing {
+    #[inline(always)]
+    fn new(primary: &Surface, facets: &[u32]) -> Self {
+        let mut facing = Self::default();
+        facing.facets[..facets.len()].copy_from_slice(facets);
+        for (l, facet) in facets.iter().enumerate() {
+            let (a, b) = primary.ends(*facet as usize);
+            (facing.ends[0][l], facing.ends[1][l]) = (a as u32, b as u32);
+            facing.beside_corner |= u64::from(primary.beside_corner[*facet as usize]) << l;
+        }
+        facing
     }
 }
 
 /// Forces on a chord in each lane.
 #[derive(Clone, Copy)]
 struct OnChords<V: Simd> {
-    /// Slots of its ends.
-    ends: [[u32; LANES]; 2],
+    chords: Joined,
     /// Sum of the forces, and of their products with their place on the chord.
     force: [Vector<V>; 2],
     with_place: [Vector<V>; 2],
@@ -163,9 +182,9 @@ struct OnChords<V: Simd> {
 
 impl<V: Simd> OnChords<V> {
     #[inline(always)]
-    fn none(simd: V, ends: [[u32; LANES]; 2]) -> Self {
+    fn none(simd: V, chords: Joined) -> Self {
         let zero = [Vector::all(simd, 0.0); 2];
-        Self { ends, force: zero, with_place: zero, lanes: 0 }
+        Self { chords, force: zero, with_place: zero, lanes: 0 }
     }
 
     #[inline(always)]
@@ -182,27 +201,42 @@ impl<V: Simd> OnChords<V> {
         if self.lanes == 0 {
             return;
         }
-        let [mut ax, mut ay, mut bx, mut by] = [[0.0; LANES]; 4];
-        (self.force[0] - self.with_place[0]).store(&mut ax, 0);
-        (self.force[1] - self.with_place[1]).store(&mut ay, 0);
-        self.with_place[0].store(&mut bx, 0);
-        self.with_place[1].store(&mut by, 0);
-        let mut held: Option<Push> = None;
-        for l in (0..Vector::<V>::LEN).filter(|l| self.lanes >> l & 1 == 1) {
-            let (mut first, mut second) =
-                ((self.ends[0][l], [ax[l], ay[l]]), (self.ends[1][l], [bx[l], by[l]]));
-            match held {
-                Some((node, f)) if node == first.0 => first.1 = [first.1[0] + f[0], first.1[1] + f[1]],
-                Some((node, f)) if node == second.0 => {
-                    second.1 = [second.1[0] + f[0], second.1[1] + f[1]];
-                    (first, second) = (second, first);
-                }
-                Some(other) => push.push(other),
-                None => {}
+        let [first, second] = self.chords.ends;
+        let on_second = self.with_place;
+        let on_first = [self.force[0] - on_second[0], self.force[1] - on_second[1]];
+        let zero = on_first[0].constant(0.0);
+        let (nodes, [fx, fy], last, [lx, ly]) = match self.chords.joints {
+            Joints::Ahead { .. } => {
+                let on = [
+                    on_first[0] + on_second[0].shifted_in(zero),
+                    on_first[1] + on_second[1].shifted_in(zero),
+                ];
+                (first, on, Some(second), on_second)
             }
-            push.push(first);
-            held = Some(second);
+            Joints::Back => {
+                let on = [
+                    on_second[0] + on_first[0].shifted_in(zero),
+                    on_second[1] + on_first[1].shifted_in(zero),
+                ];
+                (second, on, Some(first), on_first)
+            }
+            Joints::None => (first, on_first, None, on_second),
+        };
+        let [mut x, mut y] = [[0.0; LANES]; 2];
+        fx.store(&mut x, 0);
+        fy.store(&mut y, 0);
+        let [mut u, mut v] = [[0.0; LANES]; 2];
+        lx.store(&mut u, 0);
+        ly.store(&mut v, 0);
+        let lanes = Vector::<V>::LEN;
+        if let Some(last) = last {
+            push.extend((0..lanes).map(|l| (nodes[l], [x[l], y[l]])));
+            push.push((last[lanes - 1], [u[lanes - 1], v[lanes - 1]]));
+        } else {
+            for l in (0..lanes).filter(|l| self.lanes >> l & 1 == 1) {
+                push.push((first[l], [x[l], y[l]]));
+                push.push((second[l], [u[l], v[l]]));
+            }
         }
-        push.extend(held);
     }
 }

@@ -1,11 +1,14 @@
 //! The evaluation of a pass: which points are awake, vectors of them first, then what is left over, one by one.
 
 use pulp::{Simd, WithSimd};
-use stribeck_solver::{lanes::Vector, state::Moment};
+use stribeck_solver::{
+    lanes::{LANES, Vector},
+    state::Moment,
+};
 
 use crate::{
-    band::{self, Band},
-    pass::{Candidate, Memory, NEVER, PACE_KEPT, Pass, Weights},
+    band::{Band, MOST_POINTS},
+    pass::{Arrangement, Candidate, Memory, NEVER, PACE_KEPT, Pass, Weights},
     points::Points,
     projection::Frame,
     row::{Outcome, Row},
@@ -67,6 +70,7 @@ impl Evaluation<'_> {
             at,
             w,
             points,
+            stride: pass.arrangement.stride(),
             deepest,
             searched: *searched,
             now,
@@ -76,23 +80,36 @@ impl Evaluation<'_> {
             own: None,
             sum: Sum::default(),
         };
-        if together && flat && points.most <= band::MOST_POINTS {
+        if let (true, Arrangement::Bands { .. }) = (together, pass.arrangement) {
             for group in candidates.chunks_mut(Vector::<V>::LEN) {
-                let awake =
-                    group.iter().rev().fold(0_u64, |bits, c| bits << 1 | u64::from(at.step >= c.wake));
-                if awake == 0 {
-                    first_awake = group.iter().fold(first_awake, |first, c| first.min(c.wake));
+                let wake = group.iter().fold(u64::MAX, |first, c| first.min(c.wake));
+                if at.step < wake {
+                    first_awake = first_awake.min(wake);
                     continue;
                 }
-                let outcomes = {
+                let outcome = {
                     let history = history.as_mut().unwrap_or(&mut no_history);
-                    let band = Band { points, candidates: group, awake, nearest, doze, history };
+                    let band = Band { points, candidates: group, nearest, doze, history };
                     band.touch::<V, MEMORY>(simd, &law, now, primary, at, &mut done, push)
                 };
                 work += 15 * points.most;
+                let force = &mut rest.sum.force;
+                *force = [force[0] + outcome.force[0], force[1] + outcome.force[1]];
+                let left_over = outcome.left.iter().fold(0, |all, left| all | left);
+                let mut soonest = [0.0; LANES];
+                outcome.soonest.store(&mut soonest, 0);
                 for (l, candidate) in group.iter_mut().enumerate() {
-                    if awake >> l & 1 == 1 {
-                        rest.finish(simd, candidate, outcomes[l], nearest, doze, history, push);
+                    if left_over >> l & 1 == 1 {
+                        let left = (0..MOST_POINTS).fold(0, |bits, k| bits | (outcome.left[k] >> l & 1) << k);
+                        let touched = outcome.touched >> l & 1 == 1;
+                        let outcome = Outcome { touched, left, force: [0.0; 2] };
+                        rest.finish(simd, candidate, outcome, nearest, doze, history, push);
+                    } else {
+                        candidate.wake = if outcome.touched >> l & 1 == 1 {
+                            0
+                        } else {
+                            rest.searched.saturating_add(soonest[l] as u64)
+                        };
                     }
                     first_awake = first_awake.min(candidate.wake);
                 }
@@ -109,8 +126,10 @@ impl Evaluation<'_> {
                         outcome = S::touch_row::<V, MEMORY>(simd, row, own, &mut feet, law, &mut done, push);
                         work += if outcome.touched { 20 } else { 10 };
                     } else {
-                        let awake = candidate.range().enumerate().filter(|(_, i)| doze[*i] < now + 1.0);
-                        outcome.left = awake.fold(0, |bits, (k, _)| bits | 1 << k);
+                        let (first, stride) = (candidate.first as usize, rest.stride);
+                        let awake = (0..candidate.pattern.points as usize)
+                            .filter(|k| doze[first + k * stride] < now + 1.0);
+                        outcome.left = awake.fold(0, |bits, k| bits | 1 << k);
                         work += 4;
                     }
                     work += 5 * outcome.left.count_ones() as usize;
@@ -137,6 +156,8 @@ struct Rest<'a, S: Shape, P: Shape> {
     at: &'a Moment<'a>,
     w: &'a Weights,
     points: &'a Points,
+    /// Distance of a facet's points in memory.
+    stride: usize,
     deepest: f64,
     /// See [`Memory`].
     searched: u64,
@@ -176,7 +197,12 @@ impl<S: Shape, P: Shape> Rest<'_, S, P> {
         }
         *force = [force[0] + outcome.force[0], force[1] + outcome.force[1]];
         candidate.wake = 0;
-        if !outcome.touched {
+        if !outcome.touched && self.stride > 1 {
+            let points = doze[candidate.first as usize..].iter().step_by(self.stride);
+            let soonest =
+                points.take(candidate.pattern.points as usize).copied().fold(f64::INFINITY, f64::min);
+            candidate.wake = self.searched.saturating_add(soonest as u64);
+        } else if !outcome.touched {
             let range = candidate.range();
             let mut soonest = Vector::all(simd, f64::INFINITY);
             let whole = range.len() / Vector::<V>::LEN * Vector::<V>::LEN;
@@ -206,7 +232,8 @@ impl<S: Shape, P: Shape> Rest<'_, S, P> {
         let mut left = outcome.left;
         while left != 0 {
             let k = left.trailing_zeros();
-            let (i, of_pattern) = ((candidate.first + k) as usize, (candidate.pattern.first + k) as usize);
+            let (i, of_pattern) =
+                (candidate.first as usize + k as usize * self.stride, (candidate.pattern.first + k) as usize);
             left &= left - 1;
             let spot = own.shape.spot(points.place[of_pattern], points.height[of_pattern]);
             let area = points.weight[of_pattern] * w.thickness;

@@ -67,45 +67,62 @@ pub(crate) struct Acting<V: Simd> {
 }
 
 impl<V: Simd> Chord<V> {
-    /// A chord in each lane, from the slots of their ends.
+    /// A chord in each lane.
     #[inline(always)]
-    pub(crate) fn each(simd: V, at: &Moment<'_>, ends: &[[u32; LANES]; 2]) -> Self {
-        let joints = Joints::of(ends, Vector::<V>::LEN);
-        let [[ax, bx], [ay, by]] = [both(simd, at.x, ends, joints), both(simd, at.y, ends, joints)];
-        let [[au, bu], [av, bv]] = [both(simd, at.vx, ends, joints), both(simd, at.vy, ends, joints)];
+    pub(crate) fn each(simd: V, at: &Moment<'_>, chords: &Joined) -> Self {
+        let [[ax, bx], [ay, by]] = [both(simd, at.x, chords), both(simd, at.y, chords)];
+        let [[au, bu], [av, bv]] = [both(simd, at.vx, chords), both(simd, at.vy, chords)];
         Self { position: [[ax, ay], [bx - ax, by - ay]], velocity: [[au, av], [bu - au, bv - av]] }
     }
 }
 
+/// A chord in each lane, by the slots of its ends.
+#[derive(Clone, Copy)]
+pub(crate) struct Joined {
+    pub(crate) ends: [[u32; LANES]; 2],
+    pub(crate) joints: Joints,
+}
+
 /// How chords in neighbouring lanes hang together.
 #[derive(Clone, Copy)]
-enum Joints {
+pub(crate) enum Joints {
     /// Each begins where the one in the lane before ends.
-    Ahead,
+    Ahead {
+        /// And their nodes lie in this order in memory, without a gap.
+        in_a_row: bool,
+    },
     /// Each ends where the one in the lane before begins.
     Back,
     None,
 }
 
-impl Joints {
+impl Joined {
     #[inline(always)]
-    fn of([a, b]: &[[u32; LANES]; 2], lanes: usize) -> Self {
-        if a[1..lanes] == b[..lanes - 1] {
-            Self::Ahead
+    pub(crate) fn new(ends: [[u32; LANES]; 2], lanes: usize) -> Self {
+        let [a, b] = &ends;
+        let joints = if a[1..lanes] == b[..lanes - 1] {
+            let mut in_a_row = true;
+            (0..lanes).for_each(|l| in_a_row &= a[l] == a[0] + l as u32 && b[l] == a[l] + 1);
+            Joints::Ahead { in_a_row }
         } else if b[1..lanes] == a[..lanes - 1] {
-            Self::Back
+            Joints::Back
         } else {
-            Self::None
-        }
+            Joints::None
+        };
+        Self { ends, joints }
     }
 }
 
 /// A number of a field at both ends of each chord; what two chords share is read once.
 #[inline(always)]
-fn both<V: Simd>(simd: V, field: &[f64], [a, b]: &[[u32; LANES]; 2], joints: Joints) -> [Vector<V>; 2] {
+fn both<V: Simd>(simd: V, field: &[f64], Joined { ends: [a, b], joints }: &Joined) -> [Vector<V>; 2] {
     let before = |first: u32| Vector::all(simd, field[first as usize]);
     match joints {
-        Joints::Ahead => {
+        Joints::Ahead { in_a_row: true } => {
+            let first = a[0] as usize;
+            [Vector::load(simd, field, first), Vector::load(simd, field, first + 1)]
+        }
+        Joints::Ahead { .. } => {
             let ends = gather(simd, field, b);
             [ends.shifted_in(before(a[0])), ends]
         }

@@ -26,6 +26,7 @@ pub(crate) struct Pass {
     pub(crate) secondary: usize,
     pub(crate) primary: usize,
     pub(crate) points: Arc<Points>,
+    pub(crate) arrangement: Arrangement,
     pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
     pub(crate) deepest: f64,
@@ -44,7 +45,7 @@ struct Room {
     found: Vec<u32>,
 }
 
-/// What a pass remembers from step to step: of the points of its candidates alone, one row after the other, so that what is
+/// What a pass remembers from step to step: of the points of its candidates alone, as its [`Arrangement`] says, so that what is
 /// read in every step lies close together. Facets of many points have whole vectors of room, each in a line of cache; behind
 /// the last point there is room for a vector that reads on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -78,10 +79,44 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Its points in what the pass remembers.
+    /// Its points in what the pass remembers, where it remembers them row by row.
     #[inline(always)]
     pub(crate) fn range(&self) -> Range<usize> {
         self.first as usize..(self.first + self.pattern.points) as usize
+    }
+}
+
+/// How what a pass remembers of points lies in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Arrangement {
+    /// Facet by facet.
+    Rows,
+    /// As many facets as there are lanes side by side: the first point of each, then the second of each, up to so many points.
+    Bands {
+        /// Points that a facet has room for.
+        points: usize,
+    },
+}
+
+impl Arrangement {
+    /// Distance of a facet's points.
+    #[inline(always)]
+    pub(crate) fn stride(self) -> usize {
+        match self {
+            Self::Rows => 1,
+            Self::Bands { .. } => LANES,
+        }
+    }
+
+    /// First point of the facet after `before` others that take `taken` places, and places that are taken with it.
+    fn next(self, before: usize, taken: usize, pattern: Pattern) -> (usize, usize) {
+        match self {
+            Self::Rows => (taken, taken + pattern.room() as usize),
+            Self::Bands { points } => {
+                let (band, lane) = (before / LANES * LANES * points, before % LANES);
+                (band + lane, band + LANES * points)
+            }
+        }
     }
 }
 
@@ -115,18 +150,28 @@ impl Memory {
         }
     }
 
-    /// Makes a facet's room whole.
-    fn fill_up(&mut self, pattern: Pattern) {
-        (pattern.points..pattern.room()).for_each(|_| self.push(0, NEVER, None));
+    /// Makes room for the points of one more candidate; the number of the first.
+    fn room_for(&mut self, pattern: Pattern, arrangement: Arrangement) -> usize {
+        let (first, taken) = arrangement.next(self.candidates.len(), self.nearest.len(), pattern);
+        self.nearest.resize(taken, 0);
+        // Places without a point never wake.
+        while self.doze.len() < taken {
+            self.doze.push(NEVER);
+        }
+        if let Some(history) = &mut self.history {
+            history.slip.resize(taken);
+            history.damping.resize(taken);
+        }
+        first
     }
 
-    /// Appends a point; one that was `known` as number `i` of another memory takes its history along.
-    fn push(&mut self, nearest: u32, doze: f64, known: Option<(&Self, usize)>) {
-        self.nearest.push(nearest);
-        self.doze.push(doze);
-        if let Some(history) = &mut self.history {
-            let past = known.and_then(|(memory, i)| memory.history.as_ref().map(|h| h.get(i)));
-            history.push(past.unwrap_or_default());
+    /// Sets a point; one that was `known` as number `i` of another memory takes its history along.
+    fn set(&mut self, point: usize, nearest: u32, doze: f64, known: Option<(&Self, usize)>) {
+        (self.nearest[point], self.doze[point]) = (nearest, doze);
+        if let (Some(history), Some((memory, i))) = (&mut self.history, known)
+            && let Some(past) = &memory.history
+        {
+            history.set(point, past.get(i));
         }
     }
 }
@@ -221,6 +266,14 @@ impl Pass {
             memory: Memory::new(remembers),
             room: Box::new(Room { before: Memory::new(remembers), found: Vec::new() }),
             deepest: 2.0 * surfaces[primary].mean_length().max(surfaces[secondary].mean_length()),
+            arrangement: if surfaces[primary].is_flat()
+                && surfaces[secondary].is_flat()
+                && points.most <= band::MOST_POINTS
+            {
+                Arrangement::Bands { points: points.most }
+            } else {
+                Arrangement::Rows
+            },
             points,
             work: 0,
         }
@@ -228,17 +281,18 @@ impl Pass {
 
     /// Whether `memory` can be that of this pass: equal counts, and facets that exist.
     pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
-        let (mut next, mut least) = (0, 0);
-        let in_order = memory.candidates.iter().all(|c| {
+        let (mut taken, mut least) = (0, 0);
+        let in_order = memory.candidates.iter().enumerate().all(|(before, c)| {
+            let first;
+            (first, taken) = self.arrangement.next(before, taken, c.pattern);
             let fits = self.points.of_facet.get(c.facet as usize) == Some(&c.pattern)
                 && c.facet >= least
-                && c.first == next
+                && c.first as usize == first
                 && c.ends == ends(&surfaces[self.secondary], c.facet);
-            next = c.first.saturating_add(c.pattern.room());
             least = c.facet.saturating_add(1);
             fits
         });
-        let (n, facets) = (next as usize, surfaces[self.primary].facets());
+        let (n, facets) = (taken, surfaces[self.primary].facets());
         in_order
             && memory.nearest.len() == n
             && memory.doze.len() == n + LANES
@@ -258,7 +312,8 @@ impl Pass {
     /// as much less time as the fastest approach was `slower` in the search before.
     pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>, slower: f64) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let Self { points, memory, room, .. } = self;
+        let Self { points, arrangement, memory, room, .. } = self;
+        let stride = arrangement.stride();
         let Room { before, found } = &mut **room;
         std::mem::swap(memory, before);
         memory.clear();
@@ -266,8 +321,9 @@ impl Pass {
         let elapsed = at.step.saturating_sub(before.searched) as f64;
         let mut old = before.candidates.iter().peekable();
         for pairs in pairs.chunk_by(|a, b| a.0 == b.0) {
-            let (facet, first) = (pairs[0].0, memory.nearest.len() as u32);
+            let facet = pairs[0].0;
             let pattern = points.of_facet[facet as usize];
+            let first = memory.room_for(pattern, *arrangement);
             Arch::new().dispatch(Nearest {
                 secondary,
                 primary,
@@ -282,7 +338,7 @@ impl Pass {
             let old = old.peek().filter(|c| c.facet == facet);
             let mut soonest = f64::INFINITY;
             for (k, &new) in found.iter().enumerate() {
-                let known = old.map(|c| c.first as usize + k);
+                let known = old.map(|c| c.first as usize + k * stride);
                 let (mut nearest, mut doze) = (new, 0.0);
                 if let Some(i) = known.filter(|&i| primary.adjoin(before.nearest[i] as usize, new as usize)) {
                     nearest = before.nearest[i];
@@ -290,11 +346,11 @@ impl Pass {
                     doze = if before.doze[i] == NEVER { 0.0 } else { slower * (before.doze[i] - elapsed) };
                 }
                 soonest = soonest.min(doze);
-                memory.push(nearest, doze, known.map(|i| (&*before, i)));
+                memory.set(first + k * stride, nearest, doze, known.map(|i| (&*before, i)));
             }
             let wake = at.step.saturating_add(soonest.max(0.0) as u64);
-            memory.fill_up(pattern);
-            memory.candidates.push(Candidate { wake, facet, first, pattern, ends: ends(secondary, facet) });
+            let (first, ends) = (first as u32, ends(secondary, facet));
+            memory.candidates.push(Candidate { wake, facet, first, pattern, ends });
         }
         memory.pad();
     }
@@ -315,7 +371,7 @@ impl Pass {
     pub(crate) fn fetch(&self, surfaces: &[Surface], at: &Moment<'_>) {
         let Memory { nearest, doze, history, candidates, asleep, .. } = &self.memory;
         // Facets with few points follow one another in memory as they are read.
-        if at.step < *asleep || self.points.most <= band::MOST_POINTS {
+        if at.step < *asleep || self.arrangement != Arrangement::Rows {
             return;
         }
         let primary = &surfaces[self.primary];
@@ -386,7 +442,8 @@ impl Pass {
         for candidate in &self.memory.candidates {
             let facet = candidate.facet as usize;
             let shape = S::new(secondary, x, y, facet);
-            for (i, of_point) in candidate.pattern.range().zip(candidate.range()) {
+            let stride = self.arrangement.stride();
+            for (i, of_point) in candidate.pattern.range().zip((candidate.first as usize..).step_by(stride)) {
                 let spot = shape.spot(self.points.place[i], self.points.height[i]);
                 let mut foot = P::new(primary, x, y, self.memory.nearest[of_point] as usize);
                 let found = foot.project(primary, x, y, spot.at);

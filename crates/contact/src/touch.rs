@@ -37,12 +37,6 @@ impl Histories {
     pub(crate) fn set(&mut self, i: usize, history: History) {
         (self.slip[i], self.damping[i]) = (history.slip, history.damping);
     }
-
-    /// Appends one.
-    pub(crate) fn push(&mut self, history: History) {
-        self.slip.push(history.slip);
-        self.damping.push(history.damping);
-    }
 }
 
 /// Sums over one pass.
