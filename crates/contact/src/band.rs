@@ -61,19 +61,19 @@ impl Band<'_> {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         let soon = Vector::all(simd, now + 1.0);
         let base = candidates[0].first as usize;
-        let (mut own, mut pattern) = ([[0; LANES]; 2], [0; LANES]);
-        for l in 0..LANES {
-            // Lanes without a facet go along with the first one; their points never wake.
+        // Lanes without a facet go along with the first one; their points never wake.
+        let lanes = Vector::<V>::LEN;
+        let mut pattern = [candidates[0].pattern.first; LANES];
+        let mut alike = true;
+        let own = Joined::new(lanes, |l| {
             let candidate = candidates.get(l).unwrap_or(&candidates[0]);
-            [own[0][l], own[1][l]] = candidate.ends;
             pattern[l] = candidate.pattern.first;
-        }
-        let alike = pattern == [pattern[0]; LANES];
-        let own = Joined::new(own, Vector::<V>::LEN);
+            alike &= pattern[l] == pattern[0];
+            candidate.ends
+        });
         let mut chord = None;
         let mut on_own = OnChords::none(simd, own);
-        let mut met: Option<(Meeting<V>, OnChords<V>)> = None;
-        let mut facing = Facing::default();
+        let mut met: Option<(Facing, Meeting<V>, OnChords<V>)> = None;
         let (mut touched, mut left) = (0, [0; MOST_POINTS]);
         let mut soonest = Vector::all(simd, f64::INFINITY);
         for k in 0..points.most {
@@ -86,22 +86,22 @@ impl Band<'_> {
                 continue;
             }
             // Points of a facet mostly meet the same chord.
-            let facets = &nearest[i..i + Vector::<V>::LEN];
-            if met.is_none() || facing.facets[..facets.len()] != *facets {
-                facing = Facing::new(primary, facets);
-                if let Some((_, on_other)) = &met {
+            let facets = &nearest[i..i + lanes];
+            if met.as_ref().is_none_or(|(facing, ..)| facing.facets[..lanes] != *facets) {
+                if let Some((.., on_other)) = &met {
                     on_other.flush(push);
                 }
-                let other = Joined::new(facing.ends, Vector::<V>::LEN);
                 let mine = match chord {
                     Some(mine) => mine,
                     None => Chord::each(simd, at, &own),
                 };
                 chord = Some(mine);
-                met =
-                    Some((Meeting::new(&mine, &Chord::each(simd, at, &other)), OnChords::none(simd, other)));
+                let facing = Facing::new(primary, facets);
+                let meeting = Meeting::new(&mine, &Chord::each(simd, at, &facing.chords));
+                let on_other = OnChords::none(simd, facing.chords);
+                met = Some((facing, meeting, on_other));
             }
-            let Some((meeting, on_other)) = &mut met else { continue };
+            let Some((facing, meeting, on_other)) = &mut met else { continue };
             let (place, weight) = if alike {
                 let i = pattern[0] as usize + k;
                 (Vector::all(simd, points.place[i]), Vector::all(simd, points.weight[i]))
@@ -137,7 +137,7 @@ impl Band<'_> {
             on_own.add(on, [fx, fy], spots.place);
             on_other.add(on, [-fx, -fy], acting.foot);
         }
-        if let Some((_, on_other)) = &met {
+        if let Some((.., on_other)) = &met {
             on_other.flush(push);
         }
         on_own.flush(push);
@@ -146,26 +146,26 @@ impl Band<'_> {
 }
 
 /// The chords that a band's points face.
-#[derive(Default)]
 struct Facing {
     facets: [u32; LANES],
-    /// Slots of their ends.
-    ends: [[u32; LANES]; 2],
+    chords: Joined,
     /// Bits of those beside a corner.
     beside_corner: u64,
 }
 
 impl Facing {
     #[inline(always)]
-    fn new(primary: &Surface, facets: &[u32]) -> Self {
-        let mut facing = Self::default();
-        facing.facets[..facets.len()].copy_from_slice(facets);
-        for (l, facet) in facets.iter().enumerate() {
-            let (a, b) = primary.ends(*facet as usize);
-            (facing.ends[0][l], facing.ends[1][l]) = (a as u32, b as u32);
-            facing.beside_corner |= u64::from(primary.beside_corner[*facet as usize]) << l;
-        }
-        facing
+    fn new(primary: &Surface, found: &[u32]) -> Self {
+        let mut facets = [0; LANES];
+        facets[..found.len()].copy_from_slice(found);
+        let mut beside_corner = 0;
+        let chords = Joined::new(found.len(), |l| {
+            let facet = found[l] as usize;
+            beside_corner |= u64::from(primary.beside_corner[facet]) << l;
+            let (a, b) = primary.ends(facet);
+            [a as u32, b as u32]
+        });
+        Self { facets, chords, beside_corner }
     }
 }
 

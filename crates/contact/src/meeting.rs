@@ -97,17 +97,27 @@ pub(crate) enum Joints {
 }
 
 impl Joined {
+    /// From the slots of each chord's ends, in so many lanes. They are compared one after the other: whole vectors would wait
+    /// for slots that are on their way to memory.
     #[inline(always)]
-    pub(crate) fn new(ends: [[u32; LANES]; 2], lanes: usize) -> Self {
-        let [a, b] = &ends;
-        let joints = if a[1..lanes] == b[..lanes - 1] {
-            let mut in_a_row = true;
-            (0..lanes).for_each(|l| in_a_row &= a[l] == a[0] + l as u32 && b[l] == a[l] + 1);
-            Joints::Ahead { in_a_row }
-        } else if b[1..lanes] == a[..lanes - 1] {
-            Joints::Back
-        } else {
-            Joints::None
+    pub(crate) fn new(lanes: usize, mut ends_of: impl FnMut(usize) -> [u32; 2]) -> Self {
+        let mut ends = [[0; LANES]; 2];
+        let (mut ahead, mut back, mut in_a_row) = (true, true, true);
+        let mut before = [0; 2];
+        for l in 0..lanes {
+            let [a, b] = ends_of(l);
+            (ends[0][l], ends[1][l]) = (a, b);
+            in_a_row &= b == a + 1;
+            if l > 0 {
+                ahead &= a == before[1];
+                back &= b == before[0];
+            }
+            before = [a, b];
+        }
+        let joints = match () {
+            () if ahead => Joints::Ahead { in_a_row },
+            () if back => Joints::Back,
+            () => Joints::None,
         };
         Self { ends, joints }
     }
