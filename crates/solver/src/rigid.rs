@@ -84,9 +84,10 @@ impl RigidBody {
         let slots = self.slots.clone();
         let (x, y) = (&mut state.x[slots.clone()], &mut state.y[slots.clone()]);
         let (vx, vy) = (&mut state.vx[slots.clone()], &mut state.vy[slots]);
+        let rate = 1.0 / dt;
         for ((((a, x), y), vx), vy) in self.arm.iter().zip(x).zip(y).zip(vx).zip(vy) {
             let new = [at.centre[0] + c * a[0] - s * a[1], at.centre[1] + s * a[0] + c * a[1]];
-            (*vx, *vy) = ((new[0] - *x) / dt, (new[1] - *y) / dt);
+            (*vx, *vy) = (rate * (new[0] - *x), rate * (new[1] - *y));
             [*x, *y] = new;
         }
     }
