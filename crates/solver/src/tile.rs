@@ -346,7 +346,12 @@ impl Tile {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
+    use stribeck_mesh::{Annulus, Groove, Mesh};
+
     use super::*;
+    use crate::{Dynamics, Elastic, Model};
 
     #[test]
     fn invariant_elements_that_are_alike_are_whole_groups_or_the_last() {
@@ -369,5 +374,30 @@ mod tests {
         ] {
             assert_eq!(of(shapes), expected, "{shapes:?}");
         }
+    }
+
+    #[test]
+    fn invariant_strips_of_a_grooved_ring_are_mostly_alike() {
+        let groove = Some(Groove { centre_angle: 0.5 * PI, length: 0.01, depth: 0.2e-3 });
+        let ring = Annulus {
+            inner_radius: 0.1,
+            outer_radius: 0.11,
+            facets: 1257,
+            layers: 20,
+            start_angle: 0.0,
+            groove,
+        };
+        let mut mesh = Mesh::new();
+        mesh.add("ring", &ring.part().expect("a ring that can be made"));
+        let steel = Elastic::new(200e9, 0.3, 7850.0).expect("steel is a possible material");
+        let model = Model::new(mesh, steel, 0.02).expect("a positive thickness");
+        let d = Dynamics::new(&model, &vec![false; model.mesh.x.len()], 1).expect("a model that can run");
+        let strips: Vec<&Strip> = d.tiles.iter().flat_map(|tile| &tile.strips).collect();
+        let elements: usize = strips.iter().map(|s| s.len).sum();
+        let alike: usize = strips.iter().map(|s| s.alike.len()).sum();
+        assert!(elements > 9 * model.mesh.quads.len() / 10, "{elements} elements in strips");
+        // The groove and two thicknesses on either side of it are a thirteenth of the ring; a part of a group of lanes is lost
+        // beside them.
+        assert!(20 * alike > 17 * elements, "{alike} of {elements} are alike");
     }
 }
