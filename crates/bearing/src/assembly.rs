@@ -93,8 +93,7 @@ pub struct RollerSlots {
 
 /// Which contact pair is whose; the resultant of a roller's is the force on the roller.
 ///
-/// They follow one another from the outside in. The seat, much larger than all others, comes first, as
-/// [`Contacts`] advises; what touches one body stands together, so that it mostly stays with one thread.
+/// They follow one another from the outside in, the seat first: see [`Contacts::new`].
 #[derive(Debug, Clone, Copy)]
 pub struct Pairs {
     rollers: usize,

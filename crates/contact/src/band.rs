@@ -1,6 +1,6 @@
 //! Many facets with few points each, as in a seat: a facet in each lane.
 //!
-//! What lies near the end of the other chord, near a corner, or does not touch is left over.
+//! What lies near the end of the other chord or near a corner is left over.
 
 use pulp::Simd;
 use stribeck_solver::{
@@ -37,7 +37,7 @@ pub(crate) struct BandOutcome<V: Simd> {
     pub(crate) touched: u64,
     /// Facets whose first, second and so on point is awake and left over.
     pub(crate) left: [u64; MOST_POINTS],
-    /// When the first point of each facet wakes; of use where none touches and none is left.
+    /// When the next point of each facet wakes; of use where none touches and none is left.
     pub(crate) soonest: Vector<V>,
     /// Sum of the forces on the facets [N].
     pub(crate) force: [f64; 2],

@@ -147,6 +147,9 @@ const STEEPER: f64 = 2.0;
 impl Contacts {
     /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
     ///
+    /// Two threads take pairs from either end of the list. The pair with by far the most work had better stand first, where
+    /// forces are added at once, and those of one body together.
+    ///
     /// # Errors
     /// When a pair names a surface that is not there or one twice, a surface a slot that is not there, a method no points
     /// or too many, or the thickness is not positive.

@@ -62,7 +62,7 @@ pub(crate) struct Acting<V: Simd> {
     pub(crate) acts: Acts<V>,
     /// Force on each point [N]; zero where it does not touch.
     pub(crate) force: [Vector<V>; 2],
-    /// Place on the other chord.
+    /// Place on the other chord; zero likewise.
     pub(crate) foot: Vector<V>,
 }
 
@@ -237,8 +237,11 @@ impl<V: Simd> Meeting<V> {
         let sliding = relative[1] * nx - relative[0] * ny;
         let points = Touching { within, gap, weight, opening, along: sliding, slip, damping };
         let acts = law.act::<MEMORY>(&points, work);
-        let [normal, shear] = [acts.on * acts.pressure, acts.on * acts.shear];
-        Acting { acts, force: [normal * nx - shear * ny, normal * ny + shear * nx], foot }
+        let fx = acts.pressure * nx - acts.shear * ny;
+        let fy = acts.pressure * ny + acts.shear * nx;
+        // Chosen, not multiplied: a lane that is closed may hold no number.
+        let force = [zero.choose_below(acts.on, fx, zero), zero.choose_below(acts.on, fy, zero)];
+        Acting { acts, force, foot: zero.choose_below(acts.on, foot, zero) }
     }
 }
 

@@ -91,7 +91,8 @@ impl Candidate {
 pub(crate) enum Arrangement {
     /// Facet by facet.
     Rows,
-    /// As many facets as there are lanes side by side: the first point of each, then the second of each, up to so many points.
+    /// [`LANES`] facets side by side, whatever the instruction set: the first point of each, then the second of each, and so
+    /// on.
     Bands {
         /// Points that a facet has room for.
         points: usize,
@@ -283,9 +284,10 @@ impl Pass {
     pub(crate) fn can_remember(&self, memory: &Memory, surfaces: &[Surface]) -> bool {
         let (mut taken, mut least) = (0, 0);
         let in_order = memory.candidates.iter().enumerate().all(|(before, c)| {
+            let Some(&pattern) = self.points.of_facet.get(c.facet as usize) else { return false };
             let first;
-            (first, taken) = self.arrangement.next(before, taken, c.pattern);
-            let fits = self.points.of_facet.get(c.facet as usize) == Some(&c.pattern)
+            (first, taken) = self.arrangement.next(before, taken, pattern);
+            let fits = c.pattern == pattern
                 && c.facet >= least
                 && c.first as usize == first
                 && c.ends == ends(&surfaces[self.secondary], c.facet);
@@ -407,7 +409,7 @@ impl Pass {
         if at.step < self.memory.asleep {
             return Sum::default();
         }
-        Arch::new().dispatch(Evaluation { pass: self, surfaces, at, w, push })
+        Evaluation { pass: self, surfaces, at, w, push }.dispatch()
     }
 
     /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; what the

@@ -274,13 +274,13 @@ impl Dynamics {
             force.accumulate(self.moment(), &mut pushed);
         }
         self.forces = pushed;
-        self.place_damping_frames();
+        let since_placed = self.place_damping_frames();
         let State { x, y, vx, vy, .. } = &mut self.state;
         [x, y].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
         if self.beta > 0.0 {
             [vx, vy].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
         }
-        self.sweep_tiles();
+        self.sweep_tiles(since_placed);
         for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid) {
             body.advance(at, &mut self.state, &mut self.forces, self.time_step, self.gravity);
         }
@@ -341,9 +341,9 @@ impl Dynamics {
         self.beta
     }
 
-    /// Places the damping frames now and then; in between the tiles move them on.
-    fn place_damping_frames(&mut self) {
-        let Some(damped) = self.damped.take() else { return };
+    /// Places the damping frames now and then; in between the tiles move them on by the time since then [s], the result.
+    fn place_damping_frames(&mut self) -> f64 {
+        let Some(damped) = self.damped.take() else { return 0.0 };
         let step = self.state.step;
         let due = |placed: u64| step < placed || step - placed >= PLACE_EVERY;
         let place = step.is_multiple_of(PLACE_EVERY) || self.frames_placed.is_none_or(due);
@@ -371,9 +371,10 @@ impl Dynamics {
             }
         }
         (self.tiles, self.damped) = (tiles, Some(damped));
+        (step - placed) as f64 * self.time_step
     }
 
-    fn sweep_tiles(&mut self) {
+    fn sweep_tiles(&mut self, since_placed: f64) {
         let fields = TileFields {
             x: &mut self.state.x,
             y: &mut self.state.y,
@@ -387,7 +388,6 @@ impl Dynamics {
         // With stiffness damping a pass before has just read all of a tile.
         let fetch = self.fetch && beta == 0.0;
         let back = !self.state.step.is_multiple_of(2);
-        let since_placed = self.frames_placed.map_or(0.0, |placed| (self.state.step - placed) as f64 * dt);
         let drive = Drive { dt, gravity, beta, since_placed, count_heat, fetch, back };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
         let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted };

@@ -15,6 +15,7 @@ use crate::{
     lanes::{LANES, Number, Vector},
     rigid::RigidState,
     threads::share_out,
+    tile::Tile,
 };
 
 /// Elastic energy [J].
@@ -65,17 +66,10 @@ impl Dynamics {
         to.vx.resize(self.state.vx.len());
         to.vy.resize(self.state.vy.len());
         to.rigid.clone_from(&self.rigid);
-        let (mut parts, mut vx, mut vy) = (Vec::new(), &mut to.vx[..], &mut to.vy[..]);
-        for slots in self.tiles.iter().map(|tile| tile.slots.clone()) {
-            let ((first_x, rest_x), (first_y, rest_y)) =
-                (vx.split_at_mut(slots.len()), vy.split_at_mut(slots.len()));
-            (vx, vy) = (rest_x, rest_y);
-            parts.push((slots, first_x, first_y));
-        }
-        self.share_out(&mut parts, &|(slots, ..)| slots.len(), &|(slots, vx, vy)| {
-            vx.copy_from_slice(&self.state.vx[slots.clone()]);
-            vy.copy_from_slice(&self.state.vy[slots.clone()]);
-        });
+        let fields = [(&mut to.vx, &self.state.vx), (&mut to.vy, &self.state.vy)];
+        let parts = fields.into_iter().flat_map(|(to, from)| to.chunks_mut(PART).zip(from.chunks(PART)));
+        let mut parts: Vec<_> = parts.collect();
+        self.share_out(&mut parts, &|(_, from)| from.len(), &|(to, from)| to.copy_from_slice(from));
     }
 
     /// The present velocities.
@@ -120,7 +114,7 @@ impl Dynamics {
     /// Σ m (a·b) over the slots of chosen tiles; `products` gives the factors of both products.
     fn sum<'a>(
         &'a self,
-        chosen: impl Fn(&crate::tile::Tile) -> bool,
+        chosen: impl Fn(&Tile) -> bool,
         products: impl Fn(Range<usize>) -> [[Term<'a>; 2]; 2] + Sync,
     ) -> f64 {
         let tiles = self.tiles.iter().filter(|tile| chosen(tile));
@@ -145,7 +139,7 @@ impl Dynamics {
 /// Nodes or elements that are worth another thread.
 pub(crate) const LEAST_WORK: usize = 4000;
 
-/// Quadrilaterals of a part: enough that parts are few, few enough that threads end together.
+/// Elements or slots of a part: enough that parts are few, few enough that threads end together.
 const PART: usize = 4096;
 
 /// Some elements of one body, and their energy.
@@ -215,26 +209,32 @@ impl WithSimd for QuadSum<'_> {
             }
             for at in (0..BLOCK).step_by(Vector::<S>::LEN) {
                 let [a, b, c, d] = &xs;
-                let xs = [load(simd, a, at), load(simd, b, at), load(simd, c, at), load(simd, d, at)];
+                let xs = [
+                    Vector::load(simd, a, at),
+                    Vector::load(simd, b, at),
+                    Vector::load(simd, c, at),
+                    Vector::load(simd, d, at),
+                ];
                 let [a, b, c, d] = &ys;
-                let ys = [load(simd, a, at), load(simd, b, at), load(simd, c, at), load(simd, d, at)];
+                let ys = [
+                    Vector::load(simd, a, at),
+                    Vector::load(simd, b, at),
+                    Vector::load(simd, c, at),
+                    Vector::load(simd, d, at),
+                ];
                 let [a, b, c, d, e, f, g] = &references;
-                let b1 = [load(simd, a, at), load(simd, b, at)];
-                let b2 = [load(simd, c, at), load(simd, d, at)];
-                let s = [load(simd, e, at), load(simd, f, at)];
-                let [of_strain, of_hourglass] = any_quad_energy(xs, ys, [b1, b2], s, load(simd, g, at), k);
+                let b1 = [Vector::load(simd, a, at), Vector::load(simd, b, at)];
+                let b2 = [Vector::load(simd, c, at), Vector::load(simd, d, at)];
+                let s = [Vector::load(simd, e, at), Vector::load(simd, f, at)];
+                let [of_strain, of_hourglass] =
+                    any_quad_energy(xs, ys, [b1, b2], s, Vector::load(simd, g, at), k);
                 let column = at % LANES;
-                (load(simd, &strain, column) + of_strain).store(&mut strain, column);
-                (load(simd, &hourglass, column) + of_hourglass).store(&mut hourglass, column);
+                (Vector::load(simd, &strain, column) + of_strain).store(&mut strain, column);
+                (Vector::load(simd, &hourglass, column) + of_hourglass).store(&mut hourglass, column);
             }
         }
         ElasticEnergy { strain: strain.iter().sum(), hourglass: hourglass.iter().sum() }
     }
-}
-
-#[inline(always)]
-fn load<S: Simd>(simd: S, from: &[f64], at: usize) -> Vector<S> {
-    Vector::load(simd, from, at)
 }
 
 /// A factor at each slot.
@@ -256,7 +256,7 @@ impl Term<'_> {
     #[inline(always)]
     fn vector<S: Simd>(&self, simd: S, slot: usize) -> Vector<S> {
         match self {
-            Self::Each(values) => load(simd, values, slot),
+            Self::Each(values) => Vector::load(simd, values, slot),
             Self::Same(value) => Vector::all(simd, *value),
         }
     }
@@ -281,7 +281,7 @@ impl WithSimd for MassSum<'_> {
             for i in (first..whole).step_by(LANES) {
                 let product =
                     a.vector(simd, i).times_plus(b.vector(simd, i), c.vector(simd, i) * d.vector(simd, i));
-                sum = load(simd, mass, i).times_plus(product, sum);
+                sum = Vector::load(simd, mass, i).times_plus(product, sum);
             }
             sum.store(&mut columns, first);
         }

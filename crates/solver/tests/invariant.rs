@@ -196,3 +196,46 @@ fn invariant_a_rigid_body_keeps_its_shape() {
         assert!((after - before).abs() < 1e-15, "node {n}");
     }
 }
+
+/// Kinetic energy, work of gravity and elastic energies [J] about the third step, and the first two by their definitions.
+fn energies_on(threads: usize) -> ([f64; 4], [f64; 2]) {
+    let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
+    pool.install(|| {
+        let (mut d, mut load) = ready_to_run(threads);
+        run(&mut d, &mut [&mut load], 2);
+        let (vx, vy, rigid) = (d.state.vx.clone(), d.state.vy.clone(), d.rigid[0]);
+        let before = d.velocities();
+        run(&mut d, &mut [&mut load], 1);
+        let model = everything();
+        let block = model.mesh.bodies.last().expect("bodies").nodes.clone();
+        let (mut kinetic, mut gravity, mut mass, mut inertia) = (0.0, 0.0, 0.0, 0.0);
+        let at = &d.rigid[0];
+        for node in 0..model.mesh.x.len() {
+            let n = slot(&d, node);
+            let (m, x, y) = (d.mass()[n], d.state.x[n], d.state.y[n]);
+            gravity += m * (0.3 * x - 9.81 * y);
+            if block.contains(&node) {
+                mass += m;
+                inertia += m * ((x - at.centre[0]).powi(2) + (y - at.centre[1]).powi(2));
+            } else {
+                kinetic += 0.5 * m * (vx[n] * d.state.vx[n] + vy[n] * d.state.vy[n]);
+            }
+        }
+        let [u, v] = [rigid.velocity, at.velocity];
+        kinetic += 0.5 * mass * (u[0] * v[0] + u[1] * v[1]) + 0.5 * inertia * rigid.spin * at.spin;
+        let elastic = d.elastic_energy();
+        ([d.kinetic_energy(&before), d.gravity_work(), elastic.strain, elastic.hourglass], [kinetic, gravity])
+    })
+}
+
+#[test]
+fn invariant_energies_are_sums_over_nodes_whatever_the_threads() {
+    let (one, defined) = energies_on(1);
+    // Some ten thousand terms of one sign, or nearly so.
+    for (found, expected) in one.iter().zip(defined) {
+        assert!((found - expected).abs() < 1e-12 * expected.abs(), "{found} J, {expected} J by definition");
+    }
+    for threads in 2..=4 {
+        assert_eq!(energies_on(threads).0.map(f64::to_bits), one.map(f64::to_bits), "{threads} threads");
+    }
+}
