@@ -7,7 +7,6 @@ use crate::{
     ahead::Seen,
     damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference},
-    energies::LEAST_WORK,
     error::{Error, check, check_count},
     field::Field,
     force::Force,
@@ -29,6 +28,9 @@ const HEAT_EVERY: u64 = 4;
 /// Bytes that a thread's second-level cache is taken to hold: where its part of a step reads less, nothing need be fetched,
 /// and asking would cost some per cent.
 const NEAR: usize = 2 << 20;
+
+/// Nodes or elements that are worth another thread, for sums that are taken now and then.
+const LEAST_WORK: usize = 4000;
 
 /// A model in motion.
 #[derive(Debug)]
@@ -356,7 +358,7 @@ impl Dynamics {
                     d.moments = lane_moments(&d.mass, &self.state, tile.slots.clone());
                 }
             };
-            share_out(&mut tiles, self.threads(), LEAST_WORK, &|tile| tile.slots.len(), &sum);
+            self.share_out(&mut tiles, &|tile| tile.slots.len(), &sum);
             for body in &damped {
                 let mut moments = Moments::default();
                 for &(tile, lane) in &body.places {
@@ -403,9 +405,15 @@ impl Dynamics {
         }
     }
 
-    /// Threads that take part.
-    pub(crate) fn threads(&self) -> usize {
-        if self.parallel { self.scratch.len() } else { 1 }
+    /// Shares parts out over the threads that take part, where they are worth it.
+    pub(crate) fn share_out<T: Send>(
+        &self,
+        parts: &mut [T],
+        work: &(impl Fn(&T) -> usize + Sync),
+        each: &(impl Fn(&mut T) + Sync),
+    ) {
+        let threads = if self.parallel { self.scratch.len() } else { 1 };
+        share_out(parts, threads, LEAST_WORK, work, each);
     }
 
     /// The rigid part of a body's motion, from the nodes of the given slots.

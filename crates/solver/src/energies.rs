@@ -12,9 +12,9 @@ use crate::{
     dynamics::{Dynamics, ElasticBody, Elements},
     element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
     field::Field,
+    gather::{BLOCK, Corners, rows},
     lanes::{LANES, Number, Vector},
     rigid::RigidState,
-    threads::share_out,
     tile::Tile,
 };
 
@@ -125,19 +125,7 @@ impl Dynamics {
         });
         parts.iter().map(|(_, sum)| sum).sum()
     }
-
-    fn share_out<T: Send>(
-        &self,
-        parts: &mut [T],
-        work: &(impl Fn(&T) -> usize + Sync),
-        each: &(impl Fn(&mut T) + Sync),
-    ) {
-        share_out(parts, self.threads(), LEAST_WORK, work, each);
-    }
 }
-
-/// Nodes or elements that are worth another thread.
-pub(crate) const LEAST_WORK: usize = 4000;
 
 /// Elements or slots of a part: enough that parts are few, few enough that threads end together.
 const PART: usize = 4096;
@@ -167,13 +155,6 @@ impl Part {
     }
 }
 
-/// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
-/// way to memory.
-const BLOCK: usize = 8 * LANES;
-
-/// Numbers of a block of elements.
-type Row = [f64; BLOCK];
-
 /// Energies of quadrilaterals.
 struct QuadSum<'a> {
     quads: &'a [([u32; 4], QuadReference)],
@@ -189,8 +170,9 @@ impl WithSimd for QuadSum<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> ElasticEnergy {
         let Self { quads, stiffness, x, y } = self;
         let k = &stiffness.of(Vector::all(simd, 0.0));
-        let (mut xs, mut ys): ([Row; 4], [Row; 4]) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
-        let mut references: [Row; 7] = [[0.0; BLOCK]; 7];
+        let (mut xs, mut ys): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
+        // Gradients b1 and b2, s1 and s2 with the volume behind them.
+        let (mut gradients, mut rest): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
         let (mut strain, mut hourglass) = ([0.0; LANES], [0.0; LANES]);
         for block in quads.chunks(BLOCK) {
             for (l, (corners, q)) in block.iter().enumerate() {
@@ -198,36 +180,24 @@ impl WithSimd for QuadSum<'_> {
                     xs[c][l] = x[corners[c] as usize];
                     ys[c][l] = y[corners[c] as usize];
                 }
-                let numbers = [q.b1[0], q.b1[1], q.b2[0], q.b2[1], q.s1, q.s2, q.volume];
-                for i in 0..7 {
-                    references[i][l] = numbers[i];
+                let of_reference = [q.b1[0], q.b1[1], q.b2[0], q.b2[1]];
+                for c in 0..4 {
+                    gradients[c][l] = of_reference[c];
                 }
+                (rest[0][l], rest[1][l], rest[2][l]) = (q.s1, q.s2, q.volume);
             }
             // Elements that the last block lacks have no volume and lie in one point.
             for l in block.len()..BLOCK {
-                xs.iter_mut().chain(&mut ys).chain(&mut references).for_each(|row| row[l] = 0.0);
+                [&mut xs, &mut ys, &mut gradients, &mut rest]
+                    .into_iter()
+                    .flatten()
+                    .for_each(|row| row[l] = 0.0);
             }
             for at in (0..BLOCK).step_by(Vector::<S>::LEN) {
-                let [a, b, c, d] = &xs;
-                let xs = [
-                    Vector::load(simd, a, at),
-                    Vector::load(simd, b, at),
-                    Vector::load(simd, c, at),
-                    Vector::load(simd, d, at),
-                ];
-                let [a, b, c, d] = &ys;
-                let ys = [
-                    Vector::load(simd, a, at),
-                    Vector::load(simd, b, at),
-                    Vector::load(simd, c, at),
-                    Vector::load(simd, d, at),
-                ];
-                let [a, b, c, d, e, f, g] = &references;
-                let b1 = [Vector::load(simd, a, at), Vector::load(simd, b, at)];
-                let b2 = [Vector::load(simd, c, at), Vector::load(simd, d, at)];
-                let s = [Vector::load(simd, e, at), Vector::load(simd, f, at)];
-                let [of_strain, of_hourglass] =
-                    any_quad_energy(xs, ys, [b1, b2], s, Vector::load(simd, g, at), k);
+                let [b1x, b1y, b2x, b2y] = rows(simd, &gradients, at);
+                let [s1, s2, volume, _] = rows(simd, &rest, at);
+                let (xs, ys, b) = (rows(simd, &xs, at), rows(simd, &ys, at), [[b1x, b1y], [b2x, b2y]]);
+                let [of_strain, of_hourglass] = any_quad_energy(xs, ys, b, [s1, s2], volume, k);
                 let column = at % LANES;
                 (Vector::load(simd, &strain, column) + of_strain).store(&mut strain, column);
                 (Vector::load(simd, &hourglass, column) + of_hourglass).store(&mut hourglass, column);

@@ -11,10 +11,10 @@ use crate::{
 
 /// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
 /// way to memory.
-const BLOCK: usize = 8 * LANES;
+pub(crate) const BLOCK: usize = 8 * LANES;
 
 /// Corner values of a block of elements, one row a corner.
-type Corners = [[f64; BLOCK]; 4];
+pub(crate) type Corners = [[f64; BLOCK]; 4];
 
 /// The gather path: quadrilaterals in groups, triangles one by one.
 #[inline(always)]
@@ -64,8 +64,9 @@ pub(crate) fn single_elements<S: Simd>(
     }
 }
 
+/// The corner values of some elements of a block, from `at` on.
 #[inline(always)]
-fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
+pub(crate) fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
     let [a, b, c, d] = v;
     [
         Vector::load(simd, a, at),

@@ -96,8 +96,7 @@ impl<I: DoubleEndedIterator> Shared<I> {
 }
 
 /// Two threads take items from either end until none is left, each in its own way: one first from the `left` part, the other
-/// from the `right` one, then both from what lies `between`, and who is done there helps the other. Returns how many the
-/// first one took.
+/// from the `right` one, then both from what lies `between`, and who is done there helps the other.
 pub(crate) fn from_both_ends<I: Send>(
     [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
     mut here: impl FnMut(I) + Send,
