@@ -34,6 +34,9 @@ const BYTES: f64 = 9.0 * 8.0;
 /// Columns and rows: fields of 4 MB, beyond most second-level caches, and of 100 MB.
 const BLOCKS: [(usize, usize); 2] = [(420, 250), (2000, 1250)];
 
+/// And of 400 MB, on request: beyond any third-level cache.
+const LARGE: (usize, usize) = (4000, 2500);
+
 /// Elements of the arithmetic loop: two arrays that stay in the first-level cache.
 const NEAR: usize = 1024;
 
@@ -146,18 +149,27 @@ fn main() {
     let mut near = (Box::new([1.0; NEAR]), Box::new([0.0; NEAR]));
     let (factor, term) = (black_box(0.999_999), black_box(1e-3));
     let repeats = 400;
-    let mut blocks = BLOCKS.map(|(columns, rows)| (columns * rows, block(columns, rows)));
-    let mut fields = BLOCKS.map(|(columns, rows)| [(); 5].map(|()| vec![1e-9; (columns + 1) * (rows + 1)]));
-    let steps = BLOCKS.map(|(columns, rows)| (4_000_000 / (columns * rows)).max(2));
+    let mut sizes = BLOCKS.to_vec();
+    if std::env::var_os("STRIBECK_BENCH_LARGE").is_some() {
+        sizes.push(LARGE);
+    }
+    let mut blocks: Vec<_> =
+        sizes.iter().map(|&(columns, rows)| (columns * rows, block(columns, rows))).collect();
+    let mut fields: Vec<_> = sizes
+        .iter()
+        .map(|(columns, rows)| [(); 5].map(|()| vec![1e-9; (columns + 1) * (rows + 1)]))
+        .collect();
+    let steps: Vec<_> = blocks.iter().map(|(elements, _)| (4_000_000 / elements).max(2)).collect();
 
     let (mut apart, mut together) = (Times::default(), Times::default());
-    let (mut streams, mut sweeps) = (BLOCKS.map(|_| Times::default()), BLOCKS.map(|_| Times::default()));
+    let times = || sizes.iter().map(|_| Times::default()).collect::<Vec<_>>();
+    let (mut streams, mut sweeps) = (times(), times());
     for _ in 0..ROUNDS {
         apart.take(|| (0..repeats).for_each(|_| separate(&mut near.0, &mut near.1, factor, term)));
         if has_fused() {
             together.take(|| (0..repeats).for_each(|_| fused(&mut near.0, &mut near.1, factor, term)));
         }
-        for b in 0..BLOCKS.len() {
+        for b in 0..sizes.len() {
             streams[b].take(|| (0..steps[b]).for_each(|_| stream(&mut fields[b], black_box(1e-9))));
             sweeps[b].take(|| (0..steps[b]).for_each(|_| blocks[b].1.step(&mut [])));
         }
