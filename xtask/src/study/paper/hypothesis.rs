@@ -176,12 +176,17 @@ fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
     let sliding = silent.iter().filter(|r| rolling(r).is_some_and(|r| r < ROLLS)).count();
     sheet.say(&format!(
         "Of {} runs, {} show the line: {inside} have it within one resolution of N_v × spin (the farthest is {} off) and {of_pattern} within \
-         one resolution of the pattern\u{2019}s line. {} show none; in {sliding} of these the rollers slide instead of rolling.",
+         one resolution of the pattern\u{2019}s line.",
         found.len() + silent.len(),
         found.len(),
-        number(worst, 2),
-        silent.len()
+        number(worst, 2)
     ));
+    if !silent.is_empty() {
+        sheet.say(&format!(
+            "Runs without the line: {}, of which with rollers that slide instead of rolling: {sliding}.",
+            silent.len()
+        ));
+    }
     sheet.say(&format!(
         "{nearer} of {} lines are nearer to the pattern\u{2019}s line than to N_v × spin.",
         found.len()
