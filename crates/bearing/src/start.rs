@@ -29,7 +29,7 @@ const ON_THE_WAY: f64 = 1e-2;
 const ITERATIONS: usize = 80;
 
 /// Gaps over which the contact law is rounded, stage by stage [m]; the last stage is the law itself.
-const SOFTNESS: [f64; 7] = [4e-6, 1e-6, 2e-7, 4e-8, 8e-9, 2e-9, 0.0];
+const SOFTNESS: [f64; 5] = [2e-6, 2e-7, 2e-8, 2e-9, 0.0];
 
 /// Diametral clearance for which these serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;

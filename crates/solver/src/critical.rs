@@ -2,7 +2,6 @@
 
 use crate::{
     dynamics::Dynamics,
-    element::{quad_forces, triangle_forces},
     force::{Force, RankOne},
 };
 
@@ -39,29 +38,6 @@ pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
 }
 
 impl Dynamics {
-    /// Elastic forces [N] of all elements at positions `x`, `y`, added to `fx`, `fy`.
-    pub fn elastic_forces(&self, x: &[f64], y: &[f64], fx: &mut [f64], fy: &mut [f64]) {
-        let elements = self.elements();
-        for body in &elements.bodies {
-            for (c, reference) in &elements.quads[body.quads.clone()] {
-                let c = c.map(|n| n as usize);
-                let f = quad_forces(c.map(|n| x[n]), c.map(|n| y[n]), reference, &body.stiffness);
-                for (n, f) in c.into_iter().zip(f) {
-                    fx[n] += f[0];
-                    fy[n] += f[1];
-                }
-            }
-            for (c, reference) in &elements.triangles[body.triangles.clone()] {
-                let c = c.map(|n| n as usize);
-                let [f, g] = triangle_forces(c.map(|n| x[n]), c.map(|n| y[n]), reference, &body.stiffness);
-                for (n, f) in c.into_iter().zip([f, g, [-f[0] - g[0], -f[1] - g[1]]]) {
-                    fx[n] += f[0];
-                    fy[n] += f[1];
-                }
-            }
-        }
-    }
-
     /// Critical time step of elements and forces at the present positions.
     ///
     /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add in

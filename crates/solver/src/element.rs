@@ -246,13 +246,25 @@ fn corner_forces<T: Number>(g1: [T; 2], g2: [T; 2], [wx, wy]: [T; 2], s1: T, s2:
 
 /// Forces [N] on the four corners of one quadrilateral at positions `x`, `y` [m].
 pub fn quad_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [[f64; 2]; 4] {
-    let QuadReference { b1, b2, s1, s2, volume } = *q;
+    let [f1, f2, [minus_x, minus_y], f4] = any_quad_forces(x, y, [q.b1, q.b2], [q.s1, q.s2], q.volume, k);
+    [f1, f2, [-minus_x, -minus_y], f4]
+}
+
+/// The same for numbers of any kind.
+#[inline(always)]
+pub(crate) fn any_quad_forces<T: Number>(
+    x: [T; 4],
+    y: [T; 4],
+    [b1, b2]: [[T; 2]; 2],
+    [s1, s2]: [T; 2],
+    volume: T,
+    k: &Stiffness<T>,
+) -> CornerForces<T> {
     let p = [x[0] - x[2], y[0] - y[2]];
     let r = [x[1] - x[3], y[1] - y[3]];
-    let (g1, g2) = stress_forces(p, r, b1, b2, 0.5 * volume, k);
-    let w = hourglass(x, y, p, r, s1, s2).map(|h| k.hourglass * h);
-    let [f1, f2, [minus_x, minus_y], f4] = corner_forces(g1, g2, w, s1, s2);
-    [f1, f2, [-minus_x, -minus_y], f4]
+    let (g1, g2) = stress_forces(p, r, b1, b2, volume.constant(0.5) * volume, k);
+    let [hx, hy] = hourglass(x, y, p, r, s1, s2);
+    corner_forces(g1, g2, [k.hourglass * hx, k.hourglass * hy], s1, s2)
 }
 
 /// A quadrilateral's reference and material in terms of the inner products of its diagonals: the fewest operations

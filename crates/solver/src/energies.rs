@@ -9,10 +9,10 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
+    blocks::{BLOCK, QuadBlock, Quads},
     dynamics::{Dynamics, ElasticBody, Elements},
     element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
     field::Field,
-    gather::{BLOCK, Corners, rows},
     lanes::{LANES, Number, Vector},
     rigid::RigidState,
     tile::Tile,
@@ -170,34 +170,13 @@ impl WithSimd for QuadSum<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> ElasticEnergy {
         let Self { quads, stiffness, x, y } = self;
         let k = &stiffness.of(Vector::all(simd, 0.0));
-        let (mut xs, mut ys): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
-        // Gradients b1 and b2, s1 and s2 with the volume behind them.
-        let (mut gradients, mut rest): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
+        let mut block = QuadBlock::EMPTY;
         let (mut strain, mut hourglass) = ([0.0; LANES], [0.0; LANES]);
-        for block in quads.chunks(BLOCK) {
-            for (l, (corners, q)) in block.iter().enumerate() {
-                for c in 0..4 {
-                    xs[c][l] = x[corners[c] as usize];
-                    ys[c][l] = y[corners[c] as usize];
-                }
-                let of_reference = [q.b1[0], q.b1[1], q.b2[0], q.b2[1]];
-                for c in 0..4 {
-                    gradients[c][l] = of_reference[c];
-                }
-                (rest[0][l], rest[1][l], rest[2][l]) = (q.s1, q.s2, q.volume);
-            }
-            // Elements that the last block lacks have no volume and lie in one point.
-            for l in block.len()..BLOCK {
-                [&mut xs, &mut ys, &mut gradients, &mut rest]
-                    .into_iter()
-                    .flatten()
-                    .for_each(|row| row[l] = 0.0);
-            }
+        for elements in quads.chunks(BLOCK) {
+            block.gather(elements, x, y);
             for at in (0..BLOCK).step_by(Vector::<S>::LEN) {
-                let [b1x, b1y, b2x, b2y] = rows(simd, &gradients, at);
-                let [s1, s2, volume, _] = rows(simd, &rest, at);
-                let (xs, ys, b) = (rows(simd, &xs, at), rows(simd, &ys, at), [[b1x, b1y], [b2x, b2y]]);
-                let [of_strain, of_hourglass] = any_quad_energy(xs, ys, b, [s1, s2], volume, k);
+                let Quads { x, y, b, s, volume } = block.at(simd, at);
+                let [of_strain, of_hourglass] = any_quad_energy(x, y, b, s, volume, k);
                 let column = at % LANES;
                 (Vector::load(simd, &strain, column) + of_strain).store(&mut strain, column);
                 (Vector::load(simd, &hourglass, column) + of_hourglass).store(&mut hourglass, column);

@@ -4,17 +4,11 @@
 use pulp::Simd;
 
 use crate::{
+    blocks::{BLOCK, Corners, rows},
     element::{Stiffness, any_triangle_forces, triangle_forces},
     lanes::{LANES, Vector},
     tile::{CongruentRun, Tile},
 };
-
-/// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
-/// way to memory.
-pub(crate) const BLOCK: usize = 8 * LANES;
-
-/// Corner values of a block of elements, one row a corner.
-pub(crate) type Corners = [[f64; BLOCK]; 4];
 
 /// The gather path: quadrilaterals in groups, triangles one by one.
 #[inline(always)]
@@ -62,18 +56,6 @@ pub(crate) fn single_elements<S: Simd>(
         fx[c[2]] -= f1[0] + f2[0];
         fy[c[2]] -= f1[1] + f2[1];
     }
-}
-
-/// The corner values of some elements of a block, from `at` on.
-#[inline(always)]
-pub(crate) fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
-    let [a, b, c, d] = v;
-    [
-        Vector::load(simd, a, at),
-        Vector::load(simd, b, at),
-        Vector::load(simd, c, at),
-        Vector::load(simd, d, at),
-    ]
 }
 
 #[inline(always)]

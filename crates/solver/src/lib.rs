@@ -91,10 +91,12 @@
 
 mod advance;
 mod ahead;
+mod blocks;
 pub mod critical;
 pub mod damping;
 pub mod distortion;
 pub mod dynamics;
+mod elastic;
 pub mod element;
 pub mod energies;
 mod error;

@@ -1,0 +1,80 @@
+//! Blocks of elements: what a few of them need is brought together from wherever it lies, then read as vectors.
+
+use pulp::Simd;
+
+use crate::{
+    element::QuadReference,
+    lanes::{LANES, Vector},
+};
+
+/// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
+/// way to memory.
+pub(crate) const BLOCK: usize = 8 * LANES;
+
+/// Corner values of a block of elements, one row a corner.
+pub(crate) type Corners = [[f64; BLOCK]; 4];
+
+/// The corner values of some elements of a block, from `at` on.
+#[inline(always)]
+pub(crate) fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
+    let [a, b, c, d] = v;
+    [
+        Vector::load(simd, a, at),
+        Vector::load(simd, b, at),
+        Vector::load(simd, c, at),
+        Vector::load(simd, d, at),
+    ]
+}
+
+/// Positions and references of a block of quadrilaterals.
+pub(crate) struct QuadBlock {
+    x: Corners,
+    y: Corners,
+    /// Components of b1, then of b2.
+    gradients: Corners,
+    /// s1, s2 and the volume; the last row stays zero.
+    rest: Corners,
+}
+
+/// Some quadrilaterals of a block.
+pub(crate) struct Quads<T> {
+    pub(crate) x: [T; 4],
+    pub(crate) y: [T; 4],
+    pub(crate) b: [[T; 2]; 2],
+    pub(crate) s: [T; 2],
+    pub(crate) volume: T,
+}
+
+impl QuadBlock {
+    pub(crate) const EMPTY: Self = {
+        let zeros = [[0.0; BLOCK]; 4];
+        Self { x: zeros, y: zeros, gradients: zeros, rest: zeros }
+    };
+
+    /// Fills the block with at most [`BLOCK`] elements at positions `x`, `y` [m]. Those that it lacks then have no volume and
+    /// lie in one point.
+    #[inline(always)]
+    pub(crate) fn gather(&mut self, elements: &[([u32; 4], QuadReference)], x: &[f64], y: &[f64]) {
+        for (l, (corners, q)) in elements.iter().enumerate() {
+            let gradients = [q.b1[0], q.b1[1], q.b2[0], q.b2[1]];
+            for c in 0..4 {
+                self.x[c][l] = x[corners[c] as usize];
+                self.y[c][l] = y[corners[c] as usize];
+                self.gradients[c][l] = gradients[c];
+            }
+            (self.rest[0][l], self.rest[1][l], self.rest[2][l]) = (q.s1, q.s2, q.volume);
+        }
+        for field in [&mut self.x, &mut self.y, &mut self.gradients, &mut self.rest] {
+            field.iter_mut().for_each(|row| row[elements.len()..].fill(0.0));
+        }
+    }
+
+    /// As many as an instruction takes, from `at` on.
+    #[inline(always)]
+    pub(crate) fn at<S: Simd>(&self, simd: S, at: usize) -> Quads<Vector<S>> {
+        let [b1x, b1y, b2x, b2y] = rows(simd, &self.gradients, at);
+        let [s1, s2, volume, _] = rows(simd, &self.rest, at);
+        let (x, y) = (rows(simd, &self.x, at), rows(simd, &self.y, at));
+        Quads { x, y, b: [[b1x, b1y], [b2x, b2y]], s: [s1, s2], volume }
+    }
+}
