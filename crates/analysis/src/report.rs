@@ -8,7 +8,10 @@ mod sections;
 mod tables;
 
 use std::fs;
+use std::panic::resume_unwind;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use stribeck_bearing::run_dir::{Run, write_atomic};
@@ -47,22 +50,31 @@ pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     Ok(findings.summary)
 }
 
-/// Every figure as SVG and as PNG; one that moves as GIF too.
+/// Writes every figure, on all cores.
 fn write_figures(figures: &Figures, folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
-    let write = |name: String, bytes: &[u8]| {
-        let path = folder.join(name);
+    let figures = Mutex::new(figures.all());
+    let next = || figures.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let write_some = || std::iter::from_fn(next).try_for_each(|figure| write_figure(figure, folder));
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        let others: Vec<_> = (1..cores).map(|_| scope.spawn(write_some)).collect();
+        let mine = write_some();
+        let of_others = others.into_iter().map(|other| other.join().unwrap_or_else(|why| resume_unwind(why)));
+        of_others.fold(mine, Result::and)
+    })
+}
+
+/// A figure as SVG and as PNG; one that moves as GIF too.
+fn write_figure(figure: &Item, folder: &Path) -> Result<(), Error> {
+    let write = |form: &str, bytes: &[u8]| {
+        let path = folder.join(format!("{}.{form}", figure.id()));
         fs::write(&path, bytes).map_err(|why| Error::Write { path, why })
     };
-    for item in figures.all() {
-        let (id, svg) = (item.id(), item.to_svg()?);
-        write(format!("{id}.svg"), svg.as_bytes())?;
-        write(format!("{id}.png"), &plot::png(id, &svg)?)?;
-        if let Some(gif) = item.animation() {
-            write(format!("{id}.gif"), gif)?;
-        }
-    }
-    Ok(())
+    let svg = figure.to_svg()?;
+    write("svg", svg.as_bytes())?;
+    write("png", &plot::png(figure.id(), &svg)?)?;
+    figure.animation().map_or(Ok(()), |gif| write("gif", gif))
 }
 
 /// `summary.json` with a final line end.
