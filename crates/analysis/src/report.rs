@@ -1,4 +1,4 @@
-//! From a run directory to `report.html`, `summary.json` and `figures/*.svg`. Nothing here simulates: the same
+//! From a run directory to `report.html`, `summary.json` and figures. Nothing here simulates: the same
 //! directory gives the same bytes.
 
 mod comparison;

@@ -49,7 +49,7 @@ impl WithSimd for QuadForces<'_> {
         let (mut of_x, mut of_y): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
         for elements in quads.chunks(BLOCK) {
             block.gather(elements, x, y);
-            for at in (0..BLOCK).step_by(Vector::<S>::LEN) {
+            for at in (0..elements.len()).step_by(Vector::<S>::LEN) {
                 let Quads { x, y, b, s, volume } = block.at(simd, at);
                 let forces = any_quad_forces(x, y, b, s, volume, k);
                 for c in 0..4 {

@@ -101,10 +101,17 @@ impl Equilibrator {
             if iterations == statics.iterations || !worst.is_finite() {
                 return Err(no_equilibrium(dynamics, statics, iterations, worst, at));
             }
-            if iterations == 0 || worst > GOOD_ENOUGH * before {
+            let old = iterations > 0 && worst <= GOOD_ENOUGH * before;
+            if !old {
                 self.tangent.factorise(&mut self.unknowns, dynamics, forces, statics, &residual)?;
             }
-            let step = self.tangent.step(&self.unknowns, dynamics, statics, &residual);
+            let mut step = self.tangent.step(&self.unknowns, dynamics, statics, &residual);
+            let too_far = |[x, y]: &[f64; 2]| x.hypot(*y) > statics.longest_step;
+            if old && step.iter().any(too_far) {
+                // A body was held for a smaller force than it has now.
+                self.tangent.factorise(&mut self.unknowns, dynamics, forces, statics, &residual)?;
+                step = self.tangent.step(&self.unknowns, dynamics, statics, &residual);
+            }
             dynamics.search_along(forces, statics, &mut residual, &self.unknowns, &step);
             before = worst;
             iterations += 1;

@@ -233,12 +233,14 @@ mod tests {
         }
         if let Cells::Numbered = cells {
             // Neighbours far from each other: no strips.
-            let stride = (3..).find(|s| (2..=*s).all(|p| s % p > 0 || nodes % p > 0)).unwrap_or(1);
+            let (stride, nodes) = (7, nodes as u32);
+            let far = |n: u32| n * stride % nodes;
+            assert!(!nodes.is_multiple_of(stride), "every node has a number of its own");
             let (x, y) = (part.x.clone(), part.y.clone());
             for n in 0..nodes {
-                (part.x[n * stride % nodes], part.y[n * stride % nodes]) = (x[n], y[n]);
+                (part.x[far(n) as usize], part.y[far(n) as usize]) = (x[n as usize], y[n as usize]);
             }
-            part.quads.iter_mut().for_each(|q| *q = q.map(|n| (n as usize * stride % nodes) as u32));
+            part.quads.iter_mut().for_each(|q| *q = q.map(far));
         }
         let mut mesh = Mesh::new();
         mesh.add("block", &part);
