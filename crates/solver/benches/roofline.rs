@@ -34,7 +34,7 @@ const BYTES: f64 = 9.0 * 8.0;
 /// Columns and rows: fields of 4 MB, beyond most second-level caches, and of 100 MB.
 const BLOCKS: [(usize, usize); 2] = [(420, 250), (2000, 1250)];
 
-/// And of 400 MB, on request: beyond any third-level cache.
+/// And of 400 MB, on request: beyond most third-level caches too.
 const LARGE: (usize, usize) = (4000, 2500);
 
 /// Elements of the arithmetic loop: two arrays that stay in the first-level cache.

@@ -26,6 +26,24 @@ pub(crate) fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
     ]
 }
 
+/// Adds corner forces [N] of a block of quadrilaterals to those of the nodes; that on the third corner is handed over negative.
+#[inline(always)]
+pub(crate) fn scatter<'a>(
+    corners: impl Iterator<Item = &'a [u32; 4]>,
+    [of_x, of_y]: [&Corners; 2],
+    fx: &mut [f64],
+    fy: &mut [f64],
+) {
+    for (l, corners) in corners.enumerate() {
+        for c in [0, 1, 3] {
+            fx[corners[c] as usize] += of_x[c][l];
+            fy[corners[c] as usize] += of_y[c][l];
+        }
+        fx[corners[2] as usize] -= of_x[2][l];
+        fy[corners[2] as usize] -= of_y[2][l];
+    }
+}
+
 /// Positions and references of a block of quadrilaterals.
 pub(crate) struct QuadBlock {
     x: Corners,

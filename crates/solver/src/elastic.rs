@@ -3,7 +3,7 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    blocks::{BLOCK, Corners, QuadBlock, Quads},
+    blocks::{BLOCK, Corners, QuadBlock, Quads, scatter},
     dynamics::Dynamics,
     element::{QuadReference, Stiffness, any_quad_forces, triangle_forces},
     lanes::Vector,
@@ -57,12 +57,7 @@ impl WithSimd for QuadForces<'_> {
                     forces[c][1].store(&mut of_y[c], at);
                 }
             }
-            for (l, (corners, _)) in elements.iter().enumerate() {
-                for (c, sign) in [(0, 1.0), (1, 1.0), (2, -1.0), (3, 1.0)] {
-                    fx[corners[c] as usize] += sign * of_x[c][l];
-                    fy[corners[c] as usize] += sign * of_y[c][l];
-                }
-            }
+            scatter(elements.iter().map(|(corners, _)| corners), [&of_x, &of_y], fx, fy);
         }
     }
 }

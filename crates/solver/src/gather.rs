@@ -4,7 +4,7 @@
 use pulp::Simd;
 
 use crate::{
-    blocks::{BLOCK, Corners, rows},
+    blocks::{BLOCK, Corners, rows, scatter},
     element::{Stiffness, any_triangle_forces, triangle_forces},
     lanes::{LANES, Vector},
     tile::{CongruentRun, Tile},
@@ -37,14 +37,7 @@ pub(crate) fn single_elements<S: Simd>(
                 forces[c][1].store(&mut ys[c], at);
             }
         }
-        for (l, corners) in elements.iter().enumerate() {
-            for c in [0, 1, 3] {
-                fx[corners[c] as usize] += xs[c][l];
-                fy[corners[c] as usize] += ys[c][l];
-            }
-            fx[corners[2] as usize] -= xs[2][l];
-            fy[corners[2] as usize] -= ys[2][l];
-        }
+        scatter(elements.iter(), [&xs, &ys], fx, fy);
     }
     for (corners, reference) in &tile.triangles {
         let c = corners.map(|c| c as usize);
