@@ -5,10 +5,10 @@ use std::path::Path;
 
 use anyhow::Result;
 use stribeck_analysis::report;
-use stribeck_bearing::run_dir::RunDir;
-use stribeck_bearing::run_info::RunInfo;
-use stribeck_bearing::scene::Scene;
 use stribeck_bearing::simulation;
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_info::RunInfo;
+use stribeck_scene::scene::Scene;
 
 use crate::host;
 

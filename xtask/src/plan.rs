@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use stribeck_analysis::plan::Plan;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 
 use crate::workspace;
 

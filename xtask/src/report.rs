@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use stribeck_bearing::run_dir::RunDir;
+use stribeck_scene::run_dir::RunDir;
 
 use crate::{engine, workspace};
 

@@ -7,9 +7,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result};
-use stribeck_bearing::run_dir::RunDir;
-use stribeck_bearing::run_info::{RunInfo, Status};
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_info::{RunInfo, Status};
+use stribeck_scene::scene::Scene;
 
 use crate::engine::{self, Progress};
 use crate::progress::{Meter, clock};

@@ -1,8 +1,8 @@
 //! The ledger of lines: which of them are the bearing, which are its mesh, and what the spectrum shows of each.
 
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::scene::Scene;
 use stribeck_dsp::{PeriodCount, Spectrum};
+use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::kinematics::KinematicsFinding;

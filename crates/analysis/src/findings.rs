@@ -2,9 +2,9 @@
 
 mod passages;
 
-use stribeck_bearing::run_dir::Run;
-use stribeck_bearing::run_info::Status;
 use stribeck_dsp::{Spectrum, Welch};
+use stribeck_scene::run_dir::Run;
+use stribeck_scene::run_info::Status;
 
 use self::passages::{crossing_forces, level_finding, picked_events};
 use crate::Error;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use stribeck_bearing::kinematics::Kinematics;
+use stribeck_scene::kinematics::Kinematics;
 
 use crate::record::{Record, Roller};
 

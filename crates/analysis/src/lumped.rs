@@ -19,10 +19,10 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_bearing::error::Error;
-use stribeck_bearing::kinematics::Kinematics;
-use stribeck_bearing::scene::{RollerCopies, Scene};
-use stribeck_bearing::static_load::{self, roller_angles_deg};
+use stribeck_scene::Error;
+use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::scene::{RollerCopies, Scene};
+use stribeck_scene::static_load::{self, roller_angles_deg};
 
 use crate::levels::STANDARD_GRAVITY;
 

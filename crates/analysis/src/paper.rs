@@ -7,8 +7,8 @@ mod model;
 mod signal;
 
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::run_info::MeshInfo;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::run_info::MeshInfo;
+use stribeck_scene::scene::Scene;
 
 use crate::prediction::Prediction;
 use crate::summary::Summary;

@@ -4,9 +4,9 @@
 use std::f64::consts::PI;
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::kinematics::Kinematics;
-use stribeck_bearing::scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene};
-use stribeck_bearing::static_load;
+use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene};
+use stribeck_scene::static_load;
 
 use crate::lumped::Lumped;
 use crate::prediction::Prediction;

@@ -1,10 +1,10 @@
 //! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
 //! defect when, and who carries how much.
 
-use stribeck_bearing::kinematics::{Crossing, FacetCounts, Kinematics};
-use stribeck_bearing::run_info::MeshInfo;
-use stribeck_bearing::scene::{DefectScene, Scene};
-use stribeck_bearing::static_load::{RigidRings, roller_angles_deg};
+use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics};
+use stribeck_scene::run_info::MeshInfo;
+use stribeck_scene::scene::{DefectScene, Scene};
+use stribeck_scene::static_load::{RigidRings, roller_angles_deg};
 
 use crate::Error;
 

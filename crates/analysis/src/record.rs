@@ -1,6 +1,6 @@
 //! The channels of a run under their names, cut where they stop being numbers.
 
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use crate::levels::STANDARD_GRAVITY;
 

@@ -14,8 +14,8 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use stribeck_bearing::run_dir::{Run, write_atomic};
-use stribeck_bearing::run_info::Status;
+use stribeck_scene::run_dir::{Run, write_atomic};
+use stribeck_scene::run_info::Status;
 
 use crate::findings::Findings;
 use crate::plot;

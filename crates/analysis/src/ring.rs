@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 
 /// Frequency [Hz] of the in-plane bending mode with `n` waves around a free ring, n ≥ 2.
 ///

@@ -19,8 +19,8 @@
 //!
 //! The corner of the edge is taken as stiff as the raceway, which it is not quite (own).
 
-use stribeck_bearing::scene::Scene;
-use stribeck_bearing::static_load::RigidRings;
+use stribeck_scene::scene::Scene;
+use stribeck_scene::static_load::RigidRings;
 
 /// Halvings of the bracket: beyond rounding.
 const HALVINGS: usize = 60;

@@ -6,8 +6,8 @@
 use std::collections::HashMap;
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::frames::Frame;
-use stribeck_bearing::scene::MaterialScene;
+use stribeck_scene::frames::Frame;
+use stribeck_scene::scene::MaterialScene;
 
 /// Lamé's constants [Pa].
 #[derive(Debug, Clone, Copy)]
@@ -105,7 +105,7 @@ mod tests {
     use super::*;
 
     fn steel() -> Lame {
-        Lame::of(&stribeck_bearing::scene::Scene::default().material)
+        Lame::of(&stribeck_scene::scene::Scene::default().material)
     }
 
     #[test]

@@ -2,8 +2,8 @@
 //! the reason in `notes`.
 
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::run_info::{MeshInfo, RunInfo, Status};
 use stribeck_dsp::Resolution;
+use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
 use crate::enveloping::EnvelopeFinding;

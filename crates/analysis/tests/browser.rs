@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use stribeck_analysis::report;
-use stribeck_bearing::run_info::Status;
+use stribeck_scene::run_info::Status;
 use synthetic::Scratch;
 
 /// Time that scripts get [ms of the browser's own clock].

@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use stribeck_analysis::report;
-use stribeck_bearing::run_dir::RunDir;
-use stribeck_bearing::run_info::Status;
-use stribeck_bearing::scene::Scene;
 use stribeck_bearing::simulation::{Host, simulate};
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::Scene;
 
 /// A folder that is removed at the end.
 struct Scratch(PathBuf);

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use stribeck_analysis::report;
 use stribeck_analysis::summary::Summary;
-use stribeck_bearing::run_info::Status;
+use stribeck_scene::run_info::Status;
 use synthetic::{ENTRY_LAG_S, EXIT_LEAD_S, IMPULSE_G, NOISE_G, SLIP, SUPPORT_N, Scratch, TONE_G, TONE_HZ};
 
 /// The whole record of the paper, 30 ms at 100 kHz.

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use motion::{CLOSING, machine};
 use stribeck_bearing::assembly::Machine;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 use stribeck_solver::{
     Velocities,
     damping::{Frame, MassDamping},

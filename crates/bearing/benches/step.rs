@@ -12,7 +12,7 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use motion::{CLOSING, machine};
 use stribeck_bearing::assembly::Machine;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 use stribeck_solver::Force;
 use stribeck_solver::state::NodeForces;
 

@@ -13,9 +13,8 @@ use stribeck_solver::{
     Behaviour, Dynamics, Elastic, Model, Motion, critical::damped_time_step, force::NodalLoad,
 };
 
-use crate::{
-    error::Error,
-    grading,
+use crate::{error::Error, grading};
+use stribeck_scene::{
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
     scene::{ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, RollerCopies, Scene},

@@ -15,7 +15,8 @@ use serde::{Deserialize, Serialize};
 use stribeck_contact::ContactState;
 use stribeck_solver::snapshot::Snapshot;
 
-use crate::{error::Error, ledger::Reference, recorder, run_info::RunInfo};
+use crate::{error::Error, ledger::Reference, recorder};
+use stribeck_scene::run_info::RunInfo;
 
 /// First bytes of every checkpoint.
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
@@ -66,7 +67,7 @@ impl Checkpoint {
     /// Reads the checkpoint at `path` of the scene with the hash `scene`. Memory is bounded by the size of the file.
     pub(crate) fn read(path: &Path, scene: &str) -> Result<Self, Error> {
         let bad = |reason: String| refused(path, reason);
-        let io = |source| Error::Io {
+        let io = |source| stribeck_scene::Error::Io {
             action: "read",
             path: path.to_owned(),
             kept: "Nothing was changed; the samples of the run stay readable".to_owned(),
@@ -77,7 +78,7 @@ impl Checkpoint {
             Err(e) if e.kind() == ErrorKind::NotFound => {
                 return Err(bad("it has no checkpoint: it ended before its first step".to_owned()));
             }
-            Err(e) => return Err(io(e)),
+            Err(e) => return Err(io(e).into()),
         };
         let mut header = Vec::with_capacity(HEADER);
         file.by_ref().take(HEADER as u64).read_to_end(&mut header).map_err(io)?;

@@ -1,17 +1,13 @@
-//! Frames: where the nodes about the defect are at chosen times, one file each, for pictures of the stress.
-//!
-//! `frames/000042.npy` belongs to sample 42. Its rows are the nodes in a window, with their displacements from the
-//! stress-free mesh that the scene makes; its first column repeats the time. A run that goes on from a checkpoint writes
-//! the frames after it once more, to the same bytes.
+//! Frames are written: where the nodes about the defect are at chosen times ([`stribeck_scene::frames`]).
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+use stribeck_scene::frames::{COLUMNS, Window};
+use stribeck_scene::scene::Scene;
+use stribeck_scene::trace::TraceWriter;
 
 use crate::assembly::{Assembly, Machine};
 use crate::error::Error;
-use crate::scene::Scene;
-use crate::trace::{Trace, TraceWriter};
-
-const COLUMNS: [&str; 4] = ["time_s", "node", "ux_m", "uy_m"];
 
 /// Which samples become frames, and of what.
 #[derive(Debug)]
@@ -22,51 +18,6 @@ pub(crate) struct Frames {
     last: usize,
     stride: usize,
     window: Window,
-}
-
-/// A square beside the outer raceway: one side lies along the raceway's tangent.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Window {
-    /// Its centre [m], where the centre of a roller passes.
-    pub centre: [f64; 2],
-    /// Unit vector away from the bearing's centre.
-    pub outward: [f64; 2],
-    /// Half of its side [m].
-    pub half: f64,
-}
-
-/// Nodes of a window at one time.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Frame {
-    /// Time [s].
-    pub time_s: f64,
-    /// Numbers of the nodes in the scene's mesh, ascending.
-    pub nodes: Vec<u32>,
-    /// Their displacements from the stress-free mesh [m].
-    pub displacement: Vec<[f64; 2]>,
-}
-
-impl Window {
-    /// The window of a scene that asks for frames.
-    pub fn of(scene: &Scene) -> Option<Self> {
-        let frames = scene.output.frames.as_ref()?;
-        let angle = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg).to_radians();
-        let outward = [angle.cos(), angle.sin()];
-        let path = 0.5e-3 * (scene.bearing.outer_race_diameter_mm - scene.bearing.roller_diameter_mm);
-        let centre = outward.map(|c| path * c);
-        Some(Self { centre, outward, half: 1e-3 * frames.half_width_mm })
-    }
-
-    /// Place of a point in the window [m]: along the raceway, clockwise, and outward.
-    pub fn place(&self, x: f64, y: f64) -> [f64; 2] {
-        let (dx, dy) = (x - self.centre[0], y - self.centre[1]);
-        let [nx, ny] = self.outward;
-        [dx * ny - dy * nx, dx * nx + dy * ny]
-    }
-
-    fn holds(&self, x: f64, y: f64) -> bool {
-        self.place(x, y).iter().all(|c| c.abs() <= self.half)
-    }
 }
 
 impl Frames {
@@ -90,7 +41,7 @@ impl Frames {
 
     /// Writes the frame of a sample.
     pub(crate) fn write(&self, sample: usize, assembly: &Assembly, machine: &Machine) -> Result<(), Error> {
-        std::fs::create_dir_all(&self.folder).map_err(|source| Error::Io {
+        std::fs::create_dir_all(&self.folder).map_err(|source| stribeck_scene::Error::Io {
             action: "create",
             path: self.folder.clone(),
             kept: "Samples are safe; free the disk, or set `output.frames: None`".into(),
@@ -104,30 +55,6 @@ impl Frames {
                 file.push(&[state.time, node as f64, x - mesh.x[node], y - mesh.y[node]])?;
             }
         }
-        file.finish()
+        Ok(file.finish()?)
     }
-}
-
-/// All frames in the folder, in the order of time; none when there is no such folder.
-///
-/// # Errors
-/// What is wrong with the first file that cannot be read.
-pub fn read_all(folder: &Path) -> Result<Vec<Frame>, Error> {
-    let Ok(entries) = std::fs::read_dir(folder) else { return Ok(Vec::new()) };
-    let mut files: Vec<PathBuf> =
-        entries.flatten().map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "npy")).collect();
-    files.sort();
-    let mut frames = Vec::new();
-    for file in files {
-        let table = Trace::read(&file)?;
-        let column = |name: &str| table.get(name).unwrap_or_default();
-        let Some(&time_s) = column("time_s").first() else { continue };
-        let (ux, uy) = (column("ux_m"), column("uy_m"));
-        frames.push(Frame {
-            time_s,
-            nodes: column("node").iter().map(|&n| n as u32).collect(),
-            displacement: ux.iter().zip(uy).map(|(&x, &y)| [x, y]).collect(),
-        });
-    }
-    Ok(frames)
 }

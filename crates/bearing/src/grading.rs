@@ -2,11 +2,7 @@
 
 use stribeck_mesh::{Circle, Grading, Surface};
 
-use crate::scene::{GradingScene, MeshScene};
-
-/// Side of the squares inside a graded roller, in facets of its rim. With longer ones the triangles between rim and
-/// core become needles, and nothing is left to save: most elements of a roller lie along its rim.
-const CORE_FACETS: f64 = 3.0;
+use stribeck_scene::scene::{GradingScene, MeshScene};
 
 /// A quotient of lengths that is meant to be whole may fall short of it by rounding.
 const ROUNDING: f64 = 1e-9;
@@ -31,7 +27,7 @@ pub(crate) fn ring(mesh: &MeshScene, thickness_mm: f64, fine: Circle) -> Option<
 pub(crate) fn roller_core_mm(mesh: &MeshScene, facet_mm: f64) -> f64 {
     match &mesh.grading {
         None => mesh.size_mm,
-        Some(grading) => grading.coarse_mm.min(CORE_FACETS * facet_mm),
+        Some(grading) => grading.roller_core_mm(facet_mm),
     }
 }
 

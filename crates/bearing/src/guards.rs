@@ -12,7 +12,7 @@
 //! | rollers and adapter out of their place | | [`OUT_OF_PLACE`] |
 //!
 //! The fields are those of `guards` in the scene. A warning is given once, at the first sample above its limit. What has
-//! been seen is in [`GuardInfo`](crate::run_info::GuardInfo), and so in checkpoints: a continued run warns as an unbroken
+//! been seen is in [`GuardInfo`](stribeck_scene::run_info::GuardInfo), and so in checkpoints: a continued run warns as an unbroken
 //! one does.
 
 use stribeck_solver::Elastic;
@@ -20,9 +20,11 @@ use stribeck_solver::Elastic;
 use crate::{
     assembly::{Assembly, Machine},
     ledger::Ledger,
+    simulation::critical_time_step,
+};
+use stribeck_scene::{
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
-    simulation::critical_time_step,
 };
 
 /// A critical time step that is this share of that of a square cell of the scene's size is worth a word.

@@ -5,7 +5,8 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use stribeck_contact::Resultant;
 
-use crate::{assembly::Machine, scene::Scene};
+use crate::assembly::Machine;
+use stribeck_scene::scene::Scene;
 
 /// Sums between samples and the channels made of them.
 #[derive(Debug)]

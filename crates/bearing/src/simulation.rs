@@ -14,11 +14,13 @@ use crate::{
     checkpoint::Checkpoint,
     error::Error,
     guards::Guards,
+    start::{launch, preload},
+    time_loop::Run,
+};
+use stribeck_scene::{
     run_dir::{RunDir, write_atomic},
     run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
-    start::{launch, preload},
-    time_loop::Run,
 };
 
 /// What a library may not know by itself.
@@ -265,5 +267,5 @@ fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<()
         (0..mesh.x.len()).map(|n| [mesh.x[n] - reference.0[n], mesh.y[n] - reference.1[n], 0.0]).collect();
     let mut picture = Vec::new();
     vtu::write(&mut picture, &mesh, &[vtu::Field::vector("displacement_m", &moved)], &[])?;
-    write_atomic(&dir.mesh(), &picture)
+    Ok(write_atomic(&dir.mesh(), &picture)?)
 }

@@ -8,9 +8,8 @@ use stribeck_solver::{
 use crate::{
     assembly::{Machine, roller_angle},
     error::Error,
-    kinematics::Kinematics,
-    scene::Scene,
 };
+use stribeck_scene::{kinematics::Kinematics, scene::Scene};
 
 /// A body moves at most this far as a whole in one iteration of the preload [m]: about the clearance.
 const LONGEST_STEP: f64 = 2e-5;

@@ -12,10 +12,12 @@ use crate::{
     guards::Guards,
     ledger::{COLUMNS, Ledger, Reference},
     recorder::Recorder,
+    simulation::{Host, Progress},
+};
+use stribeck_scene::{
     run_dir::{RunDir, write_atomic},
     run_info::{RunInfo, Status},
     scene::Scene,
-    simulation::{Host, Progress},
     trace::TraceWriter,
 };
 
@@ -207,8 +209,8 @@ impl<'a> Run<'a> {
         self.trace.sync()?;
         self.energy.sync()?;
         let written = self.checkpoint().encode(&dir.checkpoint());
-        let written = written.and_then(|bytes| write_atomic(&dir.checkpoint(), &bytes));
-        if let Err(error) = written.and_then(|()| dir.write_info(&self.info))
+        let written = written.and_then(|bytes| Ok(write_atomic(&dir.checkpoint(), &bytes)?));
+        if let Err(error) = written.and_then(|()| Ok(dir.write_info(&self.info)?))
             && !saved.failed
         {
             saved.failed = true;

@@ -2,11 +2,11 @@
 
 use std::ops::ControlFlow;
 
-use stribeck_bearing::{
+use stribeck_bearing::simulation::{Host, simulate};
+use stribeck_scene::{
     run_dir::RunDir,
     run_info::RunInfo,
     scene::{Scene, Start},
-    simulation::{Host, simulate},
 };
 
 /// One allocation anywhere in a step would be twenty times this share of the steps; searches that find more than those

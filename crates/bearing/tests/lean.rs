@@ -4,12 +4,14 @@ use std::ops::ControlFlow;
 
 use stribeck_bearing::{
     assembly::Assembly,
-    run_dir::{Run, RunDir},
-    run_info::Status,
-    scene::{GradingScene, Scene},
     simulation::{Host, simulate},
 };
 use stribeck_mesh::Mesh;
+use stribeck_scene::{
+    run_dir::{Run, RunDir},
+    run_info::Status,
+    scene::{GradingScene, Scene},
+};
 
 fn lean() -> Scene {
     Scene::parse(include_str!("../../../fixtures/scenes/lean.ron"), "lean.ron").expect("a sound scene")

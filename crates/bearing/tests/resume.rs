@@ -10,10 +10,12 @@ use std::{
 use proptest::prelude::*;
 use stribeck_bearing::{
     error::Error,
+    simulation::{Host, Progress, resume, simulate},
+};
+use stribeck_scene::{
     run_dir::RunDir,
     run_info::{RunInfo, Status},
     scene::{Scene, Start},
-    simulation::{Host, Progress, resume, simulate},
 };
 
 /// Bytes before the content of a checkpoint: name, version, scene hash, length, checksum.

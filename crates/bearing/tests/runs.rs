@@ -9,12 +9,12 @@ use std::{
     sync::atomic::{AtomicUsize, Ordering},
 };
 
-use stribeck_bearing::{
+use stribeck_bearing::simulation::{Host, Progress, simulate};
+use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
-    simulation::{Host, Progress, simulate},
 };
 
 /// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.

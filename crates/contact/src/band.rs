@@ -3,10 +3,8 @@
 //! What lies near the end of the other chord or near a corner is left over.
 
 use pulp::Simd;
-use stribeck_solver::{
-    lanes::{LANES, Number, Vector},
-    state::Moment,
-};
+use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_solver::state::Moment;
 
 use crate::{
     meeting::{Chord, Joined, Joints, Meeting, Spots, gather},

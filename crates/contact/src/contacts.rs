@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+use stribeck_simd::threads::{Met, share_out, share_out_with_first};
 use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
-    threads::{Met, share_out, share_out_with_first},
 };
 
 use crate::{

@@ -1,10 +1,8 @@
 //! The evaluation of a pass: which points are awake, vectors of them first, then what is left over, one by one.
 
 use pulp::{Arch, Simd, WithSimd};
-use stribeck_solver::{
-    lanes::{LANES, Vector},
-    state::Moment,
-};
+use stribeck_simd::lanes::{LANES, Vector};
+use stribeck_solver::state::Moment;
 
 use crate::{
     band::{Band, MOST_POINTS},

@@ -5,10 +5,8 @@
 //! [`evaluation`](crate::evaluation) does the same for what is left over; a test holds the two together.
 
 use pulp::Simd;
-use stribeck_solver::{
-    lanes::{LANES, Number, Vector},
-    state::Moment,
-};
+use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_solver::state::Moment;
 
 use crate::{
     patch_row::pick,

@@ -1,7 +1,7 @@
 //! After a search: the facet of the primary surface from which each point of a candidate sets out.
 
 use pulp::{Simd, WithSimd};
-use stribeck_solver::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{points::Points, surface::Surface};
 

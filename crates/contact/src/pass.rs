@@ -5,7 +5,8 @@ use std::{ops::Range, sync::Arc};
 use prefetch_index::prefetch_index;
 use pulp::Arch;
 use serde::{Deserialize, Serialize};
-use stribeck_solver::{field::Field, force::RankOne, lanes::LANES, state::Moment};
+use stribeck_simd::{field::Field, lanes::LANES};
+use stribeck_solver::{force::RankOne, state::Moment};
 
 use crate::{
     band,

@@ -4,7 +4,7 @@
 //! Nothing here is a closure: what a closure does is not compiled for the vectors' instruction set.
 
 use pulp::Simd;
-use stribeck_solver::lanes::{Number, Vector};
+use stribeck_simd::lanes::{Number, Vector};
 
 use crate::{
     shape::{Poly, Side},

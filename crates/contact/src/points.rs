@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
-use stribeck_solver::lanes::LANES;
+use stribeck_simd::lanes::LANES;
 
 use crate::{band, surface::Surface};
 

@@ -4,10 +4,8 @@
 //! What lies near the end of the other chord, near a corner, or does not touch is left over.
 
 use pulp::Simd;
-use stribeck_solver::{
-    lanes::{LANES, Number, Vector},
-    state::Moment,
-};
+use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_solver::state::Moment;
 
 use crate::{
     meeting::{Meeting, Spots, ends},

@@ -6,10 +6,8 @@
 //! facet's ends, are left for the loop over single points.
 
 use pulp::Simd;
-use stribeck_solver::{
-    lanes::{Number, Vector},
-    state::Moment,
-};
+use stribeck_simd::lanes::{Number, Vector};
+use stribeck_solver::state::Moment;
 
 use crate::{
     patch_row::{Curve, Lanes, pick, slide, totals},

@@ -1,7 +1,7 @@
 //! What acts at one point in contact, and what it remembers (THEORY §4.2–4.3).
 
 use serde::{Deserialize, Serialize};
-use stribeck_solver::{field::Field, lanes::LANES};
+use stribeck_simd::{field::Field, lanes::LANES};
 
 use crate::law::Law;
 

@@ -1,7 +1,7 @@
 //! What acts at a whole vector of points in contact, and what they remember: `touch.rs` for many.
 
 use pulp::Simd;
-use stribeck_solver::lanes::{Number, Vector};
+use stribeck_simd::lanes::{Number, Vector};
 
 use crate::{
     pass::{LONGEST_REST, SPEED_MARGIN, Weights},

@@ -7,9 +7,9 @@ use pulp::Simd;
 
 use crate::{
     damping::{LaneFrames, LaneMotion},
-    lanes::{LANES, Number, Vector},
     sweep::Drive,
 };
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 /// What is the same for all nodes of a tile.
 pub(crate) struct Step<S: Simd> {

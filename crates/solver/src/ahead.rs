@@ -5,12 +5,14 @@ use pulp::{Simd, WithSimd};
 use crate::{
     advance::{Nodes, Step},
     damping::LaneFrames,
-    field::Field,
     gather::{congruent_elements, single_elements},
-    lanes::{Number, Vector},
     strip::strip_forces,
     sweep::{Drive, TileFields},
     tile::Tile,
+};
+use stribeck_simd::{
+    field::Field,
+    lanes::{Number, Vector},
 };
 
 /// Where the elements of the tile at hand see its nodes, and what that changes about their forces.

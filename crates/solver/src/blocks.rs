@@ -2,10 +2,8 @@
 
 use pulp::Simd;
 
-use crate::{
-    element::QuadReference,
-    lanes::{LANES, Vector},
-};
+use crate::element::QuadReference;
+use stribeck_simd::lanes::{LANES, Vector};
 
 /// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
 /// way to memory.

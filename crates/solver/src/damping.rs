@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{error::Error, error::check, lanes::LANES, rigid::RigidMotion};
+use crate::{error::Error, error::check, rigid::RigidMotion};
+use stribeck_simd::lanes::LANES;
 
 /// The motion that damping leaves alone.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,19 +8,17 @@ use crate::{
     damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference},
     error::{Error, check, check_count},
-    field::Field,
     force::Force,
-    lanes::LANES,
     layout::{Layout, lay_out},
     model::{Behaviour, Model, Motion},
     moments::{LaneMoments, Moments, lane_moments},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
     sweep::{Drive, Energies, Scratch, TileFields},
-    threads::share_out,
     tile::{Tile, TileDamping},
     tile_runs::{TileRuns, sweep_all},
 };
+use stribeck_simd::{field::Field, lanes::LANES, threads::share_out};
 
 /// The heat of damping is counted in every so manyth step: it costs as much as damping itself.
 const HEAT_EVERY: u64 = 4;

@@ -6,8 +6,8 @@ use crate::{
     blocks::{BLOCK, Corners, QuadBlock, Quads, scatter},
     dynamics::Dynamics,
     element::{QuadReference, Stiffness, any_quad_forces, triangle_forces},
-    lanes::Vector,
 };
+use stribeck_simd::lanes::Vector;
 
 impl Dynamics {
     /// Elastic forces [N] of all elements at positions `x`, `y` [m], added to `fx`, `fy`.

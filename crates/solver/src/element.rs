@@ -3,7 +3,8 @@
 //!
 //! A force kernel is written once, for one element or for as many side by side as an instruction takes.
 
-use crate::{error::Error, lanes::Number, material::Elastic};
+use crate::{error::Error, material::Elastic};
+use stribeck_simd::lanes::Number;
 
 /// What a quadrilateral keeps of its reference shape, in a frame of its own: the material is isotropic, so only
 /// the shape matters, and congruent elements have equal references wherever they lie.

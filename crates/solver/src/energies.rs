@@ -12,10 +12,12 @@ use crate::{
     blocks::{BLOCK, QuadBlock, Quads},
     dynamics::{Dynamics, ElasticBody, Elements},
     element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
-    field::Field,
-    lanes::{LANES, Number, Vector},
     rigid::RigidState,
     tile::Tile,
+};
+use stribeck_simd::{
+    field::Field,
+    lanes::{LANES, Number, Vector},
 };
 
 /// Elastic energy [J].

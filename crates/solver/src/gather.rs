@@ -6,9 +6,9 @@ use pulp::Simd;
 use crate::{
     blocks::{BLOCK, Corners, rows, scatter},
     element::{Stiffness, any_triangle_forces, triangle_forces},
-    lanes::{LANES, Vector},
     tile::{CongruentRun, Tile},
 };
+use stribeck_simd::lanes::{LANES, Vector};
 
 /// The gather path: quadrilaterals in groups, triangles one by one.
 #[inline(always)]

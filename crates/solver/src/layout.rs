@@ -14,10 +14,10 @@ use stribeck_mesh::{Body, Mesh, strips::find_strips};
 
 use crate::{
     element::{QuadReference, TriangleReference},
-    lanes::LANES,
     model::{Behaviour, Model, Motion},
     tile::SHORTEST_STRIP,
 };
+use stribeck_simd::lanes::LANES;
 
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
 const TILE_NODES: usize = 8000;

@@ -2,11 +2,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::{
-    lanes::{LANES, Number, Vector},
-    rigid::RigidMotion,
-    state::State,
-};
+use crate::{rigid::RigidMotion, state::State};
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 /// Sums over nodes, about the origin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::field::Field;
+use stribeck_simd::field::Field;
 
 /// Everything that changes in time. Node fields are flat arrays, one value a slot (see [`crate::layout`]).
 ///

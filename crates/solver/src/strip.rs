@@ -8,9 +8,9 @@ use pulp::Simd;
 use crate::{
     advance::{Damping, Nodes, Step, Undamped, advance},
     element::{CornerForces, QuadMetric, Stiffness},
-    lanes::Vector,
     tile::{Strip, VaryingReferences},
 };
+use stribeck_simd::lanes::Vector;
 
 /// Adds the forces of one strip, and moves its lower row if the strip completes it.
 #[inline(always)]

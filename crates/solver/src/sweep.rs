@@ -7,14 +7,12 @@ use crate::{
     advance::{Ahead, Counted, Damped, Damping, Nodes, Step, Undamped, advance_row, gain, rotate},
     ahead::{LookAhead, Seen},
     damping::LaneFrames,
-    field::Field,
     gather::{congruent_elements, single_elements},
-    lanes::Vector,
     model::Motion,
     strip::strip,
-    threads::Met,
     tile::Tile,
 };
+use stribeck_simd::{field::Field, lanes::Vector, threads::Met};
 
 /// The node fields of one tile, or of several that follow each other.
 #[derive(Default)]

@@ -10,11 +10,13 @@ use crate::{
     advance::FETCH,
     damping::LaneFrames,
     element::{QuadMetric, QuadReference, QuadShape, Stiffness, TriangleReference},
-    field::Field,
-    lanes::{LANES, Vector},
     layout::TileLayout,
     model::Motion,
     moments::LaneMoments,
+};
+use stribeck_simd::{
+    field::Field,
+    lanes::{LANES, Vector},
 };
 
 /// Shorter runs of quadrilaterals go through the gather path.

@@ -2,9 +2,9 @@
 
 use crate::{
     sweep::{Drive, Energies, Scratch, TileFields, sweep},
-    threads::{cut, from_both_ends},
     tile::Tile,
 };
+use stribeck_simd::threads::{cut, from_both_ends};
 
 /// Tiles, their parts of the fields and where their energies go, from either end.
 pub(crate) struct TileRuns<'a> {

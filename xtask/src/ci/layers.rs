@@ -5,13 +5,15 @@ use std::path::Path;
 use anyhow::{Context, Result};
 
 /// Every crate and what it depends on of ours. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 6] = [
+const LAYERS: [(&str, &[&str]); 8] = [
     ("mesh", &[]),
-    ("solver", &["mesh"]),
-    ("contact", &["mesh", "solver"]),
-    ("bearing", &["contact", "mesh", "solver"]),
+    ("simd", &[]),
+    ("solver", &["mesh", "simd"]),
+    ("contact", &["mesh", "simd", "solver"]),
+    ("scene", &[]),
+    ("bearing", &["contact", "mesh", "scene", "solver"]),
     ("dsp", &[]),
-    ("analysis", &["bearing", "dsp"]),
+    ("analysis", &["bearing", "dsp", "scene"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.

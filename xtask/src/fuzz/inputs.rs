@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::run_dir::RunDir;
-use stribeck_bearing::scene::Scene;
 use stribeck_bearing::simulation;
-use stribeck_bearing::trace::Trace;
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::scene::Scene;
+use stribeck_scene::trace::Trace;
 use stribeck_solver::{Dynamics, Elastic, Model};
 
 use super::Answer;

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::{Flags, Runner, Sheet, Variant};
 use crate::workspace;

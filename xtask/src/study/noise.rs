@@ -11,7 +11,7 @@ use stribeck_analysis::noise::{Noise, force_ripple, measure, spectrum_g};
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::table::number;
 use super::{Column, Finished, Flags, Runner, Sheet, Variant};

@@ -8,9 +8,9 @@ use std::sync::{Arc, OnceLock};
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::summary::Summary;
-use stribeck_bearing::run_dir::{Run, RunDir};
-use stribeck_bearing::run_info::{RunInfo, Status};
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::run_dir::{Run, RunDir};
+use stribeck_scene::run_info::{RunInfo, Status};
+use stribeck_scene::scene::Scene;
 
 use crate::engine::{self, Progress};
 use crate::progress::{Meter, clock};

@@ -1,7 +1,7 @@
 //! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
 
-use stribeck_bearing::kinematics::Crossing;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::kinematics::Crossing;
+use stribeck_scene::scene::Scene;
 
 use super::{CrossingForce, SensorSignal};
 use crate::Error;

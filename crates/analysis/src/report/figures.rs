@@ -7,7 +7,7 @@ mod motion;
 mod spectra;
 
 use maud::Markup;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::pictures::Pictures;
 use crate::Error;

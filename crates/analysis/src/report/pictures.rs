@@ -8,8 +8,8 @@ mod stress;
 use std::path::Path;
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::frames::{self, Window};
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::frames::{self, Window};
+use stribeck_scene::run_dir::Run;
 
 use crate::Error;
 use crate::findings::Findings;

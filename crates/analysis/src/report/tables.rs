@@ -1,7 +1,7 @@
 //! The tables of the report.
 
 use maud::{Markup, html};
-use stribeck_bearing::run_info::RunInfo;
+use stribeck_scene::run_info::RunInfo;
 
 use super::figures::spoken;
 use crate::summary::Summary;

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use stribeck_bearing::kinematics::{Crossing, Kinematics};
-use stribeck_bearing::run_dir::RunDir;
-use stribeck_bearing::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
-use stribeck_bearing::scene::Scene;
-use stribeck_bearing::trace::TraceWriter;
+use stribeck_scene::kinematics::{Crossing, Kinematics};
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
+use stribeck_scene::scene::Scene;
+use stribeck_scene::trace::TraceWriter;
 
 /// Standard acceleration of gravity [m/s²].
 pub(crate) const G: f64 = 9.806_65;

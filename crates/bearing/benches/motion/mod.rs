@@ -1,7 +1,7 @@
 //! The scene that is measured: bodies that turn and roll while the load closes the clearance.
 
 use stribeck_bearing::assembly::{Assembly, Machine};
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 
 /// Steps that close the clearance: 40 µm at the acceleration of 50 kN on 2 kg, in steps of 35 ns, and as long again.
 pub(crate) const CLOSING: usize = 4000;

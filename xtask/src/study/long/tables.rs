@@ -3,7 +3,7 @@
 use stribeck_analysis::artefacts::{Artefact, Family};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::summary::Summary;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::super::Sheet;
 use super::super::table::number;

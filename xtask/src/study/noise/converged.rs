@@ -1,7 +1,7 @@
 //! Is what is left right? The paper's method and the cure beside elements of half the size.
 
 use stribeck_analysis::record::Record;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::noise;
 use crate::study::table::number;

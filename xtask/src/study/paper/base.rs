@@ -6,7 +6,7 @@ use anyhow::Result;
 use stribeck_analysis::paper as theirs;
 use stribeck_analysis::plot::{Axis, Colour, Figure, Level, Series};
 use stribeck_analysis::record::Record;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::super::table::{number, quantity_by};
 use super::super::{Column, Finished, Sheet, Variant};

@@ -8,7 +8,7 @@ use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::signal::{self, Line};
 use stribeck_analysis::tones::LEAST_PROMINENCE_DB;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::super::table::{number, quantity_by};
 use super::super::{Column, Finished, Sheet, Variant};

@@ -1,9 +1,9 @@
 //! Whole bearings, coarse and short, at the ends of what a scene allows and beyond.
 
 use anyhow::Result;
-use stribeck_bearing::run_dir::Run;
-use stribeck_bearing::run_info::Status;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::run_dir::Run;
+use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::Scene;
 
 use super::{Case, Chapter, Verdict};
 use crate::study::{Finished, Flags, Runner, Variant};

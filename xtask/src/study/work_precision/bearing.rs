@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use stribeck_analysis::summary::Summary;
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::{Curve, Point, Problem};
 use crate::study::{Finished, Runner, Variant};

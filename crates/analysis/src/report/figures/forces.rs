@@ -1,6 +1,6 @@
 //! Contact forces over time: the paper's Fig. 8, and their sum against the load.
 
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use super::{mark, sampled, transient};
 use crate::findings::{CrossingForce, Findings};

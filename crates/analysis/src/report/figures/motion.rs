@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::run_dir::Run;
 
 use crate::findings::Findings;
 use crate::load::running_mean;

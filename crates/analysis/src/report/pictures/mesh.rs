@@ -1,7 +1,7 @@
 //! The mesh, whole and about the defect (the paper's Fig. 1).
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::scene::Scene;
+use stribeck_scene::scene::Scene;
 
 use super::{View, mesh, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};

@@ -1,8 +1,8 @@
 //! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::frames::{Frame, Window};
-use stribeck_bearing::run_dir::Run;
+use stribeck_scene::frames::{Frame, Window};
+use stribeck_scene::run_dir::Run;
 
 use crate::Error;
 use crate::findings::Findings;

@@ -98,7 +98,7 @@ impl RunDir {
     /// # Errors
     ///
     /// [`Error::Io`] when the disk refuses.
-    pub(crate) fn go_on(&self, info: &RunInfo) -> Result<(), Error> {
+    pub fn go_on(&self, info: &RunInfo) -> Result<(), Error> {
         self.write_info(info)?;
         self.started.set(true);
         Ok(())
@@ -141,7 +141,7 @@ impl RunDir {
 
     /// Removes the checkpoint of a run that has come to its end. One that stays does no harm: such a run is not
     /// continued.
-    pub(crate) fn remove_checkpoint(&self) {
+    pub fn remove_checkpoint(&self) {
         std::fs::remove_file(self.checkpoint()).ok();
     }
 

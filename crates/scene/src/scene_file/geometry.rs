@@ -3,11 +3,8 @@
 
 use std::f64::consts::PI;
 
-use stribeck_mesh::Circle;
-
 use super::limits::number;
 use super::origin::Finding;
-use crate::grading;
 use crate::scene::Scene;
 
 /// A wider gap than this part of a roller is a mistake in a diameter, not a clearance.
@@ -280,8 +277,8 @@ fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
     };
     // The transition and the coarse rows of a graded ring cost as much as three fine layers.
     let layers_of_ring = |thickness: f64| {
-        grading::ring(mesh, thickness, Circle::Inner)
-            .map_or(layers(thickness), |g| g.fine_layers as f64 + 3.0)
+        let graded = mesh.grading.as_ref().map_or(f64::INFINITY, |g| g.fine_layers as f64 + 3.0);
+        layers(thickness).min(graded)
     };
     let ring = |field, facets: Option<usize>, diameter: f64, thickness: f64| match facets {
         Some(facets) => (field, facets as f64 * layers_of_ring(thickness)),
@@ -292,7 +289,7 @@ fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
     let facet_mm = PI * b.roller_diameter_mm / facets;
     let core = match &mesh.grading {
         None => 1.0,
-        Some(_) => grading::roller_core_mm(mesh, facet_mm) / facet_mm,
+        Some(grading) => grading.roller_core_mm(facet_mm) / facet_mm,
     };
     let rollers = b.rollers as f64 * facets * facets / (4.0 * PI * core * core);
     [

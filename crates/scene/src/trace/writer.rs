@@ -18,7 +18,7 @@ const ROWS_PER_FLUSH: u64 = 100;
 /// # Examples
 ///
 /// ```
-/// use stribeck_bearing::trace::{Trace, TraceWriter};
+/// use stribeck_scene::trace::{Trace, TraceWriter};
 ///
 /// let path = std::env::temp_dir().join(format!("example-{}.npy", std::process::id()));
 /// let mut trace = TraceWriter::create(&path, &["time_s", "ay_m_s2"])?;

@@ -54,12 +54,7 @@ pub fn share_out_with_first<T: Send>(
 }
 
 /// How many items make about `part` of `whole` parts of all work.
-pub(crate) fn cut(
-    items: impl ExactSizeIterator<Item = usize>,
-    all: usize,
-    part: usize,
-    whole: usize,
-) -> usize {
+pub fn cut(items: impl ExactSizeIterator<Item = usize>, all: usize, part: usize, whole: usize) -> usize {
     let last = items.len().saturating_sub(1);
     let mut before = 0;
     let first = items.take_while(|work| {
@@ -77,7 +72,7 @@ pub struct Met(usize);
 impl Met {
     /// Items up to which one thread will come for certain, and from which on the other will have come, by the last time:
     /// `margin` items on either side of where they met are open.
-    pub(crate) fn open(self, margin: usize, items: usize) -> Range<usize> {
+    pub fn open(self, margin: usize, items: usize) -> Range<usize> {
         let to = (self.0 + margin).min(items);
         self.0.saturating_sub(margin).min(to)..to
     }
@@ -97,7 +92,7 @@ impl<I: DoubleEndedIterator> Shared<I> {
 
 /// Two threads take items from either end until none is left, each in its own way: one first from the `left` part, the other
 /// from the `right` one, then both from what lies `between`, and who is done there helps the other.
-pub(crate) fn from_both_ends<I: Send>(
+pub fn from_both_ends<I: Send>(
     [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
     mut here: impl FnMut(I) + Send,
     mut there: impl FnMut(I) + Send,

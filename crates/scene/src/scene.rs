@@ -322,6 +322,17 @@ pub struct GuardsScene {
     pub unsupported_warning_ms: f64,
 }
 
+/// Side of the squares inside a graded roller, in facets of its rim. With longer ones the triangles between rim and
+/// core become needles, and nothing is left to save: most elements of a roller lie along its rim.
+const CORE_FACETS: f64 = 3.0;
+
+impl GradingScene {
+    /// Side of the squares inside a roller whose facets are `facet_mm` long [mm].
+    pub fn roller_core_mm(&self, facet_mm: f64) -> f64 {
+        self.coarse_mm.min(CORE_FACETS * facet_mm)
+    }
+}
+
 impl Default for Scene {
     fn default() -> Self {
         Self {

@@ -1,0 +1,103 @@
+//! The error type of this crate.
+
+use std::path::PathBuf;
+
+use crate::scene_file::SceneError;
+
+/// Everything that can go wrong with a scene file or the folder of a run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene cannot be read or describes something impossible.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+
+    /// A number given to a function of this crate lies outside its range.
+    #[error("`{field}` is {value}; allowed: {allowed}. {suggestion}")]
+    Input {
+        /// Name of the argument.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// The valid range, with unit.
+        allowed: String,
+        /// What to try.
+        suggestion: &'static str,
+    },
+
+    /// The rigid-ring load distribution was not found.
+    #[error(
+        "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n} N are unbalanced. \
+         Check `load_n` against `thickness_mm`: the approach must stay far below the roller's radius"
+    )]
+    NoEquilibrium {
+        /// Iterations done.
+        iterations: usize,
+        /// Force that is left over [N].
+        residual_n: f64,
+        /// Load [N].
+        load_n: f64,
+    },
+
+    /// The system refused to read or write a file.
+    #[error("cannot {action} `{}`: {source}. {kept}", path.display())]
+    Io {
+        /// What was tried: `create`, `write`, `read` …
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What remains readable, and what to try.
+        kept: String,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+
+    /// A file is not the trace it should be.
+    #[error("`{}` is not a readable trace: {message}", path.display())]
+    Trace {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and what to try.
+        message: String,
+    },
+
+    /// The folder for a run holds something else.
+    #[error(
+        "`{}` holds files that are not a run of Stribeck (for example `{found}`), and a run would mix with them. \
+         Try another folder with --out, or empty this one",
+        path.display()
+    )]
+    ForeignFolder {
+        /// The folder.
+        path: PathBuf,
+        /// One of the foreign files.
+        found: String,
+    },
+
+    /// Another process is writing this run.
+    #[error("`{}` is being written by another run (process {owner}). Wait for it, or choose another folder with --out", path.display())]
+    FolderInUse {
+        /// The folder.
+        path: PathBuf,
+        /// Process number of the other run, as it wrote it down.
+        owner: String,
+    },
+
+    /// A folder that should hold a run does not.
+    #[error("`{}` is not a run of Stribeck: `{missing}` is missing. Name the folder of a run, such as those below `runs/`", path.display())]
+    NotARun {
+        /// The folder.
+        path: PathBuf,
+        /// The first file that was looked for in vain.
+        missing: &'static str,
+    },
+
+    /// `run.json` cannot be understood.
+    #[error("`{}` cannot be understood: {source}. Repeat the run, or restore the file", path.display())]
+    RunInfo {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: serde_json::Error,
+    },
+}
