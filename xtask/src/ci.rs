@@ -1,5 +1,6 @@
 //! `cargo xtask ci`: everything that must hold before a change is accepted.
 
+mod circles;
 mod documents;
 mod layers;
 mod markdown;
@@ -24,8 +25,9 @@ pub(crate) struct Options {
 /// One check: its name, and what is wrong (nothing, when all is well).
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
-const CHECKS: [Check; 7] = [
+const CHECKS: [Check; 8] = [
     ("crates depend on each other in one direction", layers::check),
+    ("modules use each other in one direction", circles::check),
     ("only bearing and above know bearings", sources::check_words),
     ("ARCHITECTURE names every crate", documents::check_architecture),
     ("THEORY has every section that code cites", documents::check_citations),
