@@ -77,7 +77,7 @@ impl Moving {
         let (mut machine, elements) = machine(&variant.scene, 1);
         if let Some(rate) = variant.damping {
             let mut frames: Vec<_> = machine.standing_bodies.iter().map(|&b| (b, Frame::Rest)).collect();
-            frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Track)));
+            frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Tangential { centre: [0.0; 2] })));
             machine.dynamics.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
         }
         let before = Velocities::default();

@@ -243,7 +243,7 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
         return Ok(());
     }
     let (standing, rolling) = match scene.solver.damping_frame {
-        DampingFrame::Rolling => (Frame::Rest, Frame::Track),
+        DampingFrame::Rolling => (Frame::Rest, Frame::Tangential { centre: [0.0; 2] }),
         DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
     };

@@ -1,11 +1,10 @@
 //! Rings, with or without a rectangular groove in the inner surface.
 
-use std::f64::consts::TAU;
-
 use crate::error::{count, elements, finite, positive};
 use crate::groove::{self, Groove};
-use crate::relax::sound;
+use crate::polar_grid::{Place, PolarGrid};
 use crate::rows::{self, NextRow};
+use crate::smoothing::sound;
 use crate::{Error, Part};
 
 /// An annulus about the origin, made of quadrilaterals in circumferential rows.
@@ -29,15 +28,6 @@ pub struct Annulus {
     pub groove: Option<Groove>,
 }
 
-/// Where a node lies in the unrolled annulus.
-#[derive(Clone, Copy)]
-pub(crate) struct Place {
-    /// Facets from the first column.
-    pub(crate) column: usize,
-    /// Layers from the inner surface.
-    pub(crate) row: f64,
-}
-
 impl Annulus {
     /// Makes the mesh.
     ///
@@ -46,13 +36,13 @@ impl Annulus {
     /// [`Groove`].
     pub fn part(&self) -> Result<Part, Error> {
         self.check()?;
-        let (n, layers) = (self.facets, self.layers);
+        let (grid, n, layers) = (self.grid(), self.facets, self.layers);
         let mut part = Part::default();
         let mut places = Vec::with_capacity(n * (layers + 1));
         for row in 0..=layers {
-            let radius = self.row_radius(row as f64);
+            let radius = grid.row_radius(row as f64);
             for column in 0..n {
-                let (sin, cos) = self.column_angle(column).sin_cos();
+                let (sin, cos) = grid.column_angle(column).sin_cos();
                 part.push_node(radius * cos, radius * sin);
                 places.push(Place { column, row: row as f64 });
             }
@@ -61,22 +51,15 @@ impl Annulus {
         part.push_surface("inner", (0..n as u32).rev().collect(), true);
         part.push_surface("outer", (0..n).map(|c| rows::node(layers, c, n)).collect(), true);
         if let Some(groove) = &self.groove {
-            groove::cut(self, groove, &places, f64::INFINITY, &mut part)?;
+            groove::cut(&grid, groove, &places, f64::INFINITY, &mut part)?;
         }
         sound("annulus", part)
     }
 
-    /// Radius of a row [m]; rows between two layers have broken numbers.
-    pub(crate) fn row_radius(&self, row: f64) -> f64 {
-        // The last row is written out, so that no rounding moves the outer surface.
-        if row == self.layers as f64 {
-            return self.outer_radius;
-        }
-        self.inner_radius + (self.outer_radius - self.inner_radius) * row / self.layers as f64
-    }
-
-    pub(crate) fn column_angle(&self, column: usize) -> f64 {
-        self.start_angle + TAU * column as f64 / self.facets as f64
+    /// Its columns and rows, without the groove.
+    pub(crate) fn grid(&self) -> PolarGrid {
+        let Self { inner_radius, outer_radius, facets, layers, start_angle, .. } = *self;
+        PolarGrid { inner_radius, outer_radius, facets, layers, start_angle }
     }
 
     pub(crate) fn check(&self) -> Result<(), Error> {

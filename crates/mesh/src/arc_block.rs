@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::error::{count, elements, finite, positive};
-use crate::relax::sound;
 use crate::rows::{self, NextRow};
+use crate::smoothing::sound;
 use crate::{Error, Part};
 
 /// A piece of an annulus about the origin whose two ends are straight walls.

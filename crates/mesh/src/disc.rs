@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use crate::core_grid::CoreGrid;
 use crate::error::{count, finite, positive};
 use crate::gap::{self, Gap};
-use crate::relax::{inside_out, raise_critical_step};
 use crate::rows::{self, NextRow};
+use crate::smoothing::{inside_out, raise_critical_step};
 use crate::{Error, Part};
 
 /// A disc about the origin with a regular polygon as its boundary.

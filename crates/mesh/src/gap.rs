@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::relax::score;
+use crate::smoothing::score;
 
 /// Poisson's ratio for which triangles are compared.
 const POISSON: f64 = 0.3;

@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use crate::annulus::{Annulus, Place};
+use crate::annulus::Annulus;
 use crate::error::{count, elements};
 use crate::groove;
-use crate::relax::enough;
-use crate::relax::sound;
+use crate::polar_grid::Place;
+use crate::smoothing::{enough, sound};
 use crate::{Error, Part};
 
 /// One of the two circles of an annulus.
@@ -122,11 +122,11 @@ impl Annulus {
     pub fn graded_part(&self, grading: &Grading) -> Result<Part, Error> {
         self.check()?;
         grading.check(self)?;
-        let lattice = Lattice::new(self, grading);
+        let (grid, lattice) = (self.grid(), Lattice::new(self, grading));
         let mut part = Part::default();
         for Place { column, row } in &lattice.places {
-            let radius = self.row_radius(*row);
-            let (sin, cos) = self.column_angle(*column).sin_cos();
+            let radius = grid.row_radius(*row);
+            let (sin, cos) = grid.column_angle(*column).sin_cos();
             part.push_node(radius * cos, radius * sin);
         }
         (part.quads, part.triangles) = (lattice.quads, lattice.triangles);
@@ -139,9 +139,8 @@ impl Annulus {
         part.push_surface("inner", inner, true);
         part.push_surface("outer", outer, true);
         if let Some(groove) = &self.groove {
-            let facet = TAU * self.inner_radius / self.facets as f64;
-            let layer = (self.outer_radius - self.inner_radius) / self.layers as f64;
-            groove::cut(self, groove, &lattice.places, enough(facet.min(layer)), &mut part)?;
+            let finest = grid.inner_facet().min(grid.layer());
+            groove::cut(&grid, groove, &lattice.places, enough(finest), &mut part)?;
         }
         sound("annulus", part)
     }

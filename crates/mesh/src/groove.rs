@@ -1,11 +1,11 @@
-//! A rectangular groove in the inner surface of an annulus.
+//! A rectangular groove in the inner surface of an grid.
 
 use std::f64::consts::TAU;
 
-use crate::annulus::{Annulus, Place};
 use crate::error::{MOST, finite, positive};
-use crate::fair::{SHARPNESS, raise_assembled_step};
-use crate::relax::{inside_out, raise_critical_step_to};
+use crate::polar_grid::{Place, PolarGrid};
+use crate::shape_optimisation::{SHARPNESS, raise_assembled_step};
+use crate::smoothing::{inside_out, raise_critical_step_to};
 use crate::{Error, Part};
 
 /// A rectangular groove: a floor on a larger radius between two radial walls.
@@ -58,37 +58,37 @@ const LEAST_RADIAL: usize = 32;
 /// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
 /// become larger.
 pub(crate) fn cut(
-    annulus: &Annulus,
+    grid: &PolarGrid,
     groove: &Groove,
     places: &[Place],
     enough: f64,
     part: &mut Part,
 ) -> Result<(), Error> {
-    let plan = Plan::new(annulus, groove)?;
-    let (n, layers) = (annulus.facets, annulus.layers);
+    let plan = Plan::new(grid, groove)?;
+    let (n, layers) = (grid.facets, grid.layers);
     let plain = part.clone();
     let (angle, radius) = spread(&plan, n, layers);
     for (at, place) in places.iter().enumerate() {
-        let (sin, cos) = (annulus.column_angle(place.column) + between_rows(&angle, n, *place)).sin_cos();
-        let r = annulus.row_radius(place.row) + between_rows(&radius, n, *place);
+        let (sin, cos) = (grid.column_angle(place.column) + between_rows(&angle, n, *place)).sin_cos();
+        let r = grid.row_radius(place.row) + between_rows(&radius, n, *place);
         (part.x[at], part.y[at]) = (r * cos, r * sin);
     }
-    plan.place_walls(annulus, groove, part);
-    let movable = plan.movable(annulus, groove, places);
-    let layer = (annulus.outer_radius - annulus.inner_radius) / layers as f64;
-    let length = LENGTH * layer.min(TAU * annulus.inner_radius / n as f64);
+    plan.place_walls(grid, groove, part);
+    let movable = plan.movable(grid, groove, places);
+    let layer = grid.layer();
+    let length = LENGTH * layer.min(grid.inner_facet());
     let mut ordered = part.clone();
-    let fair =
+    let optimise =
         |part: &mut Part, sharpness| raise_assembled_step(part, &plain, &movable, POISSON, length, sharpness);
     let (gentle, harsh) = SHARPNESS.split_at(1);
-    if fair(part, gentle).is_none() {
+    if optimise(part, gentle).is_none() {
         // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
         // another search, whichever comes out better.
-        let turned_back = fair(part, harsh);
+        let turned_back = optimise(part, harsh);
         let deep = (groove.depth / layer) as usize;
         raise_critical_step_to(enough, &mut ordered, &movable, POISSON, SWEEPS * (1 + deep));
         let searched = ordered.clone();
-        let again = fair(&mut ordered, gentle);
+        let again = optimise(&mut ordered, gentle);
         if turned_back.is_none() || again.is_some_and(|cost| turned_back.is_none_or(|other| cost < other)) {
             *part = if again.is_some() { ordered } else { searched };
         }
@@ -120,9 +120,9 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(annulus: &Annulus, groove: &Groove) -> Result<Plan, Error> {
-        let n = annulus.facets;
-        let sector = check(annulus, groove)?;
+    fn new(grid: &PolarGrid, groove: &Groove) -> Result<Plan, Error> {
+        let n = grid.facets;
+        let sector = check(grid, groove)?;
         let floor = ((n as f64 * sector / TAU).round() as usize).max(2);
         // Two walls, the floor and at least a few facets elsewhere share the inner surface.
         if floor + 2 + 4 > n {
@@ -132,7 +132,7 @@ impl Plan {
         }
         let rest = n - 2 - floor;
         // The columns are chosen so that the middle of the groove moves by less than half a facet.
-        let middle = (groove.centre_angle - annulus.start_angle) * n as f64 / TAU;
+        let middle = (groove.centre_angle - grid.start_angle) * n as f64 / TAU;
         let from = (middle - 0.5 * (floor + 2) as f64).round();
         let first = from.rem_euclid(n as f64) as usize % n;
         let (mut angle, mut rise) = (vec![0.0; n], vec![0.0; n]);
@@ -148,10 +148,10 @@ impl Plan {
             angle[(first + m) % n] = target - uniform;
             rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { groove.depth } else { 0.0 };
         }
-        let cell = TAU * annulus.inner_radius / n as f64;
+        let cell = grid.inner_facet();
         // A groove of several layers disturbs as many columns as it is deep.
         let columns = REACH + (groove.depth / cell).ceil() as usize;
-        let thickness = ((annulus.outer_radius - annulus.inner_radius) / cell).ceil() as usize;
+        let thickness = ((grid.outer_radius - grid.inner_radius) / cell).ceil() as usize;
         let beside = (FADES * thickness).max(columns + 3);
         let (back, bent) = if floor + 2 * beside + 4 + LEAST_RADIAL < n {
             let (from, bent) = (first + n - beside, floor + 2 + 2 * beside);
@@ -169,9 +169,9 @@ impl Plan {
     }
 
     /// Writes the four wall nodes out, so that no rounding tilts a wall.
-    fn place_walls(&self, annulus: &Annulus, groove: &Groove, part: &mut Part) {
-        let half = 0.5 * groove.length / annulus.inner_radius;
-        let (top, bottom) = (annulus.inner_radius, annulus.inner_radius + groove.depth);
+    fn place_walls(&self, grid: &PolarGrid, groove: &Groove, part: &mut Part) {
+        let half = 0.5 * groove.length / grid.inner_radius;
+        let (top, bottom) = (grid.inner_radius, grid.inner_radius + groove.depth);
         let (a, b) = (groove.centre_angle - half, groove.centre_angle + half);
         for (column, angle, radius) in [
             (self.first, a, top),
@@ -180,15 +180,15 @@ impl Plan {
             (self.first + 2 + self.floor, b, top),
         ] {
             let (sin, cos) = angle.sin_cos();
-            let at = column % annulus.facets;
+            let at = column % grid.facets;
             (part.x[at], part.y[at]) = (radius * cos, radius * sin);
         }
     }
 
     /// Interior nodes near the walls.
-    fn movable(&self, annulus: &Annulus, groove: &Groove, places: &[Place]) -> Vec<bool> {
-        let (n, layers, columns) = (annulus.facets, annulus.layers, self.columns);
-        let layer = (annulus.outer_radius - annulus.inner_radius) / layers as f64;
+    fn movable(&self, grid: &PolarGrid, groove: &Groove, places: &[Place]) -> Vec<bool> {
+        let (n, layers, columns) = (grid.facets, grid.layers, self.columns);
+        let layer = grid.layer();
         let rows = REACH + (groove.depth / layer).ceil() as usize;
         let near_wall = |column: usize, wall: usize| {
             let right = (column + 2 * n - wall % n) % n;
@@ -236,7 +236,7 @@ fn spread(plan: &Plan, n: usize, layers: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// Refuses what cannot be cut; gives the angle between the walls [rad].
-fn check(annulus: &Annulus, groove: &Groove) -> Result<f64, Error> {
+fn check(grid: &PolarGrid, groove: &Groove) -> Result<f64, Error> {
     const SHAPE: &str = "groove";
     finite(SHAPE, "centre_angle", groove.centre_angle)?;
     positive(SHAPE, "length", groove.length)?;
@@ -244,14 +244,14 @@ fn check(annulus: &Annulus, groove: &Groove) -> Result<f64, Error> {
     let refuse = |field, value, limit, advice| {
         Err(Error::OutOfRange { shape: SHAPE, field, value, relation: "at most", limit, advice })
     };
-    let limit = 0.75 * TAU * annulus.inner_radius;
+    let limit = 0.75 * TAU * grid.inner_radius;
     if groove.length > limit {
         return refuse("length", groove.length, limit, "a quarter of the inner surface must remain");
     }
     // A hair more, because 60 % of a difference of radii is rounded.
-    let limit = 0.6 * (1.0 + 1e-9) * (annulus.outer_radius - annulus.inner_radius);
+    let limit = 0.6 * (1.0 + 1e-9) * (grid.outer_radius - grid.inner_radius);
     if groove.depth > limit {
         return refuse("depth", groove.depth, limit, "keep it below 60 % of the thickness");
     }
-    Ok(groove.length / annulus.inner_radius)
+    Ok(groove.length / grid.inner_radius)
 }

@@ -54,9 +54,14 @@
 //! | Question | File |
 //! |---|---|
 //! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
-//! | How is a shape divided? | `annulus.rs`, `grading.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
-//! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
-//! | How are bad cells made better? | `relax.rs` one by one, `fair.rs` and `patch.rs` as a whole |
+//! | How is a ring divided? | `annulus.rs`, on the columns and rows of `polar_grid.rs`; with fine and coarse cells `grading.rs`; with a groove `groove.rs` |
+//! | How is a disc divided? | `disc.rs`: squares inside (`core_grid.rs`), rows outside, triangles between them (`gap.rs`) |
+//! | How are blocks divided? | `rectangle.rs`, `seated_block.rs`, `arc_block.rs` |
+//! | How are rows numbered, and strips found? | `rows.rs`, `strips.rs` |
+//! | How large and how well shaped are elements? | `characteristic.rs`, `quality.rs` |
+//! | How are badly shaped cells improved? | one by one `smoothing.rs`; all at once `shape_optimisation.rs`, by the natural frequencies of a `submesh.rs` (`tridiagonal.rs`) |
+//! | How does a mesh become a file? | `vtu.rs` |
+//! | What is refused? | `error.rs` |
 
 mod mesh;
 mod part;
@@ -64,6 +69,7 @@ mod part;
 mod annulus;
 mod grading;
 mod groove;
+mod polar_grid;
 mod rows;
 
 mod core_grid;
@@ -77,10 +83,10 @@ mod seated_block;
 pub mod strips;
 
 mod characteristic;
-mod fair;
-mod patch;
 pub mod quality;
-pub mod relax;
+mod shape_optimisation;
+pub mod smoothing;
+mod submesh;
 mod tridiagonal;
 
 pub mod vtu;

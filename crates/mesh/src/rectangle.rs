@@ -1,8 +1,8 @@
 //! Rectangles of equal cells.
 
 use crate::error::{count, elements, finite, positive};
-use crate::relax::sound;
 use crate::rows::{self, NextRow};
+use crate::smoothing::sound;
 use crate::{Error, Part};
 
 /// A rectangle of equal cells with sides along the axes.

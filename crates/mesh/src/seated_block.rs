@@ -2,8 +2,8 @@
 
 use crate::error::{count, elements, positive};
 use crate::rectangle::push_sides;
-use crate::relax::sound;
 use crate::rows::{self, NextRow};
+use crate::smoothing::sound;
 use crate::{Error, Part};
 
 /// A block with a flat top whose bottom is a concave arc about the origin.

@@ -190,7 +190,7 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
             let groove = Some(Groove { centre_angle, length, depth });
             let part = Annulus { facets, layers, groove, ..RING }.part().expect("a groove that can be cut");
             assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");
-            // An element alone; what the assembled ones keep is tested with `fair.rs`.
+            // An element alone; what the assembled ones keep is tested in `shape_optimisation.rs`.
             let kept = relative_length(&part, 0.01 / layers as f64);
             assert!(kept > 0.45, "{facets} facets, {groove:?}: {kept:.3}");
             assert_boundary_is(&part, &["inner", "outer"]);

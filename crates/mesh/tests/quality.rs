@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use proptest::prelude::*;
-use stribeck_mesh::relax::raise_critical_step;
+use stribeck_mesh::smoothing::raise_critical_step;
 use stribeck_mesh::{Annulus, Mesh, Quality, Rectangle, characteristic_length};
 
 /// Critical time step of one element times c_p, from its stiffness and mass matrices.

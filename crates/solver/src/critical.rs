@@ -101,7 +101,7 @@ impl Spring {
 
 /// Positions and forces of a probe.
 #[derive(Default, Clone)]
-struct Field {
+struct Probe {
     x: Vec<f64>,
     y: Vec<f64>,
 }
@@ -118,7 +118,7 @@ impl<'a> Operator<'a> {
     }
 
     /// out = M⁻½ (K + D) M⁻½ v, with K from central differences of the elastic forces.
-    fn apply(&self, v: &[f64], out: &mut [f64], at: &mut Field, force: &mut [Field; 2]) {
+    fn apply(&self, v: &[f64], out: &mut [f64], at: &mut Probe, force: &mut [Probe; 2]) {
         let d = self.dynamics;
         let (mass, n) = (d.mass(), self.free.len());
         let largest = v.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
@@ -161,7 +161,7 @@ impl<'a> Operator<'a> {
             return Critical { time_step: f64::INFINITY, frequency: 0.0, iterations: 0, residual: 0.0 };
         }
         let slots = self.dynamics.state.x.len();
-        let field = || Field { x: vec![0.0; slots], y: vec![0.0; slots] };
+        let field = || Probe { x: vec![0.0; slots], y: vec![0.0; slots] };
         let (mut at, mut force) = (field(), [field(), field()]);
         // A fixed, rough start vector has a part along every mode.
         let mut seed = 0x2545_f491_4f6c_dd1d_u64;

@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{error::Error, error::check, rigid::RigidMotion};
-use stribeck_simd::lanes::LANES;
+use crate::{
+    error::{Error, check},
+    rigid::RigidMotion,
+};
 
 /// The motion that damping leaves alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,9 +14,29 @@ pub enum Frame {
     Rest,
     /// The rigid part of the body's own motion: only its vibration is damped, its momentum stays.
     OwnMotion,
-    /// The body's own motion without the part that carries its centre towards or away from the origin: running around
-    /// the origin and turning stay, rattling across a track is damped.
-    Track,
+    /// The body's own motion without what carries its centre of mass towards or away from a point [m]: motion on a circle
+    /// about that point and rotation stay, radial vibration is damped.
+    Tangential {
+        /// Centre of the circle [m].
+        centre: [f64; 2],
+    },
+}
+
+impl Frame {
+    /// The frame where a body moves as `own` says.
+    pub(crate) fn placed(self, own: RigidMotion) -> PlacedFrame {
+        match self {
+            Self::Rest => PlacedFrame::default(),
+            Self::OwnMotion => PlacedFrame { centre: own.centre, velocity: own.velocity, spin: own.spin },
+            Self::Tangential { centre } => {
+                let (x, y) = (own.centre[0] - centre[0], own.centre[1] - centre[1]);
+                let square = (x * x + y * y).max(f64::MIN_POSITIVE);
+                let outwards = (own.velocity[0] * x + own.velocity[1] * y) / square;
+                let velocity = [own.velocity[0] - outwards * x, own.velocity[1] - outwards * y];
+                PlacedFrame { centre: own.centre, velocity, spin: own.spin }
+            }
+        }
+    }
 }
 
 /// Mass-proportional damping of some bodies.
@@ -26,7 +48,7 @@ pub struct MassDamping {
     frames: Vec<(usize, Frame)>,
 }
 
-/// Where a frame was last placed. Part of what changes in time, because frames are placed now and then only.
+/// Where a frame was last placed. It belongs to what changes in time, because frames are not placed in every step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PlacedFrame {
     /// A point of the frame [m].
@@ -37,7 +59,7 @@ pub struct PlacedFrame {
     pub spin: f64,
 }
 
-/// Frames are placed anew every so many steps; in between their centres move on a straight line.
+/// Steps from one placing of the frames to the next; in between their centres move on a straight line.
 pub(crate) const PLACE_EVERY: u64 = 64;
 
 impl MassDamping {
@@ -58,81 +80,5 @@ impl MassDamping {
     /// Rate α [1/s].
     pub(crate) fn rate(&self) -> f64 {
         self.rate
-    }
-}
-
-/// Where the frames of a tile's bodies are: one a lane, all alike in a tile of one body.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LaneFrames {
-    frames: [Frame; LANES],
-    centre: [[f64; 2]; LANES],
-    velocity: [[f64; 2]; LANES],
-    spin: [f64; LANES],
-}
-
-/// How the frames of a tile's bodies move in one step: velocity at the origin [m/s] and angular velocity [rad/s].
-#[derive(Debug, Clone)]
-pub(crate) struct LaneMotion {
-    pub(crate) origin_x: [f64; LANES],
-    pub(crate) origin_y: [f64; LANES],
-    pub(crate) spin: [f64; LANES],
-}
-
-impl LaneFrames {
-    /// All at rest.
-    pub(crate) const REST: Self = Self {
-        frames: [Frame::Rest; LANES],
-        centre: [[0.0; 2]; LANES],
-        velocity: [[0.0; 2]; LANES],
-        spin: [0.0; LANES],
-    };
-
-    pub(crate) fn new(frames: [Frame; LANES]) -> Self {
-        Self { frames, ..Self::REST }
-    }
-
-    /// Whether one of them asks how its body moves.
-    pub(crate) fn follow(&self) -> bool {
-        self.frames.iter().any(|&frame| frame != Frame::Rest)
-    }
-
-    /// Places the frame of a lane by the present motion of its body.
-    pub(crate) fn place(&mut self, lane: usize, own: RigidMotion) {
-        let frame = match self.frames[lane] {
-            Frame::Rest => PlacedFrame::default(),
-            Frame::OwnMotion => PlacedFrame { centre: own.centre, velocity: own.velocity, spin: own.spin },
-            Frame::Track => {
-                let [x, y] = own.centre;
-                let square = (x * x + y * y).max(f64::MIN_POSITIVE);
-                let outwards = (own.velocity[0] * x + own.velocity[1] * y) / square;
-                let velocity = [own.velocity[0] - outwards * x, own.velocity[1] - outwards * y];
-                PlacedFrame { centre: own.centre, velocity, spin: own.spin }
-            }
-        };
-        self.put(lane, frame);
-    }
-
-    /// Puts the frame of a lane where it was placed earlier.
-    pub(crate) fn put(&mut self, lane: usize, frame: PlacedFrame) {
-        self.centre[lane] = frame.centre;
-        self.velocity[lane] = frame.velocity;
-        self.spin[lane] = frame.spin;
-    }
-
-    /// Where the frame of a lane was last placed.
-    pub(crate) fn placed(&self, lane: usize) -> PlacedFrame {
-        PlacedFrame { centre: self.centre[lane], velocity: self.velocity[lane], spin: self.spin[lane] }
-    }
-
-    /// How the frames move `span` [s] after they were placed.
-    pub(crate) fn after(&self, span: f64) -> LaneMotion {
-        let mut motion = LaneMotion { origin_x: [0.0; LANES], origin_y: [0.0; LANES], spin: self.spin };
-        for l in 0..LANES {
-            let (v, w) = (self.velocity[l], self.spin[l]);
-            let c = [self.centre[l][0] + span * v[0], self.centre[l][1] + span * v[1]];
-            motion.origin_x[l] = v[0] + w * c[1];
-            motion.origin_y[l] = v[1] - w * c[0];
-        }
-        motion
     }
 }

@@ -3,29 +3,33 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    advance::gain,
-    ahead::Seen,
-    damping::{Frame, LaneFrames, MassDamping, PLACE_EVERY},
+    damping::{Frame, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference},
     error::{Error, check, check_count},
     force::Force,
-    layout::{Layout, lay_out},
+    kernel::{
+        advance::{StepParameters, gain},
+        fields::TileFields,
+        frames::LaneFrames,
+        layout::{Layout, lay_out},
+        mass_sums::{LaneSums, MassSums, lane_sums},
+        parallel::{TileRuns, sweep_all},
+        stiffness_damping::Extrapolated,
+        sweep::{Scratch, StepEnergies},
+        tile::{Tile, TileDamping},
+    },
     model::{Behaviour, Model, Motion},
-    moments::{LaneMoments, Moments, lane_moments},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Moment, NodeForces, State},
-    sweep::{Drive, Energies, Scratch, TileFields},
-    tile::{Tile, TileDamping},
-    tile_runs::{TileRuns, sweep_all},
 };
 use stribeck_simd::{field::Field, lanes::LANES, threads::share_out};
 
-/// The heat of damping is counted in every so manyth step: it costs as much as damping itself.
+/// Steps from one count of the heat of damping to the next: counting costs as much as damping itself.
 const HEAT_EVERY: u64 = 4;
 
-/// Bytes that a thread's second-level cache is taken to hold: where its part of a step reads less, nothing need be fetched,
-/// and asking would cost some per cent.
-const NEAR: usize = 2 << 20;
+/// Bytes that a thread's second-level cache is taken to hold. Where its part of a step reads less, prefetching gains
+/// nothing and costs some per cent.
+const SECOND_LEVEL_CACHE: usize = 2 << 20;
 
 /// Nodes or elements that are worth another thread, for sums that are taken now and then.
 const LEAST_WORK: usize = 4000;
@@ -43,7 +47,7 @@ pub struct Dynamics {
     pub heat: Accumulated,
     layout: Layout,
     pub(crate) tiles: Vec<Tile>,
-    /// Whether a step reads more than near caches hold.
+    /// Whether a step reads more than second-level caches hold, so that strips prefetch.
     fetch: bool,
     rigid_bodies: Vec<RigidBody>,
     mass: Field,
@@ -51,8 +55,8 @@ pub struct Dynamics {
     elements: Elements,
     forces: NodeForces,
     scratch: Vec<Scratch>,
-    /// Energies of each tile in the last step.
-    counted: Vec<Energies>,
+    /// StepEnergies of each tile in the last step.
+    counted: Vec<StepEnergies>,
     time_step: f64,
     gravity: [f64; 2],
     parallel: bool,
@@ -178,8 +182,8 @@ impl Dynamics {
             elements,
             forces: NodeForces::zeros(n),
             scratch: (0..threads.max(1)).map(|_| Scratch::new(largest)).collect(),
-            counted: vec![Energies::default(); tiles.len()],
-            fetch: tiles.iter().map(Tile::bytes).sum::<usize>() > NEAR * threads.max(1),
+            counted: vec![StepEnergies::default(); tiles.len()],
+            fetch: tiles.iter().map(Tile::bytes).sum::<usize>() > SECOND_LEVEL_CACHE * threads.max(1),
             tiles,
             time_step: 0.0,
             gravity: model.gravity,
@@ -307,7 +311,7 @@ impl Dynamics {
             let mass = self.mass[tile.slots.clone()].iter().copied().collect();
             let frames = LaneFrames::new(std::array::from_fn(|l| frame(l).unwrap_or(Frame::Rest)));
             tile.damping =
-                Some(TileDamping { rate: damping.rate(), frames, mass, moments: LaneMoments::default() });
+                Some(TileDamping { rate: damping.rate(), frames, mass, sums: LaneSums::default() });
             for lane in 0..LANES {
                 let Some(&b) = layout.bodies.get(if layout.congruent { lane } else { 0 }) else { continue };
                 let at = bodies.iter().position(|(body, _)| *body == b).unwrap_or_else(|| {
@@ -332,7 +336,7 @@ impl Dynamics {
         self.beta = beta;
         let largest = self.tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
         let slots = if beta > 0.0 { largest } else { 0 };
-        self.scratch.iter_mut().for_each(|s| s.seen = Seen::new(slots));
+        self.scratch.iter_mut().for_each(|s| s.extrapolated = Extrapolated::new(slots));
         Ok(())
     }
 
@@ -351,18 +355,18 @@ impl Dynamics {
         self.frames_placed = Some(placed);
         let mut tiles = std::mem::take(&mut self.tiles);
         if place {
-            let sum = |tile: &mut Tile| {
+            let add_up = |tile: &mut Tile| {
                 if let Some(d) = tile.damping.as_mut().filter(|d| d.frames.follow()) {
-                    d.moments = lane_moments(&d.mass, &self.state, tile.slots.clone());
+                    d.sums = lane_sums(&d.mass, &self.state, tile.slots.clone());
                 }
             };
-            self.share_out(&mut tiles, &|tile| tile.slots.len(), &sum);
+            self.share_out(&mut tiles, &|tile| tile.slots.len(), &add_up);
             for body in &damped {
-                let mut moments = Moments::default();
+                let mut sums = MassSums::default();
                 for &(tile, lane) in &body.places {
-                    tiles[tile].damping.iter().for_each(|d| moments += d.moments[lane]);
+                    tiles[tile].damping.iter().for_each(|d| sums += d.sums[lane]);
                 }
-                let own = moments.motion();
+                let own = sums.motion();
                 for &(tile, lane) in &body.places {
                     if let Some(d) = &mut tiles[tile].damping {
                         d.frames.place(lane, own);
@@ -388,12 +392,13 @@ impl Dynamics {
         // With stiffness damping a pass before has just read all of a tile.
         let fetch = self.fetch && beta == 0.0;
         let back = !self.state.step.is_multiple_of(2);
-        let drive = Drive { dt, gravity, beta, since_placed, count_heat, fetch, back };
+        let parameters = StepParameters { dt, gravity, beta, since_placed, count_heat, fetch, back };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
         let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted };
-        sweep_all(runs, scratch, drive);
+        sweep_all(runs, scratch, parameters);
         // In the order of the tiles, whatever thread each was on.
-        let Energies { work, heat } = self.counted.iter().fold(Energies::default(), |sum, &e| sum + e);
+        let StepEnergies { work, heat } =
+            self.counted.iter().fold(StepEnergies::default(), |sum, &e| sum + e);
         self.drive.add(work);
         let before = self.heat.last;
         self.heat.add(if count_heat { heat } else { before });

@@ -1,4 +1,4 @@
-//! Energies of a moment: sums over all elements and nodes, shared out over threads and taken in vectors. A run asks for them
+//! Energies at one time: sums over all elements and nodes, shared out over threads and taken in vectors. A run asks for them
 //! at every sample.
 //!
 //! Sums have as many columns as [`LANES`] whatever the instruction set, and parts are added in one order, so that threads
@@ -9,11 +9,13 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    blocks::{BLOCK, QuadBlock, Quads},
     dynamics::{Dynamics, ElasticBody, Elements},
     element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
+    kernel::{
+        batch::{BATCH, QuadBatch, Quads},
+        tile::Tile,
+    },
     rigid::RigidState,
-    tile::Tile,
 };
 use stribeck_simd::{
     field::Field,
@@ -29,7 +31,7 @@ pub struct ElasticEnergy {
     pub hourglass: f64,
 }
 
-/// Velocities of one moment.
+/// Velocities at one time.
 #[derive(Debug, Clone, Default)]
 pub struct Velocities {
     vx: Field,
@@ -172,12 +174,12 @@ impl WithSimd for QuadSum<'_> {
     fn with_simd<S: Simd>(self, simd: S) -> ElasticEnergy {
         let Self { quads, stiffness, x, y } = self;
         let k = &stiffness.of(Vector::all(simd, 0.0));
-        let mut block = QuadBlock::EMPTY;
+        let mut batch = QuadBatch::EMPTY;
         let (mut strain, mut hourglass) = ([0.0; LANES], [0.0; LANES]);
-        for elements in quads.chunks(BLOCK) {
-            block.gather(elements, x, y);
-            for at in (0..BLOCK).step_by(Vector::<S>::LEN) {
-                let Quads { x, y, b, s, volume } = block.at(simd, at);
+        for elements in quads.chunks(BATCH) {
+            batch.gather(elements, x, y);
+            for at in (0..BATCH).step_by(Vector::<S>::LEN) {
+                let Quads { x, y, b, s, volume } = batch.at(simd, at);
                 let [of_strain, of_hourglass] = any_quad_energy(x, y, b, s, volume, k);
                 let column = at % LANES;
                 (Vector::load(simd, &strain, column) + of_strain).store(&mut strain, column);

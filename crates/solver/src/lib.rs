@@ -89,37 +89,29 @@
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
-mod advance;
-mod ahead;
-mod blocks;
 pub mod critical;
 pub mod damping;
 pub mod distortion;
 pub mod dynamics;
-mod elastic;
 pub mod element;
 pub mod energies;
 mod error;
 pub mod force;
-mod gather;
 pub mod integrators;
-pub mod layout;
+mod internal_forces;
+mod kernel;
 pub mod material;
 pub mod model;
-mod moments;
 pub mod reference;
 pub mod rigid;
 pub mod snapshot;
 pub mod state;
 pub mod statics;
-mod strip;
-mod sweep;
-mod tile;
-mod tile_runs;
 
 pub use dynamics::Dynamics;
 pub use energies::Velocities;
 pub use error::Error;
 pub use force::Force;
+pub use kernel::layout;
 pub use material::Elastic;
 pub use model::{Behaviour, Model, Motion};

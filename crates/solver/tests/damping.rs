@@ -132,7 +132,7 @@ fn analytic_mass_damping_on_a_track_takes_the_velocity_across_it() {
     // and what departs from a rigid motion, fall by (1 − αΔt/2)/(1 + αΔt/2) in a step in which nothing else pushes.
     let mut d = ready(&disc_at(0.3, 0.4), 0.9);
     let (orbit, spin, drift, rate) = (20.0, -150.0, 3.0, 1e6);
-    damp(&mut d, rate, Frame::Track);
+    damp(&mut d, rate, Frame::Tangential { centre: [0.0; 2] });
     // The centre of mass; that of a mesh of cells of all shapes is not quite that of the circle.
     let [cx, cy] = d.rigid_motion(&all(&d)).centre;
     let radius = cx.hypot(cy);

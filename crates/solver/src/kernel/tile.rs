@@ -2,25 +2,19 @@
 
 use std::ops::Range;
 
-use prefetch_index::prefetch_index;
-use pulp::Simd;
 use stribeck_mesh::strips::find_strips;
 
 use crate::{
-    advance::FETCH,
-    damping::LaneFrames,
     element::{QuadMetric, QuadReference, QuadShape, Stiffness, TriangleReference},
-    layout::TileLayout,
+    kernel::{
+        frames::LaneFrames,
+        layout::{SHORTEST_STRIP, TileLayout},
+        mass_sums::LaneSums,
+        varying_references::VaryingReferences,
+    },
     model::Motion,
-    moments::LaneMoments,
 };
-use stribeck_simd::{
-    field::Field,
-    lanes::{LANES, Vector},
-};
-
-/// Shorter runs of quadrilaterals go through the gather path.
-pub(crate) const SHORTEST_STRIP: usize = 4;
+use stribeck_simd::{field::Field, lanes::LANES};
 
 /// One tile of work. All node numbers are local to the tile.
 #[derive(Debug, Clone)]
@@ -64,7 +58,7 @@ pub(crate) struct TileDamping {
     /// Mass of each slot [kg], for the heat.
     pub(crate) mass: Field,
     /// Mass and momentum of each lane when the frames were last placed here.
-    pub(crate) moments: LaneMoments,
+    pub(crate) sums: LaneSums,
 }
 
 /// Runs of entries that are true.
@@ -125,11 +119,6 @@ pub(crate) struct CongruentRun {
     pub(crate) quads: Range<usize>,
 }
 
-/// Shapes of quadrilaterals ([`crate::element::QuadShape`]) in groups of lanes: eight values of each kind,
-/// one kind after the other, so that a kernel reads them as one stream.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct VaryingReferences(Field);
-
 /// Consecutive own nodes that move alike and are complete once strip `after` is done, and do not move with it.
 #[derive(Debug, Clone)]
 pub(crate) struct Finish {
@@ -148,75 +137,12 @@ impl Strip {
     }
 }
 
-impl VaryingReferences {
-    /// Numbers of a [`QuadShape`].
-    const KINDS: usize = 6;
-
-    /// Appends groups with the shapes of some elements; returns the number of the first group. The last group is filled up
-    /// with its last element, and one more follows, because kernels read a group beyond the end.
-    fn push(&mut self, elements: impl ExactSizeIterator<Item = QuadShape>) -> usize {
-        let start = self.0.len() / (Self::KINDS * LANES);
-        let groups = elements.len() / LANES + 1;
-        let mut kinds = [const { Vec::new() }; Self::KINDS];
-        for QuadShape { rest: [pp, rr, pr], scale, s1, s2 } in elements {
-            kinds.iter_mut().zip([pp, rr, pr, scale, s1, s2]).for_each(|(kind, value)| kind.push(value));
-        }
-        for group in 0..groups {
-            for kind in &kinds {
-                let last = kind.last().copied().unwrap_or(0.0);
-                (0..LANES).for_each(|l| self.0.push(kind.get(group * LANES + l).copied().unwrap_or(last)));
-            }
-        }
-        start
-    }
-
-    /// Renumbers the corners 4, 3, 2, 1 of `n` elements from group `start` on.
-    fn turn_over(&mut self, start: usize, n: usize) {
-        if n == 0 {
-            return;
-        }
-        for group in start..=start + n / LANES {
-            let at = group * Self::KINDS * LANES;
-            for l in at..at + LANES {
-                // Diagonals change places, and so do their parts of the hourglass vector.
-                self.0.swap(l, LANES + l);
-                self.0.swap(4 * LANES + l, 5 * LANES + l);
-            }
-        }
-    }
-
-    /// Fetches shapes of elements further on than `e` of those whose first group is `start`.
-    #[inline(always)]
-    pub(crate) fn fetch(&self, start: usize, e: usize) {
-        let at = (start + (e + FETCH) / LANES) * Self::KINDS * LANES;
-        (0..Self::KINDS).for_each(|kind| prefetch_index(&self.0[..], at + kind * LANES));
-    }
-
-    /// Shapes of the elements from `e` on of those whose first group is `start`.
-    #[inline(always)]
-    pub(crate) fn group<S: Simd>(&self, simd: S, start: usize, e: usize) -> QuadShape<Vector<S>> {
-        let at = (start + e / LANES) * Self::KINDS * LANES;
-        let values = &self.0[at..at + Self::KINDS * LANES];
-        let lane = e % LANES;
-        QuadShape {
-            rest: [
-                Vector::load(simd, values, lane),
-                Vector::load(simd, values, LANES + lane),
-                Vector::load(simd, values, 2 * LANES + lane),
-            ],
-            scale: Vector::load(simd, values, 3 * LANES + lane),
-            s1: Vector::load(simd, values, 4 * LANES + lane),
-            s2: Vector::load(simd, values, 5 * LANES + lane),
-        }
-    }
-}
-
 impl Tile {
     /// About how many bytes a step reads here.
     pub(crate) fn bytes(&self) -> usize {
         // Positions, velocities, time step over mass.
         const FIELDS: usize = 5;
-        size_of::<f64>() * (FIELDS * self.slots.len() + self.varying.0.len())
+        size_of::<f64>() * FIELDS * self.slots.len() + self.varying.bytes()
     }
 
     /// Prepares a tile. `motion` and `loaded` have one entry for each of its slots.

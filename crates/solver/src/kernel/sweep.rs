@@ -4,81 +4,55 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    advance::{Ahead, Counted, Damped, Damping, Nodes, Step, Undamped, advance_row, gain, rotate},
-    ahead::{LookAhead, Seen},
-    damping::LaneFrames,
-    gather::{congruent_elements, single_elements},
+    kernel::{
+        advance::{
+            Counted, Damped, Damping, Nodes, Step, StepParameters, Undamped, WithStiffness, advance_row,
+            gain, rotate,
+        },
+        fields::TileFields,
+        frames::LaneFrames,
+        gather::{congruent_elements, single_elements},
+        stiffness_damping::{Extrapolate, Extrapolated},
+        strip::strip,
+        tile::Tile,
+    },
     model::Motion,
-    strip::strip,
-    tile::Tile,
 };
 use stribeck_simd::{field::Field, lanes::Vector, threads::Met};
 
-/// The node fields of one tile, or of several that follow each other.
-#[derive(Default)]
-pub(crate) struct TileFields<'a> {
-    pub(crate) x: &'a mut [f64],
-    pub(crate) y: &'a mut [f64],
-    pub(crate) vx: &'a mut [f64],
-    pub(crate) vy: &'a mut [f64],
-    /// Forces from outside the elements; read and reset at loaded nodes.
-    pub(crate) fx: &'a mut [f64],
-    pub(crate) fy: &'a mut [f64],
-}
-
-impl TileFields<'_> {
-    /// The same fields once more.
-    fn again(&mut self) -> TileFields<'_> {
-        let Self { x, y, vx, vy, fx, fy } = self;
-        TileFields { x, y, vx, vy, fx, fy }
-    }
-}
-
-/// What a worker thread may scribble on.
+/// Memory of one thread for the tile at hand.
 #[derive(Debug, Clone)]
 pub(crate) struct Scratch {
     /// Forces on the nodes of the tile at hand; all zero between tiles.
     fx: Field,
     fy: Field,
     /// Where elements see the nodes; empty without stiffness damping.
-    pub(crate) seen: Seen,
+    pub(crate) extrapolated: Extrapolated,
     /// Where this thread, the first of two, met the other.
     pub(crate) met: Met,
 }
 
 impl Scratch {
     pub(crate) fn new(slots: usize) -> Self {
-        Self { fx: Field::zeros(slots), fy: Field::zeros(slots), seen: Seen::default(), met: Met::default() }
+        Self {
+            fx: Field::zeros(slots),
+            fy: Field::zeros(slots),
+            extrapolated: Extrapolated::default(),
+            met: Met::default(),
+        }
     }
 }
 
-/// What moves nodes.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Drive {
-    pub(crate) dt: f64,
-    pub(crate) gravity: [f64; 2],
-    /// β of the stiffness damping [s].
-    pub(crate) beta: f64,
-    /// Time since damping frames were placed [s].
-    pub(crate) since_placed: f64,
-    /// Whether the heat of damping is counted in this step.
-    pub(crate) count_heat: bool,
-    /// Whether strips fetch what they read next from far caches.
-    pub(crate) fetch: bool,
-    /// Whether tiles are swept in the opposite order, the last ones of the step before first.
-    pub(crate) back: bool,
-}
-
-/// Energies of a step [J], each from half a step before to half a step after the positions' time.
+/// StepEnergies of a step [J], each from half a step before to half a step after the positions' time.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Energies {
+pub(crate) struct StepEnergies {
     /// Work of prescribed motion.
     pub(crate) work: f64,
     /// Heat of damping; zero where it is not counted.
     pub(crate) heat: f64,
 }
 
-impl std::ops::Add for Energies {
+impl std::ops::Add for StepEnergies {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self { work: self.work + other.work, heat: self.heat + other.heat }
@@ -90,17 +64,18 @@ pub(crate) fn sweep(
     tile: &Tile,
     mut fields: TileFields<'_>,
     scratch: &mut Scratch,
-    drive: Drive,
-) -> Energies {
+    parameters: StepParameters,
+) -> StepEnergies {
     let arch = Arch::new();
-    if drive.beta == 0.0 || !tile.elastic {
-        return arch.dispatch(Sweep { tile, fields, scratch, drive });
+    if parameters.beta == 0.0 || !tile.elastic {
+        return arch.dispatch(Sweep { tile, fields, scratch, parameters });
     }
-    let seen = &mut scratch.seen;
-    let before = arch.dispatch(LookAhead { tile, fields: fields.again(), seen, drive });
-    let mut energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, drive });
-    if drive.count_heat {
-        energies.heat += 0.5 * drive.dt * (before + scratch.seen.power(tile.own, fields.vx, fields.vy));
+    let extrapolated = &mut scratch.extrapolated;
+    let before = arch.dispatch(Extrapolate { tile, fields: fields.again(), extrapolated, parameters });
+    let mut energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, parameters });
+    if parameters.count_heat {
+        energies.heat +=
+            0.5 * parameters.dt * (before + scratch.extrapolated.power(tile.own, fields.vx, fields.vy));
     }
     energies
 }
@@ -110,19 +85,19 @@ struct Sweep<'a> {
     tile: &'a Tile,
     fields: TileFields<'a>,
     scratch: &'a mut Scratch,
-    drive: Drive,
+    parameters: StepParameters,
 }
 
 impl WithSimd for Sweep<'_> {
-    type Output = Energies;
+    type Output = StepEnergies;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Energies {
-        let ahead = self.drive.beta > 0.0 && self.tile.elastic;
-        match (&self.tile.damping, self.drive.count_heat) {
-            (None, _) if ahead => self.run::<S, Ahead<Undamped>>(simd),
-            (Some(_), true) if ahead => self.run::<S, Ahead<Counted>>(simd),
-            (Some(_), false) if ahead => self.run::<S, Ahead<Damped>>(simd),
+    fn with_simd<S: Simd>(self, simd: S) -> StepEnergies {
+        let stiffness = self.parameters.beta > 0.0 && self.tile.elastic;
+        match (&self.tile.damping, self.parameters.count_heat) {
+            (None, _) if stiffness => self.run::<S, WithStiffness<Undamped>>(simd),
+            (Some(_), true) if stiffness => self.run::<S, WithStiffness<Counted>>(simd),
+            (Some(_), false) if stiffness => self.run::<S, WithStiffness<Damped>>(simd),
             (None, _) => self.run::<S, Undamped>(simd),
             (Some(_), true) => self.run::<S, Counted>(simd),
             (Some(_), false) => self.run::<S, Damped>(simd),
@@ -132,11 +107,11 @@ impl WithSimd for Sweep<'_> {
 
 impl Sweep<'_> {
     #[inline(always)]
-    fn run<S: Simd, D: Damping>(self, simd: S) -> Energies {
-        let Self { tile, fields, scratch, drive } = self;
-        let Drive { dt, gravity, .. } = drive;
+    fn run<S: Simd, D: Damping>(self, simd: S) -> StepEnergies {
+        let Self { tile, fields, scratch, parameters } = self;
+        let StepParameters { dt, gravity, .. } = parameters;
         let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
-        let step = &Step::new(simd, &drive, rate, frames);
+        let step = &Step::new(simd, &parameters, rate, frames);
         let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
         let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
         let n = tile.slots.len();
@@ -149,8 +124,8 @@ impl Sweep<'_> {
                 }
             }
         }
-        let (x, y, own_x, own_y) = if D::AHEAD {
-            (&mut scratch.seen.x[..n], &mut scratch.seen.y[..n], x, y)
+        let (x, y, own_x, own_y) = if D::STIFFNESS {
+            (&mut scratch.extrapolated.x[..n], &mut scratch.extrapolated.y[..n], x, y)
         } else {
             (x, y, &mut [][..], &mut [][..])
         };
@@ -185,7 +160,7 @@ impl Sweep<'_> {
         }
         fx[tile.own..].fill(0.0);
         fy[tile.own..].fill(0.0);
-        Energies { work, heat: step.heat(heat) }
+        StepEnergies { work, heat: step.heat(heat) }
     }
 }
 
@@ -255,7 +230,7 @@ mod tests {
         mesh
     }
 
-    fn in_lanes(sweep: Sweep<'_>, lanes: usize) -> Energies {
+    fn in_lanes(sweep: Sweep<'_>, lanes: usize) -> StepEnergies {
         #[cfg(target_arch = "x86_64")]
         match (lanes, pulp::x86::V3::try_new(), pulp::x86::V4::try_new()) {
             (4, Some(avx2), _) => return Simd::vectorize(avx2, sweep),
@@ -310,7 +285,7 @@ mod tests {
             slots.iter().flat_map(|&slot| [after(&d.state.vx, 0, slot), after(&d.state.vy, 1, slot)]);
         let expected = expected.collect();
 
-        let drive = Drive {
+        let parameters = StepParameters {
             dt: STEP,
             gravity: GRAVITY,
             beta: 0.0,
@@ -333,7 +308,7 @@ mod tests {
                 fx: &mut fx[own.clone()],
                 fy: &mut fy[own],
             };
-            in_lanes(Sweep { tile, fields, scratch: &mut scratch, drive }, lanes);
+            in_lanes(Sweep { tile, fields, scratch: &mut scratch, parameters }, lanes);
         }
         let found = slots.iter().flat_map(|&slot| [d.state.vx[slot], d.state.vy[slot]]).collect();
         [found, expected]

@@ -2,12 +2,12 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::{
-    advance::{Nodes, Step},
-    damping::LaneFrames,
+use crate::kernel::{
+    advance::{Nodes, Step, StepParameters},
+    fields::TileFields,
+    frames::LaneFrames,
     gather::{congruent_elements, single_elements},
     strip::strip_forces,
-    sweep::{Drive, TileFields},
     tile::Tile,
 };
 use stribeck_simd::{
@@ -17,7 +17,7 @@ use stribeck_simd::{
 
 /// Where the elements of the tile at hand see its nodes, and what that changes about their forces.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Seen {
+pub(crate) struct Extrapolated {
     /// Positions x + β v [m].
     pub(crate) x: Field,
     pub(crate) y: Field,
@@ -26,8 +26,8 @@ pub(crate) struct Seen {
     fy: Field,
 }
 
-impl Seen {
-    /// For tiles of at most so many slots.
+impl Extrapolated {
+    /// For tiles of at most this many slots.
     pub(crate) fn new(slots: usize) -> Self {
         let zeros = || Field::zeros(slots);
         Self { x: zeros(), y: zeros(), fx: zeros(), fy: zeros() }
@@ -39,39 +39,43 @@ impl Seen {
     }
 }
 
-/// Finds [`Seen`] for one tile. Ghosts must have positions and velocities.
-pub(crate) struct LookAhead<'a> {
+/// Finds [`Extrapolated`] for one tile. Ghosts must have positions and velocities.
+pub(crate) struct Extrapolate<'a> {
     pub(crate) tile: &'a Tile,
     pub(crate) fields: TileFields<'a>,
-    pub(crate) seen: &'a mut Seen,
-    pub(crate) drive: Drive,
+    pub(crate) extrapolated: &'a mut Extrapolated,
+    pub(crate) parameters: StepParameters,
 }
 
-impl WithSimd for LookAhead<'_> {
+impl WithSimd for Extrapolate<'_> {
     /// Power [W] that damping takes at the velocities before the step; zero where heat is not counted.
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Self { tile, fields, seen, drive } = self;
+        let Self { tile, fields, extrapolated, parameters } = self;
         let TileFields { x, y, vx, vy, .. } = fields;
         let n = tile.slots.len();
-        for (to, at, v) in [(&mut seen.x, &*x, &*vx), (&mut seen.y, &*y, &*vy)] {
+        for (to, at, v) in [(&mut extrapolated.x, &*x, &*vx), (&mut extrapolated.y, &*y, &*vy)] {
             for ((to, at), v) in to[..n].iter_mut().zip(at).zip(v) {
-                *to = drive.beta.times_plus(*v, *at);
+                *to = parameters.beta.times_plus(*v, *at);
             }
         }
-        if !drive.count_heat {
+        if !parameters.count_heat {
             return 0.0;
         }
         let k = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let step = &Step::new(simd, &drive, 0.0, &LaneFrames::REST);
-        seen.fx[..n].fill(0.0);
-        seen.fy[..n].fill(0.0);
+        let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
+        extrapolated.fx[..n].fill(0.0);
+        extrapolated.fy[..n].fill(0.0);
         // Forces where elements see the nodes less those where the nodes are: −f of the latter, plus f of the former.
-        for ahead in [false, true] {
-            let (x, y) = if ahead { (&mut seen.x[..n], &mut seen.y[..n]) } else { (&mut *x, &mut *y) };
-            let (fx, fy) = (&mut seen.fx[..n], &mut seen.fy[..n]);
+        for extrapolate in [false, true] {
+            let (x, y) = if extrapolate {
+                (&mut extrapolated.x[..n], &mut extrapolated.y[..n])
+            } else {
+                (&mut *x, &mut *y)
+            };
+            let (fx, fy) = (&mut extrapolated.fx[..n], &mut extrapolated.fy[..n]);
             if tile.congruent {
                 congruent_elements(simd, tile, k, x, y, fx, fy);
             } else {
@@ -84,10 +88,10 @@ impl WithSimd for LookAhead<'_> {
             for s in &tile.strips {
                 strip_forces(simd, s, &tile.varying, k, &mut nodes, step);
             }
-            if !ahead {
+            if !extrapolate {
                 [fx, fy].into_iter().flatten().for_each(|f| *f = -*f);
             }
         }
-        seen.power(tile.own, vx, vy)
+        extrapolated.power(tile.own, vx, vy)
     }
 }

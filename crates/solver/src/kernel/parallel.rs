@@ -1,7 +1,9 @@
 //! Tiles dealt out to threads: each gets its own parts of the fields, so nothing is shared.
 
-use crate::{
-    sweep::{Drive, Energies, Scratch, TileFields, sweep},
+use crate::kernel::{
+    advance::StepParameters,
+    fields::TileFields,
+    sweep::{Scratch, StepEnergies, sweep},
     tile::Tile,
 };
 use stribeck_simd::threads::{cut, from_both_ends};
@@ -10,7 +12,7 @@ use stribeck_simd::threads::{cut, from_both_ends};
 pub(crate) struct TileRuns<'a> {
     pub(crate) tiles: &'a [Tile],
     pub(crate) fields: TileFields<'a>,
-    pub(crate) counted: &'a mut [Energies],
+    pub(crate) counted: &'a mut [StepEnergies],
 }
 
 impl<'a> TileRuns<'a> {
@@ -35,9 +37,9 @@ impl<'a> TileRuns<'a> {
         Turned { runs: self, back }
     }
 
-    fn sweep_one(self, scratch: &mut Scratch, drive: Drive) {
+    fn sweep_one(self, scratch: &mut Scratch, parameters: StepParameters) {
         if let ([tile], [energies]) = (self.tiles, self.counted) {
-            *energies = sweep(tile, self.fields, scratch, drive);
+            *energies = sweep(tile, self.fields, scratch, parameters);
         }
     }
 }
@@ -86,36 +88,27 @@ const UNDECIDED: usize = 1;
 
 /// Sweeps tiles; two threads from either end to where they meet, in every second step from there outwards but for the tiles
 /// about it, which come last. More threads share runs of about equal work.
-pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], drive: Drive) {
+pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], parameters: StepParameters) {
     match scratch {
         [] => {}
-        [one] => runs.turned(drive.back).for_each(|run| run.sweep_one(one, drive)),
+        [one] => runs.turned(parameters.back).for_each(|run| run.sweep_one(one, parameters)),
         [one, other] => {
             let open = one.met.open(UNDECIDED, runs.tiles.len());
             let (runs, right) = runs.split_at(open.end);
             let (left, between) = runs.split_at(open.start);
-            let parts = [left.turned(drive.back), between.turned(false), right.turned(drive.back)];
-            one.met =
-                from_both_ends(parts, |run| run.sweep_one(one, drive), |run| run.sweep_one(other, drive));
+            let parts = [left.turned(parameters.back), between.turned(false), right.turned(parameters.back)];
+            one.met = from_both_ends(
+                parts,
+                |run| run.sweep_one(one, parameters),
+                |run| run.sweep_one(other, parameters),
+            );
         }
         _ => {
             let (threads, half) = (scratch.len(), scratch.len() / 2);
             let work = runs.tiles.iter().map(|tile| tile.work);
             let (left, right) = runs.split_at(cut(work.clone(), work.sum(), half, threads));
             let (here, there) = scratch.split_at_mut(half);
-            micropool::join(|| sweep_all(left, here, drive), || sweep_all(right, there, drive));
+            micropool::join(|| sweep_all(left, here, parameters), || sweep_all(right, there, parameters));
         }
-    }
-}
-
-impl<'a> TileFields<'a> {
-    fn split_at(self, at: usize) -> (TileFields<'a>, TileFields<'a>) {
-        let (x, x2) = self.x.split_at_mut(at);
-        let (y, y2) = self.y.split_at_mut(at);
-        let (vx, vx2) = self.vx.split_at_mut(at);
-        let (vy, vy2) = self.vy.split_at_mut(at);
-        let (fx, fx2) = self.fx.split_at_mut(at);
-        let (fy, fy2) = self.fy.split_at_mut(at);
-        (TileFields { x, y, vx, vy, fx, fy }, TileFields { x: x2, y: y2, vx: vx2, vy: vy2, fx: fx2, fy: fy2 })
     }
 }

@@ -15,9 +15,11 @@ use stribeck_mesh::{Body, Mesh, strips::find_strips};
 use crate::{
     element::{QuadReference, TriangleReference},
     model::{Behaviour, Model, Motion},
-    tile::SHORTEST_STRIP,
 };
 use stribeck_simd::lanes::LANES;
+
+/// Shorter runs of quadrilaterals go through the gather path.
+pub(crate) const SHORTEST_STRIP: usize = 4;
 
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
 const TILE_NODES: usize = 8000;

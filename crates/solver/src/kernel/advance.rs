@@ -5,11 +5,25 @@ use std::marker::PhantomData;
 use prefetch_index::prefetch_index;
 use pulp::Simd;
 
-use crate::{
-    damping::{LaneFrames, LaneMotion},
-    sweep::Drive,
-};
+use crate::kernel::frames::{LaneFrames, LaneMotion};
 use stribeck_simd::lanes::{LANES, Number, Vector};
+
+/// What is the same for all tiles in a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StepParameters {
+    pub(crate) dt: f64,
+    pub(crate) gravity: [f64; 2],
+    /// β of the stiffness damping [s].
+    pub(crate) beta: f64,
+    /// Time since damping frames were placed [s].
+    pub(crate) since_placed: f64,
+    /// Whether the heat of damping is counted in this step.
+    pub(crate) count_heat: bool,
+    /// Whether strips fetch what they read next from far caches.
+    pub(crate) fetch: bool,
+    /// Whether tiles are swept in the opposite order, the last ones of the step before first.
+    pub(crate) back: bool,
+}
 
 /// What is the same for all nodes of a tile.
 pub(crate) struct Step<S: Simd> {
@@ -33,8 +47,8 @@ pub(crate) struct Step<S: Simd> {
 
 impl<S: Simd> Step<S> {
     /// A step with damping at `rate` [1/s].
-    pub(crate) fn new(simd: S, drive: &Drive, rate: f64, frames: &LaneFrames) -> Self {
-        let &Drive { dt, gravity, fetch, since_placed, .. } = drive;
+    pub(crate) fn new(simd: S, parameters: &StepParameters, rate: f64, frames: &LaneFrames) -> Self {
+        let &StepParameters { dt, gravity, fetch, since_placed, .. } = parameters;
         let frames = frames.after(since_placed);
         let half = 0.5 * rate * dt;
         let gain = gain(rate, dt);
@@ -102,7 +116,7 @@ impl Nodes<'_> {
     #[inline(always)]
     pub(crate) fn alike<D: Damping>(&mut self) -> Nodes<'_> {
         let n = self.x.len();
-        let own = if D::AHEAD { n } else { 0 };
+        let own = if D::STIFFNESS { n } else { 0 };
         Nodes {
             x: &mut self.x[..n],
             y: &mut self.y[..n],
@@ -124,8 +138,8 @@ pub(crate) trait Damping {
     const DAMPS: bool;
     /// Whether the heat of that is counted.
     const COUNTS: bool;
-    /// Whether elements see positions ahead of the nodes (stiffness damping).
-    const AHEAD: bool = false;
+    /// Whether there is stiffness damping: elements see positions that are not those of the nodes.
+    const STIFFNESS: bool = false;
 }
 
 /// No damping.
@@ -134,8 +148,8 @@ pub(crate) struct Undamped;
 pub(crate) struct Damped;
 /// Damping and its heat.
 pub(crate) struct Counted;
-/// The same with stiffness damping.
-pub(crate) struct Ahead<D>(PhantomData<D>);
+/// The same, and stiffness damping.
+pub(crate) struct WithStiffness<D>(PhantomData<D>);
 
 impl Damping for Undamped {
     const DAMPS: bool = false;
@@ -152,10 +166,10 @@ impl Damping for Counted {
     const COUNTS: bool = true;
 }
 
-impl<D: Damping> Damping for Ahead<D> {
+impl<D: Damping> Damping for WithStiffness<D> {
     const DAMPS: bool = D::DAMPS;
     const COUNTS: bool = D::COUNTS;
-    const AHEAD: bool = true;
+    const STIFFNESS: bool = true;
 }
 
 /// Takes a group of nodes from `at` on one step on under forces x, y [N]: v += Δt·a, x += Δt·v. With `LAST`, only the
@@ -178,7 +192,7 @@ pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
     heat: &mut Vector<S>,
 ) {
     let [own_x, own_y] =
-        if D::AHEAD { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
+        if D::STIFFNESS { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
     let (x, y) = (Vector::load(simd, own_x, at), Vector::load(simd, own_y, at));
     let (vx, vy) = (Vector::load(simd, nodes.vx, at), Vector::load(simd, nodes.vy, at));
     let m = Vector::load(simd, nodes.step_over_mass, at);
@@ -263,7 +277,7 @@ pub(crate) fn rotate<D: Damping>(
     let half = (0.5 * rate * dt).sin();
     let (c1, s) = (-2.0 * half * half, (rate * dt).sin());
     let [x, y] =
-        if D::AHEAD { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
+        if D::STIFFNESS { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
     let mut work = 0.0;
     for i in row {
         let (rx, ry) = (x[i] - centre[0], y[i] - centre[1]);

@@ -6,9 +6,12 @@ use std::ops::Range;
 use pulp::Simd;
 
 use crate::{
-    advance::{Damping, Nodes, Step, Undamped, advance},
     element::{CornerForces, QuadMetric, Stiffness},
-    tile::{Strip, VaryingReferences},
+    kernel::{
+        advance::{Damping, Nodes, Step, Undamped, advance},
+        tile::Strip,
+        varying_references::VaryingReferences,
+    },
 };
 use stribeck_simd::lanes::Vector;
 
@@ -202,7 +205,7 @@ impl<S: Simd> References<S> for QuadMetric<Vector<S>> {
     fn fetch(&self, _: usize) {}
 }
 
-/// References from group `start` on, but for so many elements.
+/// References from group `start` on, of elements of which the first `skipped` have none there.
 struct Each<'a> {
     references: &'a VaryingReferences,
     start: usize,

@@ -1,20 +1,20 @@
-//! Blocks of elements: what a few of them need is brought together from wherever it lies, then read as vectors.
+//! Batches of elements: their numbers are gathered from wherever they lie in memory, then read as vectors.
 
 use pulp::Simd;
 
 use crate::element::QuadReference;
 use stribeck_simd::lanes::{LANES, Vector};
 
-/// Elements gathered before the first of them is computed: a vector must not be read while its numbers are still on their
-/// way to memory.
-pub(crate) const BLOCK: usize = 8 * LANES;
+/// Elements of a batch. All are gathered before the first is computed, because a vector that is read while its numbers are
+/// still on their way to memory stalls the processor.
+pub(crate) const BATCH: usize = 8 * LANES;
 
-/// Corner values of a block of elements, one row a corner.
-pub(crate) type Corners = [[f64; BLOCK]; 4];
+/// Corner values of a batch of elements, one row a corner.
+pub(crate) type Corners = [[f64; BATCH]; 4];
 
-/// The corner values of some elements of a block, from `at` on.
+/// The corner values of some elements of a batch, from `at` on.
 #[inline(always)]
-pub(crate) fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
+pub(crate) fn corner_vectors<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
     let [a, b, c, d] = v;
     [
         Vector::load(simd, a, at),
@@ -24,7 +24,7 @@ pub(crate) fn rows<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vector<S>; 4] {
     ]
 }
 
-/// Adds corner forces [N] of a block of quadrilaterals to those of the nodes; that on the third corner is handed over negative.
+/// Adds corner forces [N] of a batch of quadrilaterals to those of the nodes; that on the third corner is handed over negative.
 #[inline(always)]
 pub(crate) fn scatter<'a>(
     corners: impl Iterator<Item = &'a [u32; 4]>,
@@ -42,8 +42,8 @@ pub(crate) fn scatter<'a>(
     }
 }
 
-/// Positions and references of a block of quadrilaterals.
-pub(crate) struct QuadBlock {
+/// Positions and references of a batch of quadrilaterals.
+pub(crate) struct QuadBatch {
     x: Corners,
     y: Corners,
     /// Components of b1, then of b2.
@@ -52,7 +52,7 @@ pub(crate) struct QuadBlock {
     rest: Corners,
 }
 
-/// Some quadrilaterals of a block.
+/// Some quadrilaterals of a batch.
 pub(crate) struct Quads<T> {
     pub(crate) x: [T; 4],
     pub(crate) y: [T; 4],
@@ -61,13 +61,13 @@ pub(crate) struct Quads<T> {
     pub(crate) volume: T,
 }
 
-impl QuadBlock {
+impl QuadBatch {
     pub(crate) const EMPTY: Self = {
-        let zeros = [[0.0; BLOCK]; 4];
+        let zeros = [[0.0; BATCH]; 4];
         Self { x: zeros, y: zeros, gradients: zeros, rest: zeros }
     };
 
-    /// Fills the block with at most [`BLOCK`] elements at positions `x`, `y` [m]. Those that it lacks then have no volume and
+    /// Fills the batch with at most [`BATCH`] elements at positions `x`, `y` [m]. Those that it lacks then have no volume and
     /// lie in one point.
     #[inline(always)]
     pub(crate) fn gather(&mut self, elements: &[([u32; 4], QuadReference)], x: &[f64], y: &[f64]) {
@@ -88,9 +88,9 @@ impl QuadBlock {
     /// As many as an instruction takes, from `at` on.
     #[inline(always)]
     pub(crate) fn at<S: Simd>(&self, simd: S, at: usize) -> Quads<Vector<S>> {
-        let [b1x, b1y, b2x, b2y] = rows(simd, &self.gradients, at);
-        let [s1, s2, volume, _] = rows(simd, &self.rest, at);
-        let (x, y) = (rows(simd, &self.x, at), rows(simd, &self.y, at));
+        let [b1x, b1y, b2x, b2y] = corner_vectors(simd, &self.gradients, at);
+        let [s1, s2, volume, _] = corner_vectors(simd, &self.rest, at);
+        let (x, y) = (corner_vectors(simd, &self.x, at), corner_vectors(simd, &self.y, at));
         Quads { x, y, b: [[b1x, b1y], [b2x, b2y]], s: [s1, s2], volume }
     }
 }

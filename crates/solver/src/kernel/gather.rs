@@ -4,9 +4,11 @@
 use pulp::Simd;
 
 use crate::{
-    blocks::{BLOCK, Corners, rows, scatter},
     element::{Stiffness, any_triangle_forces, triangle_forces},
-    tile::{CongruentRun, Tile},
+    kernel::{
+        batch::{BATCH, Corners, corner_vectors, scatter},
+        tile::{CongruentRun, Tile},
+    },
 };
 use stribeck_simd::lanes::{LANES, Vector};
 
@@ -21,8 +23,8 @@ pub(crate) fn single_elements<S: Simd>(
     fx: &mut [f64],
     fy: &mut [f64],
 ) {
-    let (mut xs, mut ys): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
-    for (block, elements) in tile.quads.chunks(BLOCK).enumerate() {
+    let (mut xs, mut ys): (Corners, Corners) = ([[0.0; BATCH]; 4], [[0.0; BATCH]; 4]);
+    for (batch, elements) in tile.quads.chunks(BATCH).enumerate() {
         for (l, corners) in elements.iter().enumerate() {
             for c in 0..4 {
                 xs[c][l] = x[corners[c] as usize];
@@ -30,8 +32,8 @@ pub(crate) fn single_elements<S: Simd>(
             }
         }
         for at in (0..elements.len()).step_by(Vector::<S>::LEN) {
-            let references = tile.varying.group(simd, tile.first_gathered, block * BLOCK + at);
-            let forces = references.forces(rows(simd, &xs, at), rows(simd, &ys, at), k);
+            let references = tile.varying.group(simd, tile.first_gathered, batch * BATCH + at);
+            let forces = references.forces(corner_vectors(simd, &xs, at), corner_vectors(simd, &ys, at), k);
             for c in 0..4 {
                 forces[c][0].store(&mut xs[c], at);
                 forces[c][1].store(&mut ys[c], at);

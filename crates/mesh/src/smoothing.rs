@@ -1,4 +1,4 @@
-//! Moving interior nodes until the smallest cells are larger.
+//! Mesh smoothing: interior nodes move, one by one, until the smallest cells are larger.
 
 use crate::Part;
 use crate::characteristic::{characteristic_length, smallest_sine};

@@ -3,9 +3,9 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    blocks::{BLOCK, Corners, QuadBlock, Quads, scatter},
     dynamics::Dynamics,
     element::{QuadReference, Stiffness, any_quad_forces, triangle_forces},
+    kernel::batch::{BATCH, Corners, QuadBatch, Quads, scatter},
 };
 use stribeck_simd::lanes::Vector;
 
@@ -45,12 +45,12 @@ impl WithSimd for QuadForces<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { quads, stiffness, x, y, fx, fy } = self;
         let k = &stiffness.of(Vector::all(simd, 0.0));
-        let mut block = QuadBlock::EMPTY;
-        let (mut of_x, mut of_y): (Corners, Corners) = ([[0.0; BLOCK]; 4], [[0.0; BLOCK]; 4]);
-        for elements in quads.chunks(BLOCK) {
-            block.gather(elements, x, y);
+        let mut batch = QuadBatch::EMPTY;
+        let (mut of_x, mut of_y): (Corners, Corners) = ([[0.0; BATCH]; 4], [[0.0; BATCH]; 4]);
+        for elements in quads.chunks(BATCH) {
+            batch.gather(elements, x, y);
             for at in (0..elements.len()).step_by(Vector::<S>::LEN) {
-                let Quads { x, y, b, s, volume } = block.at(simd, at);
+                let Quads { x, y, b, s, volume } = batch.at(simd, at);
                 let forces = any_quad_forces(x, y, b, s, volume, k);
                 for c in 0..4 {
                     forces[c][0].store(&mut of_x[c], at);

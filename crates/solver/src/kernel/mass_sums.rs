@@ -1,4 +1,4 @@
-//! Mass, momentum and their moments of a tile's bodies, for the frames of mass damping.
+//! Mass, momentum and inertia of a tile's bodies, for the frames of mass damping.
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -7,7 +7,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 
 /// Sums over nodes, about the origin.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Moments {
+pub(crate) struct MassSums {
     mass: f64,
     /// Σ m x, Σ m y.
     first: [f64; 2],
@@ -19,11 +19,11 @@ pub(crate) struct Moments {
     angular: f64,
 }
 
-/// Of each lane of a tile.
-pub(crate) type LaneMoments = [Moments; LANES];
+/// Sums of each lane of a tile.
+pub(crate) type LaneSums = [MassSums; LANES];
 
-impl Moments {
-    /// The motion of a rigid body with these moments.
+impl MassSums {
+    /// The motion of a rigid body with these sums.
     pub(crate) fn motion(&self) -> RigidMotion {
         let Self { mass, first, second, momentum, angular } = *self;
         let centre = [first[0] / mass, first[1] / mass];
@@ -34,7 +34,7 @@ impl Moments {
     }
 }
 
-impl std::ops::AddAssign for Moments {
+impl std::ops::AddAssign for MassSums {
     fn add_assign(&mut self, other: Self) {
         self.mass += other.mass;
         self.second += other.second;
@@ -47,7 +47,7 @@ impl std::ops::AddAssign for Moments {
 }
 
 /// Sums over slots, whose number is a multiple of [`LANES`], with `mass` each; ghosts and padding have none.
-pub(crate) fn lane_moments(mass: &[f64], state: &State, slots: std::ops::Range<usize>) -> LaneMoments {
+pub(crate) fn lane_sums(mass: &[f64], state: &State, slots: std::ops::Range<usize>) -> LaneSums {
     Arch::new().dispatch(Summation {
         mass,
         x: &state.x[slots.clone()],
@@ -66,11 +66,11 @@ struct Summation<'a> {
 }
 
 impl WithSimd for Summation<'_> {
-    type Output = LaneMoments;
+    type Output = LaneSums;
 
     #[inline(always)]
-    fn with_simd<V: Simd>(self, simd: V) -> LaneMoments {
-        let mut sums = LaneMoments::default();
+    fn with_simd<V: Simd>(self, simd: V) -> LaneSums {
+        let mut sums = LaneSums::default();
         let len = Vector::<V>::LEN;
         for first in (0..LANES).step_by(len) {
             let zero = Vector::all(simd, 0.0);
@@ -98,7 +98,7 @@ impl WithSimd for Summation<'_> {
             angular.store(&mut columns[6], 0);
             for l in 0..len {
                 let [mass, mx, my, second, px, py, angular] = columns.map(|column| column[l]);
-                sums[first + l] = Moments { mass, first: [mx, my], second, momentum: [px, py], angular };
+                sums[first + l] = MassSums { mass, first: [mx, my], second, momentum: [px, py], angular };
             }
         }
         sums
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_moments_give_the_motion_of_the_nodes() {
+    fn invariant_mass_sums_give_the_motion_of_the_nodes() {
         // Sixteen nodes, four of them without mass, far from the origin and turning.
         let mut state = State::default();
         let mut mass = Vec::new();
@@ -125,8 +125,8 @@ mod tests {
             }
             mass.push(if n % 4 == 3 { 0.0 } else { 1.0 + 0.1 * t });
         }
-        let mut sum = Moments::default();
-        lane_moments(&mass, &state, 0..16).into_iter().for_each(|lane| sum += lane);
+        let mut sum = MassSums::default();
+        lane_sums(&mass, &state, 0..16).into_iter().for_each(|lane| sum += lane);
         let found = sum.motion();
         let nodes = (0..16).map(|n| (mass[n], [state.x[n], state.y[n]], [state.vx[n], state.vy[n]]));
         let expected = RigidMotion::of(nodes);

@@ -1,4 +1,4 @@
-//! The highest natural frequencies of a few elements among others, and how they change as nodes move.
+//! The highest natural frequencies of a part of a mesh, and how they change as its nodes move.
 
 use crate::Part;
 use crate::part::signed_area;
@@ -16,7 +16,7 @@ const STEP: f64 = 1e-6;
 /// critical time step and L = 1 that of endless squares with sides of the unit of length. Elements are those of
 /// [`characteristic_length`](crate::characteristic_length), and here their hourglass stiffness counts: that which gives
 /// squares their exact stiffness in bending.
-pub(crate) struct Patch {
+pub(crate) struct Submesh {
     /// Nodes of the part; the movable ones come first.
     pub(crate) nodes: Vec<u32>,
     /// Number of movable nodes.
@@ -25,12 +25,12 @@ pub(crate) struct Patch {
     pub(crate) elements: Vec<[usize; 4]>,
     /// Number of elements at movable nodes.
     pub(crate) moving: usize,
-    /// Mass of the nodes from elements that are not in the patch.
+    /// Mass of the nodes from elements that are not in the submesh.
     outside: Vec<f64>,
     moduli: Moduli,
 }
 
-/// A natural vibration of a patch.
+/// A natural vibration of a submesh.
 pub(crate) struct Mode {
     /// ω².
     pub(crate) square: f64,
@@ -56,8 +56,8 @@ struct Shape {
     area: f64,
 }
 
-impl Patch {
-    /// The patch of the nodes with a true flag in `movable`, with `unit` [m] as the unit of length.
+impl Submesh {
+    /// The submesh of the nodes with a true flag in `movable`, with `unit` [m] as the unit of length.
     pub(crate) fn new(part: &Part, movable: &[bool], poisson: f64, unit: f64) -> Self {
         let quads = part.quads.iter().copied();
         let all: Vec<[u32; 4]> = quads.chain(part.triangles.iter().map(|&[a, b, c]| [a, b, c, c])).collect();
@@ -69,10 +69,10 @@ impl Patch {
         let (mut elements, mut taken, mut moving) = (Vec::new(), vec![false; all.len()], 0);
         for ring in 0..2 {
             let known = nodes.len();
-            let near =
+            let touches =
                 |corners: &[u32; 4], place: &[usize]| corners.iter().any(|n| place[*n as usize] < known);
             for (e, corners) in all.iter().enumerate() {
-                if taken[e] || !near(corners, &place) {
+                if taken[e] || !touches(corners, &place) {
                     continue;
                 }
                 taken[e] = true;
@@ -271,10 +271,10 @@ mod tests {
 
     const POISSON: f64 = 0.3;
 
-    fn patch_of(part: &Part) -> (Patch, Vec<[f64; 2]>) {
-        let patch = Patch::new(part, &vec![true; part.x.len()], POISSON, 1.0);
-        let at = patch.nodes.iter().map(|n| [part.x[*n as usize], part.y[*n as usize]]).collect();
-        (patch, at)
+    fn submesh_of(part: &Part) -> (Submesh, Vec<[f64; 2]>) {
+        let submesh = Submesh::new(part, &vec![true; part.x.len()], POISSON, 1.0);
+        let at = submesh.nodes.iter().map(|n| [part.x[*n as usize], part.y[*n as usize]]).collect();
+        (submesh, at)
     }
 
     fn single(corners: &[[f64; 2]]) -> Part {
@@ -296,8 +296,8 @@ mod tests {
             &[[0.0, 0.0], [1.0, 0.1], [0.3, 0.9]],
         ];
         for corners in shapes {
-            let (patch, at) = patch_of(&single(corners));
-            let highest = patch.modes_above(0.0, &at)[0].square;
+            let (submesh, at) = submesh_of(&single(corners));
+            let highest = submesh.modes_above(0.0, &at)[0].square;
             let expected = 4.0 / characteristic_length(corners, POISSON).powi(2);
             assert!((highest / expected - 1.0).abs() < 1e-9, "{corners:?}: {highest} instead of {expected}");
         }
@@ -308,12 +308,12 @@ mod tests {
     #[test]
     fn analytic_squares_vibrate_as_the_grid_wave() {
         let grid = Rectangle { x0: 0.0, y0: 0.0, width: 16.0, height: 16.0, columns: 16, rows: 16 };
-        let (patch, at) = patch_of(&grid.part().expect("a grid"));
-        let highest = patch.modes_above(0.0, &at)[0].square;
+        let (submesh, at) = submesh_of(&grid.part().expect("a grid"));
+        let highest = submesh.modes_above(0.0, &at)[0].square;
         assert!((3.95..4.06).contains(&highest), "ω² = {highest}");
     }
 
-    /// Nodes of a patch have the mass of the whole part: what is far away does not change its frequencies.
+    /// Nodes of a submesh have the mass of the whole part: what is far away does not change its frequencies.
     #[test]
     fn invariant_mass_of_the_surroundings_counts() {
         let grid = |n: usize| {
@@ -322,10 +322,10 @@ mod tests {
             let part = grid.part().expect("a grid");
             let centre: Vec<bool> =
                 part.x.iter().zip(&part.y).map(|(x, y)| [*x, *y] == [0.5 * side; 2]).collect();
-            let patch = Patch::new(&part, &centre, POISSON, 1.0);
+            let submesh = Submesh::new(&part, &centre, POISSON, 1.0);
             let at: Vec<[f64; 2]> =
-                patch.nodes.iter().map(|n| [part.x[*n as usize], part.y[*n as usize]]).collect();
-            patch.modes_above(0.0, &at)[0].square
+                submesh.nodes.iter().map(|n| [part.x[*n as usize], part.y[*n as usize]]).collect();
+            submesh.modes_above(0.0, &at)[0].square
         };
         let (small, large) = (grid(6), grid(10));
         assert!((small - large).abs() < 1e-9 * large, "{small} and {large}");
@@ -338,10 +338,10 @@ mod tests {
         for (i, (x, y)) in part.x.iter_mut().zip(&mut part.y).enumerate() {
             (*x, *y) = (*x + 0.13 * (3.0 * i as f64).sin(), *y + 0.11 * (5.0 * i as f64).cos());
         }
-        let (patch, mut at) = patch_of(&part);
-        let highest = |at: &[[f64; 2]]| patch.modes_above(0.0, at)[0].square;
-        let mode = patch.modes_above(0.0, &at).swap_remove(0);
-        let derivative = patch.derivative(&[(1.0, mode)], &at);
+        let (submesh, mut at) = submesh_of(&part);
+        let highest = |at: &[[f64; 2]]| submesh.modes_above(0.0, at)[0].square;
+        let mode = submesh.modes_above(0.0, &at).swap_remove(0);
+        let derivative = submesh.derivative(&[(1.0, mode)], &at);
         let scale = derivative.iter().flatten().fold(0.0_f64, |a, b| a.max(b.abs()));
         for (n, axis) in [(0, 0), (7, 1), (9, 0), (12, 1)] {
             let mut moved = |by: f64| {

@@ -1,13 +1,13 @@
-//! Moving interior nodes until the critical time step of the assembled elements is long enough, smoothly.
+//! Shape optimisation: interior nodes move, smoothly, until the critical time step of the assembled elements is long enough.
 
 use std::collections::BTreeSet;
 
 use crate::Part;
 use crate::part::signed_area;
-use crate::patch::{Patch, add, dot};
-use crate::relax::inside_out;
+use crate::smoothing::inside_out;
+use crate::submesh::{Submesh, add, dot};
 
-/// ω² of endless squares with sides of the unit of length, see [`Patch`].
+/// ω² of endless squares with sides of the unit of length, see [`Submesh`].
 const GRID_WAVE: f64 = 4.0;
 
 /// Weight of smoothness against frequencies that are too high.
@@ -52,39 +52,39 @@ pub(crate) fn raise_assembled_step(
     length: f64,
     sharpness: &[f64],
 ) -> Option<f64> {
-    let patch = Patch::new(part, movable, poisson, length);
-    if patch.movable == 0 {
+    let submesh = Submesh::new(part, movable, poisson, length);
+    if submesh.movable == 0 {
         return inside_out(part).is_none().then_some(0.0);
     }
     let in_units = |part: &Part, n: u32| [part.x[n as usize] / length, part.y[n as usize] / length];
-    let mut at: Vec<[f64; 2]> = patch.nodes.iter().map(|n| in_units(part, *n)).collect();
-    let plain = patch.nodes.iter().map(|n| in_units(plain, *n)).collect();
-    let mut goal = Goal { plates: plates(part, &patch), patch, plain, sharpness: 0.0 };
+    let mut at: Vec<[f64; 2]> = submesh.nodes.iter().map(|n| in_units(part, *n)).collect();
+    let plain = submesh.nodes.iter().map(|n| in_units(plain, *n)).collect();
+    let mut objective = Objective { stencils: stencils(part, &submesh), submesh, plain, sharpness: 0.0 };
     for weight in sharpness {
-        goal.sharpness = *weight;
-        at = goal.reach(at);
-        for (n, [x, y]) in goal.patch.nodes.iter().zip(&at).take(goal.patch.movable) {
+        objective.sharpness = *weight;
+        at = objective.minimise(at);
+        for (n, [x, y]) in objective.submesh.nodes.iter().zip(&at).take(objective.submesh.movable) {
             (part.x[*n as usize], part.y[*n as usize]) = (length * x, length * y);
         }
         if inside_out(part).is_none() {
-            goal.sharpness = SHARPNESS[0];
-            return goal.cost(at).map(|found| found.cost);
+            objective.sharpness = SHARPNESS[0];
+            return objective.cost(at).map(|found| found.cost);
         }
     }
     None
 }
 
-/// A node and its neighbours, for the smoothness at it.
-struct Plate {
+/// A node and its neighbours, for the smoothness at the node.
+struct Stencil {
     node: usize,
     around: Vec<usize>,
 }
 
-/// Interior nodes of the patch that are movable or next to such a node.
-fn plates(part: &Part, patch: &Patch) -> Vec<Plate> {
+/// Interior nodes of the submesh that are movable or next to such a node.
+fn stencils(part: &Part, submesh: &Submesh) -> Vec<Stencil> {
     let boundary: BTreeSet<u32> = part.surfaces.iter().flat_map(|(_, s)| s.nodes.iter().copied()).collect();
-    let mut around = vec![BTreeSet::new(); patch.nodes.len()];
-    for corners in &patch.elements {
+    let mut around = vec![BTreeSet::new(); submesh.nodes.len()];
+    for corners in &submesh.elements {
         for i in 0..4 {
             let (a, b) = (corners[i], corners[(i + 1) % 4]);
             if a != b {
@@ -93,41 +93,41 @@ fn plates(part: &Part, patch: &Patch) -> Vec<Plate> {
             }
         }
     }
-    let near = |node: usize| node < patch.movable || around[node].iter().any(|n| *n < patch.movable);
-    let inner = |node: usize| !boundary.contains(&patch.nodes[node]);
-    let wanted = (0..patch.nodes.len()).filter(|n| near(*n) && inner(*n));
-    wanted.map(|node| Plate { node, around: around[node].iter().copied().collect() }).collect()
+    let near = |node: usize| node < submesh.movable || around[node].iter().any(|n| *n < submesh.movable);
+    let inner = |node: usize| !boundary.contains(&submesh.nodes[node]);
+    let wanted = (0..submesh.nodes.len()).filter(|n| near(*n) && inner(*n));
+    wanted.map(|node| Stencil { node, around: around[node].iter().copied().collect() }).collect()
 }
 
-struct Goal {
-    patch: Patch,
-    plates: Vec<Plate>,
+struct Objective {
+    submesh: Submesh,
+    stencils: Vec<Stencil>,
     plain: Vec<[f64; 2]>,
     /// Weight of what corners are too sharp or too flat.
     sharpness: f64,
 }
 
 /// Positions, their cost and its derivative with respect to those of movable nodes.
-struct Found {
+struct Evaluation {
     at: Vec<[f64; 2]>,
     cost: f64,
     slope: Vec<f64>,
 }
 
-impl Goal {
+impl Objective {
     /// None when an element has no positive area.
-    fn cost(&self, at: Vec<[f64; 2]>) -> Option<Found> {
+    fn cost(&self, at: Vec<[f64; 2]>) -> Option<Evaluation> {
         // Corners may turn over on the way; `flatness` turns most of them back.
-        let mut elements = self.patch.elements[..self.patch.moving].iter();
+        let mut elements = self.submesh.elements[..self.submesh.moving].iter();
         if !elements.all(|corners| signed_area(&corners.map(|n| at[n])) > 0.0) {
             return None;
         }
-        let modes = self.patch.modes_above(GRID_WAVE, &at);
+        let modes = self.submesh.modes_above(GRID_WAVE, &at);
         let excess: Vec<f64> = modes.iter().map(|m| m.square / GRID_WAVE - 1.0).collect();
         let mut cost: f64 = excess.iter().map(|e| e * e).sum();
         let weighted: Vec<_> = excess.iter().map(|e| 2.0 * e / GRID_WAVE).zip(modes).collect();
-        let mut slope = self.patch.derivative(&weighted, &at);
-        for Plate { node, around } in &self.plates {
+        let mut slope = self.submesh.derivative(&weighted, &at);
+        for Stencil { node, around } in &self.stencils {
             let share = 1.0 / around.len() as f64;
             for k in 0..2 {
                 let moved = |n: usize| at[n][k] - self.plain[n][k];
@@ -137,7 +137,7 @@ impl Goal {
                 around.iter().for_each(|n| slope[*n][k] += 2.0 * SMOOTHNESS * share * bent);
             }
         }
-        for corners in &self.patch.elements[..self.patch.moving] {
+        for corners in &self.submesh.elements[..self.submesh.moving] {
             let here = corners.map(|n| at[n]);
             let flatness = self.flatness(&here);
             if flatness == 0.0 {
@@ -153,8 +153,8 @@ impl Goal {
                 }
             }
         }
-        let slope = slope[..self.patch.movable].as_flattened().to_vec();
-        Some(Found { at, cost, slope })
+        let slope = slope[..self.submesh.movable].as_flattened().to_vec();
+        Some(Evaluation { at, cost, slope })
     }
 
     /// Σ (s₀ − s)² over the corners whose sine s is below s₀, with its weight; that of a triangle is zero.
@@ -168,19 +168,19 @@ impl Goal {
         if points[2] == points[3] { 0.0 } else { (0..4).map(corner).sum() }
     }
 
-    /// Better positions than `start`, or those.
-    fn reach(&self, start: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    /// Positions of less cost than `start`, or `start`.
+    fn minimise(&self, start: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
         let Some(mut best) = self.cost(start.clone()) else { return start };
         let mut pairs: Vec<(Vec<f64>, Vec<f64>, f64)> = Vec::new();
         for _ in 0..STEPS {
-            let mut along = downhill(&best.slope, &pairs);
+            let mut along = search_direction(&best.slope, &pairs);
             let mut promise = dot(&along, &best.slope);
             if promise >= 0.0 {
                 pairs.clear();
-                along = downhill(&best.slope, &pairs);
+                along = search_direction(&best.slope, &pairs);
                 promise = dot(&along, &best.slope);
             }
-            let Some(next) = self.step(&best, &along, promise) else {
+            let Some(next) = self.line_search(&best, &along, promise) else {
                 if pairs.is_empty() {
                     break;
                 }
@@ -208,7 +208,7 @@ impl Goal {
     }
 
     /// The first of ever shorter steps that lowers the cost enough.
-    fn step(&self, from: &Found, along: &[f64], promise: f64) -> Option<Found> {
+    fn line_search(&self, from: &Evaluation, along: &[f64], promise: f64) -> Option<Evaluation> {
         let mut scale = 1.0;
         for _ in 0..20 {
             let mut at = from.at.clone();
@@ -224,8 +224,8 @@ impl Goal {
     }
 }
 
-/// Minus the slope times the inverse curvature that the pairs of steps and changes of slope tell of.
-fn downhill(slope: &[f64], pairs: &[(Vec<f64>, Vec<f64>, f64)]) -> Vec<f64> {
+/// Minus the slope times the inverse of the curvature that the pairs of steps and changes of slope approximate.
+fn search_direction(slope: &[f64], pairs: &[(Vec<f64>, Vec<f64>, f64)]) -> Vec<f64> {
     let mut along: Vec<f64> = slope.iter().map(|g| -g).collect();
     let mut parts = Vec::new();
     for (moved, turned, curvature) in pairs.iter().rev() {
@@ -250,7 +250,7 @@ fn downhill(slope: &[f64], pairs: &[(Vec<f64>, Vec<f64>, f64)]) -> Vec<f64> {
 mod tests {
     use std::f64::consts::TAU;
 
-    use crate::{Annulus, Circle, Grading, Groove, Part, patch::Patch};
+    use crate::{Annulus, Circle, Grading, Groove, Part, submesh::Submesh};
 
     const POISSON: f64 = 0.3;
 
@@ -260,10 +260,10 @@ mod tests {
         let (sin, cos) = groove.centre_angle.sin_cos();
         let near = |(x, y): (&f64, &f64)| x * cos + y * sin > 0.0 && (y * cos - x * sin).abs() < half;
         let near: Vec<bool> = part.x.iter().zip(&part.y).map(near).collect();
-        let patch = Patch::new(part, &near, POISSON, side);
+        let submesh = Submesh::new(part, &near, POISSON, side);
         let at: Vec<[f64; 2]> =
-            patch.nodes.iter().map(|n| [part.x[*n as usize] / side, part.y[*n as usize] / side]).collect();
-        2.0 / patch.modes_above(0.0, &at)[0].square.sqrt()
+            submesh.nodes.iter().map(|n| [part.x[*n as usize] / side, part.y[*n as usize] / side]).collect();
+        2.0 / submesh.modes_above(0.0, &at)[0].square.sqrt()
     }
 
     /// A wall of 0.2 mm among cells of 0.5 mm costs a tenth of the time step of squares, among cells of 1 mm an eighth, where columns that follow it
