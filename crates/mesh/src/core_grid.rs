@@ -18,7 +18,7 @@ impl CoreGrid {
     pub(crate) fn new(radius: f64, side: f64) -> Option<CoreGrid> {
         // In whole numbers, so that rounding cannot break the symmetry.
         let ratio = radius / side;
-        // Dimensions near the smallest number make a ratio that is none.
+        // The ratio of dimensions close to the smallest number may be NaN or infinite.
         if !(ratio > 0.0 && ratio < MOST_ROWS) {
             return None;
         }

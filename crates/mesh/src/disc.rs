@@ -93,7 +93,7 @@ impl Disc {
 
     /// Most polar layers: those that leave half of the radius to the core.
     pub fn most_layers(&self) -> usize {
-        // A disc that is none has no facets to count in; the cast makes zero of that.
+        // The cast makes zero of what is NaN.
         (0.5 * self.radius / self.facet()) as usize
     }
 

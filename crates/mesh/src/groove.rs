@@ -248,7 +248,7 @@ fn check(grid: &PolarGrid, groove: &Groove) -> Result<f64, Error> {
     if groove.length > limit {
         return refuse("length", groove.length, limit, "a quarter of the inner surface must remain");
     }
-    // A hair more, because 60 % of a difference of radii is rounded.
+    // A little more, because 60 % of a difference of radii is rounded.
     let limit = 0.6 * (1.0 + 1e-9) * (grid.outer_radius - grid.inner_radius);
     if groove.depth > limit {
         return refuse("depth", groove.depth, limit, "keep it below 60 % of the thickness");

@@ -93,9 +93,9 @@ fn stencils(part: &Part, submesh: &Submesh) -> Vec<Stencil> {
             }
         }
     }
-    let near = |node: usize| node < submesh.movable || around[node].iter().any(|n| *n < submesh.movable);
+    let moves = |node: usize| node < submesh.movable || around[node].iter().any(|n| *n < submesh.movable);
     let inner = |node: usize| !boundary.contains(&submesh.nodes[node]);
-    let wanted = (0..submesh.nodes.len()).filter(|n| near(*n) && inner(*n));
+    let wanted = (0..submesh.nodes.len()).filter(|n| moves(*n) && inner(*n));
     wanted.map(|node| Stencil { node, around: around[node].iter().copied().collect() }).collect()
 }
 

@@ -42,7 +42,7 @@ pub(crate) fn enough(side: f64) -> f64 {
 ///
 /// Each movable node in turn tries eight directions and keeps the first move that lowers Σ (1/s)^p over its
 /// elements, where s is the characteristic length, reduced when the sine of a corner angle is below 0.4. A
-/// node that finds nothing halves its step; a node that moves lengthens it and wakes its neighbours. Elements
+/// node that finds nothing halves its step; a node that moves lengthens it and that of its neighbours. Elements
 /// that are inside out are turned back where that is possible. The power p is 6, then 12, then 20.
 ///
 /// `movable` has one entry per node; nodes beyond its end stay. The order is fixed, so equal input gives
@@ -155,7 +155,7 @@ impl Search {
             if self.try_directions(part, i) {
                 let mover = &mut self.nodes[i];
                 mover.step = (2.0 * mover.step).min(mover.first_step);
-                self.wake_neighbours(part, i);
+                self.lengthen_steps_around(part, i);
             } else {
                 self.nodes[i].step *= 0.5;
             }
@@ -180,7 +180,7 @@ impl Search {
         false
     }
 
-    fn wake_neighbours(&mut self, part: &Part, mover: usize) {
+    fn lengthen_steps_around(&mut self, part: &Part, mover: usize) {
         let step = 0.5 * self.nodes[mover].step;
         let quads = self.nodes[mover].quads.iter().flat_map(|q| part.quads[*q as usize]);
         let triangles = self.nodes[mover].triangles.iter().flat_map(|t| part.triangles[*t as usize]);
@@ -243,7 +243,7 @@ pub(crate) fn inside_out(part: &Part) -> Option<(usize, f64)> {
 }
 
 /// The part, when every element has a positive area: dimensions may each be possible and together be none, or so small or
-/// so large that their squares are no numbers any more.
+/// so large that their squares underflow or overflow.
 pub(crate) fn sound(shape: &'static str, part: Part) -> Result<Part, Error> {
     match inside_out(&part) {
         None => Ok(part),

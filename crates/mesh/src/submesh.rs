@@ -110,7 +110,7 @@ impl Submesh {
         root.iter_mut().for_each(|m| *m = m.sqrt());
         let n = self.nodes.len();
         let space = KRYLOV.min(2 * n);
-        let mut basis: Vec<Vec<[f64; 2]>> = vec![rough(n)];
+        let mut basis: Vec<Vec<[f64; 2]>> = vec![start_vector(n)];
         let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
         for k in 0..space {
             let mut next = vec![[0.0; 2]; n];
@@ -251,8 +251,8 @@ pub(crate) fn add(a: &mut [f64], scale: f64, b: &[f64]) {
     a.iter_mut().zip(b).for_each(|(a, b)| *a += scale * b);
 }
 
-/// A fixed vector of length 1 that has a part along every mode.
-fn rough(n: usize) -> Vec<[f64; 2]> {
+/// A fixed vector of length 1, of pseudo-random numbers: it has a part along every mode.
+fn start_vector(n: usize) -> Vec<[f64; 2]> {
     let mut seed = 0x2545_f491_4f6c_dd1d_u64;
     let mut number = || {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

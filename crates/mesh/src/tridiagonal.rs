@@ -6,7 +6,7 @@
 const SWEEPS: usize = 60;
 
 /// Eigenvalues, the largest first, each with its eigenvector of length 1, of the matrix with this diagonal and these
-/// numbers `beside` it (one fewer). What is no number gives none.
+/// numbers `beside` it (one fewer). A NaN gives no pairs.
 ///
 /// Implicit QL with Wilkinson's shift. Source: G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., 2013,
 /// §8.3, there as QR.
@@ -82,7 +82,7 @@ mod tests {
         }
     }
 
-    /// A matrix that falls apart, equal eigenvalues, and what is no number.
+    /// A diagonal matrix, equal eigenvalues, and NaN.
     #[test]
     fn hostile_matrices() {
         let pairs = eigenpairs(vec![1.0, 1.0, 5.0], vec![0.0, 0.0]);

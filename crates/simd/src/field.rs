@@ -1,4 +1,4 @@
-//! One value for each slot, where whole groups of lanes lie in one line of cache.
+//! Arrays of numbers that are aligned to lines of cache.
 
 use std::ops::{Deref, DerefMut};
 
@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 /// Bytes of a line of cache, and of eight numbers.
 const LINE: usize = 64;
 
-/// A flat array of numbers; it begins with a line of cache, so that every eighth number does.
+/// An array of f64 whose first number begins a line of cache, and so does every eighth one after it: a vector loaded at a
+/// multiple of its length never spans two lines. It reads and writes as a slice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Field(AVec<f64, ConstAlign<LINE>>);
@@ -24,12 +25,12 @@ impl Field {
         self.0.push(value);
     }
 
-    /// Makes it `n` values long; new ones are zero.
+    /// Changes the length to `n`; new values are zero.
     pub fn resize(&mut self, n: usize) {
         self.0.resize(n, 0.0);
     }
 
-    /// Forgets all values and keeps their room.
+    /// Removes all values and keeps the memory.
     pub fn clear(&mut self) {
         self.0.clear();
     }

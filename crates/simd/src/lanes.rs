@@ -1,4 +1,4 @@
-//! Numbers that a kernel computes with: one at a time, or as many side by side as one instruction takes.
+//! Numbers that a kernel computes with: a single one, or a vector of them in the lanes of a register.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -9,10 +9,10 @@ use std::any::Any;
 use pulp::x86::V4;
 use pulp::{Simd, bytemuck};
 
-/// Congruent bodies that share a tile; no instruction set takes more numbers at a time.
+/// Numbers in a line of cache. No vector is longer, and arrays are cut into groups of that many.
 pub const LANES: usize = 8;
 
-/// What a kernel does with numbers.
+/// What a kernel can do with numbers, single ones or vectors.
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
@@ -35,7 +35,7 @@ impl Number for f64 {
     }
 }
 
-/// Numbers side by side, in registers of the instruction set `S`; in memory they begin a line of cache.
+/// Numbers side by side, in a register of the instruction set `S`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub struct Vector<S: Simd> {
@@ -58,7 +58,7 @@ static KEEP: [u64; 2 * LANES] = {
 static KEEP_LAST: [u64; LANES] = [0, 0, 0, 0, 0, 0, 0, u64::MAX];
 
 impl<S: Simd> Vector<S> {
-    /// How many numbers.
+    /// How many numbers it holds: 1, 2, 4 or 8.
     pub const LEN: usize = S::F64_LANES;
 
     /// The same number in all lanes.
@@ -67,7 +67,7 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: simd.splat_f64s(value) }
     }
 
-    /// One in each lane l whose bit l is set, zero in the others: what [`bits`](Self::bits) makes of it.
+    /// One in each lane l whose bit l of `bits` is set, zero in the others: the inverse of [`bits`](Self::bits).
     #[inline(always)]
     pub fn ones(simd: S, bits: u64) -> Self {
         const BITS: [u64; LANES] = [1, 2, 4, 8, 16, 32, 64, 128];
@@ -79,19 +79,28 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: simd.transmute_f64s_u64s(simd.select_u64s(chosen, one, zero)) }
     }
 
-    /// The numbers from `at` on.
+    /// The numbers of `from` from index `at` on.
+    ///
+    /// # Panics
+    /// When fewer than [`Self::LEN`] are left.
     #[inline(always)]
     pub fn load(simd: S, from: &[f64], at: usize) -> Self {
         Self { simd, lanes: S::as_simd_f64s(&from[at..at + Self::LEN]).0[0] }
     }
 
-    /// Writes the numbers from `at` on.
+    /// Writes the numbers to `to` from index `at` on.
+    ///
+    /// # Panics
+    /// When there is no room for all of them.
     #[inline(always)]
     pub fn store(self, to: &mut [f64], at: usize) {
         S::as_mut_simd_f64s(&mut to[at..at + Self::LEN]).0[0] = self.lanes;
     }
 
-    /// Writes the first `n` numbers from `at` on; what stands behind them is written back.
+    /// Writes the first `n` numbers to `to` from index `at` on, and leaves what follows as it is.
+    ///
+    /// # Panics
+    /// When there is no room for all of them.
     #[inline(always)]
     pub fn store_first(self, n: usize, to: &mut [f64], at: usize) {
         let simd = self.simd;
@@ -102,7 +111,7 @@ impl<S: Simd> Vector<S> {
         Self { lanes: simd.transmute_f64s_u64s(bits), ..self }.store(to, at);
     }
 
-    /// The first `n` numbers, and zeros.
+    /// The first `n` numbers; zeros in the other lanes.
     #[inline(always)]
     pub fn first(self, n: usize) -> Self {
         let keep = S::as_simd_u64s(&KEEP[LANES - n..LANES - n + Self::LEN]).0[0];
@@ -110,7 +119,7 @@ impl<S: Simd> Vector<S> {
         Self { lanes: self.simd.transmute_f64s_u64s(bits), ..self }
     }
 
-    /// Every number one lane up, the last of `before` in front.
+    /// Every number one lane up; the last one of `before` in the first lane.
     #[inline(always)]
     pub fn shifted_in(self, before: Self) -> Self {
         let simd = self.simd;
@@ -128,12 +137,12 @@ impl<S: Simd> Vector<S> {
         Self { lanes: simd.rotate_right_f64s(simd.transmute_f64s_u64s(joined), 1), ..self }
     }
 
-    /// Of numbers that are zero or one: bit l is set where number l is one.
+    /// For numbers that are zero or one: bit l is set where that in lane l is one.
     #[inline(always)]
     pub fn bits(self) -> u64 {
         const WEIGHTS: [f64; LANES] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
         let set = self.simd.less_than_f64s(self.simd.splat_f64s(0.5), self.lanes);
-        // A mask register holds these very bits.
+        // With AVX-512 a mask register holds these very bits.
         if let &[bits] = pulp::bytemuck::bytes_of(&set) {
             return u64::from(bits);
         }
@@ -246,10 +255,10 @@ mod tests {
 
     use super::*;
 
-    /// What vectors say of numbers, to be asked of each instruction set.
-    struct Ask;
+    /// Loads, sums, shifts and bits, for any instruction set.
+    struct Properties;
 
-    impl WithSimd for Ask {
+    impl WithSimd for Properties {
         type Output = usize;
 
         fn with_simd<S: Simd>(self, simd: S) -> usize {
@@ -271,11 +280,11 @@ mod tests {
 
     #[test]
     fn invariant_lanes_mean_the_same_on_every_instruction_set() {
-        assert_eq!(Ask.with_simd(Scalar), 1);
+        assert_eq!(Properties.with_simd(Scalar), 1);
         #[cfg(target_arch = "x86_64")]
         if let Some(avx2) = pulp::x86::V3::try_new() {
-            assert_eq!(Simd::vectorize(avx2, Ask), 4);
+            assert_eq!(Simd::vectorize(avx2, Properties), 4);
         }
-        assert!(Arch::new().dispatch(Ask) <= LANES);
+        assert!(Arch::new().dispatch(Properties) <= LANES);
     }
 }

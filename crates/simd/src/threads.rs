@@ -1,4 +1,4 @@
-//! Work shared out over the threads of the pool that the caller is in.
+//! Work shared out over the threads of the `micropool` that the caller runs in.
 
 use std::{
     ops::Range,
@@ -8,11 +8,12 @@ use std::{
 /// Items on either side of where two threads met that they share the next time.
 const MARGIN: usize = 2;
 
-/// Does something to every item, on up to `threads` threads; what happens to an item does not depend on how many.
+/// Calls `each` for every item, on up to `threads` threads. Results do not depend on how many there are.
 ///
 /// Two threads begin at either end and meet where they may, so an item mostly stays with the core that has it in its
-/// cache, and neither waits for longer than one item takes. More threads are dealt runs of about equal `work` by twos.
-/// Less than `least` work for each is not worth a fork, which takes some microseconds.
+/// cache, and neither waits for longer than one item takes. More than two threads are
+/// split into halves, which get runs of about equal `work`. A fork takes some microseconds, so that items of less than `least`
+/// work for each of two threads stay on the caller's.
 pub fn share_out<T: Send>(
     items: &mut [T],
     threads: usize,
@@ -23,8 +24,8 @@ pub fn share_out<T: Send>(
     share_out_with_first(items, threads, least, work, &mut Met::default(), &mut |item| each(item), each);
 }
 
-/// The same, but one thread does `first` to items in order from the first one on, and all others do `other` to the rest. How
-/// many items either gets may differ from call to call; `met` remembers it for the next one.
+/// The same, but one thread calls `first` for the first items, in order, and all others call `other` for the rest. How many
+/// items either gets may differ from call to call; `met` remembers it for the next one.
 pub fn share_out_with_first<T: Send>(
     items: &mut [T],
     threads: usize,
@@ -53,7 +54,7 @@ pub fn share_out_with_first<T: Send>(
     }
 }
 
-/// How many items make about `part` of `whole` parts of all work.
+/// How many of the first items hold about `part` of `whole` equal parts of all work; `items` are the work of each.
 pub fn cut(items: impl ExactSizeIterator<Item = usize>, all: usize, part: usize, whole: usize) -> usize {
     let last = items.len().saturating_sub(1);
     let mut before = 0;
@@ -65,21 +66,20 @@ pub fn cut(items: impl ExactSizeIterator<Item = usize>, all: usize, part: usize,
     first.count().clamp(1.min(last), last)
 }
 
-/// Where two threads met the last time they shared items out between them.
+/// Where two threads met when they last shared items out between them.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Met(usize);
 
 impl Met {
-    /// Items up to which one thread will come for certain, and from which on the other will have come, by the last time:
-    /// `margin` items on either side of where they met are open.
+    /// The items that either thread may get this time: `margin` of them on either side of where the threads last met.
     pub fn open(self, margin: usize, items: usize) -> Range<usize> {
         let to = (self.0 + margin).min(items);
         self.0.saturating_sub(margin).min(to)..to
     }
 }
 
-/// An iterator of which two threads take, in a line of cache of its own: one that another thread has just written is slow to
-/// come.
+/// An iterator that two threads take items from. It has a line of cache to itself, because a line that another thread has
+/// just written is slow to load.
 #[repr(align(128))]
 struct Shared<I>(Mutex<I>);
 
@@ -90,8 +90,9 @@ impl<I: DoubleEndedIterator> Shared<I> {
     }
 }
 
-/// Two threads take items from either end until none is left, each in its own way: one first from the `left` part, the other
-/// from the `right` one, then both from what lies `between`, and who is done there helps the other.
+/// Two threads take items until none is left. One calls `here`, for those of the `left` part from its first one on; the other
+/// calls `there`, for those of the `right` part from its last one on. Both then go on with the part `between`, and a thread
+/// that finds it empty with the part of the other.
 pub fn from_both_ends<I: Send>(
     [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
     mut here: impl FnMut(I) + Send,

@@ -163,7 +163,7 @@ impl<'a> Operator<'a> {
         let slots = self.dynamics.state.x.len();
         let field = || Probe { x: vec![0.0; slots], y: vec![0.0; slots] };
         let (mut at, mut force) = (field(), [field(), field()]);
-        // A fixed, rough start vector has a part along every mode.
+        // A fixed start vector of pseudo-random numbers has a part along every mode.
         let mut seed = 0x2545_f491_4f6c_dd1d_u64;
         let mut v: Vec<f64> = (0..n)
             .map(|_| {
@@ -201,7 +201,7 @@ impl<'a> Operator<'a> {
     }
 }
 
-/// Displacement [m] that shows the stiffness of the smallest element and drowns in no rounding.
+/// Displacement [m] that is small in the smallest element, and large against rounding.
 fn probe(dynamics: &Dynamics) -> f64 {
     let (x, y) = (&dynamics.state.x, &dynamics.state.y);
     let (mut shortest, mut farthest) = (f64::INFINITY, 0.0_f64);

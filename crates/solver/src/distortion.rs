@@ -14,8 +14,8 @@ pub struct Distortion {
 }
 
 impl Dynamics {
-    /// The most distorted elements of the present positions, measured at element centres. A position that is no number
-    /// gives an area that is none.
+    /// The most distorted elements of the present positions, measured at element centres. A position that is NaN gives an
+    /// area that is NaN.
     pub fn distortion(&self) -> Distortion {
         let (x, y) = (&self.state.x, &self.state.y);
         let mut worst = Distortion { least_area: f64::INFINITY, place: [0.0; 2], largest_stretch: 0.0 };
@@ -25,7 +25,7 @@ impl Dynamics {
                 [p[1] * b1[0] + r[1] * b2[0], p[1] * b1[1] + r[1] * b2[1]],
             ];
             let area = f[0][0] * f[1][1] - f[0][1] * f[1][0];
-            // Once it is no number it stays none.
+            // Once NaN, it stays NaN.
             if area < worst.least_area || area.is_nan() && !worst.least_area.is_nan() {
                 (worst.least_area, worst.place) = (area, [x[node], y[node]]);
             }

@@ -5,7 +5,7 @@ use crate::state::{Energy, Moment, NodeForces};
 /// One rank-one piece of a tangent stiffness, k · d dᵀ over a few nodes.
 #[derive(Debug, Clone, Copy)]
 pub struct RankOne<'a> {
-    /// Slots; one may stand here more than once.
+    /// Slots; one may appear more than once.
     pub nodes: &'a [u32],
     /// Direction, (x, y) of each node in turn.
     pub direction: &'a [f64],

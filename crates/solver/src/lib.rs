@@ -76,37 +76,46 @@
 //! | Question | File |
 //! |---|---|
 //! | What does a user give? | `model.rs`, `material.rs` |
-//! | What changes in time, what pushes? | `state.rs`, `force.rs` |
+//! | What changes in time? | `state.rs`; all of it in one piece, to continue a run from, `snapshot.rs` |
+//! | What pushes on nodes? | `force.rs` |
+//! | What force does an element make? | `element.rs`; all elements at any positions, `internal_forces.rs` |
 //! | What is one step? | `dynamics.rs` |
-//! | What does it take to continue a run? | `snapshot.rs` |
-//! | What force does an element make? | `element.rs` |
-//! | How do bodies move that do not deform, and what damps those that do? | `rigid.rs`, `damping.rs`, `ahead.rs` |
-//! | What energies are there? | `energies.rs` |
-//! | How long may a step be? | `critical.rs` |
-//! | How distorted are the elements? | `distortion.rs` |
+//! | How are vibrations damped? | `damping.rs` by mass; by stiffness `kernel/stiffness_damping.rs` |
+//! | How do bodies move that do not deform? | `rigid.rs` |
 //! | How is equilibrium found? | `statics.rs`, `statics/` |
+//! | How long may a step be? | `critical.rs` |
+//! | What energies are there? | `energies.rs` |
+//! | How distorted are the elements? | `distortion.rs` |
+//! | What is refused? | `error.rs` |
 //! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
-//! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
-//! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
+//! | Which loops do the work of a step, and how do nodes lie in memory for them? | `kernel.rs`, `kernel/` |
 
-pub mod critical;
-pub mod damping;
-pub mod distortion;
-pub mod dynamics;
-pub mod element;
-pub mod energies;
-mod error;
-pub mod force;
-pub mod integrators;
-mod internal_forces;
-mod kernel;
 pub mod material;
 pub mod model;
-pub mod reference;
-pub mod rigid;
+
+pub mod force;
 pub mod snapshot;
 pub mod state;
+
+pub mod element;
+mod internal_forces;
+
+pub mod damping;
+pub mod dynamics;
+pub mod rigid;
+
+pub mod critical;
 pub mod statics;
+
+pub mod distortion;
+pub mod energies;
+
+mod error;
+
+pub mod integrators;
+pub mod reference;
+
+mod kernel;
 
 pub use dynamics::Dynamics;
 pub use energies::Velocities;

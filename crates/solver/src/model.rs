@@ -89,8 +89,8 @@ impl Model {
     }
 
     /// References of all quadrilaterals and triangles, in mesh order. Quadrilaterals that follow one another with the same
-    /// shape but for rounding have one and the same: whoever computes an element, in a strip or alone, then takes the same
-    /// forces on it, and none is left on the body.
+    /// shape but for rounding share one reference: an element then has the same forces whether it is computed in a strip or
+    /// alone, and their sum over the body is zero.
     ///
     /// # Errors
     /// When an element has no positive area.

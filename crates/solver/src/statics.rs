@@ -2,7 +2,7 @@
 //!
 //! Newton's method on the positions with a sparse Cholesky factorisation. Bodies that nothing holds yet are slowed
 //! by a mass-proportional term as large as their own unbalanced force asks for, which vanishes at equilibrium.
-//! Motions that statics cannot decide (a rolling body along its track) are left to inertia: their unbalanced force
+//! Motions that statics cannot decide (of a cylinder that rolls freely) are left to inertia: their unbalanced force
 //! is spread over the mass as in a free fall, so nothing rings when the run begins.
 
 mod factor;

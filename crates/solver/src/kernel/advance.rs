@@ -19,7 +19,7 @@ pub(crate) struct StepParameters {
     pub(crate) since_placed: f64,
     /// Whether the heat of damping is counted in this step.
     pub(crate) count_heat: bool,
-    /// Whether strips fetch what they read next from far caches.
+    /// Whether strips prefetch what they read next.
     pub(crate) fetch: bool,
     /// Whether tiles are swept in the opposite order, the last ones of the step before first.
     pub(crate) back: bool,
@@ -41,7 +41,7 @@ pub(crate) struct Step<S: Simd> {
     frames: LaneMotion,
     /// αΔt: heat over mass and squared velocity.
     loss: f64,
-    /// Whether strips fetch what they read next from far caches.
+    /// Whether strips prefetch what they read next.
     pub(crate) fetch: bool,
 }
 
@@ -96,11 +96,11 @@ pub(crate) struct Nodes<'a> {
     pub(crate) mass: &'a [f64],
 }
 
-/// How many nodes ahead a strip fetches: so much of a row that it has come from memory when its turn is there.
+/// How many nodes ahead a strip prefetches, so that their values have come from memory when the strip reaches them.
 pub(crate) const FETCH: usize = 128;
 
 impl Nodes<'_> {
-    /// Fetches what a strip will read further on: positions of the row `high`, and the rest of the row `low` if it moves.
+    /// Prefetches what a strip will read further on: positions of the row `high`, and the rest of the row `low` if it moves.
     #[inline(always)]
     pub(crate) fn fetch(&self, low: usize, high: usize, moves: bool) {
         prefetch_index(&*self.x, high + FETCH);
@@ -112,7 +112,7 @@ impl Nodes<'_> {
         }
     }
 
-    /// The same arrays, all of one length that the compiler knows to be one.
+    /// The same arrays, cut to one length, so that the compiler checks bounds once.
     #[inline(always)]
     pub(crate) fn alike<D: Damping>(&mut self) -> Nodes<'_> {
         let n = self.x.len();

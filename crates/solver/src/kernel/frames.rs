@@ -37,7 +37,7 @@ impl LaneFrames {
         Self { frames, ..Self::REST }
     }
 
-    /// Whether one of them asks how its body moves.
+    /// Whether a frame depends on the motion of its body.
     pub(crate) fn follow(&self) -> bool {
         self.frames.iter().any(|&frame| frame != Frame::Rest)
     }

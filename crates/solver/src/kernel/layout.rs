@@ -24,7 +24,8 @@ pub(crate) const SHORTEST_STRIP: usize = 4;
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
 const TILE_NODES: usize = 8000;
 
-/// What an element across a seam costs, over one of a strip: it is gathered, from lines of cache that nothing has asked for.
+/// Cost of an element across a seam, relative to one of a strip: its nodes are gathered from lines of cache that are not
+/// prefetched.
 const ACROSS: usize = 10;
 
 /// No slot.
@@ -108,11 +109,11 @@ impl Layout {
         self.node_of_slot.len()
     }
 
-    /// Writes what stands in the nodes' slots of a field into those of their ghosts.
+    /// Copies the values of a field from nodes to their ghosts.
     pub(crate) fn copy_to_ghosts(&self, field: &mut [f64]) {
         for (ghosts, owner) in &self.ghosts {
             match ghosts.len() {
-                // Across seams they are single ones: not worth a call.
+                // Across seams runs are of one node, which is not worth a call.
                 1 => field[ghosts.start] = field[*owner],
                 n => field.copy_within(*owner..owner + n, ghosts.start),
             }
@@ -311,7 +312,7 @@ fn bisect(mesh: &Mesh, body: &Body) -> Vec<usize> {
             quads.iter().map(sides).filter(|s| s.contains(&true) && s.contains(&false)).count()
         };
         let cost = ACROSS * crossing(&across);
-        // The part that is asked last is the one that is taken.
+        // `upper` holds the part of the last call, and that part is taken.
         if between.is_none_or(|between| crossing(between) >= cost) {
             crossing(&across);
         }

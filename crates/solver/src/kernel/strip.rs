@@ -1,14 +1,15 @@
-//! The kernel over a strip: element forces, sums at nodes, and the motion of the row that the strip completes, as many
-//! neighbours at a time as one instruction takes, in one pass (PERFORMANCE.md).
+//! The kernel over a strip: element forces, sums at nodes, and the motion of the row that the strip completes, in one pass;
+//! neighbours are computed side by side in vectors (PERFORMANCE.md).
 
 use std::ops::Range;
 
 use pulp::Simd;
 
 use crate::{
-    element::{CornerForces, QuadMetric, Stiffness},
+    element::{CornerForces, Stiffness},
     kernel::{
         advance::{Damping, Nodes, Step, Undamped, advance},
+        quad_forms::QuadMetric,
         tile::Strip,
         varying_references::VaryingReferences,
     },
@@ -64,7 +65,7 @@ fn run<S: Simd, D: Damping, const COMPLETES: bool>(
     let nodes = &mut nodes.alike::<D>();
     let len = Vector::<S>::LEN;
     let [low, _, _, high] = strip.corners.map(|c| c as usize);
-    // Said once, so that the compiler need not ask in every group.
+    // Checked once, so that the compiler drops the check in every group.
     let elements = strip.len as u32 as usize;
     let last = elements - elements % len;
     assert!(low.max(high) + last + len < nodes.x.len(), "the last group of a strip lies within its tile");

@@ -240,7 +240,7 @@ mod tests {
         sweep.with_simd(Scalar)
     }
 
-    /// Velocities [m/s] after a step of every tile in so many lanes, and by the sum over all elements one by one.
+    /// Velocities [m/s] after a step of every tile in `lanes` lanes, and by the sum over all elements one by one.
     fn velocities(mesh: Mesh, lanes: usize) -> [Vec<f64>; 2] {
         let steel = Elastic::new(200e9, 0.3, 7850.0).expect("a possible material");
         let mut model = Model::new(mesh, steel, 0.02).expect("a possible model");

@@ -5,11 +5,12 @@ use std::ops::Range;
 use stribeck_mesh::strips::find_strips;
 
 use crate::{
-    element::{QuadMetric, QuadReference, QuadShape, Stiffness, TriangleReference},
+    element::{QuadReference, Stiffness, TriangleReference},
     kernel::{
         frames::LaneFrames,
         layout::{SHORTEST_STRIP, TileLayout},
         mass_sums::LaneSums,
+        quad_forms::{QuadMetric, QuadShape},
         varying_references::VaryingReferences,
     },
     model::Motion,
@@ -100,8 +101,8 @@ fn alike(n: usize, same: impl Fn(usize, usize) -> bool) -> Range<usize> {
 pub(crate) struct Strip {
     pub(crate) corners: [u32; 4],
     pub(crate) len: usize,
-    /// Neighbours that are all alike, as on a square grid or along a ring's row; from whole groups of lanes on, and as many
-    /// unless they are the last.
+    /// Neighbours that are all alike, as on a square grid or along a ring's row: whole groups of lanes, the last one perhaps
+    /// shorter.
     pub(crate) alike: Range<usize>,
     /// Reference of those.
     pub(crate) metric: QuadMetric,

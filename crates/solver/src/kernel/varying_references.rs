@@ -3,13 +3,13 @@
 use prefetch_index::prefetch_index;
 use pulp::Simd;
 
-use crate::{element::QuadShape, kernel::advance::FETCH};
+use crate::kernel::{advance::FETCH, quad_forms::QuadShape};
 use stribeck_simd::{
     field::Field,
     lanes::{LANES, Vector},
 };
 
-/// Shapes of quadrilaterals ([`crate::element::QuadShape`]) in groups of lanes: eight values of each kind,
+/// Shapes of quadrilaterals ([`QuadShape`]) in groups of lanes: eight values of each kind,
 /// one kind after the other, so that a kernel reads them as one stream.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VaryingReferences(Field);

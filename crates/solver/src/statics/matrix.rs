@@ -12,7 +12,7 @@ pub(super) struct Matrix {
     nodes: Vec<u32>,
     columns: Vec<usize>,
     rows: Vec<usize>,
-    /// What stands in each place of the pattern.
+    /// Value at each place of the pattern.
     pub(super) values: Vec<f64>,
 }
 

@@ -37,7 +37,7 @@ impl Unknowns {
         Some(self.index[slot as usize]).filter(|&i| i != FIXED).map(|i| i as usize)
     }
 
-    /// Nodes that share an element or stand in one of `couplings`, pairs of slots.
+    /// Nodes that share an element or appear in one of `couplings`, pairs of slots.
     pub(super) fn graph(&self, d: &Dynamics, couplings: &[[u32; 2]]) -> Graph {
         let elements = d.elements();
         let quads = elements
