@@ -3,6 +3,7 @@
 mod passages;
 
 use stribeck_dsp::{Spectrum, Welch};
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
@@ -130,7 +131,7 @@ impl Findings {
             None => Vec::new(),
         };
         let (envelope, enveloped) = envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
-        let pair = prediction.kinematics.paper_noise_hz(run.scene.mesh.size_mm);
+        let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
         let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
 
         let mut summary = Summary {

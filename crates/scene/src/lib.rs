@@ -4,7 +4,9 @@
 
 pub mod error;
 pub mod frames;
+pub mod geometry;
 pub mod kinematics;
+pub mod mesh_file;
 pub mod run_dir;
 pub mod run_info;
 pub mod scene;

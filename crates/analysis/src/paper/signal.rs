@@ -1,5 +1,7 @@
 //! What the paper gets out: frequencies, levels, the notch, the events (its sections 3 to 5).
 
+use stribeck_scene::geometry::Geometry;
+
 use super::{
     BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Row, Source, TONE_HZ, number, words,
 };
@@ -112,7 +114,7 @@ fn lines(source: &Source<'_>) -> Vec<Row> {
     let leading = summary.levels.sensor.as_deref().unwrap_or_default();
     let tone = tones::dominant(&summary.tones, leading).or_else(|| tones::clearest(&summary.tones));
     let measured = tone.and_then(|t| t.measured_hz);
-    let (outer, inner) = source.prediction.kinematics.paper_noise_hz(source.scene.mesh.size_mm);
+    let (outer, inner) = source.prediction.kinematics.paper_noise_hz(Geometry::of(source.scene).element_size);
     let inner_right = source.prediction.facet_lines.iter().find(|l| l.0 == "inner_race_nodes").map(|l| l.1);
     let resolution = summary.spectrum.as_ref();
     let record = resolution.map_or("no spectrum".into(), |s| {
