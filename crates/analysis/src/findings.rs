@@ -37,7 +37,7 @@ pub struct Findings {
     /// What geometry predicts.
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
-    pub lines: Vec<tones::Line>,
+    pub lines: Vec<tones::PredictedLine>,
     /// Bending modes of the free outer ring: waves around it, frequency [Hz].
     pub modes: Vec<(u32, f64)>,
     /// Time of the first usable sample [s].
@@ -237,7 +237,7 @@ fn sensor_signals(
 /// Every line at every sensor.
 fn measured_tones(
     sensors: &[SensorSignal],
-    lines: &[tones::Line],
+    lines: &[tones::PredictedLine],
     notes: &mut Vec<String>,
 ) -> Result<Vec<Tone>, Error> {
     let mut all = Vec::new();

@@ -3,8 +3,9 @@
 use stribeck_scene::geometry::Geometry;
 
 use super::{
-    BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Row, Source, TONE_HZ, number, words,
+    BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words,
 };
+use crate::summary::PaperRow;
 use crate::tones;
 
 const MOTION: &str = "Kinematics";
@@ -12,7 +13,7 @@ const NOISE: &str = "Noise";
 const NOTCH: &str = "Notch";
 const EVENTS: &str = "Contact forces";
 
-pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
+pub(super) fn rows(source: &Source<'_>) -> Vec<PaperRow> {
     let mut rows = motion(source);
     rows.extend(levels(source));
     rows.extend(lines(source));
@@ -22,7 +23,7 @@ pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
     rows
 }
 
-fn motion(source: &Source<'_>) -> Vec<Row> {
+fn motion(source: &Source<'_>) -> Vec<PaperRow> {
     let k = &source.prediction.kinematics;
     let exits: Vec<f64> = source.summary.events.iter().filter_map(|e| e.exit_ms).collect();
     let spacing_s =
@@ -73,7 +74,7 @@ fn motion(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn levels(source: &Source<'_>) -> Vec<Row> {
+fn levels(source: &Source<'_>) -> Vec<PaperRow> {
     let levels = &source.summary.levels;
     let sensor = levels.sensor.as_deref().unwrap_or("none");
     let why = |what: &str| {
@@ -109,7 +110,7 @@ fn levels(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn lines(source: &Source<'_>) -> Vec<Row> {
+fn lines(source: &Source<'_>) -> Vec<PaperRow> {
     let summary = source.summary;
     let leading = summary.levels.sensor.as_deref().unwrap_or_default();
     let tone = tones::dominant(&summary.tones, leading).or_else(|| tones::clearest(&summary.tones));
@@ -200,7 +201,7 @@ fn lines(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn beat(source: &Source<'_>) -> Vec<Row> {
+fn beat(source: &Source<'_>) -> Vec<PaperRow> {
     let reading = source.summary.cursor.as_ref();
     let gap = 100.0 * (CURSOR_HZ / EQUATION_2_HZ.1 - 1.0);
     let lines = &source.prediction.facet_lines;
@@ -259,7 +260,7 @@ fn beat(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn notch(source: &Source<'_>) -> Vec<Row> {
+fn notch(source: &Source<'_>) -> Vec<PaperRow> {
     let notch = source.summary.notch.as_ref();
     let db = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.1}"));
     let four = notch.map_or("no notch".into(), |n| {
@@ -297,7 +298,7 @@ fn notch(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn events(source: &Source<'_>) -> Vec<Row> {
+fn events(source: &Source<'_>) -> Vec<PaperRow> {
     let events = &source.summary.events;
     let papers = ["≈ 5", "16–17", "≈ 28"];
     let mut rows = vec![number(
