@@ -27,10 +27,8 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let scene = Scene::read_with(workspace::locate(&options.scene), &options.overrides)?;
     let assembly = Assembly::new(&scene)?;
-    let mesh = MeshFacts {
-        counts: assembly.mesh_info(),
-        element_time_step_s: assembly.element_time_step_s(&scene),
-    };
+    let mesh =
+        MeshFacts { counts: assembly.mesh_info(), element_time_step_s: assembly.element_time_step_s(&scene) };
     let plan = Plan::of(&scene, &mesh)?;
     let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
     println!("{}", scene.name);

@@ -236,7 +236,11 @@ fn invariant_a_run_whose_mesh_cannot_be_read_has_a_report_without_its_pictures()
     info.mesh.nodes += 1;
     fs::write(folder.0.join("run.json"), serde_json::to_vec(&info).expect("JSON")).expect("writable");
     let summary = report::write(&folder.0).expect("a report");
-    assert!(summary.notes.iter().any(|note| note.contains("it belongs to another run")), "{:?}", summary.notes);
+    assert!(
+        summary.notes.iter().any(|note| note.contains("it belongs to another run")),
+        "{:?}",
+        summary.notes
+    );
 }
 
 #[test]

@@ -265,8 +265,11 @@ fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<()
         mesh.x[n] = machine.dynamics.state.x[slot as usize];
         mesh.y[n] = machine.dynamics.state.y[slot as usize];
     }
-    let moved: Vec<[f64; 3]> =
-        reference.iter().enumerate().map(|(n, from)| [mesh.x[n] - from[0], mesh.y[n] - from[1], 0.0]).collect();
+    let moved: Vec<[f64; 3]> = reference
+        .iter()
+        .enumerate()
+        .map(|(n, from)| [mesh.x[n] - from[0], mesh.y[n] - from[1], 0.0])
+        .collect();
     let fields =
         [vtu::Field::vector("displacement_m", &moved), vtu::Field::exact_vector(REFERENCE, &reference)];
     let mut file = Vec::new();

@@ -211,7 +211,8 @@ fn names(bytes: &[u8]) -> Result<Vec<String>, String> {
     let Some((0, texts)) = bytes.split_last() else {
         return Err("it names no bodies".to_owned());
     };
-    let name = |text: &[u8]| String::from_utf8(text.to_vec()).map_err(|_| "a body's name is no text".to_owned());
+    let name =
+        |text: &[u8]| String::from_utf8(text.to_vec()).map_err(|_| "a body's name is no text".to_owned());
     texts.split(|byte| *byte == 0).map(name).collect()
 }
 

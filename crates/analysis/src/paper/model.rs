@@ -1,8 +1,8 @@
 //! What the paper puts in: dimensions, material, mesh, load (its section 2).
 
 use super::{Source, number, words};
-use crate::summary::PaperRow;
 use crate::ring;
+use crate::summary::PaperRow;
 
 const PART: &str = "Model";
 const GIVEN: &str = "given";

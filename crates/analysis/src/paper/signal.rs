@@ -2,9 +2,7 @@
 
 use stribeck_scene::geometry::Geometry;
 
-use super::{
-    BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words,
-};
+use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words};
 use crate::summary::PaperRow;
 use crate::tones;
 

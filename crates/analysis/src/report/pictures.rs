@@ -10,7 +10,7 @@ use std::path::Path;
 use stribeck_scene::frames::{self, Window};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::run_dir::Run;
+use stribeck_scene::run_dir::{Run, RunDir};
 
 use crate::Error;
 use crate::findings::Findings;
@@ -30,36 +30,35 @@ impl Pictures {
     /// Draws them. `run_dir` is the folder of the run, for its mesh and its frames.
     pub(super) fn of(run: &Run, findings: &Findings, run_dir: &Path) -> Result<Self, Error> {
         let mut pictures = Self { load: polar::picture(findings).into_iter().collect(), ..Self::default() };
-        let mesh = match mesh_of(run, run_dir) {
+        let dir = RunDir::open(run_dir)?;
+        let mesh = match mesh_of(run, &dir) {
             Ok(mesh) => mesh,
             Err(why) => {
                 pictures.notes.push(format!("no pictures of the mesh and of the stress: {why}"));
                 return Ok(pictures);
             }
         };
-        pictures.mesh = vec![
-            mesh::whole(&mesh),
-            mesh::defect(&run.scene, &mesh),
-            roller::picture(&run.scene, &mesh),
-        ];
-        let frames = frames::read_all(&run_dir.join("frames"))?;
-        match Window::of(&run.scene) {
-            _ if frames.is_empty() => {
-                pictures.notes.push("no picture of the stress: the run kept no frames (`output.frames`)".into());
-            }
-            None => {}
+        pictures.mesh =
+            vec![mesh::whole(&mesh), mesh::defect(&run.scene, &mesh), roller::picture(&run.scene, &mesh)];
+        let frames = frames::read_all(&dir.frames())?;
+        match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
             Some(window) => pictures.stress = stress::pictures(run, findings, &mesh, &window, &frames)?,
+            None => pictures
+                .notes
+                .push("no picture of the stress: the run kept no frames (`output.frames`)".into()),
         }
         Ok(pictures)
     }
 }
 
 /// The mesh that the run has kept, or why it cannot be drawn.
-fn mesh_of(run: &Run, run_dir: &Path) -> Result<RunMesh, String> {
-    let mesh = RunMesh::read(run_dir.join("mesh.vtu")).map_err(|why| why.to_string())?;
+fn mesh_of(run: &Run, dir: &RunDir) -> Result<RunMesh, String> {
+    let mesh = RunMesh::read(dir.mesh()).map_err(|why| why.to_string())?;
     let (counts, expected) = ([mesh.reference.len(), mesh.quads.len(), mesh.triangles.len()], &run.info.mesh);
     if counts != [expected.nodes, expected.quads, expected.triangles] {
-        return Err("`mesh.vtu` counts other nodes and elements than `run.json`: it belongs to another run".into());
+        return Err(
+            "`mesh.vtu` and `run.json` count other nodes and elements: it belongs to another run".into()
+        );
     }
     // A picture as large as a forged mesh would take all memory.
     let geometry = Geometry::of(&run.scene);

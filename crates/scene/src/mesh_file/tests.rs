@@ -44,7 +44,10 @@ fn invariant_damage_is_named() {
         (with(b"Cells=\"5\"", b"Cells=\"6\""), "`types` has 5 bytes"),
         (with(b"Float64\" Name=\"points", b"Float32\" Name=\"points"), "describe `points`"),
         (with(&[9, 9, 9, 9, 5], &[9, 5, 9, 9, 5]), "quadrilaterals and then triangles"),
-        (with(&[9, 0, 0, 0, 10, 0, 0, 0, 11], &[9, 0, 0, 0, 10, 0, 0, 0, 99]), "the node 99, and there are 12"),
+        (
+            with(&[9, 0, 0, 0, 10, 0, 0, 0, 11], &[9, 0, 0, 0, 10, 0, 0, 0, 99]),
+            "the node 99, and there are 12",
+        ),
         (with(&(1.0_f64 / 3.0).to_le_bytes(), &f64::NAN.to_le_bytes()), "at NaN m"),
         (with(b"raw\">\n_", b"raw\">\n-"), "no appended data"),
         (with(b"<Piece", b"<piece"), "`NumberOfPoints`"),
