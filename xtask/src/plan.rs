@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use stribeck_analysis::plan::Plan;
+use stribeck_analysis::plan::{MeshFacts, Plan};
+use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::scene::Scene;
 
 use crate::workspace;
@@ -25,7 +26,10 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let scene = Scene::read_with(workspace::locate(&options.scene), &options.overrides)?;
-    let plan = Plan::of(&scene)?;
+    let assembly = Assembly::new(&scene)?;
+    let mesh =
+        MeshFacts { counts: assembly.mesh_info(), element_time_step_s: assembly.element_time_step_s(&scene) };
+    let plan = Plan::of(&scene, &mesh)?;
     let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
     println!("{}", scene.name);
     println!("  lines of contact noise, without slip");

@@ -8,7 +8,7 @@ use crate::Error;
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::Prediction;
 use crate::ring;
-use crate::tones::{self, Line, Tone};
+use crate::tones::{self, PredictedLine, Tone};
 
 /// Where a line comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -76,7 +76,7 @@ pub fn ledger(
 }
 
 /// Predicted lines of the defect: BPFO and its multiples.
-pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<Line> {
+pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<PredictedLine> {
     if prediction.defect.is_none() {
         return Vec::new();
     }
@@ -141,7 +141,7 @@ fn defect(
     let resolution = density.resolution();
     let split = shows_family(density, prediction.kinematics.bpfo_hz);
     let tones = if split { tones::measure(sensor, &lines, density)? } else { Vec::new() };
-    let entry = |line: &Line| {
+    let entry = |line: &PredictedLine| {
         let tone = tones.iter().find(|t| t.harmonic == line.harmonic);
         let verdict = match tone {
             None => format!(

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{EnvelopeSpectrum, PeriodCount, PeriodVerdict, Spectrum};
 
 use crate::Error;
-use crate::tones::{self, Line};
+use crate::tones::{self, PredictedLine};
 
 /// Lower end of the band whose envelope is taken [Hz]: above the facet tone, so that its beats are not taken for knocks.
 const BAND_FROM_HZ: f64 = 6_000.0;
@@ -45,7 +45,7 @@ pub struct EnvelopeLine {
 pub fn analyse(
     signal_g: &[f64],
     sample_rate_hz: f64,
-    lines: &[Line],
+    lines: &[PredictedLine],
 ) -> Result<Result<(Spectrum, EnvelopeFinding), String>, Error> {
     let Some(fundamental) = lines.first().map(|l| l.predicted_hz).filter(|&hz| hz > 0.0) else {
         return Ok(Err("no envelope spectrum: nothing passes a defect".into()));
@@ -96,7 +96,7 @@ mod tests {
             .collect()
     }
 
-    fn family() -> Vec<Line> {
+    fn family() -> Vec<PredictedLine> {
         tones::harmonics(&[("BPFO".into(), 90.1)], 4, 1e9)
     }
 

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub enum Error {
     /// The run cannot be read, or its scene has no static equilibrium.
     #[error(transparent)]
-    Bearing(#[from] stribeck_scene::Error),
+    Run(#[from] stribeck_scene::Error),
     /// A signal cannot be processed.
     #[error("a recorded signal cannot be processed: {0}")]
     Signal(#[source] stribeck_dsp::Error),

@@ -3,6 +3,7 @@
 mod passages;
 
 use stribeck_dsp::{Spectrum, Welch};
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
@@ -36,7 +37,7 @@ pub struct Findings {
     /// What geometry predicts.
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
-    pub lines: Vec<tones::Line>,
+    pub lines: Vec<tones::PredictedLine>,
     /// Bending modes of the free outer ring: waves around it, frequency [Hz].
     pub modes: Vec<(u32, f64)>,
     /// Time of the first usable sample [s].
@@ -130,7 +131,7 @@ impl Findings {
             None => Vec::new(),
         };
         let (envelope, enveloped) = envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
-        let pair = prediction.kinematics.paper_noise_hz(run.scene.mesh.size_mm);
+        let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
         let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
 
         let mut summary = Summary {
@@ -236,7 +237,7 @@ fn sensor_signals(
 /// Every line at every sensor.
 fn measured_tones(
     sensors: &[SensorSignal],
-    lines: &[tones::Line],
+    lines: &[tones::PredictedLine],
     notes: &mut Vec<String>,
 ) -> Result<Vec<Tone>, Error> {
     let mut all = Vec::new();

@@ -17,7 +17,7 @@ pub const AFTER_EXIT_S: f64 = 2e-3;
 
 /// Size of a signal over some samples.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Level {
+pub struct SignalLevel {
     /// Largest magnitude [unit of the signal].
     pub peak: f64,
     /// Magnitude that one sample in a hundred exceeds: a peak that a single sample cannot set.
@@ -27,14 +27,14 @@ pub struct Level {
 }
 
 /// Level of `signal` over the union of `spans`; `None` when they hold no sample.
-pub fn level(signal: &[f64], spans: &[Range<usize>]) -> Option<Level> {
+pub fn level(signal: &[f64], spans: &[Range<usize>]) -> Option<SignalLevel> {
     let mut sizes: Vec<f64> =
         spans.iter().flat_map(|s| signal.get(s.clone()).unwrap_or(&[])).map(|v| v.abs()).collect();
     sizes.sort_unstable_by(f64::total_cmp);
     let peak = *sizes.last()?;
     let rank = (0.99 * (sizes.len() - 1) as f64).round() as usize;
     let rms = (sizes.iter().map(|v| v * v).sum::<f64>() / sizes.len() as f64).sqrt();
-    Some(Level { peak, p99: sizes[rank], rms })
+    Some(SignalLevel { peak, p99: sizes[rank], rms })
 }
 
 /// Samples within [`IMPULSE_HALF_WIDTH_S`] of an exit.

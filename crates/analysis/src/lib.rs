@@ -1,7 +1,27 @@
 //! What a run shows: kinematics, events, loads, tones, levels, and the report made of them.
 //!
 //! [`report::write`] turns a run directory into `report.html`, `summary.json` and `figures/*.svg`. The steps on the way
-//! are public and take plain slices, so that a measured signal can go through them as well.
+//! are public and take plain slices, so that a measured signal can go through them as well. Nothing here meshes or
+//! simulates: what a report draws is what the run has kept.
+//!
+//! ```no_run
+//! let summary = stribeck_analysis::report::write("runs/singh2014".as_ref())?;
+//! for tone in summary.tones.iter().filter(|tone| tone.level_g.is_some()) {
+//!     println!("{}: {} no. {} at {:?} Hz", tone.sensor, tone.name, tone.harmonic, tone.measured_hz);
+//! }
+//! # Ok::<(), stribeck_analysis::Error>(())
+//! ```
+//!
+//! # Where to look
+//!
+//! | question | module |
+//! |---|---|
+//! | What does a run hold, what lets geometry expect? | [`record`], [`prediction`], [`plan`] |
+//! | Which lines are there, and what makes them? | [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
+//! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
+//! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
+//! | Who carries how much, how fast does what turn? | [`load`], [`kinematics`], [`stress`] |
+//! | What does all of it come to? | [`findings`], [`summary`], [`paper`], [`report`], [`plot`] |
 //!
 //! # A measured gearbox
 //!

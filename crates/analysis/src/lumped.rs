@@ -20,6 +20,7 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_scene::Error;
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::{RollerCopies, Scene};
 use stribeck_scene::static_load::{self, roller_angles_deg};
@@ -57,7 +58,8 @@ impl Lumped {
     pub fn of(scene: &Scene) -> Result<Self, Error> {
         let load = static_load::at_start(scene)?;
         let facets = scene.mesh.roller_facets as f64;
-        let radius = 0.5e-3 * scene.bearing.roller_diameter_mm;
+        let geometry = Geometry::of(scene);
+        let radius = geometry.roller_radius;
         let facet = TAU * radius / facets;
         let height_m = facet * facet / (2.0 * PI * PI * radius);
         let (mut re, mut im, mut springs, mut arms) = (0.0, 0.0, 0.0, 0.0);
@@ -72,7 +74,7 @@ impl Lumped {
                 RollerCopies::Translated => facets * angle,
                 RollerCopies::Rotated => 0.0,
             };
-            let kept = average(TAU * half_width(scene, *force) / facet);
+            let kept = average(TAU * half_width(&geometry, *force) / facet);
             if *force == largest {
                 smoothing = kept;
             }
@@ -112,15 +114,11 @@ pub fn pattern_hz(scene: &Scene, spin_hz: f64, cage_hz: f64) -> f64 {
 }
 
 /// Half-width of the outer contact [m]: that of Hertz and that of the penalty's own indentation, as squares.
-fn half_width(scene: &Scene, force_n: f64) -> f64 {
-    let (b, m) = (&scene.bearing, &scene.material);
-    let (r, race) = (0.5e-3 * b.roller_diameter_mm, 0.5e-3 * b.outer_race_diameter_mm);
-    let radius = 1.0 / (1.0 / r - 1.0 / race);
-    let line = force_n / (1e-3 * b.thickness_mm);
-    let modulus = 1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 - m.poissons_ratio.powi(2)));
-    let hertz = 4.0 * line * radius / (PI * modulus);
-    let stiffness = scene.contact.penalty_scale * 1e9 * m.youngs_modulus_gpa / (1e-3 * scene.mesh.size_mm);
-    let indentation = (0.75 * line / (stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+fn half_width(geometry: &Geometry, force_n: f64) -> f64 {
+    let radius = geometry.outer_contact_radius();
+    let line = force_n / geometry.thickness;
+    let hertz = 4.0 * line * radius / (PI * geometry.material.contact_modulus());
+    let indentation = (0.75 * line / (geometry.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
     (hertz + 2.0 * radius * indentation).sqrt()
 }
 

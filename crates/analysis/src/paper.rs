@@ -6,12 +6,11 @@
 mod model;
 mod signal;
 
-use serde::{Deserialize, Serialize};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::Scene;
 
 use crate::prediction::Prediction;
-use crate::summary::Summary;
+use crate::summary::{PaperRow, Summary};
 
 /// The paper's dominant line [Hz].
 pub const TONE_HZ: f64 = 4671.0;
@@ -26,23 +25,6 @@ pub const BETWEEN_G: f64 = 50.0;
 /// The same behind the notch, Fig. 6 [g].
 pub const FILTERED_G: f64 = 20.0;
 
-/// One number of the paper.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
-    /// Part of the paper.
-    pub part: String,
-    /// What is counted or measured.
-    pub quantity: String,
-    /// As the paper prints it.
-    pub paper: String,
-    /// Of this run; words when there is no number.
-    pub ours: String,
-    /// Ours against the paper's.
-    pub difference: String,
-    /// Why, or what to make of it.
-    pub why: String,
-}
-
 /// What the rows are made of.
 struct Source<'a> {
     scene: &'a Scene,
@@ -52,7 +34,7 @@ struct Source<'a> {
 }
 
 /// All rows, in the order of the paper. None is blank: what this run cannot yield says so.
-pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<Row> {
+pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<PaperRow> {
     let source = Source { scene, mesh, prediction, summary };
     let mut rows = model::rows(&source);
     rows.extend(signal::rows(&source));
@@ -60,9 +42,9 @@ pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &S
 }
 
 /// A number that both have.
-fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str, why: &str) -> Row {
+fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str, why: &str) -> PaperRow {
     let text = |v: f64| format!("{} {unit}", shortest(v)).trim_end().to_owned();
-    Row {
+    PaperRow {
         part: part.into(),
         quantity: quantity.into(),
         paper: text(paper),
@@ -73,8 +55,8 @@ fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str,
 }
 
 /// A row of words.
-fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str, why: &str) -> Row {
-    Row {
+fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str, why: &str) -> PaperRow {
+    PaperRow {
         part: part.into(),
         quantity: quantity.into(),
         paper: paper.into(),

@@ -1,15 +1,26 @@
 //! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is, what it costs,
-//! and how long a record must be. A second of work; nothing is simulated.
+//! and how long a record must be. Nothing is simulated.
 
 use std::f64::consts::PI;
 
-use stribeck_bearing::assembly::Assembly;
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene};
 use stribeck_scene::static_load;
 
+use crate::Error;
 use crate::lumped::Lumped;
 use crate::prediction::Prediction;
+
+/// What a plan must know of the mesh that a scene makes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshFacts {
+    /// Its counts.
+    pub counts: MeshInfo,
+    /// Critical time step of its stiffest element by itself [s].
+    pub element_time_step_s: f64,
+}
 
 /// What to expect of a scene.
 #[derive(Debug, Clone)]
@@ -56,74 +67,69 @@ const HANN_WIDTHS: f64 = 2.0;
 const ONSET_STEPS: f64 = 1.9;
 
 impl Plan {
-    /// Meshes the scene and says what to expect.
+    /// What to expect of a scene whose mesh is `mesh`.
     ///
     /// # Errors
-    /// When the scene cannot be meshed or has no static load distribution.
-    pub fn of(scene: &Scene) -> Result<Self, stribeck_bearing::error::Error> {
-        let assembly = Assembly::new(scene)?;
-        let info = assembly.mesh_info();
-        let prediction = Prediction::of(scene, &info);
+    /// [`Error::Run`] when the scene has no static load distribution.
+    pub fn of(scene: &Scene, mesh: &MeshFacts) -> Result<Self, Error> {
+        let counts = &mesh.counts;
+        let prediction = Prediction::of(scene, counts);
         let lumped = Lumped::of(scene)?;
         let kinematics = Kinematics::of(scene);
-        let (b, m) = (&scene.bearing, &scene.material);
+        let geometry = Geometry::of(scene);
+        let material = &geometry.material;
         let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());
-        let radius = 0.5e-3 * b.roller_diameter_mm;
-        let (outer, inner) = (0.5e-3 * b.outer_race_diameter_mm, 0.5e-3 * b.inner_race_diameter_mm);
+        let radius = geometry.roller_radius;
         let load_n = static_load::at_start(scene)?.max_roller_n();
-        let modulus = 1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 - m.poissons_ratio.powi(2)));
-        let effective = 1.0 / (1.0 / radius - 1.0 / outer);
-        let half_width_m = (4.0 * load_n / (1e-3 * b.thickness_mm) * effective / (PI * modulus)).sqrt();
+        let effective = geometry.outer_contact_radius();
+        let half_width_m =
+            (4.0 * load_n / geometry.thickness * effective / (PI * material.contact_modulus())).sqrt();
 
-        let critical = assembly.element_time_step_s(scene);
-        let duration_s = 1e-3 * scene.solver.duration_ms;
-        let interval_s = 1e-6 * scene.output.interval_us;
-        let per_sample = (interval_s / (scene.solver.time_step_factor * critical)).ceil().max(1.0);
-        let shear = (1e9 * m.youngs_modulus_gpa / (2.0 * (1.0 + m.poissons_ratio)) / m.density_kg_m3).sqrt();
+        let (duration_s, interval_s) = (geometry.duration, geometry.interval);
+        let time_step_s = scene.solver.time_step_factor * mesh.element_time_step_s;
+        let per_sample = (interval_s / time_step_s).ceil().max(1.0);
+        let shear = (material.shear_modulus() / material.density).sqrt();
         let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let facets = info.roller_facets as f64;
+        let facets = counts.roller_facets as f64;
         let mut plan = Self {
             lines: prediction.facet_lines.clone(),
             lumped,
             sag_m: [
                 sag(radius, facets),
-                sag(outer, info.outer_facets as f64),
-                sag(inner, info.inner_facets as f64),
+                sag(geometry.outer_race_radius, counts.outer_facets as f64),
+                sag(geometry.inner_race_radius, counts.inner_facets as f64),
             ],
             load_n,
             half_width_m,
             facet_m: 2.0 * PI * radius / facets,
-            elements: info.quads + info.triangles,
+            elements: counts.quads + counts.triangles,
             time_step_s: interval_s / per_sample,
             steps: per_sample * (duration_s / interval_s).round(),
-            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / (1e-3 * scene.mesh.size_mm),
+            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / geometry.element_size,
             resolution_hz: 1.0 / duration_s,
             separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
             envelope_s: 10.0 / kinematics.bpfo_hz,
             advice: Vec::new(),
         };
-        plan.advise(scene);
+        plan.advise(scene, &geometry);
         Ok(plan)
     }
 
     /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a roller with
     /// the outer raceway [m] (THEORY §4.2).
-    fn point_step_m(&self, scene: &Scene) -> f64 {
-        let (b, c) = (&scene.bearing, &scene.contact);
-        let [roller, outer] = [b.roller_diameter_mm, b.outer_race_diameter_mm].map(|d| 0.5e-3 * d);
-        let radius = 1.0 / (1.0 / roller - 1.0 / outer);
-        let penalty = c.penalty_scale * 1e9 * scene.material.youngs_modulus_gpa / (1e-3 * scene.mesh.size_mm);
-        let load = self.load_n / (1e-3 * b.thickness_mm);
-        let depth = (0.75 * load / (penalty * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
-        (2.0 * depth / radius).sqrt() * self.facet_m / c.points_per_facet as f64
+    fn point_step_m(&self, geometry: &Geometry, points_per_facet: usize) -> f64 {
+        let radius = geometry.outer_contact_radius();
+        let load = self.load_n / geometry.thickness;
+        let depth = (0.75 * load / (geometry.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+        (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
     }
 
     /// What the study of contact noise has shown to help (docs/results/noise.md).
-    fn advise(&mut self, scene: &Scene) {
+    fn advise(&mut self, scene: &Scene, geometry: &Geometry) {
         let c = &scene.contact;
-        let wanted = ONSET_STEPS * self.point_step_m(scene);
+        let wanted = ONSET_STEPS * self.point_step_m(geometry, c.points_per_facet);
         let mut say = |text: String| self.advice.push(text);
         if c.surface == ContactSurface::Facet {
             say("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
@@ -139,11 +145,11 @@ impl Plan {
             say("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
         }
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
-        let audible = points_hz < 0.5e6 / scene.output.interval_us;
+        let audible = points_hz < 0.5 / geometry.interval;
         if c.method == ContactMethod::Integrated
             && c.surface != ContactSurface::Facet
             && audible
-            && 1e-6 * c.onset_um < wanted
+            && geometry.contact_onset < wanted
         {
             say(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz unless their pressure \
@@ -165,7 +171,7 @@ impl Plan {
             {
                 say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
             }
-            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.bearing.roller_diameter_mm * 2e3 {
+            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / geometry.roller_radius {
                 say(format!(
                     "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
                     1e3 * self.facet_m,
@@ -179,10 +185,10 @@ impl Plan {
                 self.elements_per_wavelength
             ));
         }
-        if let Some(needed) = self.separating_s.filter(|s| 1e3 * s > scene.solver.duration_ms) {
+        if let Some(needed) = self.separating_s.filter(|s| *s > geometry.duration) {
             say(format!(
                 "the closest lines merge in {:.0} ms; {:.0} ms separate them",
-                scene.solver.duration_ms,
+                1e3 * geometry.duration,
                 1e3 * needed
             ));
         }
@@ -193,31 +199,47 @@ impl Plan {
 mod tests {
     use super::*;
 
+    /// The paper's bearing in elements of 2 mm.
+    fn facts() -> MeshFacts {
+        let counts = MeshInfo {
+            nodes: 17_405,
+            quads: 15_600,
+            triangles: 200,
+            roller_facets: 112,
+            outer_facets: 314,
+            inner_facets: 258,
+        };
+        MeshFacts { counts, element_time_step_s: 60e-9 }
+    }
+
     #[test]
     fn analytic_plan_of_the_paper() {
         let mut scene = Scene::default();
         scene.mesh.size_mm = 2.0;
         scene.mesh.roller_facets = 112;
-        let plan = Plan::of(&scene).expect("a scene that can be meshed");
+        let of = |scene: &Scene| Plan::of(scene, &facts()).expect("a scene with a load distribution");
+        let plan = of(&scene);
         // 3.54 µm of sag and 4671.5 Hz at 112 facets, whatever the rest of the mesh.
         assert!((plan.sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");
         assert!((plan.lumped.frequency_hz - 4671.7).abs() < 1.0);
         assert!((plan.resolution_hz - 33.3).abs() < 0.1);
+        // 10 µs in steps of at most 0.98 · 60 ns: 171 of them, 3000 times.
+        assert_eq!((plan.steps, plan.elements), (513_000.0, 15_800));
         assert!(plan.advice.iter().any(|a| a.contains("surface=arc")), "{:?}", plan.advice);
         scene.contact.surface = ContactSurface::Arc;
         scene.contact.interpolation = ContactInterpolation::Spline;
-        let smooth = Plan::of(&scene).expect("a scene that can be meshed");
+        let smooth = of(&scene);
         assert!(smooth.advice.iter().all(|a| !a.contains("contact.")), "{:?}", smooth.advice);
         // Eight points a facet sound at 37.4 kHz, which 100 kHz can show; with the onset asked for they do not.
         scene.contact.points_per_facet = 8;
-        let sounding = Plan::of(&scene).expect("a scene that can be meshed");
+        let sounding = of(&scene);
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));
-        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&scene);
-        let quiet = Plan::of(&scene).expect("a scene that can be meshed");
+        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&Geometry::of(&scene), 8);
+        let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
         // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
         scene.mesh.size_mm = 0.5;
-        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&scene);
+        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&Geometry::of(&scene), 8);
         assert!((step - 4.1e-6).abs() < 0.1e-6, "{step}");
     }
 }

@@ -1,6 +1,7 @@
 //! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
 //! defect when, and who carries how much.
 
+use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{DefectScene, Scene};
@@ -69,10 +70,10 @@ impl Prediction {
             }
         };
         let passages = |defect: &DefectScene| {
-            let duration_s = 1e-3 * scene.solver.duration_ms;
-            let traverse_s = 1e-3 * defect.length_mm / kinematics.contact_speed_m_s;
+            let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
             // Whoever enters in time leaves at most one traverse later.
-            kinematics.crossings(defect, scene.bearing.first_roller_deg, duration_s + traverse_s)
+            let until_s = Geometry::of(scene).duration + traverse_s;
+            kinematics.crossings(defect, scene.bearing.first_roller_deg, until_s)
         };
         Self {
             facet_lines,
@@ -91,9 +92,9 @@ impl Prediction {
     /// Static distribution of `support_n`, the vertical force through the rollers [N], rollers over the defect left out.
     ///
     /// # Errors
-    /// [`Error::Bearing`] when the rings find no equilibrium.
+    /// [`Error::Run`] when the rings find no equilibrium.
     pub fn static_curve(&self, scene: &Scene, support_n: f64) -> Result<StaticCurve, Error> {
-        let rings = RigidRings::new(&scene.bearing, &scene.material);
+        let rings = RigidRings::new(&Geometry::of(scene));
         let start = roller_angles_deg(&scene.bearing);
         let spacing = 360.0 / scene.bearing.rollers as f64;
         let mut points: Vec<(f64, f64)> = Vec::new();

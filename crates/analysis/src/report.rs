@@ -33,7 +33,7 @@ use crate::{
 /// An interrupted or diverged run gives a report of what exists, with a banner.
 ///
 /// # Errors
-/// [`Error::Bearing`] when the directory is not a run, a file cannot be understood or the report cannot be written,
+/// [`Error::Run`] when the directory is not a run, a file cannot be understood or the report cannot be written,
 /// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     let run = Run::read(run_dir)?;

@@ -5,6 +5,7 @@
 
 use std::f64::consts::PI;
 
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
 
 /// Frequency [Hz] of the in-plane bending mode with `n` waves around a free ring, n ≥ 2.
@@ -19,21 +20,21 @@ pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisso
 
 /// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz].
 pub fn outer_ring_modes(scene: &Scene, last: u32) -> Vec<(u32, f64)> {
-    let (b, m) = (&scene.bearing, &scene.material);
-    let thickness = 1e-3 * b.outer_ring_thickness_mm;
-    let radius = 0.5e-3 * b.outer_race_diameter_mm + 0.5 * thickness;
-    let modulus = 1e9 * m.youngs_modulus_gpa;
-    let mode = |n| (n, bending_mode_hz(n, radius, thickness, modulus, m.poissons_ratio, m.density_kg_m3));
+    let g = Geometry::of(scene);
+    let (thickness, m) = (g.outer_ring_thickness, &g.material);
+    let radius = g.outer_race_radius + 0.5 * thickness;
+    let mode = |n| (n, bending_mode_hz(n, radius, thickness, m.youngs_modulus, m.poissons_ratio, m.density));
     (2..=last).map(mode).collect()
 }
 
 /// Wavelength of bending waves in a bar as thick as the outer ring at `frequency_hz`, in elements: the paper's "elements
 /// per wavelength". c_B = √(1.8 c_L h f) with the plate speed c_L.
 pub fn elements_per_wavelength(scene: &Scene, frequency_hz: f64) -> f64 {
-    let m = &scene.material;
-    let plate = (1e9 * m.youngs_modulus_gpa / (m.density_kg_m3 * (1.0 - m.poissons_ratio.powi(2)))).sqrt();
-    let bending = (1.8 * plate * 1e-3 * scene.bearing.outer_ring_thickness_mm * frequency_hz).sqrt();
-    bending / frequency_hz / (1e-3 * scene.mesh.size_mm)
+    let g = Geometry::of(scene);
+    let m = &g.material;
+    let plate = (m.youngs_modulus / (m.density * (1.0 - m.poissons_ratio.powi(2)))).sqrt();
+    let bending = (1.8 * plate * g.outer_ring_thickness * frequency_hz).sqrt();
+    bending / frequency_hz / g.element_size
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@
 //!
 //! The corner of the edge is taken as stiff as the raceway, which it is not quite (own).
 
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::static_load::RigidRings;
 
@@ -40,14 +41,12 @@ pub struct Edge {
 impl Edge {
     /// From a scene.
     pub fn of(scene: &Scene) -> Self {
-        let (b, m) = (&scene.bearing, &scene.material);
-        let [r, outer, inner] =
-            [b.roller_diameter_mm, b.outer_race_diameter_mm, b.inner_race_diameter_mm].map(|d| 0.5e-3 * d);
+        let g = Geometry::of(scene);
         Self {
-            rings: RigidRings::new(b, m),
-            radius: [1.0 / (1.0 / r - 1.0 / outer), 1.0 / (1.0 / r + 1.0 / inner)],
-            stiffness: scene.contact.penalty_scale * 1e9 * m.youngs_modulus_gpa / (1e-3 * scene.mesh.size_mm),
-            thickness: 1e-3 * b.thickness_mm,
+            rings: RigidRings::new(&g),
+            radius: [g.outer_contact_radius(), g.inner_contact_radius()],
+            stiffness: g.penalty_stiffness,
+            thickness: g.thickness,
         }
     }
 

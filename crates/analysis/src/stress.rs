@@ -5,9 +5,9 @@
 
 use std::collections::HashMap;
 
-use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::frames::Frame;
-use stribeck_scene::scene::MaterialScene;
+use stribeck_scene::geometry::Material;
+use stribeck_scene::mesh_file::RunMesh;
 
 /// Lamé's constants [Pa].
 #[derive(Debug, Clone, Copy)]
@@ -27,8 +27,8 @@ pub struct Cell {
 
 impl Lame {
     /// From Young's modulus and Poisson's ratio.
-    pub fn of(material: &MaterialScene) -> Self {
-        let (e, nu) = (1e9 * material.youngs_modulus_gpa, material.poissons_ratio);
+    pub fn of(material: &Material) -> Self {
+        let (e, nu) = (material.youngs_modulus, material.poissons_ratio);
         Self { lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu: e / (2.0 * (1.0 + nu)) }
     }
 
@@ -60,17 +60,13 @@ impl Lame {
 }
 
 /// Elements whose corners are all in the frame. Elements of the cage, which is rigid, are left out.
-pub fn cells(assembly: &Assembly, frame: &Frame, lame: &Lame) -> Vec<Cell> {
-    let mesh = &assembly.model.mesh;
+pub fn cells(mesh: &RunMesh, frame: &Frame, lame: &Lame) -> Vec<Cell> {
     let place: HashMap<u32, [f64; 2]> =
         frame.nodes.iter().copied().zip(frame.displacement.iter().copied()).collect();
     let mut cells = Vec::new();
     for body in mesh.bodies.iter().filter(|b| b.name != "cage") {
-        let quads = mesh.quads[body.quads.clone()].iter().map(|q| q.as_slice());
-        let triangles = mesh.triangles[body.triangles.clone()].iter().map(|t| t.as_slice());
-        for element in quads.chain(triangles) {
-            let reference: Vec<[f64; 2]> =
-                element.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
+        for element in mesh.elements_of(body) {
+            let reference: Vec<[f64; 2]> = element.iter().map(|&n| mesh.reference[n as usize]).collect();
             let moved: Option<Vec<[f64; 2]>> = element
                 .iter()
                 .zip(&reference)
@@ -105,7 +101,7 @@ mod tests {
     use super::*;
 
     fn steel() -> Lame {
-        Lame::of(&stribeck_scene::scene::Scene::default().material)
+        Lame::of(&Material { youngs_modulus: 200e9, poissons_ratio: 0.3, density: 7850.0 })
     }
 
     #[test]

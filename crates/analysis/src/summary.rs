@@ -10,7 +10,6 @@ use crate::enveloping::EnvelopeFinding;
 use crate::filtering::NotchFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
-use crate::paper::Row;
 use crate::reading::CursorReading;
 use crate::tones::Tone;
 
@@ -48,9 +47,26 @@ pub struct Summary {
     /// What the paper's 4545 Hz can be at this sample rate.
     pub cursor: Option<CursorReading>,
     /// Every number of the paper beside ours.
-    pub paper: Vec<Row>,
+    pub paper: Vec<PaperRow>,
     /// Why something is missing, and what to be careful with.
     pub notes: Vec<String>,
+}
+
+/// One number of the paper beside ours.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PaperRow {
+    /// Part of the paper.
+    pub part: String,
+    /// What is counted or measured.
+    pub quantity: String,
+    /// As the paper prints it.
+    pub paper: String,
+    /// Of this run; words when there is no number.
+    pub ours: String,
+    /// Ours against the paper's.
+    pub difference: String,
+    /// Why, or what to make of it.
+    pub why: String,
 }
 
 /// What the run cost.

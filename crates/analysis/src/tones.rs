@@ -10,7 +10,7 @@ use crate::Error;
 
 /// A line that must be there if the geometry is what it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Line {
+pub struct PredictedLine {
     /// What passes what, in words.
     pub name: String,
     /// Multiple of the fundamental, from 1.
@@ -56,10 +56,10 @@ const SURROUNDINGS_WIDTHS: f64 = 12.0;
 const EXCLUDED_WIDTHS: f64 = 1.5;
 
 /// Harmonics 1 to `most` of each fundamental `(name, frequency in Hz)`, as far as they lie below `limit_hz`.
-pub fn harmonics(fundamentals: &[(String, f64)], most: usize, limit_hz: f64) -> Vec<Line> {
+pub fn harmonics(fundamentals: &[(String, f64)], most: usize, limit_hz: f64) -> Vec<PredictedLine> {
     (1..=most)
         .flat_map(|harmonic| {
-            fundamentals.iter().map(move |(name, hz)| Line {
+            fundamentals.iter().map(move |(name, hz)| PredictedLine {
                 name: name.clone(),
                 harmonic,
                 predicted_hz: harmonic as f64 * hz,
@@ -72,7 +72,7 @@ pub fn harmonics(fundamentals: &[(String, f64)], most: usize, limit_hz: f64) -> 
 
 /// Lines in groups that a spectrum of this resolution cannot split: neighbours closer than the width at −6 dB.
 /// Groups and their members ascend.
-pub fn unresolved(lines: &[Line], resolution: &Resolution) -> Vec<Vec<usize>> {
+pub fn unresolved(lines: &[PredictedLine], resolution: &Resolution) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..lines.len()).collect();
     order.sort_by(|&a, &b| lines[a].predicted_hz.total_cmp(&lines[b].predicted_hz));
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -93,7 +93,7 @@ pub fn unresolved(lines: &[Line], resolution: &Resolution) -> Vec<Vec<usize>> {
 ///
 /// # Errors
 /// None for a line that is not there: that tone says `None`. [`Error::Signal`] when the spectrum cannot be searched.
-pub fn measure(sensor: &str, lines: &[Line], spectrum: &Spectrum) -> Result<Vec<Tone>, Error> {
+pub fn measure(sensor: &str, lines: &[PredictedLine], spectrum: &Spectrum) -> Result<Vec<Tone>, Error> {
     let resolution = spectrum.resolution();
     let mut tones: Vec<Tone> = lines.iter().map(|line| Tone::unmeasured(sensor, line)).collect();
     for group in unresolved(lines, resolution) {
@@ -152,7 +152,7 @@ pub fn clearest(tones: &[Tone]) -> Option<&Tone> {
     measured.max_by(|a, b| a.prominence_db.unwrap_or(0.0).total_cmp(&b.prominence_db.unwrap_or(0.0)))
 }
 
-impl Line {
+impl PredictedLine {
     /// Where the line may stand [Hz]: without slip and, when known, by the recorded motion.
     fn expected_hz(&self) -> impl Iterator<Item = f64> {
         [Some(self.predicted_hz), self.from_motion_hz].into_iter().flatten()
@@ -160,7 +160,7 @@ impl Line {
 }
 
 impl Tone {
-    fn unmeasured(sensor: &str, line: &Line) -> Self {
+    fn unmeasured(sensor: &str, line: &PredictedLine) -> Self {
         Self {
             sensor: sensor.into(),
             name: line.name.clone(),
@@ -182,7 +182,7 @@ mod tests {
 
     const SAMPLE_RATE_HZ: f64 = 100_000.0;
 
-    fn paper_lines() -> Vec<Line> {
+    fn paper_lines() -> Vec<PredictedLine> {
         let of = |name: &str, hz| (name.to_owned(), hz);
         harmonics(
             &[of("roller vertices", 4671.7), of("outer nodes", 4719.0), of("inner nodes", 4716.0)],

@@ -145,8 +145,8 @@ fn invariant_the_summary_has_its_stable_names() {
     ] {
         assert!(json.pointer(path).is_some_and(|v| !v.is_null()), "{path} is missing");
     }
-    // 300 s over 968 000 steps of 106 000 elements.
-    close(summary.run.ns_per_element_step, 2.923_7, 1e-3, "ns per element and step");
+    // 300 s over 968 000 steps of 433 elements.
+    close(summary.run.ns_per_element_step, 715.74, 0.01, "ns per element and step");
     assert_eq!(serde_json::from_str::<Summary>(&text).expect("a summary"), summary);
 }
 
@@ -198,6 +198,49 @@ fn invariant_the_page_holds_every_figure_and_needs_no_network() {
         assert!(!page.contains(loading), "the page loads something: {loading}");
     }
     assert!(!page.contains("role=\"alert\""), "a complete run has no banner");
+}
+
+#[test]
+fn invariant_a_run_whose_mesh_cannot_be_read_has_a_report_without_its_pictures() {
+    let folder = Scratch::new("no-mesh");
+    synthetic::write(&folder.0, Status::Complete, 500);
+    let file = folder.0.join("mesh.vtu");
+    let sound = fs::read(&file).expect("readable");
+    let with = |old: &str, new: &str| -> Vec<u8> {
+        let at = sound.windows(old.len()).position(|window| window == old.as_bytes()).expect("it is there");
+        [&sound[..at], new.as_bytes(), &sound[at + old.len()..]].concat()
+    };
+    // A node far out, and all of them in one place, would ask for a picture of any size.
+    let far = [&sound[..sound.len() / 2], &1e300_f64.to_le_bytes().repeat(sound.len() / 16)].concat();
+    for (bytes, words) in [
+        (None, "cannot read"),
+        (Some(with("reference_m", "positions_m")), "no `reference_m`: a version"),
+        (Some(sound[..sound.len() / 2].to_vec()), "it ends before"),
+        (Some(with("NumberOfPoints=\"1548\"", "NumberOfPoints=\"9\"")), "does not fit its counts"),
+        (Some(far), "mesh.vtu"),
+        (Some(sound.clone()), ""),
+    ] {
+        match &bytes {
+            Some(bytes) => fs::write(&file, bytes).expect("writable"),
+            None => fs::remove_file(&file).expect("it is there"),
+        }
+        let summary = report::write(&folder.0).expect("a report");
+        let note = summary.notes.iter().find(|note| note.contains("no pictures of the mesh"));
+        let page = read(&folder.0, "report.html");
+        assert_eq!(note.is_some(), !words.is_empty(), "{words}: {:?}", summary.notes);
+        assert!(note.is_none_or(|note| note.contains(words)), "{note:?} instead of {words}");
+        assert_eq!(page.contains("<figure id=\"mesh\""), words.is_empty(), "{words}");
+    }
+    // The mesh of another run.
+    let mut info = synthetic::info(Status::Complete, 500);
+    info.mesh.nodes += 1;
+    fs::write(folder.0.join("run.json"), serde_json::to_vec(&info).expect("JSON")).expect("writable");
+    let summary = report::write(&folder.0).expect("a report");
+    assert!(
+        summary.notes.iter().any(|note| note.contains("it belongs to another run")),
+        "{:?}",
+        summary.notes
+    );
 }
 
 #[test]

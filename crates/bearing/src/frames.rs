@@ -24,6 +24,7 @@ impl Frames {
     /// What a scene asks for; `None` when it asks for nothing.
     pub(crate) fn of(scene: &Scene, folder: PathBuf) -> Option<Self> {
         let wanted = scene.output.frames.as_ref()?;
+        // Of the numbers as written: a quotient of seconds may fall short of a whole number of samples.
         let samples = |us: f64| us / scene.output.interval_us;
         Some(Self {
             folder,

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_contact::Resultant;
 
 use crate::assembly::Machine;
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
 
 /// Sums between samples and the channels made of them.
@@ -36,12 +37,10 @@ impl Recorder {
     pub(crate) fn new(scene: &Scene, machine: &Machine) -> Self {
         let state = &machine.dynamics.state;
         let angle = |&n: &u32| state.y[n as usize].atan2(state.x[n as usize]);
-        let sensors: Vec<u32> = scene
-            .output
-            .sensors
-            .iter()
-            .map(|s| {
-                let wanted = s.angle_deg.to_radians();
+        let sensors: Vec<u32> = Geometry::of(scene)
+            .sensor_angles
+            .into_iter()
+            .map(|wanted| {
                 let off = |n: &u32| (angle(n) - wanted).sin().hypot(1.0 - (angle(n) - wanted).cos());
                 *machine.housing.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
             })

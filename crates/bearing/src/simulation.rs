@@ -18,6 +18,7 @@ use crate::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},
     run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
@@ -254,18 +255,24 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes the mesh at the start of the run, as the preload has left it.
+/// Writes the mesh at the start of the run: as the preload has left it, and free of stress
+/// ([`stribeck_scene::mesh_file`]).
 fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<(), Error> {
     let layout = machine.dynamics.layout();
     let mut mesh = assembly.model.mesh.clone();
-    let reference = (mesh.x.clone(), mesh.y.clone());
+    let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(&x, &y)| [x, y, 0.0]).collect();
     for (n, &slot) in layout.slot_of_node.iter().enumerate() {
         mesh.x[n] = machine.dynamics.state.x[slot as usize];
         mesh.y[n] = machine.dynamics.state.y[slot as usize];
     }
-    let moved: Vec<[f64; 3]> =
-        (0..mesh.x.len()).map(|n| [mesh.x[n] - reference.0[n], mesh.y[n] - reference.1[n], 0.0]).collect();
-    let mut picture = Vec::new();
-    vtu::write(&mut picture, &mesh, &[vtu::Field::vector("displacement_m", &moved)], &[])?;
-    Ok(write_atomic(&dir.mesh(), &picture)?)
+    let moved: Vec<[f64; 3]> = reference
+        .iter()
+        .enumerate()
+        .map(|(n, from)| [mesh.x[n] - from[0], mesh.y[n] - from[1], 0.0])
+        .collect();
+    let fields =
+        [vtu::Field::vector("displacement_m", &moved), vtu::Field::exact_vector(REFERENCE, &reference)];
+    let mut file = Vec::new();
+    vtu::write(&mut file, &mesh, &fields, &[])?;
+    Ok(write_atomic(&dir.mesh(), &file)?)
 }

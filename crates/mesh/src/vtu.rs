@@ -1,9 +1,9 @@
 //! Unstructured grid files (`.vtu`) that ParaView opens.
 //!
 //! An XML header names the arrays and gives their offsets; the values follow in one appended section, raw and
-//! little-endian, each array preceded by its length in bytes (64 bits). Coordinates keep all their digits
-//! (64-bit floats); fields are written as 32-bit floats. The body of each cell is always written, as the
-//! cell array `body`.
+//! little-endian, each array preceded by its length in bytes (64 bits). Coordinates and exact fields keep all
+//! their digits (64-bit floats); other fields are written as 32-bit floats. The body of each cell is always
+//! written, as the cell array `body`, and so are the names of the bodies, as the field array `body_names`.
 //!
 //! Cells are all quadrilaterals of the mesh, then all triangles; cell fields follow that order.
 //!
@@ -24,6 +24,7 @@ pub struct Field<'a> {
 enum Values<'a> {
     Scalars(&'a [f64]),
     Vectors(&'a [[f64; 3]]),
+    ExactVectors(&'a [[f64; 3]]),
 }
 
 impl<'a> Field<'a> {
@@ -37,10 +38,15 @@ impl<'a> Field<'a> {
         Field { name, values: Values::Vectors(values) }
     }
 
+    /// As [`Field::vector`], but with all digits: for what is read again to compute with.
+    pub fn exact_vector(name: &'a str, values: &'a [[f64; 3]]) -> Field<'a> {
+        Field { name, values: Values::ExactVectors(values) }
+    }
+
     fn entries(&self) -> usize {
         match self.values {
             Values::Scalars(v) => v.len(),
-            Values::Vectors(v) => v.len(),
+            Values::Vectors(v) | Values::ExactVectors(v) => v.len(),
         }
     }
 
@@ -65,6 +71,10 @@ pub fn write(sink: &mut impl Write, mesh: &Mesh, nodes: &[Field], cells: &[Field
     nodes.iter().try_for_each(|f| f.check(mesh.x.len(), "nodes"))?;
     cells.iter().try_for_each(|f| f.check(mesh.elements(), "elements"))?;
     let mut file = Appended::default();
+    file.open("FieldData");
+    file.texts("body_names", mesh.bodies.iter().map(|body| body.name.as_str()));
+    file.close("FieldData");
+    file.open_piece(mesh.x.len(), mesh.elements());
     file.open("PointData");
     nodes.iter().for_each(|f| file.field(f));
     file.close("PointData");
@@ -81,7 +91,8 @@ pub fn write(sink: &mut impl Write, mesh: &Mesh, nodes: &[Field], cells: &[Field
     file.array("offsets", "Int64", 1, bytes(offsets(mesh), i64::to_le_bytes));
     file.array("types", "UInt8", 1, types(mesh));
     file.close("Cells");
-    file.write(sink, mesh.x.len(), mesh.elements())
+    file.close("Piece");
+    file.write(sink)
 }
 
 /// The header, and the arrays that follow it.
@@ -95,6 +106,10 @@ struct Appended {
 impl Appended {
     fn open(&mut self, tag: &str) {
         self.header += &format!("<{tag}>\n");
+    }
+
+    fn open_piece(&mut self, nodes: usize, cells: usize) {
+        self.header += &format!("<Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{cells}\">\n");
     }
 
     fn close(&mut self, tag: &str) {
@@ -111,7 +126,21 @@ impl Appended {
                 let values = v.iter().flatten().map(|x| *x as f32);
                 self.array(field.name, "Float32", 3, bytes(values, f32::to_le_bytes));
             }
+            Values::ExactVectors(v) => {
+                let values = v.iter().flatten().copied();
+                self.array(field.name, "Float64", 3, bytes(values, f64::to_le_bytes));
+            }
         }
+    }
+
+    /// Texts as the format has them: each ends with a zero byte.
+    fn texts<'a>(&mut self, name: &str, texts: impl ExactSizeIterator<Item = &'a str>) {
+        self.header += &format!(
+            "<DataArray type=\"String\" Name=\"{name}\" NumberOfTuples=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+            texts.len(),
+            self.offset
+        );
+        self.append(texts.flat_map(|text| text.bytes().chain([0])).collect());
     }
 
     fn array(&mut self, name: &str, kind: &str, components: usize, data: Vec<u8>) {
@@ -120,18 +149,21 @@ impl Appended {
             "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
              format=\"appended\" offset=\"{offset}\"/>\n"
         );
+        self.append(data);
+    }
+
+    fn append(&mut self, data: Vec<u8>) {
         self.offset += size_of::<u64>() + data.len();
         self.arrays.push(data);
     }
 
-    fn write(&self, sink: &mut impl Write, nodes: usize, cells: usize) -> Result<(), Error> {
+    fn write(&self, sink: &mut impl Write) -> Result<(), Error> {
         sink.write_all(
             b"<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
               byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n",
         )?;
-        writeln!(sink, "<Piece NumberOfPoints=\"{nodes}\" NumberOfCells=\"{cells}\">")?;
         sink.write_all(self.header.as_bytes())?;
-        sink.write_all(b"</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
+        sink.write_all(b"</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_")?;
         for array in &self.arrays {
             sink.write_all(&(array.len() as u64).to_le_bytes())?;
             sink.write_all(array)?;

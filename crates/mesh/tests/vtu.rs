@@ -27,7 +27,9 @@ fn array(file: &[u8], name: &str) -> (String, usize, Vec<u8>) {
     let offset: usize = attribute(line, "offset").parse().expect("a number");
     let at = start + marker.len() + offset;
     let len = u64::from_le_bytes(file[at..at + 8].try_into().expect("8 bytes")) as usize;
-    let components = attribute(line, "NumberOfComponents").parse().expect("a number");
+    let has_components = line.contains("NumberOfComponents");
+    let components =
+        if has_components { attribute(line, "NumberOfComponents").parse().expect("a number") } else { 1 };
     (attribute(line, "type").to_owned(), components, file[at + 8..at + 8 + len].to_vec())
 }
 
@@ -42,7 +44,12 @@ fn invariant_file_gives_back_the_mesh() {
     let height: Vec<f64> = mesh.y.iter().map(|y| y + 0.1).collect();
     let velocity: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(x, y)| [-*y, *x, 0.0]).collect();
     let number: Vec<f64> = (0..mesh.elements()).map(|e| e as f64).collect();
-    let nodes = [vtu::Field::scalar("height <m>", &height), vtu::Field::vector("velocity", &velocity)];
+    let exact: Vec<[f64; 3]> = velocity.iter().map(|v| v.map(|c| c / 3.0)).collect();
+    let nodes = [
+        vtu::Field::scalar("height <m>", &height),
+        vtu::Field::vector("velocity", &velocity),
+        vtu::Field::exact_vector("exact", &exact),
+    ];
     let mut file = Vec::new();
     vtu::write(&mut file, &mesh, &nodes, &[vtu::Field::scalar("number", &number)]).expect("a file");
 
@@ -75,9 +82,15 @@ fn invariant_file_gives_back_the_mesh() {
     assert_eq!(components, 3);
     let expected: Vec<f32> = velocity.iter().flatten().map(|v| *v as f32).collect();
     assert_eq!(decoded(&data, f32::from_le_bytes), expected);
+    let (kind, components, data) = array(&file, "exact");
+    assert_eq!((kind.as_str(), components), ("Float64", 3));
+    let expected: Vec<f64> = exact.iter().flatten().copied().collect();
+    assert_eq!(decoded(&data, f64::from_le_bytes), expected);
     let numbers = decoded(&array(&file, "number").2, f32::from_le_bytes);
     assert_eq!(numbers.last(), Some(&(mesh.elements() as f32 - 1.0)));
 
+    let (kind, _, data) = array(&file, "body_names");
+    assert_eq!((kind.as_str(), data.as_slice()), ("String", &b"disc\0plate\0"[..]));
     let bodies = decoded(&array(&file, "body").2, i32::from_le_bytes);
     for (index, body) in mesh.bodies.iter().enumerate() {
         assert!(body.quads.clone().all(|q| bodies[q] == index as i32));
@@ -121,4 +134,25 @@ fn invariant_refusals_name_the_array() {
 
     let mut full: &mut [u8] = &mut [0; 10];
     assert!(matches!(vtu::write(&mut full, &mesh, &[], &[]), Err(Error::Write(_))));
+}
+
+/// `stribeck-scene` reads this very file back in its own tests: reader and writer agree on the format.
+#[test]
+fn golden_a_file_that_others_read() {
+    let square = Rectangle { x0: 0.0, y0: 0.0, width: 1.0 / 3.0, height: 1.0 / 3.0, columns: 2, rows: 2 };
+    let (x, y) = (vec![1.0, 2.0, 1.0], vec![0.0, 0.0, 1.0]);
+    let triangle = Part { x, y, triangles: vec![[0, 1, 2]], ..Part::default() };
+    let mut mesh = Mesh::new();
+    mesh.add("square", &square.part().expect("a square"));
+    mesh.add("tri < 1", &triangle);
+    let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(x, y)| [*x, *y, 0.0]).collect();
+    mesh.y.iter_mut().for_each(|y| *y += 0.1);
+    let mut file = Vec::new();
+    let field = vtu::Field::exact_vector("reference_m", &reference);
+    vtu::write(&mut file, &mesh, &[field], &[]).expect("a file");
+    let golden = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/two_bodies.vtu");
+    if std::env::var_os("STRIBECK_BLESS").is_some() {
+        std::fs::write(golden, &file).expect("writable");
+    }
+    assert!(std::fs::read(golden).expect("readable") == file, "the format has changed");
 }

@@ -61,6 +61,15 @@ pub enum Error {
         message: String,
     },
 
+    /// A file is not the mesh of a run, or not all of it.
+    #[error("`{}` is not a mesh that can be read again: {message}", path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        message: String,
+    },
+
     /// The folder for a run holds something else.
     #[error(
         "`{}` holds files that are not a run of Stribeck (for example `{found}`), and a run would mix with them. \

@@ -4,9 +4,11 @@
 //! stress-free mesh that the scene makes; its first column repeats the time. A run that goes on from a checkpoint writes
 //! the frames after it once more, to the same bytes.
 
+use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
+use crate::geometry::Geometry;
 use crate::scene::Scene;
 use crate::trace::Trace;
 
@@ -38,12 +40,12 @@ pub struct Frame {
 impl Window {
     /// The window of a scene that asks for frames.
     pub fn of(scene: &Scene) -> Option<Self> {
-        let frames = scene.output.frames.as_ref()?;
-        let angle = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg).to_radians();
+        let geometry = Geometry::of(scene);
+        let half = geometry.frame_half_width?;
+        let angle = geometry.defect.map_or(FRAC_PI_2, |defect| defect.angle);
         let outward = [angle.cos(), angle.sin()];
-        let path = 0.5e-3 * (scene.bearing.outer_race_diameter_mm - scene.bearing.roller_diameter_mm);
-        let centre = outward.map(|c| path * c);
-        Some(Self { centre, outward, half: 1e-3 * frames.half_width_mm })
+        let centre = outward.map(|c| geometry.path_radius() * c);
+        Some(Self { centre, outward, half })
     }
 
     /// Place of a point in the window [m]: along the raceway, clockwise, and outward.

@@ -6,6 +6,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::geometry::DefectGeometry;
 use crate::scene::{BearingScene, DefectScene, Scene};
 
 /// Speeds of a bearing whose outer ring stands still and whose rollers do not slip.
@@ -145,12 +146,13 @@ impl Kinematics {
         ]
     }
 
-    /// The paper's equation (2) for the outer and the inner raceway [Hz], elements of `size_mm`: for comparison only.
+    /// The paper's equation (2) for the outer and the inner raceway [Hz], elements of `element_size` [m]: for comparison
+    /// only.
     ///
     /// The value for the inner raceway uses the cage's speed where the speed of the contact relative to the inner ring
     /// belongs, so it stands for no motion in the bearing.
-    pub fn paper_noise_hz(&self, size_mm: f64) -> (f64, f64) {
-        let tone = |diameter_m: f64| TAU * self.cage_hz * diameter_m / (2.0 * size_mm * 1e-3);
+    pub fn paper_noise_hz(&self, element_size: f64) -> (f64, f64) {
+        let tone = |diameter_m: f64| TAU * self.cage_hz * diameter_m / (2.0 * element_size);
         (tone(self.bearing.outer_m), tone(self.bearing.inner_m))
     }
 
@@ -164,7 +166,7 @@ impl Kinematics {
         if !(speed > 0.0 && duration_s.is_finite()) {
             return Vec::new();
         }
-        let half = (defect.length_mm * 1e-3 / self.bearing.outer_m).to_degrees();
+        let half = (DefectGeometry::of(defect).length / self.bearing.outer_m).to_degrees();
         let mut crossings = Vec::new();
         for roller in 0..self.bearing.rollers as usize {
             let start = first_roller_deg + 360.0 * roller as f64 / self.bearing.rollers;
@@ -245,7 +247,7 @@ mod tests {
     fn analytic_equation_2_of_the_paper() {
         // The paper rounds its cage frequency to 3.75 Hz and the inner raceway to 164 mm.
         const ROUNDED_INPUT: f64 = 1.5e-3;
-        let (outer, inner) = paper().paper_noise_hz(0.5);
+        let (outer, inner) = paper().paper_noise_hz(0.5e-3);
         assert_close(outer, 4712.0, ROUNDED_INPUT);
         assert_close(inner, 3864.0, ROUNDED_INPUT);
     }

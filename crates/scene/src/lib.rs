@@ -1,10 +1,56 @@
 //! What a user writes and what a run leaves: scenes of rolling element bearings, their kinematics, run folders and traces.
 //!
 //! Nothing here meshes or simulates, so that whoever only reads a run links neither.
+//!
+//! # A scene: who turns how fast, who carries how much
+//!
+//! A scene is a text in [RON](https://docs.rs/ron); what it does not say has a default. Numbers carry their unit in their
+//! name there, and are SI in [`Geometry`](geometry::Geometry).
+//!
+//! ```
+//! use stribeck_scene::geometry::Geometry;
+//! use stribeck_scene::{Scene, kinematics::Kinematics, static_load};
+//!
+//! let text = "(bearing: (rollers: 20), operation: (load_n: 30000, speed_rpm: 1200))";
+//! let scene = Scene::parse(text, "my bearing")?;
+//! assert_eq!(Geometry::of(&scene).rollers, 20);
+//!
+//! let kinematics = Kinematics::of(&scene);
+//! println!("rollers pass the outer raceway at {:.1} Hz", kinematics.bpfo_hz);
+//! assert!((kinematics.bpfo_hz - 180.2).abs() < 0.1);
+//!
+//! let load = static_load::at_start(&scene)?;
+//! println!("{} rollers carry, one {:.0} N", load.loaded_rollers(), load.max_roller_n());
+//! # Ok::<(), stribeck_scene::Error>(())
+//! ```
+//!
+//! What cannot be is refused where it stands, with what is allowed:
+//!
+//! ```
+//! # use stribeck_scene::Scene;
+//! let message = Scene::parse("(bearing: (rolers: 20))", "my bearing").unwrap_err().to_string();
+//! assert!(message.contains("rollers"));
+//! ```
+//!
+//! # A run: its folder
+//!
+//! [`run_dir::Run::read`] reads scene, provenance and sampled channels of a run, also of one that was killed;
+//! [`mesh_file::RunMesh`] its mesh, [`frames`] where nodes about the defect were.
+//!
+//! # Where to look
+//!
+//! | question | module |
+//! |---|---|
+//! | What can a scene say, and what is checked? | [`scene`], [`scene_file`] |
+//! | What is that in SI? | [`geometry`] |
+//! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
+//! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
 pub mod error;
 pub mod frames;
+pub mod geometry;
 pub mod kinematics;
+pub mod mesh_file;
 pub mod run_dir;
 pub mod run_info;
 pub mod scene;

@@ -5,7 +5,8 @@
 //! (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
 
 use crate::error::Error;
-use crate::scene::{BearingScene, MaterialScene, Scene};
+use crate::geometry::Geometry;
+use crate::scene::{BearingScene, Scene};
 
 /// Unbalanced force, as a part of the load, at which the search ends.
 const TOLERANCE: f64 = 1e-10;
@@ -102,24 +103,21 @@ impl LineContacts {
 }
 
 impl RigidRings {
-    /// Rings, rollers and material of a bearing.
-    pub fn new(bearing: &BearingScene, material: &MaterialScene) -> Self {
-        let roller = bearing.roller_diameter_mm * 5e-4;
-        let (outer, inner) = (bearing.outer_race_diameter_mm * 5e-4, bearing.inner_race_diameter_mm * 5e-4);
-        let e = material.youngs_modulus_gpa * 1e9;
-        let nu = material.poissons_ratio;
-        let softness = (1.0 - nu * nu) / (std::f64::consts::PI * e);
+    /// Rings, rollers and material of a scene.
+    pub fn new(geometry: &Geometry) -> Self {
+        let (g, m) = (geometry, &geometry.material);
+        let nu = m.poissons_ratio;
         Self {
-            clearance_m: outer - inner - 2.0 * roller,
-            length_m: bearing.thickness_mm * 1e-3,
+            clearance_m: g.outer_race_radius - g.inner_race_radius - 2.0 * g.roller_radius,
+            length_m: g.thickness,
             compliance: LineContacts {
-                softness,
-                modulus: e / (2.0 * (1.0 - nu * nu)),
+                softness: (1.0 - nu * nu) / (std::f64::consts::PI * m.youngs_modulus),
+                modulus: m.contact_modulus(),
                 poisson: nu,
-                roller,
+                roller: g.roller_radius,
                 sides: [
-                    (1.0 / (1.0 / roller - 1.0 / outer), bearing.outer_ring_thickness_mm * 1e-3),
-                    (1.0 / (1.0 / roller + 1.0 / inner), bearing.inner_ring_thickness_mm * 1e-3),
+                    (g.outer_contact_radius(), g.outer_ring_thickness),
+                    (g.inner_contact_radius(), g.inner_ring_thickness),
                 ],
             },
         }
@@ -261,7 +259,7 @@ pub fn roller_angles_deg(bearing: &BearingScene) -> Vec<f64> {
 ///
 /// As [`RigidRings::distribute`].
 pub fn at_start(scene: &Scene) -> Result<StaticLoad, Error> {
-    let rings = RigidRings::new(&scene.bearing, &scene.material);
+    let rings = RigidRings::new(&Geometry::of(scene));
     rings.distribute(scene.operation.load_n, &roller_angles_deg(&scene.bearing))
 }
 
@@ -279,7 +277,8 @@ mod tests {
         for at in without {
             angles.remove(*at);
         }
-        RigidRings::new(&bearing, &scene.material).distribute(50_000.0, &angles).expect("equilibrium")
+        let rings = RigidRings::new(&Geometry::of(&Scene { bearing, ..scene }));
+        rings.distribute(50_000.0, &angles).expect("equilibrium")
     }
 
     /// A roller stands under the load; thickness [mm], loaded rollers, largest load [kN], approach [µm], gain of the
@@ -307,11 +306,8 @@ mod tests {
     fn analytic_stribeck_number_without_clearance() {
         // Without clearance and with Q ∝ δ, Q_max = 4 W/Z; line contact stiffens a little: Stribeck's 4.08.
         let scene = Scene::default();
-        let bearing =
-            BearingScene { inner_race_diameter_mm: 164.0, first_roller_deg: 90.0, ..scene.bearing.clone() };
-        let load = RigidRings::new(&bearing, &scene.material)
-            .distribute(50_000.0, &roller_angles_deg(&bearing))
-            .expect("equilibrium");
+        let bearing = BearingScene { inner_race_diameter_mm: 164.0, first_roller_deg: 90.0, ..scene.bearing };
+        let load = at_start(&Scene { bearing, ..Scene::default() }).expect("equilibrium");
         let stribeck = load.max_roller_n() * 24.0 / 50_000.0;
         assert!((stribeck - 4.08).abs() < 0.06, "{stribeck}");
     }
@@ -331,7 +327,7 @@ mod tests {
     #[test]
     fn invariant_bad_loads_and_positions_are_refused() {
         let scene = Scene::default();
-        let rings = RigidRings::new(&scene.bearing, &scene.material);
+        let rings = RigidRings::new(&Geometry::of(&scene));
         assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());
         assert!(rings.distribute(f64::NAN, &[60.0, 90.0, 120.0]).is_err());
         assert!(rings.distribute(1.0, &[270.0]).is_err());

@@ -13,7 +13,7 @@ const LAYERS: [(&str, &[&str]); 8] = [
     ("scene", &[]),
     ("bearing", &["contact", "mesh", "scene", "solver"]),
     ("dsp", &[]),
-    ("analysis", &["bearing", "dsp", "scene"]),
+    ("analysis", &["dsp", "scene"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.

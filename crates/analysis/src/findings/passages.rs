@@ -1,5 +1,6 @@
 //! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
 
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Crossing;
 use stribeck_scene::scene::Scene;
 
@@ -25,7 +26,8 @@ pub(super) fn picked_events(
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
     let edge = Edge::of(scene);
     let speed_m_s = prediction.kinematics.contact_speed_m_s;
-    let floor_s = edge.floor_m(scene.defect.as_ref().map_or(0.0, |d| 1e-3 * d.depth_mm)) / speed_m_s;
+    let depth_m = Geometry::of(scene).defect.map_or(0.0, |defect| defect.depth);
+    let floor_s = edge.floor_m(depth_m) / speed_m_s;
     let mut events = Vec::new();
     for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {
         let mut event = Event::expected(passage);

@@ -1,19 +1,20 @@
 //! What the paper puts in: dimensions, material, mesh, load (its section 2).
 
-use super::{Row, Source, number, words};
+use super::{Source, number, words};
 use crate::ring;
+use crate::summary::PaperRow;
 
 const PART: &str = "Model";
 const GIVEN: &str = "given";
 
-pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
+pub(super) fn rows(source: &Source<'_>) -> Vec<PaperRow> {
     let mut rows = table_1(source);
     rows.extend(discretisation(source));
     rows.extend(operation(source));
     rows
 }
 
-fn table_1(source: &Source<'_>) -> Vec<Row> {
+fn table_1(source: &Source<'_>) -> Vec<PaperRow> {
     let (b, m) = (&source.scene.bearing, &source.scene.material);
     let given = |quantity: &str, paper: f64, ours: f64, unit: &str| {
         number(PART, quantity, paper, Some(ours), unit, GIVEN)
@@ -46,7 +47,7 @@ fn table_1(source: &Source<'_>) -> Vec<Row> {
     rows
 }
 
-fn discretisation(source: &Source<'_>) -> Vec<Row> {
+fn discretisation(source: &Source<'_>) -> Vec<PaperRow> {
     let (scene, mesh) = (source.scene, source.mesh);
     let waves = ring::elements_per_wavelength(scene, 40_000.0);
     let graded = if scene.mesh.grading.is_some() {
@@ -97,7 +98,7 @@ fn discretisation(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn operation(source: &Source<'_>) -> Vec<Row> {
+fn operation(source: &Source<'_>) -> Vec<PaperRow> {
     let scene = source.scene;
     let (o, c, s) = (&scene.operation, &scene.contact, &scene.solver);
     let top = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg);

@@ -1,8 +1,9 @@
 //! What the paper gets out: frequencies, levels, the notch, the events (its sections 3 to 5).
 
-use super::{
-    BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Row, Source, TONE_HZ, number, words,
-};
+use stribeck_scene::geometry::Geometry;
+
+use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words};
+use crate::summary::PaperRow;
 use crate::tones;
 
 const MOTION: &str = "Kinematics";
@@ -10,7 +11,7 @@ const NOISE: &str = "Noise";
 const NOTCH: &str = "Notch";
 const EVENTS: &str = "Contact forces";
 
-pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
+pub(super) fn rows(source: &Source<'_>) -> Vec<PaperRow> {
     let mut rows = motion(source);
     rows.extend(levels(source));
     rows.extend(lines(source));
@@ -20,7 +21,7 @@ pub(super) fn rows(source: &Source<'_>) -> Vec<Row> {
     rows
 }
 
-fn motion(source: &Source<'_>) -> Vec<Row> {
+fn motion(source: &Source<'_>) -> Vec<PaperRow> {
     let k = &source.prediction.kinematics;
     let exits: Vec<f64> = source.summary.events.iter().filter_map(|e| e.exit_ms).collect();
     let spacing_s =
@@ -71,7 +72,7 @@ fn motion(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn levels(source: &Source<'_>) -> Vec<Row> {
+fn levels(source: &Source<'_>) -> Vec<PaperRow> {
     let levels = &source.summary.levels;
     let sensor = levels.sensor.as_deref().unwrap_or("none");
     let why = |what: &str| {
@@ -107,12 +108,12 @@ fn levels(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn lines(source: &Source<'_>) -> Vec<Row> {
+fn lines(source: &Source<'_>) -> Vec<PaperRow> {
     let summary = source.summary;
     let leading = summary.levels.sensor.as_deref().unwrap_or_default();
     let tone = tones::dominant(&summary.tones, leading).or_else(|| tones::clearest(&summary.tones));
     let measured = tone.and_then(|t| t.measured_hz);
-    let (outer, inner) = source.prediction.kinematics.paper_noise_hz(source.scene.mesh.size_mm);
+    let (outer, inner) = source.prediction.kinematics.paper_noise_hz(Geometry::of(source.scene).element_size);
     let inner_right = source.prediction.facet_lines.iter().find(|l| l.0 == "inner_race_nodes").map(|l| l.1);
     let resolution = summary.spectrum.as_ref();
     let record = resolution.map_or("no spectrum".into(), |s| {
@@ -198,7 +199,7 @@ fn lines(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn beat(source: &Source<'_>) -> Vec<Row> {
+fn beat(source: &Source<'_>) -> Vec<PaperRow> {
     let reading = source.summary.cursor.as_ref();
     let gap = 100.0 * (CURSOR_HZ / EQUATION_2_HZ.1 - 1.0);
     let lines = &source.prediction.facet_lines;
@@ -257,7 +258,7 @@ fn beat(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn notch(source: &Source<'_>) -> Vec<Row> {
+fn notch(source: &Source<'_>) -> Vec<PaperRow> {
     let notch = source.summary.notch.as_ref();
     let db = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.1}"));
     let four = notch.map_or("no notch".into(), |n| {
@@ -295,7 +296,7 @@ fn notch(source: &Source<'_>) -> Vec<Row> {
     ]
 }
 
-fn events(source: &Source<'_>) -> Vec<Row> {
+fn events(source: &Source<'_>) -> Vec<PaperRow> {
     let events = &source.summary.events;
     let papers = ["≈ 5", "16–17", "≈ 28"];
     let mut rows = vec![number(

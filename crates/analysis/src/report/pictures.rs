@@ -7,9 +7,10 @@ mod stress;
 
 use std::path::Path;
 
-use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::frames::{self, Window};
-use stribeck_scene::run_dir::Run;
+use stribeck_scene::geometry::Geometry;
+use stribeck_scene::mesh_file::RunMesh;
+use stribeck_scene::run_dir::{Run, RunDir};
 
 use crate::Error;
 use crate::findings::Findings;
@@ -26,37 +27,48 @@ pub(super) struct Pictures {
 }
 
 impl Pictures {
-    /// Draws them. `run_dir` is the folder of the run, for its frames.
+    /// Draws them. `run_dir` is the folder of the run, for its mesh and its frames.
     pub(super) fn of(run: &Run, findings: &Findings, run_dir: &Path) -> Result<Self, Error> {
         let mut pictures = Self { load: polar::picture(findings).into_iter().collect(), ..Self::default() };
-        // The mesh follows from the scene; a run does not keep it in a form that is read again.
-        let assembly = match Assembly::new(&run.scene) {
-            Ok(assembly) => assembly,
+        let dir = RunDir::open(run_dir)?;
+        let mesh = match mesh_of(run, &dir) {
+            Ok(mesh) => mesh,
             Err(why) => {
-                pictures.notes.push(format!("no picture of the mesh: {why}"));
+                pictures.notes.push(format!("no pictures of the mesh and of the stress: {why}"));
                 return Ok(pictures);
             }
         };
-        pictures.mesh = vec![
-            mesh::whole(&assembly),
-            mesh::defect(&run.scene, &assembly),
-            roller::picture(&run.scene, &assembly),
-        ];
-        let frames = frames::read_all(&run_dir.join("frames"))?;
-        let counts = (assembly.model.mesh.x.len(), run.info.mesh.nodes);
-        match Window::of(&run.scene) {
-            _ if frames.is_empty() => {
-                pictures.notes.push("no picture of the stress: the run kept no frames (`output.frames`)".into());
-            }
-            _ if counts.0 != counts.1 => pictures.notes.push(format!(
-                "no picture of the stress: the run's mesh has {} nodes, and this program makes {} of the same scene",
-                counts.1, counts.0
-            )),
-            None => {}
-            Some(window) => pictures.stress = stress::pictures(run, findings, &assembly, &window, &frames)?,
+        pictures.mesh =
+            vec![mesh::whole(&mesh), mesh::defect(&run.scene, &mesh), roller::picture(&run.scene, &mesh)];
+        let frames = frames::read_all(&dir.frames())?;
+        match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
+            Some(window) => pictures.stress = stress::pictures(run, findings, &mesh, &window, &frames)?,
+            None => pictures
+                .notes
+                .push("no picture of the stress: the run kept no frames (`output.frames`)".into()),
         }
         Ok(pictures)
     }
+}
+
+/// The mesh that the run has kept, or why it cannot be drawn.
+fn mesh_of(run: &Run, dir: &RunDir) -> Result<RunMesh, String> {
+    let mesh = RunMesh::read(dir.mesh()).map_err(|why| why.to_string())?;
+    let (counts, expected) = ([mesh.reference.len(), mesh.quads.len(), mesh.triangles.len()], &run.info.mesh);
+    if counts != [expected.nodes, expected.quads, expected.triangles] {
+        return Err(
+            "`mesh.vtu` and `run.json` count other nodes and elements: it belongs to another run".into()
+        );
+    }
+    // A picture as large as a forged mesh would take all memory.
+    let geometry = Geometry::of(&run.scene);
+    let ring = geometry.outer_race_radius + geometry.outer_ring_thickness;
+    let reach = 2.0 * (ring + geometry.adapter_width + geometry.adapter_height);
+    let fits = [0, 1].into_iter().all(|axis| {
+        let [low, high] = mesh::range(mesh.reference.iter().map(|at| at[axis]));
+        low >= -reach && high <= reach && high - low >= ring
+    });
+    fits.then_some(mesh).ok_or_else(|| "`mesh.vtu` is not as large as the scene's bearing".into())
 }
 
 /// From metres to pixels: a rectangle of the bearing on a sheet.

@@ -11,7 +11,7 @@ use crate::summary::Summary;
 /// Quantity, paper, ours, difference, why.
 pub(super) fn paper(summary: &Summary) -> Markup {
     let mut part = "";
-    let rows: Vec<(bool, &crate::paper::Row)> = summary
+    let rows: Vec<(bool, &crate::summary::PaperRow)> = summary
         .paper
         .iter()
         .map(|row| {

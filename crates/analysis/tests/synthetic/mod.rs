@@ -1,11 +1,13 @@
 //! A run directory made of closed forms: every number that the report should find is written down here.
 
+mod mesh;
+
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use stribeck_scene::kinematics::{Crossing, Kinematics};
 use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
+use stribeck_scene::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_scene::scene::Scene;
 use stribeck_scene::trace::TraceWriter;
 
@@ -75,14 +77,7 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
         steps_planned: 968_000,
         interval_s: INTERVAL_S,
         samples,
-        mesh: MeshInfo {
-            nodes: 110_000,
-            quads: 100_000,
-            triangles: 6_000,
-            roller_facets: 112,
-            outer_facets: 1257,
-            inner_facets: 1030,
-        },
+        mesh: mesh::counts(),
         wall_s: 300.0,
         cpu_s: 590.0,
         setup_s: 4.0,
@@ -102,6 +97,7 @@ pub(crate) fn write(path: &Path, status: Status, samples: usize) {
     dir.start(&scene, &info).expect("a writable folder");
     write_trace(&dir, &scene, samples);
     write_energy(&dir, samples);
+    mesh::write(&dir.mesh());
 }
 
 fn crossings(scene: &Scene) -> Vec<Crossing> {

@@ -1,6 +1,9 @@
 //! The mesh, whole and about the defect (the paper's Fig. 1).
 
-use stribeck_bearing::assembly::Assembly;
+use std::f64::consts::FRAC_PI_2;
+
+use stribeck_scene::geometry::Geometry;
+use stribeck_scene::mesh_file::{Body, RunMesh};
 use stribeck_scene::scene::Scene;
 
 use super::{View, scale_bar};
@@ -11,9 +14,7 @@ const WIDTH: f64 = 900.0;
 const EDGE: &str = "fill:none;stroke-linejoin:round;stroke:";
 
 /// Edges of the elements of one body, each once, as node numbers.
-pub(super) fn edges(assembly: &Assembly, body: usize) -> Vec<[u32; 2]> {
-    let mesh = &assembly.model.mesh;
-    let body = &mesh.bodies[body];
+pub(super) fn edges(mesh: &RunMesh, body: &Body) -> Vec<[u32; 2]> {
     let around = |corners: &[u32]| -> Vec<[u32; 2]> {
         (0..corners.len())
             .map(|n| {
@@ -22,12 +23,15 @@ pub(super) fn edges(assembly: &Assembly, body: usize) -> Vec<[u32; 2]> {
             })
             .collect()
     };
-    let quads = mesh.quads[body.quads.clone()].iter().flat_map(|q| around(q));
-    let mut edges: Vec<[u32; 2]> =
-        quads.chain(mesh.triangles[body.triangles.clone()].iter().flat_map(|t| around(t))).collect();
+    let mut edges: Vec<[u32; 2]> = mesh.elements_of(body).flat_map(around).collect();
     edges.sort_unstable();
     edges.dedup();
     edges
+}
+
+/// Least and largest of some coordinates.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 fn colour(body: &str) -> Colour {
@@ -40,29 +44,24 @@ fn colour(body: &str) -> Colour {
     }
 }
 
-fn draw(sheet: &mut Sheet, assembly: &Assembly, view: &View, width: f64, seen: impl Fn([f64; 2]) -> bool) {
-    let mesh = &assembly.model.mesh;
-    for (number, body) in mesh.bodies.iter().enumerate() {
-        let at = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
-        let lines =
-            edges(assembly, number).into_iter().map(|e| e.map(at)).filter(|e| e.iter().any(|p| seen(*p)));
+fn draw(sheet: &mut Sheet, mesh: &RunMesh, view: &View, width: f64, seen: impl Fn([f64; 2]) -> bool) {
+    for body in &mesh.bodies {
+        let at = |n: u32| mesh.reference[n as usize];
+        let lines = edges(mesh, body).into_iter().map(|e| e.map(at)).filter(|e| e.iter().any(|p| seen(*p)));
         let paint = format!("{EDGE}{};stroke-width:{width}", colour(&body.name).css());
         sheet.lines(lines.map(|e| e.map(|p| view.place(p))), &paint);
     }
 }
 
 /// All bodies.
-pub(super) fn whole(assembly: &Assembly) -> Picture {
-    let mesh = &assembly.model.mesh;
-    let range = |values: &[f64]| {
-        let (low, high) =
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
-        (low - 0.004, high + 0.004)
-    };
-    let ((x0, x1), (y0, y1)) = (range(&mesh.x), range(&mesh.y));
+pub(super) fn whole(mesh: &RunMesh) -> Picture {
+    let [[x0, x1], [y0, y1]] = [0, 1].map(|axis| {
+        let [low, high] = range(mesh.reference.iter().map(|at| at[axis]));
+        [low - 0.004, high + 0.004]
+    });
     let view = View::new([x0, y0], [x1, y1], [0.0, 0.0], WIDTH);
     let mut sheet = Sheet::new(WIDTH, view.height.ceil());
-    draw(&mut sheet, assembly, &view, 0.25, |_| true);
+    draw(&mut sheet, mesh, &view, 0.25, |_| true);
     let names =
         [("adapter", 0.5 * (y1 + 0.11)), ("outer ring", -0.105), ("inner ring", 0.077), ("roller", 0.0)];
     for (name, y) in names {
@@ -86,14 +85,15 @@ pub(super) fn whole(assembly: &Assembly) -> Picture {
         mesh.bodies.iter().filter(|b| b.name.starts_with("roller")).count(),
         mesh.elements()
     );
-    picture.note = "Made again from the run's scene, undeformed.".into();
+    picture.note = "Undeformed, before the load.".into();
     picture
 }
 
 /// Two rollers and the defect between them.
-pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
-    let angle = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg).to_radians();
-    let radius = 0.5e-3 * scene.bearing.outer_race_diameter_mm;
+pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
+    let geometry = Geometry::of(scene);
+    let angle = geometry.defect.map_or(FRAC_PI_2, |defect| defect.angle);
+    let radius = geometry.outer_race_radius;
     let centre = [radius * angle.cos(), radius * angle.sin()];
     let half = [0.014, 0.0075];
     let low = [centre[0] - half[0], centre[1] - 1.25 * half[1]];
@@ -102,9 +102,8 @@ pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
     let mut sheet = Sheet::new(WIDTH, view.height.ceil());
     let seen = |p: [f64; 2]| (0..2).all(|c| (low[c]..=high[c]).contains(&p[c]));
     sheet.clipped("defect-window", [0.0, 0.0], [WIDTH, view.height], |sheet| {
-        draw(sheet, assembly, &view, 0.8, seen);
-        let first = scene.bearing.first_roller_deg.to_radians();
-        for (direction, paint) in [(angle, "#000"), (first, Colour::Red.css())] {
+        draw(sheet, mesh, &view, 0.8, seen);
+        for (direction, paint) in [(angle, "#000"), (geometry.first_roller_angle, Colour::Red.css())] {
             let ray = [0.8, 1.3]
                 .map(|r: f64| view.place([r * radius * direction.cos(), r * radius * direction.sin()]));
             sheet.path(
@@ -113,8 +112,8 @@ pub(super) fn defect(scene: &Scene, assembly: &Assembly) -> Picture {
                 &format!("fill:none;stroke:{paint};stroke-width:1.5;stroke-dasharray:6 4"),
             );
         }
-        if let Some(d) = &scene.defect {
-            let reach = 0.5e-3 * d.length_mm;
+        if let Some(defect) = &geometry.defect {
+            let reach = 0.5 * defect.length;
             let ring: Vec<[f64; 2]> = (0..60)
                 .map(|n| {
                     let t = std::f64::consts::TAU * f64::from(n) / 60.0;

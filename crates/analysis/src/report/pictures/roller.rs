@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use stribeck_bearing::assembly::Assembly;
+use stribeck_scene::geometry::Geometry;
+use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::scene::Scene;
 
 use super::{View, mesh, scale_bar};
@@ -13,12 +14,12 @@ const SIZE: [f64; 2] = [900.0, 440.0];
 const FACETS: usize = 4;
 
 /// The roller to scale, and its rim with heights magnified.
-pub(super) fn picture(scene: &Scene, assembly: &Assembly) -> Picture {
+pub(super) fn picture(scene: &Scene, mesh: &RunMesh) -> Picture {
     let facets = scene.mesh.roller_facets;
     let radius = 0.5 * scene.bearing.roller_diameter_mm;
     let sag_um = 1e3 * radius * (1.0 - (PI / facets as f64).cos());
     let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
-    to_scale(&mut sheet, scene, assembly);
+    to_scale(&mut sheet, scene, mesh);
     magnified(&mut sheet, radius, facets, sag_um);
     let mut picture = Picture::new("roller", "Fig. 4: a polygonised roller", sheet);
     picture.caption = format!(
@@ -35,22 +36,17 @@ pub(super) fn picture(scene: &Scene, assembly: &Assembly) -> Picture {
 const WIDTH_PX: f64 = 380.0;
 const HEIGHT_PX: f64 = 120.0;
 
-fn to_scale(sheet: &mut Sheet, scene: &Scene, assembly: &Assembly) {
-    let all = &assembly.model.mesh;
-    let Some(body) = all.bodies.iter().position(|b| b.name == "roller 1") else { return };
-    let nodes = all.bodies[body].nodes.clone();
-    let middle = |values: &[f64]| {
-        let part = &values[nodes.clone()];
-        let (low, high) =
-            part.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
+fn to_scale(sheet: &mut Sheet, scene: &Scene, run_mesh: &RunMesh) {
+    let Some(body) = run_mesh.bodies.iter().find(|b| b.name == "roller 1") else { return };
+    let place = |n: &u32| run_mesh.reference[*n as usize];
+    let centre = [0, 1].map(|axis| {
+        let [low, high] = mesh::range(run_mesh.elements_of(body).flatten().map(|n| place(n)[axis]));
         0.5 * (low + high)
-    };
-    let centre = [middle(&all.x), middle(&all.y)];
-    let reach = 0.55e-3 * scene.bearing.roller_diameter_mm;
+    });
+    let reach = 1.1 * Geometry::of(scene).roller_radius;
     let view = View::new(centre.map(|c| c - reach), centre.map(|c| c + reach), [10.0, 10.0], 400.0);
-    let at = |n: u32| view.place([all.x[n as usize], all.y[n as usize]]);
     sheet.lines(
-        mesh::edges(assembly, body).into_iter().map(|e| e.map(at)),
+        mesh::edges(run_mesh, body).into_iter().map(|e| e.map(|n| view.place(place(&n)))),
         &format!("fill:none;stroke:{};stroke-width:0.6", Colour::Orange.css()),
     );
     scale_bar(sheet, [20.0, 425.0], 0.002, view.scale, "2 mm");

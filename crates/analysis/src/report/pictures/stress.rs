@@ -1,7 +1,8 @@
 //! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
 
-use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::frames::{Frame, Window};
+use stribeck_scene::geometry::Geometry;
+use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::Run;
 
 use crate::Error;
@@ -30,14 +31,15 @@ struct Moment {
 pub(super) fn pictures(
     run: &Run,
     findings: &Findings,
-    assembly: &Assembly,
+    mesh: &RunMesh,
     window: &Window,
     frames: &[Frame],
 ) -> Result<Vec<Picture>, Error> {
-    let lame = Lame::of(&run.scene.material);
-    let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(assembly, f, &lame))).collect();
+    let geometry = Geometry::of(&run.scene);
+    let lame = Lame::of(&geometry.material);
+    let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
     let mut pictures = Vec::new();
-    let moments = moments(run, findings, window, &all);
+    let moments = moments(run, &geometry, findings, window, &all);
     if !moments.is_empty() {
         pictures.push(still(&moments, window));
     }
@@ -49,9 +51,15 @@ pub(super) fn pictures(
 
 /// The first frame, seen where its roller touches the outer raceway, and the frame with the highest stress near the
 /// trailing edge while the roller climbs out.
-fn moments(run: &Run, findings: &Findings, window: &Window, all: &[(f64, Vec<Cell>)]) -> Vec<Moment> {
+fn moments(
+    run: &Run,
+    geometry: &Geometry,
+    findings: &Findings,
+    window: &Window,
+    all: &[(f64, Vec<Cell>)],
+) -> Vec<Moment> {
     let record = Record::new(run);
-    let radius = 0.5e-3 * run.scene.bearing.outer_race_diameter_mm;
+    let radius = geometry.outer_race_radius;
     let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
     let mut moments = Vec::new();
     let loaded = all.first().zip(findings.summary.events.first()).and_then(|((time, cells), event)| {

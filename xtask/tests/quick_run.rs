@@ -1,12 +1,15 @@
 //! A real run of the coarse bearing through the report: what the events and the pictures are made of is simulated here.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use stribeck_analysis::plan::{MeshFacts, Plan};
 use stribeck_analysis::report;
+use stribeck_bearing::assembly::Assembly;
 use stribeck_bearing::simulation::{Host, simulate};
+use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::Status;
+use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
 
 /// A folder that is removed at the end.
@@ -23,10 +26,40 @@ const EVENT_MS: f64 = 0.5;
 /// Length of the defect from the events.
 const LENGTH: f64 = 0.05;
 
+/// A plan's step, by the stiffest element alone, is within a fifth of the run's.
+const PLANNED_STEP: f64 = 0.2;
+
+fn its_plan_holds(scene: &Scene, info: &RunInfo) {
+    let assembly = Assembly::new(scene).expect("a sound scene");
+    let element_time_step_s = assembly.element_time_step_s(scene);
+    let mesh = MeshFacts { counts: assembly.mesh_info(), element_time_step_s };
+    let plan = Plan::of(scene, &mesh).expect("a loaded bearing");
+    assert_eq!(plan.elements, info.mesh.quads + info.mesh.triangles);
+    let ratio = plan.time_step_s / info.time_step_s;
+    assert!((ratio - 1.0).abs() < PLANNED_STEP, "{} s instead of {} s", plan.time_step_s, info.time_step_s);
+}
+
+/// Bit for bit the mesh that the scene makes: displacements of frames count from it.
+fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
+    let read = RunMesh::read(folder.join("mesh.vtu")).expect("a mesh");
+    let made = Assembly::new(scene).expect("a sound scene").model.mesh;
+    let places = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(&x, &y)| [x, y]).collect::<Vec<_>>();
+    assert!(read.reference == places(&made.x, &made.y));
+    assert!(read.quads == made.quads && read.triangles == made.triangles);
+    for (read, made) in read.bodies.iter().zip(&made.bodies) {
+        assert_eq!((&read.name, &read.quads, &read.triangles), (&made.name, &made.quads, &made.triangles));
+    }
+    assert_eq!(read.bodies.len(), made.bodies.len());
+    // The load of 50 kN has pressed the bearing together by tens of micrometres, and by less than half a millimetre.
+    let moved = read.start.iter().zip(&read.reference).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+    let most = moved.fold(0.0, f64::max);
+    assert!((1e-5..5e-4).contains(&most), "{most} m");
+}
+
 #[test]
 fn analytic_a_simulated_passage_gives_events_length_and_pictures() {
     let scene =
-        Scene::parse(include_str!("../../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
+        Scene::parse(include_str!("../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
     let folder = Scratch(std::env::temp_dir().join(format!("stribeck-quick-{}", std::process::id())));
     let dir = RunDir::create(&folder.0).expect("a free folder");
     let host = Host {
@@ -40,6 +73,8 @@ fn analytic_a_simulated_passage_gives_events_length_and_pictures() {
     let info = simulate(&scene, &dir, &host, &mut |_| ControlFlow::Continue(())).expect("a sound scene");
     assert_eq!(info.status, Status::Complete);
     drop(dir);
+    its_plan_holds(&scene, &info);
+    its_mesh_reads_back(&scene, &folder.0);
     let summary = report::write(&folder.0).expect("a report");
 
     let [event] = &summary.events[..] else { panic!("{:?}", summary.events) };
