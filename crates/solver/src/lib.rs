@@ -85,7 +85,6 @@
 //! | How long may a step be? | `critical.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
 //! | How is equilibrium found? | `statics.rs`, `statics/` |
-//! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
 //! | Where do nodes lie in memory, and why? | `layout.rs`, `tile.rs` |
 //! | Which loops do the work? | `sweep.rs`, `strip.rs`, `gather.rs`, `advance.rs`, `lanes.rs` |
 
@@ -102,12 +101,10 @@ pub mod energies;
 mod error;
 pub mod force;
 mod gather;
-pub mod integrators;
 pub mod layout;
 pub mod material;
 pub mod model;
 mod moments;
-pub mod reference;
 pub mod rigid;
 pub mod snapshot;
 pub mod state;
