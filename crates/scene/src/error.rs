@@ -75,14 +75,19 @@ pub enum Error {
     },
 
     /// An earlier run left samples in the folder for a run.
-    #[error("`{}` holds {found}, which is kept. You can {ways}", path.display())]
+    #[error(
+        "`{}` holds {found}, which is kept. You can {}, or choose another folder with --out, such as `{}`",
+        path.display(), ways.join(", "), free.display()
+    )]
     FolderHoldsRun {
         /// The folder.
         path: PathBuf,
         /// What the run is.
         found: String,
-        /// What to do, in words.
-        ways: String,
+        /// What can be done with it, in words.
+        ways: Vec<String>,
+        /// A folder of a similar name that is not there.
+        free: PathBuf,
     },
 
     /// Another process is writing this run.

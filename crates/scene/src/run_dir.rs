@@ -79,12 +79,10 @@ impl RunDir {
         let path = path.as_ref().to_owned();
         let reservation = Reservation::new(&path)?;
         if let Some(earlier) = Earlier::of(&path) {
-            let mut ways = vec![
-                format!("choose another folder with --out (`{}` is free)", free_name(&path).display()),
-                "replace it with --overwrite, once the new run is complete".to_owned(),
-            ];
-            ways.extend(earlier.way_on(&path));
-            return Err(Error::FolderHoldsRun { path, found: earlier.name(), ways: ways.join(", or ") });
+            let mut ways: Vec<String> = earlier.way_on(&path).into_iter().collect();
+            ways.push("replace it with --overwrite once the new run is complete".to_owned());
+            let free = free_name(&path);
+            return Err(Error::FolderHoldsRun { path, found: earlier.name(), ways, free });
         }
         reservation.sign()?;
         Ok(Self { path, reservation, replaces: None })
@@ -126,13 +124,11 @@ impl RunDir {
         let new = replacement::beside(&old);
         match Self::create(&new) {
             Ok(dir) => Ok(Self { replaces: Some(old), ..dir }),
-            Err(Error::FolderHoldsRun { found, .. }) => {
-                let ways = format!(
-                    "it was to replace `{}`: continue it with `--resume {}`, or remove that folder",
-                    path.display(),
-                    new.display()
-                );
-                Err(Error::FolderHoldsRun { path: new, found, ways })
+            Err(Error::FolderHoldsRun { path: new, found, free, .. }) => {
+                let found = format!("{found} and was to replace `{}`", path.display());
+                let ways =
+                    vec![format!("continue it with `--resume {}`", new.display()), "remove it".to_owned()];
+                Err(Error::FolderHoldsRun { path: new, found, ways, free })
             }
             Err(other) => Err(other),
         }

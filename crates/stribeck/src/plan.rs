@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use stribeck_analysis::plan::Plan;
 
 use crate::place::Place;
@@ -23,6 +23,11 @@ pub struct Options {
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(options.scene.as_deref(), &options.overrides)?;
+    let factor = scene.solver.time_step_factor;
+    ensure!(
+        factor <= 1.0,
+        "`solver.time_step_factor` is {factor}: steps longer than the critical one diverge. Take a `solver.time_step_factor` below 1"
+    );
     let plan = Plan::of(&scene)?;
     let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
     println!("{}", scene.name);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_dir::{Run, RunDir};
 
 use crate::place::{Place, shown};
 
@@ -21,6 +21,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         None => place.newest_run()?,
     };
     let dir = RunDir::open(&folder)?;
+    for missing in Run::read(dir.path())?.damage() {
+        eprintln!("warning: {missing}");
+    }
     stribeck_analysis::report::write(dir.path())?;
     println!("report: {}", shown(&dir.report()));
     Ok(ExitCode::SUCCESS)

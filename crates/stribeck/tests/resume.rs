@@ -114,7 +114,6 @@ fn invariant_killed_runs_and_full_disks_lose_nothing() {
     let finished = resume(&killed, "2");
     assert!(finished.status.success(), "{}", words(&finished));
     assert_same_files(&whole, &killed);
-    assert!(!killed.join("checkpoint").exists());
 
     let again = resume(&killed, "1");
     assert!(!again.status.success() && words(&again).contains("it is complete"), "{}", words(&again));

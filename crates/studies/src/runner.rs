@@ -166,6 +166,10 @@ impl<'a> Runner<'a> {
         let threads = if alone { self.flags.threads.map(usize::from) } else { Some(1) };
         let begun = planned.state == State::Begun;
         let Planned { scene, folder, .. } = planned;
+        if planned.state == State::New {
+            // A run of another scene, from before the study was changed.
+            std::fs::remove_dir_all(folder).ok();
+        }
         let info = self.host.run(&Job { scene, folder, begun, threads, alone })?;
         let (name, seconds) = (&planned.variant.name, clock(info.wall_s + info.setup_s));
         self.host.say(&format!("  {name}: {:?} after {seconds}", info.status));

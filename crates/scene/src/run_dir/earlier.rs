@@ -29,14 +29,15 @@ impl Earlier {
     /// What it is.
     pub(super) fn name(&self) -> String {
         let Some(info) = &self.info else { return "a run whose `run.json` cannot be read".to_owned() };
-        let ms = |samples: f64| 1e3 * info.interval_s * samples;
+        // To the nanosecond, so that it reads as it was written.
+        let ms = |samples: f64| (1e9 * info.interval_s * samples).round() / 1e6;
         let per_sample = (info.interval_s / info.time_step_s).round();
         let (done, planned) = (ms(info.samples as f64), ms(info.steps_planned as f64 / per_sample));
         match info.status {
-            Status::Complete => format!("a complete run of {done:.6} ms"),
-            Status::Diverged => format!("a run that diverged after {done:.6} ms"),
+            Status::Complete => format!("a complete run of {done} ms"),
+            Status::Diverged => format!("a run that diverged after {done} ms"),
             Status::Running | Status::Interrupted => {
-                format!("a run that ended early, after {done:.6} of {planned:.6} ms")
+                format!("a run that ended early, after {done} of {planned} ms")
             }
         }
     }

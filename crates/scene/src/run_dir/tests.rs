@@ -85,7 +85,7 @@ fn invariant_samples_are_never_written_over() {
     let before = bytes(&folder.0);
     let error = RunDir::create(&folder.0).expect_err("taken").to_string();
     assert_eq!(bytes(&folder.0), before);
-    for word in ["complete run of", "--out", "--overwrite", "earlier-2` is free"] {
+    for word in ["complete run of", "--out", "--overwrite", "earlier-2`"] {
         assert!(error.contains(word), "`{word}` is missing in: {error}");
     }
     let second = RunDir::create_numbered(&folder.0).expect("free");
