@@ -78,7 +78,8 @@ fn cargo_steps(crates: &[String]) -> Vec<Vec<String>> {
         words("clippy --workspace --all-targets -- -D warnings"),
         words("doc --workspace --no-deps"),
     ];
-    steps.extend(crates.iter().map(|name| words(&format!("test --release -p stribeck-{name}"))));
+    let package = |name: &str| if name == "stribeck" { name.to_owned() } else { format!("stribeck-{name}") };
+    steps.extend(crates.iter().map(|name| words(&format!("test --release -p {}", package(name)))));
     steps.push(words("test --release -p xtask"));
     steps
 }

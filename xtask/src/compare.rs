@@ -20,7 +20,8 @@ use self::block::Block;
 use self::environment::Environment;
 use self::measure::{Absent, Measured, measure};
 use self::peers::{ON_BLOCKS, ON_DISC, Peer};
-use crate::{host, workspace};
+use crate::workspace;
+use stribeck::{host, place::shown};
 
 /// Flags of `compare`.
 #[derive(Debug, clap::Args)]
@@ -67,7 +68,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         measured.push(measure(problem, &on_disc, &environment, rounds, &mut absent)?);
     }
 
-    let (machine, commit) = host::with(1, |host| (host.machine.clone(), host.commit.clone()));
+    let (machine, commit) = (host::machine(), host::COMMIT.to_owned());
     let setting = tables::Setting { machine, commit, loads: [load_before, load_average()], rounds };
     let page = tables::page(&setting, &measured, &absent);
     println!("{page}");
@@ -96,7 +97,7 @@ fn write(root: &Path, name: &str, text: &str) -> Result<()> {
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
     let file = folder.join(name);
     std::fs::write(&file, text).with_context(|| format!("cannot write `{}`", file.display()))?;
-    println!("written: {}", workspace::shown(&file));
+    println!("written: {}", shown(&file));
     Ok(())
 }
 

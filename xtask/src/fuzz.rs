@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 
-pub(crate) use damage::Dice;
 use inputs::Inputs;
+pub(crate) use stribeck_studies::dice::Dice;
 
-use crate::{host, workspace};
+use stribeck::{host, place::shown};
 
 /// An input that takes longer than this hangs: the largest mesh that is tried takes a tenth of that on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -124,12 +124,7 @@ fn all(options: &Options, inputs: &Inputs) -> Result<ExitCode> {
     for failure in failures.iter().take(20) {
         eprintln!("FAILED {failure}");
     }
-    println!(
-        "{} inputs, {} unhandled (folder {})",
-        options.cases,
-        failures.len(),
-        workspace::shown(&inputs.folder)
-    );
+    println!("{} inputs, {} unhandled (folder {})", options.cases, failures.len(), shown(&inputs.folder));
     Ok(if failures.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 

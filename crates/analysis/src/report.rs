@@ -33,11 +33,13 @@ use crate::{
 /// An interrupted or diverged run gives a report of what exists, with a banner.
 ///
 /// # Errors
-/// [`Error::Run`] when the directory is not a run, a file cannot be understood or the report cannot be written,
+/// [`Error::Run`] when the directory is not a run, its scene was changed, a file cannot be understood or the report cannot be written,
 /// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     let run = Run::read(run_dir)?;
+    run.check_scene(run_dir)?;
     let mut findings = Findings::of(&run)?;
+    findings.summary.notes.splice(0..0, run.damage());
     let pictures = Pictures::of(&run, &findings, run_dir)?;
     findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;

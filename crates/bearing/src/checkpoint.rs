@@ -1,10 +1,11 @@
 //! The checkpoint of a run: what it takes to continue to the same bits, and the file that holds it.
 //!
 //! ```text
-//! stribeck checkpoint\n   version u32   scene hash, 16 letters   length u64   CRC-32 of the content u32   content
+//! stribeck checkpoint\n   version u32   identity, 16 letters   length u64   CRC-32 of the content u32   content
 //! ```
 //!
-//! Numbers are little-endian; the content is in [postcard](https://postcard.jamesmunns.com) format. Mesh and layout are
+//! The identity is that of the scene but for its duration ([`identity`]), so that a run can be made longer. Numbers are
+//! little-endian; the content is in [postcard](https://postcard.jamesmunns.com) format. Mesh and layout are
 //! no part of it: they follow from the scene.
 
 use std::fs::File;
@@ -16,13 +17,13 @@ use stribeck_contact::ContactState;
 use stribeck_solver::snapshot::Snapshot;
 
 use crate::{error::Error, ledger::Reference, recorder};
-use stribeck_scene::run_info::RunInfo;
+use stribeck_scene::{run_info::RunInfo, scene::Scene};
 
 /// First bytes of every checkpoint.
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file; a program continues only what it understands to the last bit.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;
@@ -47,12 +48,12 @@ pub(crate) struct Checkpoint {
 }
 
 impl Checkpoint {
-    /// The file's bytes; `path` is for the message.
-    pub(crate) fn encode(&self, path: &Path) -> Result<Vec<u8>, Error> {
+    /// The file's bytes, for a scene of this [`identity`]; `path` is for the message.
+    pub(crate) fn encode(&self, path: &Path, identity: &str) -> Result<Vec<u8>, Error> {
         let mut bytes = Vec::with_capacity(HEADER);
         bytes.extend_from_slice(MAGIC);
         bytes.extend_from_slice(&VERSION.to_le_bytes());
-        bytes.extend_from_slice(self.info.scene_hash.as_bytes());
+        bytes.extend_from_slice(identity.as_bytes());
         // Length and checksum follow when they are known.
         bytes.resize(HEADER, 0);
         let mut bytes = postcard::to_extend(self, bytes)
@@ -64,7 +65,7 @@ impl Checkpoint {
         Ok(bytes)
     }
 
-    /// Reads the checkpoint at `path` of the scene with the hash `scene`. Memory is bounded by the size of the file.
+    /// Reads the checkpoint at `path` of the scene with the [`identity`] `scene`. Memory is bounded by the size of the file.
     pub(crate) fn read(path: &Path, scene: &str) -> Result<Self, Error> {
         let bad = |reason: String| refused(path, reason);
         let io = |source| stribeck_scene::Error::Io {
@@ -103,6 +104,13 @@ impl Checkpoint {
     }
 }
 
+/// Name of what a checkpoint belongs to: the hash of its scene, whatever its duration.
+pub(crate) fn identity(scene: &Scene) -> String {
+    let mut scene = scene.clone();
+    scene.solver.duration_ms = 0.0;
+    scene.hash()
+}
+
 /// A checkpoint that is of no use; without it a run can only begin again.
 fn refused(path: &Path, reason: String) -> Error {
     let reason = format!(
@@ -128,8 +136,8 @@ fn parse(header: &[u8], scene: &str) -> Result<(u64, u32), String> {
     let (hash, rest) = rest.split_at_checked(HASH).ok_or_else(cut)?;
     if hash != scene.as_bytes() {
         return Err(format!(
-            "its checkpoint belongs to the scene {}, and `scene.ron` is the scene {scene}. Put the run's own `scene.ron` back; a changed \
-             scene needs a new run",
+            "its checkpoint belongs to another scene than `scene.ron` ({} and {scene}, but for the duration). Put the run's own \
+             `scene.ron` back; a changed scene needs a new run",
             String::from_utf8_lossy(hash).escape_debug()
         ));
     }

@@ -11,7 +11,7 @@ use stribeck_solver::{
 
 use crate::{
     assembly::{Assembly, Machine},
-    checkpoint::Checkpoint,
+    checkpoint::{Checkpoint, identity},
     error::Error,
     guards::Guards,
     start::{launch, preload},
@@ -142,11 +142,36 @@ pub fn resume(
     host: &Host<'_>,
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<RunInfo, Error> {
+    go_on(dir, Scene::read(dir.scene())?, host, watch)
+}
+
+/// Continues the run in `dir` to another duration, also when it is complete. Its files become those of an unbroken run
+/// of this duration.
+///
+/// `watch` as for [`simulate`].
+///
+/// # Errors
+/// [`Error::Resume`] when the run is longer already; otherwise as [`resume`].
+pub fn extend(
+    dir: &RunDir,
+    duration_ms: f64,
+    host: &Host<'_>,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<RunInfo, Error> {
+    let mut scene = Scene::read(dir.scene())?;
+    scene.solver.duration_ms = duration_ms;
+    scene.validate()?;
+    go_on(dir, scene, host, watch)
+}
+
+fn go_on(
+    dir: &RunDir,
+    scene: Scene,
+    host: &Host<'_>,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> Result<RunInfo, Error> {
     let started = (host.wall_s)();
-    let scene = Scene::read(dir.scene())?;
-    may_go_on(dir)?;
-    let mut saved = Checkpoint::read(&dir.checkpoint(), &scene.hash())?;
-    check_counts(dir, &scene, &saved.info)?;
+    let mut saved = read_saved(dir, &scene)?;
     let mut progress = Progress::begin();
     let _ = watch(&progress);
     let assembly = Assembly::new(&scene)?;
@@ -168,12 +193,13 @@ pub fn resume(
     info.commit.clone_from(&host.commit);
     info.machine.clone_from(&host.machine);
     info.threads = host.threads;
+    info.scene_hash = scene.hash();
     info.status = Status::Running;
     info.stop_reason = None;
     info.resumed_at_s.push(info.samples as f64 * info.interval_s);
     let mut run = Run::resume(&scene, &assembly, machine, saved, dir)?;
     run.info.setup_s += (host.wall_s)() - started;
-    dir.go_on(&run.info)?;
+    dir.go_on(&scene, &run.info)?;
     run.finish(dir, host, progress, watch)
 }
 
@@ -183,42 +209,69 @@ pub fn resume(
 /// # Errors
 /// As [`resume`].
 pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
-    let scene = Scene::read(dir.scene())?;
-    may_go_on(dir)?;
-    let info = Checkpoint::read(&dir.checkpoint(), &scene.hash())?.info;
-    check_counts(dir, &scene, &info)?;
+    let info = read_saved(dir, &Scene::read(dir.scene())?)?.info;
     Ok(info.samples as f64 * info.interval_s)
 }
 
-/// Whether steps and samples of a checkpoint are those of its scene: forged ones could ask for any number of steps.
-fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
+/// The checkpoint in `dir`, to continue from under `scene`.
+fn read_saved(dir: &RunDir, scene: &Scene) -> Result<Checkpoint, Error> {
+    let doubt = may_go_on(dir, scene)?;
+    let mut saved = Checkpoint::read(&dir.checkpoint(), &identity(scene))?;
+    saved.info.steps_planned = check_counts(dir, scene, &saved.info)?;
+    saved.info.warnings.extend(doubt);
+    Ok(saved)
+}
+
+/// Steps of the whole run. Steps and samples of a checkpoint must be those of its scene: forged ones could ask for any
+/// number of steps.
+fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<u64, Error> {
+    let refused = |reason: String| Err(Error::Resume { path: dir.path().to_owned(), reason });
     let interval = 1e-6 * scene.output.interval_us;
     let per_sample = (info.interval_s / info.time_step_s).round();
     let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0);
     let fits = info.interval_s == interval
         && (1.0..=MOST_STEPS).contains(&per_sample)
-        && info.steps_planned as f64 == samples * per_sample
-        && info.steps as f64 == info.samples as f64 * per_sample
-        && info.samples as f64 <= samples;
-    if fits {
-        return Ok(());
+        && info.steps as f64 == info.samples as f64 * per_sample;
+    if !fits {
+        return refused(
+            "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise start it anew from its \
+             `scene.ron`; its samples stay readable until then"
+                .to_owned(),
+        );
     }
-    let reason = "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise start it anew from its \
-                  `scene.ron`; its samples stay readable until then";
-    Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
+    if info.samples as f64 > samples {
+        return refused(format!(
+            "its checkpoint holds {} ms, and `solver.duration_ms` asks for {}: a run can be made longer, not shorter. \
+             Otherwise start it anew",
+            // To the nanosecond, so that it reads as it was written.
+            (1e9 * interval * info.samples as f64).round() / 1e6,
+            scene.solver.duration_ms
+        ));
+    }
+    Ok((samples * per_sample) as u64)
 }
 
 /// More steps in a sample than any scene has: a second in steps of a nanosecond.
 const MOST_STEPS: f64 = 1e9;
 
-/// Whether the run in `dir` ended before its time, but not by itself.
-fn may_go_on(dir: &RunDir) -> Result<(), Error> {
-    let reason = match dir.read_info()?.status {
-        Status::Running | Status::Interrupted => return Ok(()),
-        Status::Complete => "it is complete. For a longer one, change `solver.duration_ms` and start anew",
+/// Refuses runs that ended by themselves, as far as `run.json` tells; a warning when it does not. Scene and checkpoint are
+/// enough to continue.
+fn may_go_on(dir: &RunDir, scene: &Scene) -> Result<Option<String>, Error> {
+    let info = match dir.read_info() {
+        Ok(info) => info,
+        Err(error) => return Ok(Some(format!("`run.json` was made anew from the checkpoint: {error}"))),
+    };
+    let reason = match info.status {
         Status::Diverged => {
             "it diverged, and the same steps would diverge again. `run.json` says why and what to change"
         }
+        Status::Complete if info.scene_hash == scene.hash() => {
+            "it is complete. A longer one: `--resume` with `--set solver.duration_ms=…`"
+        }
+        Status::Complete if !dir.checkpoint().exists() => {
+            "it is complete, and without its checkpoint it cannot be made longer. Start a longer one anew"
+        }
+        _ => return Ok(None),
     };
     Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
 }

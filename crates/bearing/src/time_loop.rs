@@ -6,7 +6,7 @@ use stribeck_solver::{Force, Velocities};
 
 use crate::{
     assembly::{Assembly, Machine},
-    checkpoint::Checkpoint,
+    checkpoint::{Checkpoint, identity},
     error::Error,
     frames::Frames,
     guards::Guards,
@@ -36,6 +36,8 @@ const SPINS_BEFORE_SLEEP: usize = 20_000;
 /// A run in its time loop.
 pub(crate) struct Run<'a> {
     pub(crate) info: RunInfo,
+    /// What its checkpoints belong to.
+    identity: String,
     assembly: &'a Assembly,
     machine: Machine,
     recorder: Recorder,
@@ -84,6 +86,7 @@ impl<'a> Run<'a> {
             reference: Reference::default(),
             before: Velocities::default(),
             guards: Guards::new(scene, assembly, &machine),
+            identity: identity(scene),
             info,
             assembly,
             machine,
@@ -119,6 +122,7 @@ impl<'a> Run<'a> {
             reference: saved.reference,
             before: Velocities::default(),
             guards: Guards::new(scene, assembly, &machine),
+            identity: identity(scene),
             info: saved.info,
             assembly,
             machine,
@@ -179,7 +183,8 @@ impl<'a> Run<'a> {
                 self.save(dir, &mut saved, host)?;
             }
         }
-        if self.info.status == Status::Interrupted {
+        // A diverged run keeps the one before: that is the state before things went wrong. A complete one can be made longer.
+        if self.info.status != Status::Diverged {
             self.save(dir, &mut saved, host)?;
         }
         self.close(dir)
@@ -193,10 +198,6 @@ impl<'a> Run<'a> {
         self.trace.finish()?;
         self.energy.finish()?;
         dir.write_info(&self.info)?;
-        // A stopped run keeps its last one: that is the state before things went wrong.
-        if self.info.status == Status::Complete {
-            dir.remove_checkpoint();
-        }
         Ok(self.info)
     }
 
@@ -208,7 +209,7 @@ impl<'a> Run<'a> {
         // Samples first: the checkpoint must not count rows that the disk has not.
         self.trace.sync()?;
         self.energy.sync()?;
-        let written = self.checkpoint().encode(&dir.checkpoint());
+        let written = self.checkpoint().encode(&dir.checkpoint(), &self.identity);
         let written = written.and_then(|bytes| Ok(write_atomic(&dir.checkpoint(), &bytes)?));
         if let Err(error) = written.and_then(|()| Ok(dir.write_info(&self.info)?))
             && !saved.failed

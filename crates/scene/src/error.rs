@@ -83,6 +83,22 @@ pub enum Error {
         found: String,
     },
 
+    /// An earlier run left samples in the folder for a run.
+    #[error(
+        "`{}` holds {found}, which is kept. You can {}, or choose another folder with --out, such as `{}`",
+        path.display(), ways.join(", "), free.display()
+    )]
+    FolderHoldsRun {
+        /// The folder.
+        path: PathBuf,
+        /// What the run is.
+        found: String,
+        /// What can be done with it, in words.
+        ways: Vec<String>,
+        /// A folder of a similar name that is not there.
+        free: PathBuf,
+    },
+
     /// Another process is writing this run.
     #[error("`{}` is being written by another run (process {owner}). Wait for it, or choose another folder with --out", path.display())]
     FolderInUse {
@@ -99,6 +115,21 @@ pub enum Error {
         path: PathBuf,
         /// The first file that was looked for in vain.
         missing: &'static str,
+    },
+
+    /// `scene.ron` is not the scene that was simulated.
+    #[error(
+        "`scene.ron` in `{}` was changed after the run: it is the scene {found}, and `run.json` names {expected}. Put the run's own \
+         `scene.ron` back, or simulate the changed one anew",
+        path.display()
+    )]
+    OtherScene {
+        /// The folder of the run.
+        path: PathBuf,
+        /// Hash of the scene that lies there.
+        found: String,
+        /// Hash of the scene that was simulated.
+        expected: String,
     },
 
     /// `run.json` cannot be understood.

@@ -138,3 +138,29 @@ fn null_is_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D:
     }
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
+
+/// A time [s] as people write it: `7.3 s`, `3:05` or `2:03:05`.
+pub fn clock(seconds: f64) -> String {
+    if !seconds.is_finite() {
+        return "unknown".to_owned();
+    }
+    if seconds < 60.0 {
+        return format!("{seconds:.1} s");
+    }
+    let whole = seconds.round() as u64;
+    let (hours, minutes, seconds) = (whole / 3600, whole / 60 % 60, whole % 60);
+    if hours > 0 { format!("{hours}:{minutes:02}:{seconds:02}") } else { format!("{minutes}:{seconds:02}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::clock;
+
+    #[test]
+    fn analytic_times_are_written_for_people() {
+        assert_eq!(clock(7.26), "7.3 s");
+        assert_eq!(clock(185.4), "3:05");
+        assert_eq!(clock(7385.0), "2:03:05");
+        assert_eq!(clock(f64::NAN), "unknown");
+    }
+}

@@ -129,13 +129,20 @@ fn check(scene: &Scene, origin: &Origin<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// What to do about a file that the system does not give.
+fn advice(refusal: std::io::ErrorKind) -> &'static str {
+    match refusal {
+        std::io::ErrorKind::PermissionDenied => "you may not read it: ask its owner, or `chmod +r` it",
+        _ => "check the path; `fixtures/scenes/` holds examples",
+    }
+}
+
 /// The text of a scene file, refused when it cannot be one.
 fn load(path: &Path) -> Result<String, SceneError> {
     let shown = path.display();
     let fail = |message: String, suggestion: &str| problem::whole_file(path, message, suggestion);
-    let advice = "check the path; `fixtures/scenes/` holds examples";
-    let about =
-        std::fs::metadata(path).map_err(|e| fail(format!("cannot read scene `{shown}`: {e}"), advice))?;
+    let cannot = |e: std::io::Error| fail(format!("cannot read scene `{shown}`: {e}"), advice(e.kind()));
+    let about = std::fs::metadata(path).map_err(cannot)?;
     if about.is_dir() {
         return Err(fail(
             format!("`{shown}` is a folder, not a scene file"),
@@ -143,11 +150,9 @@ fn load(path: &Path) -> Result<String, SceneError> {
         ));
     }
     // Reading stops one byte past the limit, so that a device or a growing file cannot fill the memory.
-    let file =
-        std::fs::File::open(path).map_err(|e| fail(format!("cannot read scene `{shown}`: {e}"), advice))?;
+    let file = std::fs::File::open(path).map_err(cannot)?;
     let mut bytes = Vec::new();
-    std::io::Read::read_to_end(&mut std::io::Read::take(file, MAX_BYTES + 1), &mut bytes)
-        .map_err(|e| fail(format!("cannot read scene `{shown}`: {e}"), advice))?;
+    std::io::Read::read_to_end(&mut std::io::Read::take(file, MAX_BYTES + 1), &mut bytes).map_err(cannot)?;
     if bytes.len() as u64 > MAX_BYTES {
         let message = format!("`{shown}` is larger than {MAX_BYTES} bytes, the limit for a scene");
         return Err(fail(message, "a scene is a short text; is this another kind of file?"));

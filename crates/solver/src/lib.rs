@@ -87,7 +87,6 @@
 //! | What energies are there? | `energies.rs` |
 //! | How distorted are the elements? | `distortion.rs` |
 //! | What is refused? | `error.rs` |
-//! | What would other elements, precisions and integrators do? | `reference.rs`, `integrators.rs` |
 //! | Which loops do the work of a step, and how do nodes lie in memory for them? | `kernel.rs`, `kernel/` |
 
 pub mod material;
@@ -112,8 +111,6 @@ pub mod energies;
 
 mod error;
 
-pub mod integrators;
-pub mod reference;
 
 mod kernel;
 

@@ -12,8 +12,10 @@ use stribeck_scene::trace::Trace;
 use stribeck_solver::{Dynamics, Elastic, Model};
 
 use super::Answer;
-use super::damage::{Dice, bytes, text};
-use crate::{engine, workspace};
+use super::damage::{bytes, text};
+use crate::workspace;
+use stribeck::host;
+use stribeck_studies::dice::Dice;
 
 /// One kind of input.
 pub(crate) struct Kind {
@@ -52,20 +54,21 @@ impl Inputs {
     /// Takes scenes from the repository and makes a run to damage, broken off after two samples.
     pub(crate) fn new(folder: &Path) -> Result<Self> {
         let scenes = ["singh2014", "lean", "quick"].map(|name| {
-            let path = workspace::locate(format!("fixtures/scenes/{name}.ron").as_ref());
+            let path = workspace::root().join(format!("fixtures/scenes/{name}.ron"));
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
         });
         let run = folder.join("run");
         let set =
             ["solver.start=sudden", "solver.duration_ms=0.1", "mesh.size_mm=4.0", "mesh.roller_facets=40"];
-        let file = workspace::locate("fixtures/scenes/quick.ron".as_ref());
+        let file = workspace::root().join("fixtures/scenes/quick.ron");
         let scene = Scene::read_with(&file, &set.map(String::from))?;
         let mut samples = 0;
         let dir = RunDir::create(&run)?;
-        engine::simulate(&scene, &dir, 1, &mut |progress| {
+        let mut watch = |progress: &simulation::Progress| {
             samples += usize::from(progress.phase == "run");
             if samples == 2 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
-        })?;
+        };
+        host::with(1, |host| simulation::simulate(&scene, &dir, host, &mut watch))?;
         let read =
             |path: PathBuf| std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()));
         Ok(Self {
@@ -144,7 +147,7 @@ fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     };
     let set =
         if dice.one_in(10) { text(&format!("{field}={value}"), dice) } else { format!("{field}={value}") };
-    let file = workspace::locate("fixtures/scenes/quick.ron".as_ref());
+    let file = workspace::root().join("fixtures/scenes/quick.ron");
     let _ = inputs;
     Ok(answered(Scene::read_with(&file, &[set]))?.0)
 }
@@ -190,14 +193,15 @@ fn checkpoint(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
         drop(dir);
         let dir = RunDir::reopen(inputs.run())?;
         let began = std::time::Instant::now();
-        answered(engine::resume(&dir, 1, &mut |_| {
+        let mut watch = |_: &simulation::Progress| {
             // A checkpoint may claim any number of samples to come.
             if began.elapsed().as_secs() > 1 {
                 std::ops::ControlFlow::Break(())
             } else {
                 std::ops::ControlFlow::Continue(())
             }
-        }))?;
+        };
+        answered(host::with(1, |host| simulation::resume(&dir, host, &mut watch)))?;
     }
     Ok(answer)
 }

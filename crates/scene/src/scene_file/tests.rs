@@ -290,6 +290,13 @@ fn analytic_errors_in_overrides_point_at_the_command_line() {
 }
 
 #[test]
+fn analytic_a_file_that_may_not_be_read_is_not_looked_for_elsewhere() {
+    use std::io::ErrorKind::{NotFound, PermissionDenied};
+    assert!(super::advice(PermissionDenied).contains("chmod +r"));
+    assert!(super::advice(NotFound).contains("check the path"));
+}
+
+#[test]
 fn analytic_an_override_may_repair_a_file_or_break_it() {
     let folder = std::env::temp_dir().join(format!("stribeck-scene-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("temporary folder");

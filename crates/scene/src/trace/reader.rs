@@ -1,7 +1,7 @@
 //! Reading a trace, also that of a run that was killed.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, ErrorKind, Read};
 use std::path::Path;
 
 use super::{Trace, header};
@@ -18,12 +18,33 @@ impl Trace {
     /// [`Error::Io`] when the file cannot be read; [`Error::Trace`] when its header is cut off or belongs to other data.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let io = |source| Error::Io {
-            action: "read",
-            path: path.to_owned(),
-            kept: "Check the path; `cargo xtask simulate` writes traces".to_owned(),
-            source,
-        };
+        let mut opened = Opened::new(path)?;
+        let columns = read_rows(&mut opened.rows, opened.names.len(), opened.bytes);
+        Ok(Self { names: opened.names, columns: columns.map_err(|e| cannot_read(path, e))? })
+    }
+
+    /// Whole rows in the trace at `path`, by the size of the file.
+    ///
+    /// # Errors
+    ///
+    /// As [`Trace::read`].
+    pub fn count(path: impl AsRef<Path>) -> Result<u64, Error> {
+        let opened = Opened::new(path.as_ref())?;
+        Ok(opened.bytes / (8 * opened.names.len() as u64))
+    }
+}
+
+/// A trace behind its header.
+struct Opened {
+    names: Vec<String>,
+    rows: BufReader<File>,
+    /// What the file's size promises of rows.
+    bytes: u64,
+}
+
+impl Opened {
+    fn new(path: &Path) -> Result<Self, Error> {
+        let io = |source| cannot_read(path, source);
         let bad = |message: String| Error::Trace {
             path: path.to_owned(),
             message: format!("{message}. Repeat the run, or check the path"),
@@ -47,9 +68,19 @@ impl Trace {
         }
         let names = header::decode(&text).map_err(bad)?;
         let data = about.len().saturating_sub((prefix + length) as u64);
-        let columns = read_rows(&mut source, names.len(), data).map_err(io)?;
-        Ok(Self { names, columns })
+        Ok(Self { names, rows: source, bytes: data })
     }
+}
+
+fn cannot_read(path: &Path, source: std::io::Error) -> Error {
+    let kept = match source.kind() {
+        ErrorKind::NotFound => "Check the path; `stribeck simulate` writes traces",
+        ErrorKind::PermissionDenied => {
+            "The file is there, and you may not read it: ask its owner, or `chmod +r` it"
+        }
+        _ => "Check the disk and the file",
+    };
+    Error::Io { action: "read", path: path.to_owned(), kept: kept.to_owned(), source }
 }
 
 /// Reads whole rows of `channels` doubles until the data end; `bytes` is what the file's size promises.
@@ -60,7 +91,7 @@ fn read_rows(source: &mut impl Read, channels: usize, bytes: u64) -> std::io::Re
     loop {
         match source.read_exact(&mut row) {
             Ok(()) => {}
-            Err(e) if e.kind() == std::io::ErrorKind::UnexpectedEof => return Ok(columns),
+            Err(e) if e.kind() == ErrorKind::UnexpectedEof => return Ok(columns),
             Err(e) => return Err(e),
         }
         for (column, value) in columns.iter_mut().zip(row.as_chunks::<8>().0) {

@@ -1,0 +1,63 @@
+//! A run as the report sees it.
+
+use std::path::Path;
+
+use super::{ENERGY, RunDir, TRACE};
+use crate::error::Error;
+use crate::run_info::RunInfo;
+use crate::scene::Scene;
+use crate::trace::Trace;
+
+/// A run as the report sees it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// The complete scene.
+    pub scene: Scene,
+    /// Provenance, sizes and cost.
+    pub info: RunInfo,
+    /// Sampled channels.
+    pub trace: Trace,
+    /// Sampled energy ledger.
+    pub energy: Trace,
+}
+
+impl Run {
+    /// What is missing of the run: samples that `run.json` counts and the files no longer hold.
+    pub fn damage(&self) -> Vec<String> {
+        let wanted = self.info.samples;
+        let short = |(name, found): (&str, usize)| {
+            (found < wanted).then(|| {
+                format!("`{name}` holds {found} of the {wanted} samples that the run wrote: it was cut off. Restore it, or repeat the run")
+            })
+        };
+        [(TRACE, self.trace.len()), (ENERGY, self.energy.len())].into_iter().filter_map(short).collect()
+    }
+
+    /// Refuses a run whose `scene.ron` is no longer what was simulated.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::OtherScene`].
+    pub fn check_scene(&self, path: &Path) -> Result<(), Error> {
+        let (found, expected) = (self.scene.hash(), &self.info.scene_hash);
+        if found == *expected {
+            return Ok(());
+        }
+        Err(Error::OtherScene { path: path.to_owned(), found, expected: expected.clone() })
+    }
+
+    /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NotARun`], or what is wrong with the first file that cannot be read.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let dir = RunDir::open(path)?;
+        Ok(Self {
+            scene: Scene::read(dir.scene())?,
+            info: dir.read_info()?,
+            trace: Trace::read(dir.trace())?,
+            energy: Trace::read(dir.energy())?,
+        })
+    }
+}

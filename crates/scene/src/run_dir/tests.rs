@@ -1,0 +1,224 @@
+use super::*;
+use crate::run_info::{EnergyInfo, MeshInfo, Status};
+use crate::trace::{Trace, TraceWriter};
+
+/// A folder that is removed at the end.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("stribeck-run-{}-{name}", std::process::id()));
+        std::fs::remove_dir_all(&path).ok();
+        Self(path)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        std::fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn info(status: Status) -> RunInfo {
+    RunInfo {
+        version: "0.1.0".into(),
+        commit: "unknown".into(),
+        scene_hash: Scene::default().hash(),
+        machine: "a machine".into(),
+        threads: 2,
+        status,
+        stop_reason: None,
+        time_step_s: 31e-9,
+        critical_time_step_s: 0.1 + 0.2,
+        steps: 10,
+        steps_planned: 20,
+        interval_s: 1e-5,
+        samples: 2,
+        mesh: MeshInfo {
+            nodes: 4,
+            quads: 1,
+            triangles: 0,
+            roller_facets: 112,
+            outer_facets: 1257,
+            inner_facets: 1030,
+        },
+        wall_s: 1.0,
+        cpu_s: 2.0,
+        setup_s: 0.5,
+        energy: EnergyInfo { max_relative_error: 1e-3, peak_strain_j: 2.0 },
+        guards: crate::run_info::GuardInfo::default(),
+        expected_support_n: 50_100.0,
+        resumed_at_s: vec![1e-5],
+        warnings: vec!["one".into()],
+    }
+}
+
+fn write_run(path: &Path) {
+    let dir = RunDir::create(path).expect("free");
+    dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
+    for file in [dir.trace(), dir.energy()] {
+        let mut trace = TraceWriter::create(file, &["time_s", "x"]).expect("writable");
+        trace.push(&[0.0, 1.0]).expect("writable");
+    }
+    dir.write_info(&info(Status::Complete)).expect("writable");
+}
+
+#[test]
+fn invariant_a_run_reads_back_equal() {
+    let folder = Scratch::new("equal");
+    write_run(&folder.0);
+    let run = Run::read(&folder.0).expect("complete");
+    assert_eq!(run.scene, Scene::default());
+    assert_eq!(run.info, info(Status::Complete));
+    assert_eq!(run.trace.get("x"), Some(&[1.0][..]));
+    assert_eq!(run.energy.len(), 1);
+}
+
+fn bytes(path: &Path) -> Vec<u8> {
+    [INFO, SCENE, TRACE, ENERGY].map(|name| std::fs::read(path.join(name)).expect("readable")).concat()
+}
+
+#[test]
+fn invariant_samples_are_never_written_over() {
+    let folder = Scratch::new("earlier");
+    write_run(&folder.0);
+    let before = bytes(&folder.0);
+    let error = RunDir::create(&folder.0).expect_err("taken").to_string();
+    assert_eq!(bytes(&folder.0), before);
+    for word in ["complete run of", "--out", "--overwrite", "earlier-2`"] {
+        assert!(error.contains(word), "`{word}` is missing in: {error}");
+    }
+    let second = RunDir::create_numbered(&folder.0).expect("free");
+    assert!(second.path().ends_with(format!("{}-2", folder.0.file_name().expect("a name").display())));
+    // The second is not there yet, and yet the third gets another.
+    let third = RunDir::create_numbered(&folder.0).expect("free");
+    assert_ne!(second.path(), third.path());
+    let paths = [second.path().to_owned(), third.path().to_owned()];
+    drop((second, third));
+    assert!(paths.iter().all(|path| !path.exists()), "runs that never started left folders");
+    // A run that has no samples is not worth a word.
+    TraceWriter::create(folder.0.join(TRACE), &["time_s"]).expect("writable");
+    let dir = RunDir::create(&folder.0).expect("free");
+    dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
+    assert!(dir.has_started() && !dir.trace().exists());
+}
+
+#[test]
+fn invariant_a_run_is_replaced_when_the_new_one_is_complete() {
+    let folder = Scratch::new("replaced");
+    let [run, new] = ["x", "x.new"].map(|name| folder.0.join(name));
+    write_run(&run);
+    let mine = ["my notes.txt", "figures/mine.txt"].map(|name| run.join(name));
+    std::fs::create_dir_all(run.join(FIGURES)).expect("writable");
+    mine.iter().for_each(|file| std::fs::write(file, "mine").expect("writable"));
+    std::fs::write(run.join(FIGURES).join("old.svg"), "old").expect("writable");
+    let before = bytes(&run);
+
+    let dir = RunDir::replace(&run).expect("a place beside it");
+    assert!(dir.path().ends_with("x.new") && dir.replaces().is_some());
+    dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
+    let mut trace = TraceWriter::create(dir.trace(), &["time_s", "x"]).expect("writable");
+    trace.push(&[0.0, 2.0]).expect("writable");
+    trace.finish().expect("writable");
+    drop(dir);
+    assert_eq!(bytes(&run), before);
+    // Interrupted: a second one would destroy the first.
+    let error = RunDir::replace(&run).expect_err("one is there").to_string();
+    assert!(error.contains("x.new") && error.contains("--resume"), "{error}");
+
+    // Continued, it still knows whose place it takes.
+    let dir = RunDir::reopen(&new).expect("a run").take_place().expect("complete");
+    assert_eq!(dir.path().canonicalize().expect("there"), run.canonicalize().expect("there"));
+    assert_eq!(Trace::read(run.join(TRACE)).expect("readable").get("x"), Some(&[2.0][..]));
+    assert!(!new.exists() && !run.join(".replaces").exists() && !run.join(ENERGY).exists());
+    assert!(mine.iter().all(|file| file.exists()), "what the owner added is gone");
+    assert!(!run.join(FIGURES).join("old.svg").exists());
+    assert_eq!(std::fs::read_dir(&folder.0).expect("readable").count(), 1);
+}
+
+#[test]
+fn invariant_a_run_that_never_starts_takes_away_the_folders_above_it() {
+    let folder = Scratch::new("above");
+    let dir = RunDir::create(folder.0.join("a/b")).expect("free");
+    let mut ended = false;
+    dir.reservation().unless_started(|| ended = true);
+    assert!(ended && !folder.0.exists());
+}
+
+#[test]
+fn invariant_many_at_once_get_a_folder_each() {
+    let folder = Scratch::new("many");
+    let path = folder.0.join("runs/x");
+    let paths = std::sync::Mutex::new(Vec::new());
+    std::thread::scope(|scope| {
+        for n in 0..16 {
+            let (path, paths) = (&path, &paths);
+            scope.spawn(move || {
+                let dir = RunDir::create_numbered(path).expect("free");
+                // Every other one never starts and takes its folder away under the others.
+                if n % 2 == 0 {
+                    dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
+                    let mut trace = TraceWriter::create(dir.trace(), &["time_s"]).expect("writable");
+                    trace.push(&[0.0]).expect("writable");
+                    paths.lock().expect("no panic").push(dir.path().to_owned());
+                }
+            });
+        }
+    });
+    let mut paths = paths.into_inner().expect("no panic");
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), 8);
+    assert!(paths.iter().all(|path| RunDir::open(path).is_ok()));
+}
+
+#[test]
+fn invariant_two_runs_never_share_a_folder() {
+    let folder = Scratch::new("shared");
+    let first = RunDir::create(&folder.0).expect("free");
+    let error = RunDir::create(&folder.0).expect_err("taken").to_string();
+    assert!(error.contains(&format!("process {}", std::process::id())), "{error}");
+    drop(first);
+    assert!(RunDir::create(&folder.0).is_ok());
+}
+
+#[test]
+fn invariant_the_lock_of_a_dead_process_does_not_block() {
+    let folder = Scratch::new("dead");
+    std::fs::create_dir_all(&folder.0).expect("temporary folder");
+    std::fs::write(folder.0.join(LOCK), "999999999\n").expect("writable");
+    assert!(RunDir::create(&folder.0).is_ok());
+}
+
+#[test]
+fn invariant_foreign_folders_are_refused_and_left_alone() {
+    let folder = Scratch::new("foreign");
+    std::fs::create_dir_all(&folder.0).expect("temporary folder");
+    std::fs::write(folder.0.join("thesis.tex"), "years of work").expect("writable");
+    let error = RunDir::create(&folder.0).expect_err("foreign").to_string();
+    assert!(error.contains("thesis.tex") && error.contains("--out"), "{error}");
+    assert_eq!(std::fs::read_dir(&folder.0).expect("readable").count(), 1);
+}
+
+#[test]
+fn invariant_a_run_that_never_starts_leaves_no_folder() {
+    let folder = Scratch::new("never");
+    drop(RunDir::create(&folder.0).expect("free"));
+    assert!(!folder.0.exists());
+}
+
+#[test]
+fn analytic_missing_and_broken_runs_say_what_is_wrong() {
+    let folder = Scratch::new("broken");
+    let error = Run::read(&folder.0).expect_err("missing").to_string();
+    assert!(error.contains("`scene.ron` is missing"), "{error}");
+    write_run(&folder.0);
+    std::fs::write(folder.0.join(INFO), "{\"version\": 3").expect("writable");
+    let error = Run::read(&folder.0).expect_err("broken").to_string();
+    assert!(error.contains("run.json") && error.contains("line 1"), "{error}");
+    let file = folder.0.join(SCENE);
+    let error = RunDir::create(file.join("x")).expect_err("below a file").to_string();
+    assert!(error.contains("--out"), "{error}");
+    assert!(write_atomic(&file.join("x"), b"").is_err());
+    assert!(!folder.0.join("scene.ron.part").exists());
+}

@@ -1,0 +1,28 @@
+//! Writes the commit into the program, so that a run can say what made it.
+
+use std::process::Command;
+
+fn main() {
+    // Whatever changes in the crates changes the program, and with it perhaps the answer.
+    println!("cargo:rerun-if-changed=..");
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo:rerun-if-changed={log}");
+    }
+    println!("cargo:rustc-env=STRIBECK_COMMIT={}", commit());
+}
+
+/// Commit of the checkout, with a mark when its files have been changed since; `unknown` outside a checkout.
+fn commit() -> String {
+    let Some(commit) = git(&["rev-parse", "--short=12", "HEAD"]).filter(|commit| !commit.is_empty()) else {
+        return "unknown".to_owned();
+    };
+    let changed =
+        git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|files| !files.is_empty());
+    if changed { commit + " with changes" } else { commit }
+}
+
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}

@@ -1,0 +1,89 @@
+//! What a run records about the machine and the program: clocks, names, versions. The crates are told, never look.
+
+use std::time::Instant;
+
+use stribeck_bearing::simulation::Host;
+
+/// Ticks per second in `/proc/self/stat`; Linux promises this number to programs on every architecture.
+const TICKS_PER_SECOND: f64 = 100.0;
+
+/// Version of the program, with the commit that it was built from.
+pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("STRIBECK_COMMIT"), ")");
+
+/// Commit that the program was built from, with a mark when files had been changed since; `unknown` outside a checkout.
+pub const COMMIT: &str = env!("STRIBECK_COMMIT");
+
+/// Calls `work` with a [`Host`] that describes this process; its clocks begin now.
+pub fn with<T>(threads: usize, work: impl FnOnce(&Host<'_>) -> T) -> T {
+    let (start, before) = (Instant::now(), cpu_s());
+    work(&Host {
+        threads,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: COMMIT.to_owned(),
+        machine: machine(),
+        wall_s: &|| start.elapsed().as_secs_f64(),
+        cpu_s: &|| cpu_s() - before,
+    })
+}
+
+/// Cores that this process may use.
+pub fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Processor, cores and system, in words.
+pub fn machine() -> String {
+    let cpuinfo = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let processor = processor_name(&cpuinfo).unwrap_or("unknown processor");
+    let cores = cores();
+    format!("{processor}, {cores} cores, {} {}", std::env::consts::OS, std::env::consts::ARCH)
+}
+
+fn processor_name(cpuinfo: &str) -> Option<&str> {
+    let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim())
+}
+
+/// Processor time of this process, all threads [s]; 0 where the system has no `/proc`.
+fn cpu_s() -> f64 {
+    std::fs::read_to_string("/proc/self/stat").ok().and_then(|stat| cpu_of(&stat)).unwrap_or(0.0)
+}
+
+/// Most memory that this process has had so far [MiB]; `None` where the system has no `/proc`.
+pub fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kib: f64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kib / 1024.0)
+}
+
+/// User and system time [s] of a line of `/proc/<pid>/stat`, fields 14 and 15.
+fn cpu_of(stat: &str) -> Option<f64> {
+    // The second field, the program's name, may contain spaces and brackets; the last bracket ends it.
+    let (_, rest) = stat.rsplit_once(')')?;
+    let mut fields = rest.split_whitespace().skip(11);
+    let user: f64 = fields.next()?.parse().ok()?;
+    let system: f64 = fields.next()?.parse().ok()?;
+    Some((user + system) / TICKS_PER_SECOND)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_processor_time_of_a_stat_line() {
+        let stat = "42 (a ) name) S 1 42 42 0 -1 4194304 100 0 0 0 250 50 0 0 20 0 2 0 1 1 1";
+        assert_eq!(cpu_of(stat), Some(3.0));
+        assert_eq!(cpu_of("nonsense"), None);
+    }
+
+    #[test]
+    fn analytic_processor_name_of_cpuinfo() {
+        assert_eq!(
+            processor_name("processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\n"),
+            Some("Some CPU @ 2 GHz")
+        );
+        assert_eq!(processor_name(""), None);
+    }
+}

@@ -1,0 +1,55 @@
+//! The program `stribeck`: its commands, for the binary and for `cargo xtask`, which has the same ones.
+//!
+//! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates below.
+
+pub mod host;
+pub mod interrupt;
+pub mod place;
+pub mod progress;
+
+mod plan;
+mod report;
+mod simulate;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+pub use place::Place;
+
+/// What the program can do.
+#[derive(Debug, clap::Subcommand)]
+pub enum Command {
+    /// Runs a scene and writes its report
+    Simulate(simulate::Options),
+    /// Writes the report of a run again
+    Report(report::Options),
+    /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
+    Plan(plan::Options),
+}
+
+impl Command {
+    /// Does it, with paths and words of `place`.
+    ///
+    /// # Errors
+    /// With what to tell the user.
+    pub fn run(&self, place: &Place) -> Result<ExitCode> {
+        match self {
+            Self::Simulate(options) => simulate::run(options, place),
+            Self::Report(options) => report::run(options, place),
+            Self::Plan(options) => plan::run(options, place),
+        }
+    }
+}
+
+/// The exit code of a command; says on stderr what went wrong.
+pub fn conclude(done: Result<ExitCode>) -> ExitCode {
+    done.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        // Many messages of the crates already contain their cause.
+        let told = error.to_string();
+        for cause in error.chain().skip(1).map(ToString::to_string).filter(|cause| !told.contains(cause)) {
+            eprintln!("  because: {cause}");
+        }
+        ExitCode::FAILURE
+    })
+}

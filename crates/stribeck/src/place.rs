@@ -1,0 +1,80 @@
+//! Where scenes and runs are, and what the program is called.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use anyhow::{Context, Result, bail};
+use stribeck_scene::scene::Scene;
+
+/// The surroundings of a command.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// What the user types before the name of a command.
+    pub program: &'static str,
+    root: PathBuf,
+}
+
+impl Place {
+    /// `stribeck` in the working folder: runs go to `runs/` below it.
+    pub fn here() -> Self {
+        Self { program: "stribeck", root: PathBuf::new() }
+    }
+
+    /// `program` in a repository: scenes and runs are found below `root` from whatever folder it was called.
+    pub fn repository(program: &'static str, root: PathBuf) -> Self {
+        Self { program, root }
+    }
+
+    /// The scene in a file under `overrides`; without a file the bearing of the paper.
+    ///
+    /// # Errors
+    /// What is wrong with it, with line and field.
+    pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
+        Ok(match file {
+            Some(file) => Scene::read_with(self.locate(file), overrides)?,
+            None => Scene::default().with_overrides(overrides)?,
+        })
+    }
+
+    /// The folder of all runs.
+    pub fn runs(&self) -> PathBuf {
+        self.root.join("runs")
+    }
+
+    /// `path` as the user wrote it when that exists, else the same path below the root.
+    pub fn locate(&self, path: &Path) -> PathBuf {
+        let below_root = self.root.join(path);
+        if !path.exists() && below_root.exists() { below_root } else { path.to_owned() }
+    }
+
+    /// The folder of a run, given as a path or by its name below `runs/`.
+    pub fn locate_run(&self, run: &Path) -> PathBuf {
+        let by_name = self.runs().join(run);
+        if !run.exists() && by_name.exists() { by_name } else { self.locate(run) }
+    }
+
+    /// The run below `runs/` whose `run.json` was written last.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn newest_run(&self) -> Result<PathBuf> {
+        let folder = self.runs();
+        let advice = format!("start one with `{} simulate`, or name a run's folder", self.program);
+        let entries = std::fs::read_dir(&folder)
+            .with_context(|| format!("no runs in `{}`: {advice}", folder.display()))?;
+        let written =
+            |path: &Path| -> Option<SystemTime> { path.join("run.json").metadata().ok()?.modified().ok() };
+        let runs = entries.flatten().filter_map(|entry| Some((written(&entry.path())?, entry.path())));
+        match runs.max() {
+            Some((_, path)) => Ok(path),
+            None => bail!("no runs in `{}`: {advice}", folder.display()),
+        }
+    }
+}
+
+/// `path` relative to the current folder when it lies below it: shorter to read and to copy.
+pub fn shown(path: &Path) -> String {
+    let below =
+        std::env::current_dir().ok().and_then(|here| path.strip_prefix(here).ok().map(Path::to_owned));
+    below.unwrap_or_else(|| path.to_owned()).display().to_string()
+}

@@ -1,0 +1,125 @@
+//! The progress of a run: a bar on a terminal, one line now and then in a log file.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use stribeck_bearing::simulation::Progress;
+use stribeck_scene::run_info::clock;
+
+/// A bar is redrawn this often.
+const REDRAW: Duration = Duration::from_millis(100);
+/// A log gets a line after this part of the run …
+const LOG_PART: f64 = 0.05;
+/// … or after this time, whichever comes first.
+const LOG_PAUSE: Duration = Duration::from_secs(10);
+
+/// Shows how far a run has come.
+pub struct Meter {
+    bar: ProgressBar,
+    on_terminal: bool,
+    duration_ms: f64,
+    phase: &'static str,
+    /// When the present phase began, and its step then.
+    began: (Instant, u64),
+    shown: Instant,
+    shown_part: f64,
+}
+
+impl Meter {
+    /// A meter for a run of `duration_ms` simulated time.
+    pub fn new(duration_ms: f64) -> Self {
+        let on_terminal = std::io::stderr().is_terminal();
+        let target = if on_terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(Some(1), target);
+        if let Ok(style) = ProgressStyle::with_template("{bar:24} {wide_msg}") {
+            bar.set_style(style);
+        }
+        let now = Instant::now();
+        Self { bar, on_terminal, duration_ms, phase: "", began: (now, 0), shown: now, shown_part: 0.0 }
+    }
+
+    /// Takes note of `progress`; draws only when it is time to.
+    pub fn show(&mut self, progress: &Progress) {
+        let now = Instant::now();
+        let part = part(progress);
+        let new_phase = self.phase != progress.phase;
+        if new_phase {
+            self.phase = progress.phase;
+            self.began = (now, progress.step);
+        }
+        let since = now - self.shown;
+        let complete = part >= 1.0 && self.shown_part < 1.0;
+        let due = if self.on_terminal {
+            since >= REDRAW
+        } else {
+            part - self.shown_part >= LOG_PART || since >= LOG_PAUSE
+        };
+        if !(new_phase || complete || due) {
+            return;
+        }
+        (self.shown, self.shown_part) = (now, part);
+        let line = self.line(progress, (now - self.began.0).as_secs_f64());
+        if self.on_terminal {
+            self.bar.set_length(progress.steps.max(1));
+            self.bar.set_position(progress.step);
+            self.bar.set_message(line);
+            // One drawing a call, already rationed above.
+            self.bar.tick();
+        } else {
+            eprintln!("{line}");
+        }
+    }
+
+    /// Takes the bar away; its last state was only of passing interest.
+    pub fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    /// One line of progress, `elapsed` seconds after the phase began.
+    fn line(&self, progress: &Progress, elapsed: f64) -> String {
+        let done = progress.step.saturating_sub(self.began.1) as f64;
+        let left = progress.steps.saturating_sub(progress.step) as f64;
+        if done == 0.0 || elapsed <= 0.0 {
+            return format!("{} …", progress.phase);
+        }
+        let element_steps = done * progress.elements as f64 / elapsed;
+        format!(
+            "{:5.1} %  {:.2} of {} ms  ETA {}  energy error {:.3} %  {:.1} M element-steps/s",
+            100.0 * part(progress),
+            progress.time_s * 1e3,
+            self.duration_ms,
+            clock(elapsed * left / done),
+            progress.energy_error * 100.0,
+            element_steps * 1e-6
+        )
+    }
+}
+
+/// Part of the steps that is done, 0 to 1.
+fn part(progress: &Progress) -> f64 {
+    progress.step as f64 / progress.steps.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn analytic_a_line_holds_time_eta_energy_and_pace() {
+        let meter = Meter::new(30.0);
+        let progress = Progress {
+            step: 250,
+            steps: 1000,
+            time_s: 7.5e-3,
+            energy_error: 1.25e-3,
+            elements: 100_000,
+            phase: "run",
+        };
+        // 250 steps of 100 000 elements in 10 s: 2.5 million element-steps a second, 30 s left.
+        let expected = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.125 %  2.5 M element-steps/s";
+        assert_eq!(meter.line(&progress, 10.0), expected);
+        assert_eq!(meter.line(&Progress { step: 0, phase: "preload", ..progress }, 0.0), "preload …");
+    }
+}

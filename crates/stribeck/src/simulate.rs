@@ -1,0 +1,168 @@
+//! `stribeck simulate`: scene file → run folder → report. Or the rest of a run that ended early.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use stribeck_analysis::report;
+use stribeck_bearing::simulation::{self, Progress};
+use stribeck_scene::Error;
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_info::{RunInfo, Status, clock};
+use stribeck_scene::scene::Scene;
+
+use crate::host;
+use crate::interrupt::{self, Interrupt};
+use crate::place::{Place, shown};
+use crate::progress::Meter;
+
+/// Flags of `simulate`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Scene file [default: the bearing of the paper, as in fixtures/scenes/singh2014.ron]
+    scene: Option<PathBuf>,
+    /// Folder of the run [default: runs/NAME, the name of the scene; runs/NAME-2 … when there is a run already]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replaces the run in the folder, once the new one is complete; until then that lies in DIR.new
+    #[arg(long)]
+    overwrite: bool,
+    /// Worker threads [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    /// Overrides a field of the scene, for example --set mesh.size_mm=1.0; may be repeated
+    #[arg(long, value_name = "FIELD=VALUE")]
+    set: Vec<String>,
+    /// Continues the run in this folder, or in the one of this name below runs/, from its checkpoint; with
+    /// --set solver.duration_ms=60 also a complete one, to that duration
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "out", "overwrite"])]
+    resume: Option<PathBuf>,
+    /// Writes no report at the end
+    #[arg(long)]
+    no_report: bool,
+}
+
+/// A number of worker threads.
+fn threads(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
+    number.ok_or_else(|| {
+        "the number of worker threads is a whole number from 1 to 1024; leave it out for all cores".to_owned()
+    })
+}
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let threads = options.threads.unwrap_or_else(host::cores);
+    let (scene, dir) = match &options.resume {
+        Some(run) => reopen(&place.locate_run(run), &options.set)?,
+        None => {
+            let scene = place.scene(options.scene.as_deref(), &options.set)?;
+            let dir = reserve(options, place, &scene)?;
+            (scene, dir)
+        }
+    };
+    eprintln!("{}: {} ms, {} threads → {}", scene.name, scene.solver.duration_ms, threads, shown(dir.path()));
+
+    let interrupt = Interrupt::listen(Some(dir.reservation()))?;
+    let mut meter = Meter::new(scene.solver.duration_ms);
+    let mut watch = |progress: &Progress| {
+        meter.show(progress);
+        interrupt.flow()
+    };
+    let finished = host::with(threads, |host| match options.resume {
+        Some(_) if options.set.is_empty() => simulation::resume(&dir, host, &mut watch),
+        Some(_) => simulation::extend(&dir, scene.solver.duration_ms, host, &mut watch),
+        None => simulation::simulate(&scene, &dir, host, &mut watch),
+    });
+    meter.finish();
+
+    if let Ok(info) = &finished {
+        announce(info);
+    }
+    let complete = finished.as_ref().is_ok_and(|info| info.status == Status::Complete);
+    let dir = if complete { dir.take_place()? } else { dir };
+    if dir.has_started() && !complete {
+        let path = shown(dir.path());
+        if let Some(old) = dir.replaces() {
+            eprintln!("`{}` still holds the earlier run; the new one lies in `{path}`", shown(old));
+        }
+        if finished.as_ref().is_ok_and(|info| info.status == Status::Interrupted) {
+            eprintln!("continue it: {} simulate --resume {path}", place.program);
+        }
+    }
+    // A run that broke off has a report too: what was computed until then is what shows why.
+    if dir.has_started() && !options.no_report {
+        match report::write(dir.path()) {
+            Ok(_) => println!("report: {}", shown(&dir.report())),
+            // The run's own error matters more than that of its report.
+            Err(error) if finished.is_err() => eprintln!("warning: no report: {error}"),
+            Err(error) => {
+                return Err(anyhow::Error::from(error).context("the run is complete, its report is not"));
+            }
+        }
+    }
+    Ok(match finished?.status {
+        Status::Complete => ExitCode::SUCCESS,
+        Status::Interrupted => ExitCode::from(interrupt::EXIT_CODE),
+        Status::Diverged | Status::Running => ExitCode::FAILURE,
+    })
+}
+
+/// The folder of a new run. The user's own choice is taken or refused; the default gives way to runs that are there.
+fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
+    let by_name = place.runs().join(&scene.name);
+    let folder = options.out.as_deref().unwrap_or(&by_name);
+    if options.overwrite {
+        return Ok(RunDir::replace(folder)?);
+    }
+    match RunDir::create(folder) {
+        Err(Error::FolderHoldsRun { found, ways, .. }) if options.out.is_none() => {
+            eprintln!("`{}` holds {found}, which is kept. You can {}", shown(folder), ways.join(", or "));
+            Ok(RunDir::create_numbered(folder)?)
+        }
+        Err(Error::FolderInUse { .. }) if options.out.is_none() => Ok(RunDir::create_numbered(folder)?),
+        done => Ok(done?),
+    }
+}
+
+/// A run to go on with, and its scene under `overrides`, which may change the duration and nothing else.
+fn reopen(run: &Path, overrides: &[String]) -> Result<(Scene, RunDir)> {
+    const MAY_CHANGE: &str = "solver.duration_ms";
+    let other = overrides.iter().find(|text| text.split('=').next().unwrap_or_default().trim() != MAY_CHANGE);
+    if let Some(other) = other {
+        bail!(
+            "`--set {other}` cannot be used with --resume: the samples so far belong to the scene as it was. Only `{MAY_CHANGE}` may \
+             change; for anything else start a new run"
+        );
+    }
+    let dir = RunDir::reopen(run)?;
+    let scene = Scene::read(dir.scene())?.with_overrides(overrides)?;
+    Ok((scene, dir))
+}
+
+/// Says how the run ended and what it cost.
+fn announce(info: &RunInfo) {
+    for warning in &info.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let how = match info.status {
+        Status::Complete => "complete",
+        Status::Interrupted => "interrupted",
+        Status::Diverged => "diverged",
+        Status::Running => "still running",
+    };
+    let elements = (info.mesh.quads + info.mesh.triangles) as f64;
+    let element_steps = info.steps as f64 * elements;
+    let pace = if element_steps > 0.0 { info.wall_s / element_steps * 1e9 } else { 0.0 };
+    println!(
+        "{how}: {} steps of {:.2} ns, {} elements, {} (set-up {}), {pace:.2} ns per element-step, energy error {:.3} %",
+        info.steps,
+        info.time_step_s * 1e9,
+        elements,
+        clock(info.wall_s),
+        clock(info.setup_s),
+        info.energy.max_relative_error * 100.0
+    );
+    if let Some(reason) = &info.stop_reason {
+        eprintln!("stopped: {reason}");
+    }
+}

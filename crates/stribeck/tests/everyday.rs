@@ -1,0 +1,269 @@
+//! The program as its users meet it: in a folder of their own, with runs that lie there already, with Ctrl-C.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// A very coarse bearing, from rest.
+const COARSE: [&str; 6] = [
+    "--set=mesh.size_mm=4.0",
+    "--set=mesh.roller_facets=40",
+    "--set=solver.start=sudden",
+    "--set=output.frames=None",
+    "--threads=1",
+    "--no-report",
+];
+
+/// Its length, when it is to come to its end [ms].
+const SHORT: &str = "--set=solver.duration_ms=0.2";
+
+/// Whatever takes longer has hung.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// An empty folder outside the repository with a scene file in it, removed at the end.
+struct Desk(PathBuf);
+
+impl Desk {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("stribeck-everyday-{}-{name}", std::process::id()));
+        fs::remove_dir_all(&path).ok();
+        fs::create_dir_all(&path).expect("temporary folder");
+        let quick = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron");
+        fs::copy(quick, path.join("quick.ron")).expect("a scene");
+        Self(path)
+    }
+
+    fn stribeck(&self, words: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+        command.current_dir(&self.0).args(words).stdin(Stdio::null());
+        command
+    }
+
+    fn run(&self, words: &[&str]) -> Output {
+        self.stribeck(words).output().expect("it starts")
+    }
+
+    /// Starts a coarse simulation of `quick.ron`.
+    fn simulate(&self, words: &[&str]) -> Command {
+        let mut command = self.stribeck(&["simulate", "quick.ron"]);
+        command.args(COARSE).args(words);
+        command
+    }
+
+    /// Simulates to the end.
+    fn complete(&self, words: &[&str]) {
+        let output = self.simulate(words).arg(SHORT).output().expect("it starts");
+        assert!(output.status.success(), "{}", said(&output));
+    }
+
+    /// Interrupts `command` by Ctrl-C as soon as `file` is there.
+    fn interrupt(&self, mut command: Command, file: &str) -> Output {
+        let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("it starts");
+        let began = Instant::now();
+        while !self.0.join(file).exists() {
+            assert!(began.elapsed() < PATIENCE, "the run does not come on");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        ctrl_c(&child);
+        let output = child.wait_with_output().expect("it ends");
+        assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+        output
+    }
+
+    fn bytes(&self, run: &str, name: &str) -> Vec<u8> {
+        let path = self.0.join(run).join(name);
+        fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    }
+
+    /// Every file of a run, with its name.
+    fn files(&self, run: &str) -> Vec<(PathBuf, Vec<u8>)> {
+        let mut files = Vec::new();
+        let mut folders = vec![self.0.join(run)];
+        while let Some(folder) = folders.pop() {
+            for path in fs::read_dir(folder).expect("readable").flatten().map(|entry| entry.path()) {
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    files.push((path.clone(), fs::read(path).expect("readable")));
+                }
+            }
+        }
+        files.sort();
+        files
+    }
+
+    fn exists(&self, path: &str) -> bool {
+        self.0.join(path).exists()
+    }
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn ctrl_c(child: &Child) {
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
+    assert!(sent.success());
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+#[track_caller]
+fn says(output: &Output, words: &[&str]) {
+    let said = said(output);
+    words.iter().for_each(|word| assert!(said.contains(word), "`{word}` is missing in: {said}"));
+}
+
+#[test]
+fn invariant_a_finished_run_outlives_the_next_one() {
+    let desk = Desk::new("outlives");
+    desk.complete(&["--out", "A"]);
+    let before = desk.files("A");
+
+    // Refused, with the ways out.
+    let deeper = ["--set=defect.depth_mm=0.3", "--out", "A"];
+    let refused = desk.simulate(&deeper).output().expect("it starts");
+    assert_eq!(refused.status.code(), Some(1));
+    says(&refused, &["complete run of 0.2 ms", "--overwrite", "`A-2`", "--resume A"]);
+    assert!(desk.files("A") == before, "a refused run changed something");
+
+    // Replaced only by a complete one.
+    let mut command = desk.simulate(&deeper);
+    command.args(["--overwrite", "--set=solver.duration_ms=50.0"]);
+    let interrupted = desk.interrupt(command, "A.new/trace.npy");
+    says(&interrupted, &["still holds the earlier run", "simulate --resume A.new"]);
+    assert!(desk.files("A") == before, "an interrupted run changed the one that it was to replace");
+    says(&desk.simulate(&deeper).arg("--overwrite").output().expect("it starts"), &["A.new", "--resume"]);
+    let report = desk.run(&["report", "A.new"]);
+    assert!(report.status.success(), "{}", said(&report));
+
+    fs::remove_dir_all(desk.0.join("A.new")).expect("removable");
+    desk.complete(&["--set=defect.depth_mm=0.3", "--out", "A", "--overwrite"]);
+    desk.complete(&["--set=defect.depth_mm=0.3", "--out", "B"]);
+    assert!(desk.bytes("A", "trace.npy") == desk.bytes("B", "trace.npy"));
+    assert!(!desk.exists("A.new") && !desk.exists("A/.replaces"));
+}
+
+#[test]
+fn invariant_runs_without_a_folder_are_numbered_even_when_they_start_together() {
+    let desk = Desk::new("numbered");
+    let together: Vec<Child> = (0..3)
+        .map(|_| {
+            desk.simulate(&[SHORT]).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts")
+        })
+        .collect();
+    for mut child in together {
+        assert!(child.wait().expect("it ends").success());
+    }
+    let again = desk.simulate(&[SHORT]).output().expect("it starts");
+    assert!(again.status.success());
+    says(&again, &["`runs/quick` holds a complete run", "is kept", "→ runs/quick-4"]);
+    for run in ["runs/quick-2", "runs/quick-3", "runs/quick-4"] {
+        assert!(desk.bytes("runs/quick", "trace.npy") == desk.bytes(run, "trace.npy"), "{run}");
+    }
+    assert_eq!(fs::read_dir(desk.0.join("runs")).expect("readable").count(), 4);
+}
+
+#[test]
+fn invariant_several_runs_share_a_tree_of_folders() {
+    let desk = Desk::new("xargs");
+    let line = format!(
+        "printf '0.1\\n0.2\\n0.3\\n' | xargs -P3 -I{{}} {} simulate quick.ron {} {SHORT} --set defect.depth_mm={{}} --out deep/{{}}",
+        env!("CARGO_BIN_EXE_stribeck"),
+        COARSE.join(" ")
+    );
+    let output = Command::new("sh").args(["-c", &line]).current_dir(&desk.0).output().expect("a shell");
+    assert!(output.status.success(), "{}", said(&output));
+    for depth in ["0.1", "0.2", "0.3"] {
+        let scene = String::from_utf8(desk.bytes(&format!("deep/{depth}"), "scene.ron")).expect("text");
+        assert!(scene.contains(&format!("depth_mm: {depth}")), "{scene}");
+    }
+}
+
+#[test]
+fn invariant_a_run_made_longer_is_the_long_run() {
+    let desk = Desk::new("longer");
+    desk.complete(&["--out", "A"]);
+    let long = desk.simulate(&["--set=solver.duration_ms=0.4", "--out", "B"]).output().expect("it starts");
+    assert!(long.status.success(), "{}", said(&long));
+
+    let other = desk.run(&["simulate", "--resume", "A", "--set", "mesh.size_mm=1.0"]);
+    assert!(!other.status.success());
+    says(&other, &["mesh.size_mm=1.0", "Only `solver.duration_ms` may change"]);
+    let longer = ["simulate", "--resume", "A", "--no-report", "--set", "solver.duration_ms=0.4"];
+    let output = desk.run(&longer);
+    assert!(output.status.success(), "{}", said(&output));
+    for name in ["trace.npy", "energy.npy", "scene.ron", "mesh.vtu"] {
+        assert!(desk.bytes("A", name) == desk.bytes("B", name), "another {name}");
+    }
+    says(&desk.run(&longer), &["it is complete", "solver.duration_ms"]);
+}
+
+#[test]
+fn invariant_a_checkpoint_is_enough_to_go_on() {
+    let desk = Desk::new("damaged");
+    let mut command = desk.simulate(&["--out", "A"]);
+    command.arg("--set=solver.duration_ms=2.0");
+    desk.interrupt(command, "A/trace.npy");
+    fs::write(desk.0.join("A/run.json"), "{\"version\": ").expect("writable");
+    let output = desk.run(&["simulate", "--resume", "A", "--no-report"]);
+    assert!(output.status.success(), "{}", said(&output));
+    says(&output, &["`run.json` was made anew from the checkpoint", "complete: "]);
+}
+
+#[test]
+fn invariant_ctrl_c_before_the_first_step_ends_at_once_and_leaves_nothing() {
+    let desk = Desk::new("early");
+    // The paper's scene takes seconds to be meshed and preloaded.
+    let began = Instant::now();
+    let output =
+        desk.interrupt(desk.stribeck(&["simulate", "--threads=1", "--out", "deep/A"]), "deep/A/.lock");
+    says(&output, &["before the first step"]);
+    assert!(began.elapsed() < Duration::from_secs(5), "it took {:?}", began.elapsed());
+    assert!(!desk.exists("deep"), "a run that never began left a folder");
+}
+
+#[test]
+fn invariant_a_report_is_of_the_scene_that_was_run_and_says_what_is_missing() {
+    let desk = Desk::new("report");
+    desk.complete(&["--out", "A"]);
+    let trace = desk.bytes("A", "trace.npy");
+    fs::write(desk.0.join("A/trace.npy"), &trace[..trace.len() / 2]).expect("writable");
+    let output = desk.run(&["report", "A"]);
+    assert!(output.status.success(), "{}", said(&output));
+    says(&output, &["warning: `trace.npy` holds", "of the 20 samples", "cut off"]);
+    let page = String::from_utf8(desk.bytes("A", "report.html")).expect("text");
+    assert!(page.contains("of the 20 samples"), "the report does not say that samples are missing");
+
+    let scene = String::from_utf8(desk.bytes("A", "scene.ron")).expect("text");
+    let edited = scene.replace("speed_rpm: ", "speed_rpm: 1");
+    assert_ne!(edited, scene);
+    fs::write(desk.0.join("A/scene.ron"), edited).expect("writable");
+    let output = desk.run(&["report", "A"]);
+    assert_eq!(output.status.code(), Some(1));
+    says(&output, &["changed after the run", "Put the run's own `scene.ron` back"]);
+}
+
+#[test]
+fn invariant_the_program_says_what_it_is_and_needs_no_files() {
+    let desk = Desk::new("words");
+    says(&desk.run(&["--version"]), &["stribeck 0."]);
+    says(&desk.run(&["--help"]), &["rolling element bearings", "simulate", "report", "plan"]);
+    // Without a scene the bearing of the paper, here on a coarse mesh.
+    let plan = desk.run(&["plan", "--set", "mesh.size_mm=2.0"]);
+    assert!(plan.status.success(), "{}", said(&plan));
+    says(&plan, &["singh2014", "roller vertices"]);
+    let diverging = desk.run(&["plan", "quick.ron", "--set", "solver.time_step_factor=1.2"]);
+    assert_eq!(diverging.status.code(), Some(1));
+    says(&diverging, &["solver.time_step_factor", "below 1"]);
+    says(&desk.run(&["simulate", "--threads", "two"]), &["'two'", "whole number from 1 to 1024"]);
+    says(&desk.run(&["report"]), &["stribeck simulate"]);
+    assert!(!Path::new(&desk.0).join("runs").exists());
+}

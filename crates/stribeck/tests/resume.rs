@@ -1,0 +1,168 @@
+//! Real processes that end before their run does: killed, or without space on the disk. `--resume` finishes their run.
+
+#![cfg(unix)]
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Output, Stdio},
+    time::{Duration, Instant},
+};
+
+/// The coarse bearing, from rest: long enough to be killed in the middle, short enough for a test.
+const SCENE: [&str; 5] = [
+    "simulate",
+    concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron"),
+    "--set=solver.duration_ms=3.5",
+    "--set=solver.start=sudden",
+    "--no-report",
+];
+
+/// The traces must have come this far before a run is killed [bytes]: beyond a checkpoint, with most still to come.
+const UNDER_WAY: u64 = 250_000;
+
+/// A killed run that has not come this far has hung.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A folder of its own for every test, removed at the end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("stribeck-kill-{}-{name}", std::process::id()));
+        fs::remove_dir_all(&path).ok();
+        fs::create_dir_all(&path).expect("temporary folder");
+        Self(path)
+    }
+
+    fn run(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        fs::remove_dir_all(&self.0).ok();
+    }
+}
+
+fn simulate(out: &Path, threads: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+    command.args(SCENE).args(["--threads", threads, "--out"]).arg(out);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command
+}
+
+fn resume(run: &Path, threads: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+    command.args(["simulate", "--no-report", "--threads", threads, "--resume"]).arg(run);
+    command.output().expect("it starts")
+}
+
+fn words(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Starts a run in `out` and kills it as `kill -9` does, once it is under way.
+fn start_and_kill(out: &Path) {
+    let mut child = simulate(out, "2").spawn().expect("it starts");
+    wait_until_under_way(out);
+    assert!(child.try_wait().expect("it can be asked").is_none(), "the run ended too early to be killed");
+    child.kill().expect("it was running");
+    child.wait().expect("it is dead");
+    assert!(out.join("checkpoint").exists());
+}
+
+fn wait_until_under_way(run: &Path) {
+    let began = Instant::now();
+    while fs::metadata(run.join("trace.npy")).map_or(0, |about| about.len()) < UNDER_WAY {
+        assert!(began.elapsed() < PATIENCE, "the run does not come on");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn assert_same_files(whole: &Path, pieces: &Path) {
+    for name in ["trace.npy", "energy.npy"] {
+        let [a, b] = [whole, pieces].map(|run| fs::read(run.join(name)).expect("readable"));
+        assert!(a == b, "another {name}");
+    }
+}
+
+#[test]
+fn invariant_killed_runs_and_full_disks_lose_nothing() {
+    let folder = Folder::new("nothing");
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.run(name));
+    assert!(simulate(&whole, "1").status().expect("it starts").success());
+    start_and_kill(&killed);
+
+    // A limit on the length of files stands for a full disk: the checkpoint does not fit at once, the trace soon not.
+    let limited = Command::new("sh")
+        .args([
+            "-c",
+            r#"trap "" XFSZ; ulimit -f 800; exec "$0" simulate --no-report --threads 1 --resume "$1""#,
+        ])
+        .args([Path::new(env!("CARGO_BIN_EXE_stribeck")), &killed])
+        .output()
+        .expect("a shell");
+    let said = words(&limited);
+    assert!(!limited.status.success(), "the run ended well without space: {said}");
+    for word in ["trace.npy", "rows stay readable", "free some space", "continue the run from its checkpoint"]
+    {
+        assert!(said.contains(word), "`{word}` is missing in: {said}");
+    }
+
+    let finished = resume(&killed, "2");
+    assert!(finished.status.success(), "{}", words(&finished));
+    assert_same_files(&whole, &killed);
+
+    let again = resume(&killed, "1");
+    assert!(!again.status.success() && words(&again).contains("it is complete"), "{}", words(&again));
+}
+
+#[test]
+fn invariant_a_folder_that_cannot_be_written_is_said_at_once() {
+    // The kernel's own folder takes no files, not even from root.
+    let output =
+        simulate(Path::new("/proc/stribeck"), "1").stderr(Stdio::piped()).output().expect("it starts");
+    let said = words(&output);
+    assert!(!output.status.success(), "{said}");
+    for word in ["/proc/stribeck", "Nothing was changed", "--out"] {
+        assert!(said.contains(word), "`{word}` is missing in: {said}");
+    }
+}
+
+#[test]
+fn invariant_an_interrupted_process_can_go_on() {
+    let folder = Folder::new("term");
+    let [whole, ended] = ["whole", "ended"].map(|name| folder.run(name));
+    assert!(simulate(&whole, "1").status().expect("it starts").success());
+    let child = simulate(&ended, "1").spawn().expect("it starts");
+    wait_until_under_way(&ended);
+    // What Ctrl-C sends.
+    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
+    assert!(sent.success());
+    let status = child.wait_with_output().expect("it ends").status;
+    assert_eq!(status.code(), Some(130), "it ends as an interrupted program does");
+    let info = fs::read_to_string(ended.join("run.json")).expect("readable");
+    assert!(info.contains("\"status\": \"interrupted\"") && ended.join("checkpoint").exists(), "{info}");
+    let finished = resume(&ended, "2");
+    assert!(finished.status.success(), "{}", words(&finished));
+    assert_same_files(&whole, &ended);
+}
+
+#[test]
+fn invariant_a_continued_run_takes_its_scene_from_its_folder() {
+    for other in [&["--set", "mesh.size_mm=1.0"][..], &["--out", "elsewhere"], &["fixtures/scenes/quick.ron"]]
+    {
+        let output = Command::new(env!("CARGO_BIN_EXE_stribeck"))
+            .args(["simulate", "--resume", "nowhere"])
+            .args(other)
+            .output()
+            .expect("it starts");
+        assert!(
+            !output.status.success() && words(&output).contains("cannot be used with"),
+            "{}",
+            words(&output)
+        );
+    }
+}

@@ -1,0 +1,71 @@
+//! Questions that are answered by many runs: one question, many runs, one table.
+//!
+//! A study is a list of variants: a scene and what is changed in it. Runs are kept in `runs/study/STUDY/VARIANT`; those
+//! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
+//! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
+//!
+//! `cargo xtask study` is the command. Nothing that simulates depends on this crate; elements, precisions and integrators
+//! that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints nothing and reads no
+//! clock: what it needs of the program that runs it is its [`Host`].
+
+pub mod dice;
+pub mod integrators;
+pub mod reference;
+
+mod host;
+mod impulse;
+mod kills;
+mod long;
+mod noise;
+mod paper;
+mod rig;
+mod runner;
+mod stability;
+mod table;
+mod work_precision;
+
+use anyhow::Result;
+
+pub use host::{Answer, Host, Job};
+pub use runner::Flags;
+
+pub(crate) use runner::{Finished, Runner, Variant};
+pub(crate) use table::{Column, Sheet};
+
+/// What is asked.
+#[derive(Debug, clap::Subcommand)]
+pub enum Study {
+    /// Which reading of the paper agrees with it best, and whether its hypothesis holds
+    Paper(paper::Options),
+    /// The bearing for 0.35 s: lines resolved to 3 Hz, the defect in the envelope
+    Long(long::Options),
+    /// Runs killed at random moments and continued: the same bytes
+    Kills(kills::Options),
+    /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
+    Stability(stability::Options),
+    /// Error against work: elements, integrators, contacts, meshes
+    #[command(name = "work_precision")]
+    WorkPrecision(work_precision::Options),
+    /// Where contact noise comes from and what each cure takes away
+    Noise(noise::Options),
+    /// Whether the impulse at the exit is that of a finer mesh, over many starts
+    Impulse(impulse::Options),
+}
+
+impl Study {
+    /// Runs what has not been run and writes the answer.
+    ///
+    /// # Errors
+    /// When a variant is not a scene, a page cannot be written, or at an interruption; what has been run is kept.
+    pub fn run(&self, host: &dyn Host) -> Result<Answer> {
+        match self {
+            Self::Paper(options) => paper::run(options, host),
+            Self::Long(options) => long::run(options, host),
+            Self::Kills(options) => kills::run(options, host),
+            Self::Stability(options) => stability::run(options, host),
+            Self::WorkPrecision(options) => work_precision::run(options, host),
+            Self::Noise(options) => noise::run(options, host),
+            Self::Impulse(options) => impulse::run(options, host),
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Runs the variants of a study, each once.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use anyhow::{Context, Result, bail};
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::summary::Summary;
+use stribeck_scene::run_dir::{Run, RunDir};
+use stribeck_scene::run_info::{RunInfo, Status, clock};
+use stribeck_scene::scene::Scene;
+
+use crate::{Host, Job};
+
+/// What every study takes.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Flags {
+    /// Worker threads [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Runs this many variants at a time, each on one thread, for machines with many cores
+    #[arg(long, value_name = "N", conflicts_with = "threads", default_value_t = 1,
+        value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: u16,
+    /// Runs only variants whose name contains this; may be repeated. The others are shown when they have been run
+    #[arg(long, value_name = "TEXT")]
+    only: Vec<String>,
+    /// Runs nothing: makes the tables from what has been run
+    #[arg(long)]
+    tables_only: bool,
+}
+
+impl Flags {
+    /// Whether a variant of this name is to be run.
+    pub(crate) fn wants(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|text| name.contains(text.as_str()))
+    }
+}
+
+/// A scene and what is changed in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Variant {
+    /// Name of its folder: letters, digits, `-` and `_`.
+    pub(crate) name: String,
+    /// Scene file, below the repository's root.
+    pub(crate) scene: &'static str,
+    /// Overrides, as `--set` takes them.
+    pub(crate) set: Vec<String>,
+}
+
+/// A variant that has been run, or could not be.
+#[derive(Debug)]
+pub(crate) struct Finished {
+    /// What was asked for.
+    pub(crate) variant: Variant,
+    /// Its folder.
+    pub(crate) folder: PathBuf,
+    /// The scene that it stands for.
+    pub(crate) scene: Scene,
+    /// Its numbers, or why there are none.
+    pub(crate) summary: Result<Summary, String>,
+    /// What its run says of itself.
+    pub(crate) info: Option<RunInfo>,
+}
+
+/// Runs variants into `runs/study/STUDY`.
+pub(crate) struct Runner<'a> {
+    folder: PathBuf,
+    flags: Flags,
+    host: &'a dyn Host,
+}
+
+impl Variant {
+    /// A variant of `scene` under the overrides `set`.
+    pub(crate) fn new(name: impl Into<String>, scene: &'static str, set: &[&str]) -> Self {
+        Self { name: name.into(), scene, set: set.iter().map(|s| (*s).to_owned()).collect() }
+    }
+
+    /// The same with one override more.
+    pub(crate) fn with(mut self, set: impl Into<String>) -> Self {
+        self.set.push(set.into());
+        self
+    }
+
+    fn scene(&self, root: &Path) -> Result<Scene> {
+        let file = root.join(self.scene);
+        let mut scene = Scene::read_with(&file, &self.set)
+            .with_context(|| format!("variant `{}` is not a scene", self.name))?;
+        scene.name.clone_from(&self.name);
+        Ok(scene)
+    }
+}
+
+impl Finished {
+    /// The numbers of a complete run.
+    pub(crate) fn numbers(&self) -> Option<&Summary> {
+        self.summary.as_ref().ok()
+    }
+}
+
+impl<'a> Runner<'a> {
+    /// A runner for the study of this name.
+    pub(crate) fn new(study: &str, flags: &Flags, host: &'a dyn Host) -> Self {
+        Self { folder: host.root().join("runs/study").join(study), flags: flags.clone(), host }
+    }
+
+    /// Runs every variant that has not been run and returns all that have been, in their order. A variant that fails
+    /// says why in its place and does not end the study.
+    ///
+    /// # Errors
+    /// When a variant is not a scene, or at Ctrl-C; what has been run is kept.
+    pub(crate) fn run(&self, variants: &[Variant]) -> Result<Vec<Finished>> {
+        self.run_with(&self.flags, variants)
+    }
+
+    fn run_with(&self, flags: &Flags, variants: &[Variant]) -> Result<Vec<Finished>> {
+        let planned: Vec<Planned> =
+            variants.iter().map(|variant| self.plan(flags, variant)).collect::<Result<_>>()?;
+        let due: Vec<(usize, &Planned)> = planned.iter().enumerate().filter(|(_, p)| p.due).collect();
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(&(number, planned)) = due.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if self.host.is_interrupted() {
+                    return;
+                }
+                self.host.say(&format!("{} of {}: {}", number + 1, variants.len(), planned.variant.name));
+                if let Err(error) = self.run_one(planned) {
+                    self.host.say(&format!("{}: {error:#}", planned.variant.name));
+                    let _ = planned.failed.set(format!("{error:#}"));
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            (1..flags.jobs).for_each(|_| drop(scope.spawn(work)));
+            work();
+        });
+        if self.host.is_interrupted() {
+            bail!("interrupted; the same command goes on from here");
+        }
+        Ok(planned.into_iter().filter(|p| p.due || p.state == State::Done).map(finished).collect())
+    }
+
+    /// What is to be done for a variant.
+    fn plan(&self, flags: &Flags, variant: &Variant) -> Result<Planned> {
+        let scene = variant.scene(self.host.root())?;
+        let folder = self.folder.join(&variant.name);
+        let state = state_of(&folder, &scene);
+        let due = state != State::Done && flags.wants(&variant.name) && !flags.tables_only;
+        Ok(Planned { variant: variant.clone(), scene, folder, state, due, failed: OnceLock::new() })
+    }
+
+    /// As [`Runner::run`]; when not `wanted`, nothing is run and what has been run is returned.
+    ///
+    /// # Errors
+    /// As [`Runner::run`].
+    pub(crate) fn run_if(&self, wanted: bool, variants: &[Variant]) -> Result<Vec<Finished>> {
+        if wanted {
+            return self.run(variants);
+        }
+        self.run_with(&Flags { tables_only: true, ..self.flags.clone() }, variants)
+    }
+
+    fn run_one(&self, planned: &Planned) -> Result<()> {
+        let alone = self.flags.jobs == 1;
+        let threads = if alone { self.flags.threads.map(usize::from) } else { Some(1) };
+        let begun = planned.state == State::Begun;
+        let Planned { scene, folder, .. } = planned;
+        if planned.state == State::New {
+            // A run of another scene, from before the study was changed.
+            std::fs::remove_dir_all(folder).ok();
+        }
+        let info = self.host.run(&Job { scene, folder, begun, threads, alone })?;
+        let (name, seconds) = (&planned.variant.name, clock(info.wall_s + info.setup_s));
+        self.host.say(&format!("  {name}: {:?} after {seconds}", info.status));
+        Ok(())
+    }
+}
+
+/// A variant and what is to be done for it.
+struct Planned {
+    variant: Variant,
+    scene: Scene,
+    folder: PathBuf,
+    state: State,
+    /// Whether it is to be run.
+    due: bool,
+    /// Why it could not be.
+    failed: OnceLock<String>,
+}
+
+/// How far a variant is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    /// Not run, or run from another scene.
+    New,
+    /// Ended early; can be continued.
+    Begun,
+    /// At its end, or diverged.
+    Done,
+}
+
+fn state_of(folder: &Path, scene: &Scene) -> State {
+    let Ok(run) = RunDir::open(folder).and_then(|dir| dir.read_info().map(|info| (dir, info))) else {
+        return State::New;
+    };
+    let (dir, info) = run;
+    match info.status {
+        _ if info.scene_hash != scene.hash() => State::New,
+        Status::Complete | Status::Diverged => State::Done,
+        Status::Running | Status::Interrupted if dir.checkpoint().exists() => State::Begun,
+        _ => State::New,
+    }
+}
+
+/// Reads a run again and draws its conclusions anew, so that a table is never older than the analysis.
+fn finished(planned: Planned) -> Finished {
+    let Planned { variant, folder, scene, failed, .. } = planned;
+    let run = match failed.into_inner() {
+        Some(why) => Err(why),
+        None => Run::read(&folder).map_err(|error| error.to_string()),
+    };
+    let info = run.as_ref().ok().map(|run| run.info.clone());
+    let summary = run.and_then(|run| match run.info.status {
+        Status::Complete => Findings::of(&run).map(|f| f.summary).map_err(|error| error.to_string()),
+        _ => Err(run.info.stop_reason.unwrap_or_else(|| "did not complete".to_owned())),
+    });
+    Finished { variant, folder, scene, summary, info }
+}

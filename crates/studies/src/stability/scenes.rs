@@ -1,0 +1,152 @@
+//! Whole bearings, coarse and short, at the ends of what a scene allows and beyond.
+
+use anyhow::Result;
+use stribeck_scene::run_dir::Run;
+use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::Scene;
+
+use super::{Case, Chapter, Verdict};
+use crate::{Finished, Flags, Host, Runner, Variant};
+
+/// Coarse bearing of every case, and how long it runs.
+const SCENE: &str = "fixtures/scenes/quick.ron";
+const DURATION: &str = "solver.duration_ms=0.4";
+
+/// A case in which the rollers carry less or more than this share of what they must, without a word, is wrong.
+const SUPPORT: [f64; 2] = [0.7, 1.3];
+
+/// … unless what they lack or have too much gives outer ring and adapter less than this speed [m/s].
+const RATTLING: f64 = 0.1;
+
+/// Name, what is done, overrides.
+type Row = (&'static str, &'static str, &'static [&'static str]);
+
+#[rustfmt::skip]
+const ROWS: &[Row] = &[
+    ("base", "the quick scene as it is", &[]),
+    ("dt-099", "time step 0.99 of the limit", &["solver.time_step_factor=0.99"]),
+    ("dt-101", "time step 1.01 of the limit", &["solver.time_step_factor=1.01"]),
+    ("dt-120", "time step 1.2 of the limit", &["solver.time_step_factor=1.2"]),
+    ("dt-150", "time step 1.5 of the limit", &["solver.time_step_factor=1.5"]),
+    ("penalty-1e-2", "penalty × 10⁻²", &["contact.penalty_scale=0.01"]),
+    ("penalty-1e-1", "penalty × 10⁻¹", &["contact.penalty_scale=0.1"]),
+    ("penalty-1e1", "penalty × 10", &["contact.penalty_scale=10.0"]),
+    ("penalty-1e2", "penalty × 10²", &["contact.penalty_scale=100.0", "solver.duration_ms=0.1"]),
+ ("penalty-1e2-sudden", "penalty × 10², load at once", &["contact.penalty_scale=100.0", "solver.duration_ms=0.1", "solver.start=sudden"]),
+    ("penalty-1e3-sudden", "penalty × 10³, load at once", &["contact.penalty_scale=1000.0", "solver.duration_ms=0.05", "solver.start=sudden"]),
+    ("penalty-1e4", "penalty × 10⁴", &["contact.penalty_scale=1e4"]),
+    ("load-5e5", "500 kN", &["operation.load_n=5e5"]),
+    ("load-5e6", "5 MN", &["operation.load_n=5e6"]),
+    ("load-5e7", "50 MN", &["operation.load_n=5e7"]),
+    ("sudden-5e4", "50 kN at once", &["solver.start=sudden"]),
+    ("sudden-5e5", "500 kN at once", &["solver.start=sudden", "operation.load_n=5e5"]),
+    ("sudden-5e6", "5 MN at once", &["solver.start=sudden", "operation.load_n=5e6"]),
+    ("sudden-5e7", "50 MN at once", &["solver.start=sudden", "operation.load_n=5e7"]),
+    ("load-100", "100 N", &["operation.load_n=100.0"]),
+    ("clearance-10", "clearance 10 µm", &["bearing.inner_race_diameter_mm=163.99"]),
+    ("clearance-100", "clearance 100 µm", &["bearing.inner_race_diameter_mm=163.9"]),
+    ("clearance-500", "clearance 0.5 mm", &["bearing.inner_race_diameter_mm=163.5"]),
+    ("interference-10", "interference 10 µm", &["bearing.inner_race_diameter_mm=164.01"]),
+    ("interference-100", "interference 100 µm", &["bearing.inner_race_diameter_mm=164.1"]),
+    ("friction-0", "µ = 0", &["contact.friction=0.0", "contact.seat_friction=0.0"]),
+    ("friction-03", "µ = 0.3", &["contact.friction=0.3", "contact.seat_friction=0.3"]),
+    ("friction-1", "µ = 1", &["contact.friction=1.0", "contact.seat_friction=1.0"]),
+    ("clearance-500-sudden", "clearance 0.5 mm, load at once", &["bearing.inner_race_diameter_mm=163.5", "solver.start=sudden"]),
+    ("rpm-1", "1 rpm", &["operation.speed_rpm=1.0"]),
+    ("rpm-1-sudden", "1 rpm, load at once", &["operation.speed_rpm=1.0", "solver.start=sudden"]),
+    ("rpm-1e4", "10 000 rpm", &["operation.speed_rpm=1e4"]),
+    ("rpm-1e5", "100 000 rpm", &["operation.speed_rpm=1e5"]),
+    ("defect-deep", "defect as deep as a roller radius", &["defect.depth_mm=9.0"]),
+    ("defect-half", "defect half as deep as the ring", &["defect.depth_mm=5.0"]),
+    ("defect-none", "defect of no length", &["defect.length_mm=0.0"]),
+    ("defect-tiny", "defect of 0.1 mm", &["defect.length_mm=0.1"]),
+    ("defect-long", "defect as long as the load zone", &["defect.length_mm=120.0", "defect.depth_mm=0.2"]),
+    ("rollers-3", "3 rollers", &["bearing.rollers=3"]),
+    ("rollers-3-sudden", "3 rollers, load at once", &["bearing.rollers=3", "solver.start=sudden"]),
+    ("rollers-200", "200 rollers of 2.5 mm", &[
+        "bearing.rollers=200", "bearing.roller_diameter_mm=2.5", "bearing.inner_race_diameter_mm=194.96",
+        "cage=None", "mesh.roller_facets=24", "mesh.size_mm=1.0", "solver.duration_ms=0.1",
+    ]),
+    ("rollers-200-sudden", "200 rollers of 2.5 mm, load at once", &[
+        "bearing.rollers=200", "bearing.roller_diameter_mm=2.5", "bearing.inner_race_diameter_mm=194.96", "solver.start=sudden",
+        "cage=None", "mesh.roller_facets=24", "mesh.size_mm=1.0", "solver.duration_ms=0.3",
+    ]),
+    ("thin-sudden", "thickness 0.1 mm, load at once", &["bearing.thickness_mm=0.1", "solver.start=sudden"]),
+    ("rubber-sudden", "E = 1 MPa, load at once", &["material.youngs_modulus_gpa=0.001", "solver.start=sudden", "solver.duration_ms=20.0"]),
+    ("light-sudden", "ρ = 1 kg/m³, load at once", &["material.density_kg_m3=1.0", "solver.duration_ms=0.02", "solver.start=sudden"]),
+    ("thin", "thickness 0.1 mm", &["bearing.thickness_mm=0.1"]),
+    ("thick", "thickness 10 m", &["bearing.thickness_mm=10000.0"]),
+    ("rubber", "E = 1 MPa", &["material.youngs_modulus_gpa=0.001"]),
+    ("incompressible", "ν = 0.4999", &["material.poissons_ratio=0.4999", "solver.duration_ms=0.05"]),
+    ("nu-0", "ν = 0", &["material.poissons_ratio=0.0"]),
+    ("light", "ρ = 1 kg/m³", &["material.density_kg_m3=1.0", "solver.duration_ms=0.02"]),
+    ("undamped", "no damping at all", &["solver.mass_damping_per_s=0.0", "contact.damping_ratio=0.0"]),
+    ("collocated", "node-to-segment contact", &["contact.method=collocated"]),
+];
+
+pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> Result<Chapter> {
+    let mut cases = Vec::new();
+    for (name, done, set) in ROWS {
+        if !flags.wants(name) {
+            continue;
+        }
+        let mut variant = Variant::new(*name, SCENE, &[DURATION]);
+        set.iter().for_each(|s| variant = variant.clone().with(*s));
+        if let Err(error) = Scene::read_with(host.root().join(SCENE), &variant.set) {
+            let first = error.problems().first().map_or(String::new(), |p| {
+                format!("{} (allowed: {})", p.message, p.allowed).replace(" (allowed: )", "")
+            });
+            cases.push(Case { done: (*done).into(), energy: None, verdict: Verdict::Refused, seen: first });
+            continue;
+        }
+        let runs = runner.run(&[variant])?;
+        cases.extend(runs.iter().map(|run| judge(done, run)));
+    }
+    Ok(Chapter {
+        title: "Whole bearings",
+        words: "The quick scene (2 mm elements, 24 rollers) for 0.4 ms with one thing changed. *Carried* is the vertical force of \
+                all rollers over load and weight, on average.",
+        cases,
+        figures: Vec::new(),
+    })
+}
+
+fn judge(done: &str, run: &Finished) -> Case {
+    let Some(info) = &run.info else {
+        let why = run.summary.as_ref().err().cloned().unwrap_or_default();
+        // What was tried and found; the advice that follows is the same each time.
+        let why = why.split("; check that").next().unwrap_or(&why).to_owned();
+        return Case { done: done.to_owned(), energy: None, verdict: Verdict::Refused, seen: why };
+    };
+    let energy = Some(info.energy.max_relative_error);
+    if info.status == Status::Diverged {
+        let why = info.stop_reason.clone().unwrap_or_default();
+        return Case { done: done.to_owned(), energy, verdict: Verdict::Stopped, seen: why };
+    }
+    let carried = Run::read(&run.folder).ok().map(|r| support(&r));
+    let share = carried.map_or(f64::NAN, |n| n / info.expected_support_n);
+    // A force that is not carried, or too much of it, moves outer ring and adapter; a little of that is rattling.
+    let mass = (info.expected_support_n - run.scene.operation.load_n) / run.scene.operation.gravity_m_s2;
+    let time = info.steps as f64 * info.time_step_s;
+    let gained = (share - 1.0).abs() * info.expected_support_n * time / mass;
+    let right = (share > SUPPORT[0] && share < SUPPORT[1]) || gained < RATTLING;
+    let verdict = match (info.warnings.is_empty(), right) {
+        (false, _) => Verdict::Warned,
+        (true, true) => Verdict::Right,
+        (true, false) => Verdict::Silent,
+    };
+    let mut seen = format!("carried {share:.3}, {} steps of {:.3} ns", info.steps, 1e9 * info.time_step_s);
+    for warning in &info.warnings {
+        seen += &format!("; {warning}");
+    }
+    Case { done: done.to_owned(), energy, verdict, seen }
+}
+
+/// Mean vertical force of the rollers on the outer ring [N].
+fn support(run: &Run) -> f64 {
+    let mut sum = 0.0;
+    for i in 1..=run.scene.bearing.rollers {
+        sum -= run.trace.get(&format!("roller.{i}.outer_fy_n")).map_or(f64::NAN, |f| f.iter().sum());
+    }
+    sum / run.trace.len() as f64
+}

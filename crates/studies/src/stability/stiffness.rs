@@ -1,0 +1,159 @@
+//! Contact stiffness from soft to hard, and contrasts between bodies.
+
+use anyhow::Result;
+use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
+use stribeck_contact::Method;
+use stribeck_solver::{Elastic, Motion};
+
+use super::{Case, Chapter};
+use crate::rig::{Plan, Rig, penalty, rectangle, steel};
+
+/// Length of a bar [m] and its cells.
+const BAR: (f64, usize) = (0.02, 40);
+
+/// A collision of two bars and what came of it.
+pub(super) struct Collision {
+    pub(super) energy: f64,
+    pub(super) stop: Option<String>,
+    /// Mean velocities before and after [m/s].
+    pub(super) before: [f64; 2],
+    pub(super) after: [f64; 2],
+    pub(super) mass: [f64; 2],
+    /// Time in contact [s].
+    pub(super) time: f64,
+    pub(super) steps: u64,
+}
+
+impl Collision {
+    /// Drift of momentum over what was exchanged.
+    pub(super) fn momentum(&self) -> f64 {
+        let of = |v: [f64; 2]| self.mass[0] * v[0] + self.mass[1] * v[1];
+        let exchanged = self.mass[0] * (self.after[0] - self.before[0]).abs();
+        (of(self.after) - of(self.before)).abs() / exchanged.max(f64::MIN_POSITIVE)
+    }
+
+    /// Speed of parting over speed of approach.
+    pub(super) fn restitution(&self) -> f64 {
+        (self.after[1] - self.after[0]) / (self.before[0] - self.before[1])
+    }
+}
+
+/// Two bars with sides held meet at `speed` [m/s]. `place` is where, `unit` multiplies every length.
+pub(super) fn collide(
+    materials: [Elastic; 2],
+    scale: f64,
+    speed: f64,
+    method: Method,
+    place: f64,
+    unit: f64,
+) -> Result<Collision> {
+    let (length, cells) = (BAR.0 * unit, BAR.1);
+    let size = length / cells as f64;
+    let mut plan = Plan::default();
+    let block = |x: f64| rectangle([place + x, place], [length, 2.0 * size], [cells, 2]);
+    let a = plan.add(&block(-length)?);
+    let b = plan.add(&block(0.02 * size)?);
+    let softer = if materials[0].youngs_modulus() < materials[1].youngs_modulus() {
+        materials[0]
+    } else {
+        materials[1]
+    };
+    plan.touch((a, "right"), (b, "left"), penalty(&softer, size, scale)?, method);
+    let mut model = plan.model(materials[0])?;
+    model.materials = materials.to_vec();
+    model.motion.fill(Motion::HeldY);
+    let mut rig = plan.lay_out(&model)?;
+    rig.set_step(0.9)?;
+    rig.launch(a, [speed, 0.0]);
+    let before = [rig.velocity(a)[0], rig.velocity(b)[0]];
+    let mass = [0, 1].map(|i| rig.dynamics.rigid_motion(&rig.bodies[i]).mass);
+    // Until the slowest wave has gone to and fro and back, and a soft spring has swung.
+    let slowest = materials.iter().map(Elastic::dilatational_speed).fold(f64::INFINITY, f64::min);
+    let swing = 4.0 * length / slowest * (1.0 + (0.03 / scale).sqrt() * 2.0);
+    let swing = swing * if materials[0].density() == materials[1].density() { 1.0 } else { 3.0 };
+    let steps = ((swing + 0.02 * size / speed) / rig.dynamics.time_step()) as u64;
+    let (mut touched, dt) = (0_u64, rig.dynamics.time_step());
+    let stop = rig.run(steps, 5, |rig: &Rig, _| {
+        touched += 5 * u64::from(rig.contacts.resultants().any(|r| r.force != [0.0; 2]));
+    });
+    let after = [rig.velocity(a)[0], rig.velocity(b)[0]];
+    Ok(Collision { energy: rig.worst, stop, before, after, mass, time: touched as f64 * dt, steps })
+}
+
+pub(super) fn chapter() -> Result<Chapter> {
+    let mut cases = Vec::new();
+    let mut curves = [Vec::new(), Vec::new(), Vec::new()];
+    let scales = [1e-2, 1e-1, 1.0, 10.0, 100.0, 1e3, 1e4];
+    for scale in scales {
+        let c = collide([steel(); 2], scale, 1.0, Method::Integrated { points: 4 }, 0.0, 1.0)?;
+        let theory = 2.0 * BAR.0 / steel().dilatational_speed();
+        curves[0].push(scale.log10());
+        curves[1].push(c.energy.max(1e-16).log10());
+        curves[2].push((c.steps as f64).log10());
+        let right = c.momentum() < 1e-9 && (scale < 0.5 || (c.time / theory - 1.0).abs() < 0.05);
+        let seen = format!(
+            "in contact for {:.3} × 2L/c, restitution {:.4}, momentum kept to {:.0e}, {} steps",
+            c.time / theory,
+            c.restitution(),
+            c.momentum(),
+            c.steps
+        );
+        cases.push(Case::of(
+            format!("bar impact at 1 m/s, penalty × {scale:e}"),
+            c.energy,
+            c.stop,
+            right,
+            seen,
+        ));
+    }
+    for (name, second) in [
+        ("E contrast 10⁶", Elastic::new(208e3, 0.3, 7800.0)?),
+        ("E contrast 10⁻⁶", Elastic::new(208e15, 0.3, 7800.0)?),
+        ("ρ contrast 10⁶", Elastic::new(208e9, 0.3, 7.8e-3)?),
+        ("ρ contrast 10⁻⁶", Elastic::new(208e9, 0.3, 7.8e9)?),
+    ] {
+        // A thousandth of the slowest wave: strains of about that.
+        let speed = 1e-3 * second.dilatational_speed().min(steel().dilatational_speed());
+        let c = collide([steel(), second], 1.0, speed, Method::Integrated { points: 4 }, 0.0, 1.0)?;
+        let right = c.momentum() < 1e-6 && (0.0..=1.001).contains(&c.restitution());
+        let seen = format!(
+            "restitution {:.4}, momentum kept to {:.0e}, {} steps",
+            c.restitution(),
+            c.momentum(),
+            c.steps
+        );
+        cases.push(Case::of(format!("collision of two bars, {name}"), c.energy, c.stop, right, seen));
+    }
+    // A contact 10⁶ times as stiff as one body's cells, as that of a hard body on a soft one would be.
+    let soft = Elastic::new(208e3, 0.3, 7800.0)?;
+    let c = collide([steel(), soft], 1e6, 1e-3 * soft.dilatational_speed(), Method::Collocated, 0.0, 1.0)?;
+    let right = c.momentum() < 1e-6 && (0.0..=1.001).contains(&c.restitution());
+    let seen = format!(
+        "restitution {:.4}, momentum kept to {:.0e}, {} steps",
+        c.restitution(),
+        c.momentum(),
+        c.steps
+    );
+    let done = "hard bar on a soft one (E 10⁶ : 1), contact as stiff as the hard one";
+    cases.push(Case::of(done, c.energy, c.stop, right, seen));
+
+    let [scale, energy, steps] = curves;
+    let figure = Figure::new(
+        "penalty",
+        "Bar impact: what a stiffer contact costs and gives",
+        Axis::plain("log₁₀ of the penalty scale", ""),
+        Axis::plain("log₁₀", ""),
+    )
+    .with(Series::listed("energy imbalance", Colour::Blue, scale.clone(), energy))
+    .with(Series::listed("steps", Colour::Orange, scale, steps))
+    .caption(
+        "The time step follows the contact, so that a hundred times the stiffness costs ten times the steps.",
+    );
+    Ok(Chapter {
+        title: "Contact stiffness and contrasts",
+        words: "Two bars with held sides meet at 1 m/s (contrasts: at a thousandth of the slower wave). Two equal bars stay in \
+                contact for 2L/c and exchange their velocities; soft contacts take longer by their own swing.",
+        cases,
+        figures: vec![figure],
+    })
+}

@@ -1,0 +1,258 @@
+//! Contact: bars that meet, a Hertz contact, a disc that comes to roll, a block that slides to a stop.
+
+use anyhow::{Context, Result};
+use stribeck_contact::{Law, Method};
+use stribeck_mesh::{Disc, Part};
+use stribeck_solver::{Behaviour, Force, Motion, state::NodeForces};
+
+use super::{Curve, Point, Problem, timed};
+use crate::Host;
+use crate::rig::{Plan, Rig, THICKNESS, penalty, rectangle, steel};
+
+const G: f64 = 9.81;
+
+const POINTS: Method = Method::Integrated { points: 4 };
+
+/// Two equal bars; error of the velocities after the impact over the velocity of approach.
+fn bars(cells: usize, method: Method, scale: f64, factor: f64) -> Result<(f64, f64)> {
+    let (length, speed) = (0.05, 1.0);
+    let size = length / cells as f64;
+    let mut plan = Plan::default();
+    let block = |x: f64| rectangle([x, 0.0], [length, 2.0 * size], [cells, 2]);
+    let a = plan.add(&block(-length)?);
+    let b = plan.add(&block(1e-9)?);
+    plan.touch((a, "right"), (b, "left"), penalty(&steel(), size, scale)?, method);
+    let mut model = plan.model(steel())?;
+    model.motion.fill(Motion::HeldY);
+    let mut rig = plan.lay_out(&model)?;
+    rig.set_step(factor)?;
+    rig.launch(a, [speed, 0.0]);
+    rig.launch(b, [-speed, 0.0]);
+    let steps = (3.0 * length / steel().dilatational_speed() / rig.dynamics.time_step()) as u64;
+    let (mut first, mut last) = (None, 0);
+    for n in 0..steps {
+        rig.step();
+        if rig.contacts.resultants().any(|r| r.force != [0.0; 2]) {
+            first = first.or(Some(n));
+            last = n;
+        }
+    }
+    let touched = (last - first.context("the bars did not meet")?) as f64 * rig.dynamics.time_step();
+    let work = steps as f64 * model.mesh.elements() as f64;
+    Ok((work, (touched * steel().dilatational_speed() / (2.0 * length) - 1.0).abs()))
+}
+
+pub(super) fn bar_impact(host: &dyn Host) -> Result<Problem> {
+    let mut curves = Vec::new();
+    let cells = [25, 50, 100, 200, 400];
+    let mut curve = |name: &str, method, scale, factor| -> Result<()> {
+        let points = cells.iter().map(|&n| timed(host, || bars(n, method, scale, factor), 0.05 / n as f64));
+        curves.push(Curve {
+            name: name.into(),
+            refined: "element size",
+            points: points.collect::<Result<_>>()?,
+        });
+        Ok(())
+    };
+    curve("integrated, 4 points", POINTS, 1.0, 0.9)?;
+    curve("collocated", Method::Collocated, 1.0, 0.9)?;
+    curve("integrated, Δt factor 0.4", POINTS, 1.0, 0.4)?;
+    curve("integrated, penalty × 0.1", POINTS, 0.1, 0.9)?;
+    curve("integrated, penalty × 4", POINTS, 4.0, 0.9)?;
+    Ok(Problem {
+        id: "impact",
+        title: "Impact of two bars",
+        words: "Two equal bars with held sides meet at 2 m/s and stay in contact for 2L/c (Johnson, *Contact Mechanics*, 1985, §11.1). \
+                Error of the contact time: the penalty spring adds its own swing, and the front spreads with the third root of the way \
+                in cells, so that the order is below one."
+            .into(),
+        work: "element evaluations",
+        curves,
+    })
+}
+
+/// Radius of the curved block, half-width that the load is chosen for, height of each block [m].
+const HERTZ: [f64; 3] = [0.2, 1.2e-3, 0.02];
+
+/// A block of `columns` × `columns`/2 cells, five times finer at the middle of the side in contact.
+fn graded(columns: usize, contact_below: bool, uniform: bool) -> Result<Part> {
+    let [radius, _, height] = HERTZ;
+    let mut part = rectangle([-1.0, 0.0], [2.0, 1.0], [columns, columns / 2])?;
+    let grade = |s: f64| if uniform { s } else { 0.2 * s + 0.8 * s * s * s };
+    for n in 0..part.x.len() {
+        let x = height * grade(part.x[n]);
+        let depth = height * grade(if contact_below { part.y[n] } else { 1.0 - part.y[n] });
+        let arc = x * x / (2.0 * radius) * (1.0 - depth / height);
+        (part.x[n], part.y[n]) = (x, if contact_below { depth + arc } else { -depth });
+    }
+    Ok(part)
+}
+
+fn pressed(columns: usize, method: Method, scale: f64, uniform: bool) -> Result<(f64, f64)> {
+    let [radius, half_width, height] = HERTZ;
+    let modulus = 0.5 * steel().plane_strain_modulus();
+    let line_load = std::f64::consts::PI * modulus * half_width * half_width / (4.0 * radius);
+    let cell = if uniform { 1.0 } else { 0.2 } * 2.0 * height / columns as f64;
+    let mut plan = Plan::default();
+    let lower = plan.add(&graded(columns, false, uniform)?);
+    let upper = plan.add(&graded(columns, true, uniform)?);
+    let law = Law::penalty(scale * modulus / cell)?;
+    plan.touch((upper, "bottom"), (lower, "top"), law, method);
+    let mut model = plan.model(steel())?;
+    let row = columns + 1;
+    model.motion[..row].fill(Motion::Held);
+    let first = model.mesh.bodies[upper].nodes.start;
+    for n in (first + columns / 2..model.mesh.x.len()).step_by(row) {
+        model.motion[n] = Motion::HeldX;
+    }
+    let mut rig = plan.lay_out(&model)?;
+    let top: Vec<u32> = ((model.mesh.x.len() - row) as u32..model.mesh.x.len() as u32).collect();
+    rig.push(&top, [0.0, -line_load * THICKNESS]);
+    rig.settle(1e-5 * line_load * THICKNESS)?;
+    let n = rig.dynamics.state.x.len();
+    let mut force = NodeForces::zeros(n);
+    rig.contacts.accumulate(rig.dynamics.moment(), &mut force);
+    let (mut sum, mut moment) = (0.0, 0.0);
+    for &s in &rig.bodies[lower] {
+        let (f, x) = (force.fy[s as usize], rig.dynamics.state.x[s as usize]);
+        sum += f;
+        moment += f * x * x;
+    }
+    Ok((model.mesh.elements() as f64, (2.0 * (moment / sum).sqrt() / half_width - 1.0).abs()))
+}
+
+pub(super) fn hertz(host: &dyn Host) -> Result<Problem> {
+    let mut curves = Vec::new();
+    let mut curve = |name: &str, method, scale, uniform, columns: &[usize]| -> Result<()> {
+        let mut points: Vec<Point> = Vec::new();
+        for &n in columns {
+            // A choice that finds no equilibrium has no point there.
+            match timed(host, || pressed(n, method, scale, uniform), 2.0 * HERTZ[2] / n as f64) {
+                Ok(point) => points.push(point),
+                Err(error) => host.say(&format!("{name}, {n} columns: {error:#}")),
+            }
+        }
+        curves.push(Curve { name: name.into(), refined: "element size", points });
+        Ok(())
+    };
+    let columns = [20, 40, 80];
+    curve("integrated, 4 points, penalty × 20", POINTS, 20.0, false, &columns)?;
+    curve("integrated, 1 point, penalty × 20", Method::Integrated { points: 1 }, 20.0, false, &columns)?;
+    curve("collocated, penalty × 20", Method::Collocated, 20.0, false, &columns)?;
+    curve("integrated, 4 points, penalty × 1", POINTS, 1.0, false, &columns)?;
+    curve("uniform mesh, penalty × 20", POINTS, 20.0, true, &[40, 80, 120])?;
+    Ok(Problem {
+        id: "hertz",
+        title: "Hertz line contact",
+        words: "A curved block (R = 0.2 m) is pressed on a flat one until the half-width is b = √(4wR/(πE*)) = 1.2 mm (Johnson 1985, §4.2); \
+                b from the second moment of the contact forces. Static; graded meshes are five times finer at the contact."
+            .into(),
+        work: "elements",
+        curves,
+    })
+}
+
+/// A rigid body on a fixed floor.
+fn on_floor(part: &Part, surface: &str, law: Law, method: Method) -> Result<(Rig, usize)> {
+    let mut plan = Plan::default();
+    let body = plan.add(part);
+    let floor = plan.add(&rectangle([-0.013, -1e-3], [0.05, 1e-3], [50, 1])?);
+    plan.touch((body, surface), (floor, "top"), law, method);
+    let mut model = plan.model(steel())?;
+    model.behaviour[body] = Behaviour::Rigid;
+    model.motion[model.mesh.bodies[floor].nodes.clone()].fill(Motion::Held);
+    model.gravity = [0.0, -G];
+    Ok((plan.lay_out(&model)?, body))
+}
+
+/// A disc is set down sliding; error of the speed at which it rolls in the end.
+fn roll(facets: usize, method: Method, friction: f64) -> Result<(f64, f64)> {
+    let (radius, speed) = (0.02, 0.15);
+    let law = Law::penalty(1e13)?.with_friction(friction)?.with_damping(0.3, 10.0)?;
+    let part = Disc { radius, facets, size: 3e-3, rotation: 0.0 }.part()?.translated(0.0, radius);
+    let (mut rig, body) = on_floor(&part, "rim", law, method)?;
+    rig.dynamics.set_time_step(1e-6)?;
+    rig.dynamics.launch_rigid(0, [speed, 0.0], 0.0);
+    let place = |rig: &Rig| rig.dynamics.rigid[0].centre[0];
+    (0..35_000).for_each(|_| rig.step());
+    let (from, t) = (place(&rig), rig.dynamics.state.time);
+    (0..20_000).for_each(|_| rig.step());
+    let rolled = (place(&rig) - from) / (rig.dynamics.state.time - t);
+    // A step costs its contact points; nothing else is evaluated for a rigid body.
+    let points = if let Method::Integrated { points } = method { points } else { 1 };
+    let _ = body;
+    Ok((55_000.0 * (facets * points) as f64, (rolled / (2.0 / 3.0 * speed) - 1.0).abs()))
+}
+
+pub(super) fn rolling(host: &dyn Host) -> Result<Problem> {
+    let mut curves = Vec::new();
+    for (name, method, friction) in [
+        ("integrated, 4 points", POINTS, 0.3),
+        ("integrated, 1 point", Method::Integrated { points: 1 }, 0.3),
+        ("collocated", Method::Collocated, 0.3),
+    ] {
+        let points = [32, 64, 128, 256].into_iter().map(|facets| {
+            timed(host, || roll(facets, method, friction), std::f64::consts::TAU * 0.02 / facets as f64)
+        });
+        curves.push(Curve {
+            name: name.into(),
+            refined: "facet length",
+            points: points.collect::<Result<_>>()?,
+        });
+    }
+    Ok(Problem {
+        id: "rolling",
+        title: "From sliding to rolling",
+        words: "A rigid disc of 40 mm is set down at 0.15 m/s without spin and ends rolling at two thirds of that, whatever µ is: about the \
+                contact the angular momentum is kept. A polygon rolls over its corners, which lift it and slow it down."
+            .into(),
+        work: "contact points × steps",
+        curves,
+    })
+}
+
+/// A block slides to a stop; error of its way v²/(2µg).
+fn stop(stiffness: f64, dt: f64, method: Method) -> Result<(f64, f64)> {
+    let (speed, friction) = (0.05, 0.2);
+    let law = Law::penalty(stiffness)?.with_friction(friction)?.with_damping(0.3, 20.0)?;
+    let part = rectangle([0.0; 2], [0.01, 5e-3], [10, 5])?;
+    let (mut rig, _) = on_floor(&part, "bottom", law, method)?;
+    rig.dynamics.set_time_step(dt)?;
+    // It rests on the floor first.
+    let steps = (0.005 / dt) as u64;
+    (0..steps).for_each(|_| rig.step());
+    let velocity = rig.dynamics.rigid[0].velocity;
+    rig.dynamics.launch_rigid(0, [speed, velocity[1]], rig.dynamics.rigid[0].spin);
+    let from = rig.dynamics.rigid[0].centre[0];
+    let time = 1.3 * speed / (friction * G);
+    let sliding = (time / dt) as u64;
+    (0..sliding).for_each(|_| rig.step());
+    let way = rig.dynamics.rigid[0].centre[0] - from;
+    Ok(((steps + sliding) as f64, (way * 2.0 * friction * G / (speed * speed) - 1.0).abs()))
+}
+
+pub(super) fn sliding(host: &dyn Host) -> Result<Problem> {
+    let mut curves = Vec::new();
+    for (name, stiffness, method) in [
+        ("integrated, 10¹² Pa/m", 1e12, POINTS),
+        ("collocated, 10¹² Pa/m", 1e12, Method::Collocated),
+        ("integrated, 10¹¹ Pa/m", 1e11, POINTS),
+    ] {
+        let points =
+            [4e-6, 2e-6, 1e-6, 0.5e-6].into_iter().map(|dt| timed(host, || stop(stiffness, dt, method), dt));
+        curves.push(Curve {
+            name: name.into(),
+            refined: "time step",
+            points: points.collect::<Result<_>>()?,
+        });
+    }
+    Ok(Problem {
+        id: "sliding",
+        title: "A block slides to a stop",
+        words: "A rigid block starts at 50 mm/s on a floor with µ = 0.2 and stops after v²/(2µg) = 0.64 mm. Coulomb's law holds to \
+                rounding; what is left is the swing of the contact spring."
+            .into(),
+        work: "steps",
+        curves,
+    })
+}

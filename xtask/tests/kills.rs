@@ -1,0 +1,20 @@
+//! Studies as commands.
+
+#![cfg(unix)]
+
+use std::process::Command;
+
+#[test]
+fn invariant_random_kills_leave_runs_that_end_with_the_same_bytes() {
+    // Five here; `cargo xtask study kills` does a hundred.
+    let output = Command::new(env!("CARGO_BIN_EXE_xtask"))
+        .args(["study", "kills", "--kills", "5", "--duration-ms", "0.6", "--no-page"])
+        .output()
+        .expect("it starts");
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && said.contains("5 kills"),
+        "{said}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
