@@ -89,31 +89,32 @@
 // Units stand in brackets, as in "gap [m]", and are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
-mod band;
+mod broad_phase;
+mod chord;
 mod contacts;
 mod error;
-mod evaluation;
+mod facet;
+mod foot;
+mod kernel;
 mod law;
-mod meeting;
-mod nearest;
+mod memory;
+mod narrow_phase;
 mod pass;
-mod patch_row;
+mod pass_law;
+mod patch;
+mod plane;
 mod points;
-mod projection;
-mod row;
-mod search;
-mod shape;
+mod polyline;
+mod polynomial;
 mod smooth;
 mod spline;
-mod spline_row;
+mod splined;
 mod surface;
-mod touch;
-mod touch_row;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
 pub use law::Law;
+pub use narrow_phase::{Projection, project};
 pub use points::Method;
-pub use projection::{Projection, project};
 pub use smooth::Smoothing;
 pub use surface::Surface;
