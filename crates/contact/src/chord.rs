@@ -3,8 +3,8 @@
 use stribeck_simd::lanes::Number;
 
 use crate::{
-    facet::{Closest, Facet, Push},
-    foot::{FacetPoint, Foot},
+    facet::{Closest, Facet},
+    foot::{FacetPoint, Foot, Push},
     plane::{dot, magnitude, minus, unit_normal},
     polynomial::Polynomial,
     smooth::{Rise, height, slope},

@@ -13,7 +13,7 @@ use stribeck_solver::{
 use crate::{
     broad_phase::Tree,
     error::Error,
-    facet::Push,
+    foot::Push,
     kernel::evaluate::Sum,
     law::Law,
     memory::Memory,

@@ -3,13 +3,10 @@
 use stribeck_solver::state::Moment;
 
 use crate::{
-    foot::{FacetPoint, Foot, Sliding},
+    foot::{FacetPoint, Foot, Push, Sliding},
     polynomial::Coefficients,
     surface::Surface,
 };
-
-/// A force on a node: slot, x [N], y [N].
-pub(crate) type Push = (u32, [f64; 2]);
 
 /// A facet in present positions.
 pub(crate) trait Facet: Copy {

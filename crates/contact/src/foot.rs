@@ -12,6 +12,9 @@ use crate::{
     polynomial::Coefficients,
 };
 
+/// A force on a node: slot, x [N], y [N].
+pub(crate) type Push = (u32, [f64; 2]);
+
 /// A point of a facet in present positions.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FacetPoint<N> {

@@ -6,7 +6,7 @@
 //! that turns without a jump at joints, curves above the chords and splines, and no descent into a tree for a facet that is
 //! already known. On plain polylines both must agree: a test holds them together (`tests/projection.rs`).
 
-use crate::{chord::ChordFacet, facet::Facet, foot::Foot, patch::SplineFacet, surface::Surface};
+use crate::{chord::ChordFacet, facet::Facet, foot::Foot, spline_facet::SplineFacet, surface::Surface};
 
 /// Where a point projects.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -9,7 +9,8 @@ use stribeck_solver::{force::RankOne, state::Moment};
 
 use crate::{
     chord::ChordFacet,
-    facet::{Facet, MovingFacet, Push},
+    facet::{Facet, MovingFacet},
+    foot::Push,
     kernel::{
         evaluate::{Evaluation, Sum},
         nearest_chord::NearestChord,
@@ -18,8 +19,8 @@ use crate::{
     memory::{Arrangement, Candidate, Histories, Memory, NEVER},
     narrow_phase::find_foot,
     pass_law::PassLaw,
-    patch::SplineFacet,
     points::{FEW_POINTS, Points},
+    spline_facet::SplineFacet,
     surface::Surface,
 };
 

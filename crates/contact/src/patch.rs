@@ -1,14 +1,11 @@
-//! Facets of splines in present positions: points on them and feet on them, over any [`Number`]; a single one as a
-//! [`Facet`].
+//! The curve of a spline's facet in present positions: points on it and feet on it, over any [`Number`].
 
 use stribeck_simd::lanes::Number;
 
 use crate::{
-    facet::{Closest, Facet, Push},
     foot::{FacetPoint, Foot},
     plane::{choose, choose_each, dot, magnitude, minus, unit_normal},
     polynomial::{Coefficients, Polynomial, cubic, cubic_slope},
-    surface::Surface,
 };
 
 /// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as that.
@@ -17,13 +14,10 @@ pub(crate) const JOINT: f64 = 1e-9;
 /// A foot is found when less than this part of a facet is left to it.
 pub(crate) const FOUND: f64 = 1e-12;
 
-/// Corrections of single feet at most: far from the facet, where the walk goes on, they are given up.
-const MOST_CORRECTIONS: usize = 6;
-
 /// A facet's curve: a cubic in the plane and a cubic height above it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Patch<N> {
-    curve: Polynomial<N, 4>,
+    pub(crate) curve: Polynomial<N, 4>,
     height: [N; 4],
     /// Chord over its squared length [1/m].
     chord: [N; 2],
@@ -156,66 +150,120 @@ pub(crate) fn within_patch<N: Number>(place: N, flag: N) -> N {
     place.choose_below(flag.constant(1.0) + joint, above, zero)
 }
 
-/// A facet of a spline.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SplineFacet {
-    number: usize,
-    pub(crate) patch: Patch<f64>,
-}
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, Simd, WithSimd};
+    use stribeck_simd::lanes::{LANES, Vector};
 
-impl Facet for SplineFacet {
-    type Coefficients = Polynomial<f64, 4>;
+    use super::*;
 
-    #[inline(always)]
-    fn new(surface: &Surface, x: &[f64], y: &[f64], number: usize) -> Self {
-        let spline = surface.spline.as_ref().expect("only surfaces with a spline are seen as patches");
-        Self { number, patch: spline.patch(x, y, number) }
+    const CORRECTIONS: usize = 6;
+
+    /// Curves that leave their chord by up to a twentieth, with heights of a hundredth; points about the facet.
+    fn cases() -> Vec<(Patch<f64>, [f64; 2])> {
+        let mut seed = 1882_u64;
+        let mut random = |scale: f64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            scale * ((seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+        };
+        (0..25 * LANES)
+            .map(|_| {
+                let curve = [
+                    [random(1.0), random(1.0)],
+                    [1.0 + random(0.05), random(0.5)],
+                    [random(0.05), random(0.05)],
+                    [random(0.02), random(0.02)],
+                ];
+                let patch = Patch::new(Polynomial(curve), [(); 4].map(|()| random(0.01)));
+                let at = patch.point(0.5 + random(0.6), random(0.1)).at;
+                (patch, at)
+            })
+            .collect()
     }
 
-    #[inline(always)]
-    fn number(&self) -> usize {
-        self.number
+    /// Value, normal and distance along it of a curve's point, power by power.
+    fn plain(patch: &Patch<f64>, s: f64, p: [f64; 2]) -> ([f64; 2], f64) {
+        let Polynomial(c) = patch.curve;
+        let sum = |weights: [f64; 4], k: usize| (0..4).map(|i| weights[i] * c[i][k]).sum::<f64>();
+        let at = [0, 1].map(|k| sum([1.0, s, s.powi(2), s.powi(3)], k));
+        let t = [0, 1].map(|k| sum([0.0, 1.0, 2.0 * s, 3.0 * s.powi(2)], k));
+        let length = t[0].hypot(t[1]);
+        let r = [p[0] - at[0], p[1] - at[1]];
+        // How far along the curve the point lies, and how far to the right of it.
+        ([(r[0] * t[0] + r[1] * t[1]) / length, (r[0] * t[1] - r[1] * t[0]) / length], length)
     }
 
-    #[inline(always)]
-    fn point(&self, place: f64, height: f64) -> FacetPoint<f64> {
-        self.patch.point(place, height)
+    /// The foot by bisection, and the gap there: distance along the normal, less the height.
+    fn bisected(patch: &Patch<f64>, p: [f64; 2]) -> [f64; 2] {
+        let (mut low, mut high) = (-2.0, 3.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if plain(patch, middle, p).0[0] > 0.0 { low = middle } else { high = middle }
+        }
+        let height: f64 = (0..4).map(|k| patch.height[k] * low.powi(k as i32)).sum();
+        [low, plain(patch, low, p).0[1] - height]
     }
 
-    #[inline(always)]
-    fn foot(&self, p: [f64; 2]) -> Foot<f64> {
-        self.patch.foot(p, 1.0, MOST_CORRECTIONS).0
-    }
-
-    fn closest(&self, p: [f64; 2]) -> Closest {
-        let foot = self.foot(p);
-        let inside = (0.0..=1.0).contains(&foot.place);
-        let end = self.patch.curve.value(foot.place.clamp(0.0, 1.0));
-        let distance = if inside { foot.gap.abs() } else { (p[0] - end[0]).hypot(p[1] - end[1]) };
-        Closest { foot, distance, inside }
-    }
-
-    #[inline(always)]
-    fn holds(&self, foot: &Foot<f64>) -> bool {
-        within_patch(foot.place, 1.0) > 0.0
-    }
-
-    fn is_past(&self, foot: &Foot<f64>, _other: &Self, forward: bool, _p: [f64; 2]) -> bool {
-        if forward { foot.place > 1.0 } else { foot.place < 0.0 }
-    }
-
-    #[inline(always)]
-    fn gather(&self, surface: &Surface, x: &[f64], y: &[f64]) -> Polynomial<f64, 4> {
-        match &surface.spline {
-            Some(spline) => spline.gather(x, y, self.number),
-            None => Polynomial::zero(0.0),
+    fn check(what: &str, (patch, p): &(Patch<f64>, [f64; 2]), found: [f64; 4]) {
+        // What corrections leave, and roundings of places of order one; the gradient has a difference of 1e-6.
+        const ROUNDING: f64 = 1e-11;
+        const DIFFERENCE: f64 = 1e-8;
+        let [place, gap] = bisected(patch, *p);
+        assert!((found[0] - place).abs() < ROUNDING, "{what}: foot at {}, not {place}", found[0]);
+        assert!((found[1] - gap).abs() < ROUNDING, "{what}: gap {}, not {gap}", found[1]);
+        let h = 1e-6;
+        for k in 0..2 {
+            let moved = |by: f64| {
+                let mut p = *p;
+                p[k] += by;
+                bisected(patch, p)[1]
+            };
+            let gradient = (moved(h) - moved(-h)) / (2.0 * h);
+            assert!(
+                (found[2 + k] - gradient).abs() < DIFFERENCE,
+                "{what}: normal {found:?}, gradient {gradient}"
+            );
         }
     }
 
-    #[inline(always)]
-    fn scatter(&self, surface: &Surface, forces: &Polynomial<f64, 4>, push: &mut Vec<Push>) {
-        if let Some(spline) = &surface.spline {
-            spline.scatter(self.number, forces, push);
+    struct InLanes;
+
+    impl WithSimd for InLanes {
+        type Output = ();
+
+        fn with_simd<S: Simd>(self, simd: S) {
+            let len = Vector::<S>::LEN;
+            let zero = Vector::all(simd, 0.0);
+            for group in cases().chunks_exact(len) {
+                // Each lane its own facet, chosen one after the other.
+                let mut patch = group[0].0.spread(zero);
+                for (l, (own, _)) in group.iter().enumerate() {
+                    patch = Patch::chosen(Vector::ones(simd, 1 << l), &own.spread(zero), &patch);
+                }
+                let [x, y] = [0, 1].map(|k| group.iter().map(|(_, p)| p[k]).collect::<Vec<f64>>());
+                let p = [Vector::load(simd, &x, 0), Vector::load(simd, &y, 0)];
+                let (foot, rest) = patch.foot(p, Vector::all(simd, 1.0), CORRECTIONS);
+                let mut found = [[0.0; LANES]; 5];
+                let numbers = [foot.place, foot.gap, foot.normal[0], foot.normal[1], rest];
+                for (vector, numbers) in numbers.into_iter().zip(&mut found) {
+                    vector.store(numbers, 0);
+                }
+                for (l, case) in group.iter().enumerate() {
+                    let [place, gap, nx, ny, rest] = found.map(|numbers| numbers[l]);
+                    assert!(rest < FOUND, "lane {l}: {rest} left");
+                    check(&format!("lane {l} of {len}"), case, [place, gap, nx, ny]);
+                }
+            }
         }
+    }
+
+    #[test]
+    fn invariant_foot_is_where_bisection_finds_it_at_single_points_and_in_lanes() {
+        for case in cases() {
+            let (foot, rest) = case.0.foot(case.1, 1.0, CORRECTIONS);
+            assert!(rest < FOUND, "{rest} left");
+            check("single point", &case, [foot.place, foot.gap, foot.normal[0], foot.normal[1]]);
+        }
+        Arch::new().dispatch(InLanes);
     }
 }

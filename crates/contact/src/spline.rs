@@ -6,7 +6,7 @@
 //! its mirror images through the corner.
 
 use crate::{
-    facet::Push,
+    foot::Push,
     patch::Patch,
     polynomial::{Polynomial, cubic},
 };

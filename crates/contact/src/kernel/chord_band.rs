@@ -12,7 +12,7 @@ use super::{
     law::{LawKernel, Totals},
 };
 use crate::{
-    facet::Push,
+    foot::Push,
     memory::{Candidate, Histories},
     plane::choose,
     points::{FEW_POINTS, Points},

@@ -11,7 +11,7 @@ use super::{
     law::{LawKernel, Totals},
     row::{Outcome, Row},
 };
-use crate::{facet::Push, plane::choose};
+use crate::{foot::Push, plane::choose};
 
 impl Row<'_> {
     /// Chords against chords: evaluates the points that certainly touch and pushes their forces, those that certainly do not

@@ -13,11 +13,12 @@ use super::{
 };
 use crate::{
     chord::ChordFacet,
-    facet::{Facet, MovingFacet, Push},
+    facet::{Facet, MovingFacet},
+    foot::Push,
     memory::{Arrangement, Candidate, Histories, Memory},
     pass_law::{PACE_KEPT, PassLaw},
-    patch::SplineFacet,
     points::{FEW_POINTS, Points},
+    spline_facet::SplineFacet,
     surface::Surface,
 };
 
@@ -298,119 +299,4 @@ impl<S: Facet, P: Facet> Facets<'_, S, P> {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::{cell::Cell, f64::consts::TAU};
-
-    use pulp::Scalar;
-    use stribeck_solver::{Force, state::NodeForces};
-
-    use super::*;
-    use crate::{Contacts, Law, Method, PairSpec, Sides, Surface};
-
-    thread_local! {
-        /// Lanes that evaluations on this thread use; `None` for the widest.
-        pub(super) static LANES_ASKED: Cell<Option<usize>> = const { Cell::new(None) };
-    }
-
-    pub(super) fn in_lanes(evaluation: Evaluation<'_>, lanes: usize) -> Sum {
-        #[cfg(target_arch = "x86_64")]
-        match (lanes, pulp::x86::V3::try_new(), pulp::x86::V4::try_new()) {
-            (4, Some(avx2), _) => return Simd::vectorize(avx2, evaluation),
-            (8, _, Some(avx512)) => return Simd::vectorize(avx512, evaluation),
-            _ => {}
-        }
-        evaluation.with_simd(Scalar)
-    }
-
-    /// A polygon that turns and bounces in an open trough of a slightly larger radius, in slots of either order.
-    struct Trough {
-        wheel: Vec<u32>,
-        trough: Vec<u32>,
-    }
-
-    impl Trough {
-        fn new(corners: u32, vertices: u32, backwards: bool) -> Self {
-            let last = corners + vertices - 1;
-            let slot = |n: u32| if backwards { last - n } else { n };
-            Self {
-                wheel: (0..corners).map(slot).collect(),
-                trough: (corners..corners + vertices).map(slot).collect(),
-            }
-        }
-
-        /// Positions at a time [s].
-        fn at(&self, t: f64) -> [Vec<f64>; 2] {
-            let [mut x, mut y] = [(); 2].map(|()| vec![0.0; self.wheel.len() + self.trough.len()]);
-            for (k, &slot) in self.wheel.iter().enumerate() {
-                let (s, c) = (TAU * k as f64 / self.wheel.len() as f64 + 1.3 * t).sin_cos();
-                x[slot as usize] = c + 0.02 * (5.0 * t).sin();
-                y[slot as usize] = s - 0.055 + 0.02 * (31.0 * t).sin();
-            }
-            for (k, &slot) in self.trough.iter().enumerate() {
-                // The solid lies on the left of who walks along.
-                let (s, c) = (-0.2 - 2.7 * k as f64 / (self.trough.len() - 1) as f64).sin_cos();
-                (x[slot as usize], y[slot as usize]) = (1.05 * c, 1.05 * s);
-            }
-            [x, y]
-        }
-
-        fn contacts(&self, points: usize) -> Contacts {
-            let law = Law::penalty(1e6).and_then(|law| law.with_friction(0.2));
-            let law = law.and_then(|law| law.with_damping(0.1, 1.0)).expect("a possible law");
-            let [x, y] = self.at(0.0);
-            let surface =
-                |slots: &[u32], closed| Surface::new("", slots.to_vec(), closed, &x, &y).expect("a polyline");
-            let surfaces = vec![surface(&self.wheel, true), surface(&self.trough, false)];
-            let method = Method::Integrated { points };
-            let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };
-            Contacts::new(surfaces, &[pair], 0.02, &x, &y).expect("a possible pair")
-        }
-    }
-
-    #[test]
-    fn invariant_points_act_alike_in_lanes_and_one_by_one() {
-        let (dt, steps) = (2e-4, 600);
-        for (corners, vertices, backwards) in [(40, 23, false), (37, 30, true), (12, 40, false)] {
-            let scene = Trough::new(corners, vertices, backwards);
-            for points in [1, 2, 3, 4, 7] {
-                let mut singly = scene.contacts(points);
-                singly.set_together(false);
-                let mut in_lanes = [1, 4, 8].map(|lanes| (lanes, scene.contacts(points)));
-                let (mut largest, mut touching) = (0.0_f64, 0);
-                for step in 1..=steps {
-                    let time = step as f64 * dt;
-                    let ([x, y], [x0, y0]) = (scene.at(time), scene.at(time - dt));
-                    let rate = |now: &[f64], was: &[f64]| -> Vec<f64> {
-                        now.iter().zip(was).map(|(a, b)| (a - b) / dt).collect()
-                    };
-                    let (vx, vy) = (rate(&x, &x0), rate(&y, &y0));
-                    let at = Moment { step, time, dt, x: &x, y: &y, vx: &vx, vy: &vy };
-                    let forces = |contacts: &mut Contacts| {
-                        let mut forces = NodeForces::zeros(x.len());
-                        contacts.accumulate(at, &mut forces);
-                        forces.fx.iter().chain(&*forces.fy).copied().collect::<Vec<f64>>()
-                    };
-                    let expected = forces(&mut singly);
-                    let now = expected.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
-                    largest = largest.max(now);
-                    touching += usize::from(now > 0.0);
-                    for (lanes, contacts) in &mut in_lanes {
-                        LANES_ASKED.set(Some(*lanes));
-                        let found = forces(contacts);
-                        LANES_ASKED.set(None);
-                        // Sums over hundreds of points, of gaps that are a thousandth of positions.
-                        let off = found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
-                        assert!(
-                            off <= 1e-9 * largest,
-                            "{lanes} lanes, {points} points, step {step}: off by {off} N"
-                        );
-                    }
-                }
-                assert!(
-                    touching > steps as usize / 4 && touching < steps as usize,
-                    "{touching} steps in contact"
-                );
-            }
-        }
-    }
-}
+mod tests;

@@ -219,3 +219,154 @@ impl<N: Number> LawKernel<N> {
         totals.friction = totals.friction + half * kt * slip * (sliding.along * self.dt + slip);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use pulp::{Arch, Scalar, Simd, WithSimd};
+    use stribeck_simd::lanes::{LANES, Vector};
+
+    use super::*;
+    use crate::law::Law;
+
+    const DT: f64 = 1e-4;
+    const THICKNESS: f64 = 0.02;
+
+    /// A point of surface: gap, weight, opening, along, slip and damping force of the step before.
+    type State = [f64; 6];
+
+    /// What acts and what is remembered: pressure, shear, slip, damping force; stored energy, heat of friction and of damping.
+    type Acted = [f64; 7];
+
+    /// The law as a textbook has it, branch by branch: a penalty with a parabola about the corner, a dashpot that never pulls,
+    /// and Coulomb friction by return mapping (Wriggers, Computational Contact Mechanics, 2nd ed., §§5.2, 6.5).
+    fn textbook(law: &Law, [gap, weight, opening, along, slip, damping]: State) -> Acted {
+        let (k, c, e) = (law.stiffness * weight * THICKNESS, law.damping * weight * THICKNESS, law.onset);
+        if gap >= e {
+            return [0.0, 0.0, slip, damping, 0.0, 0.0, 0.0];
+        }
+        // The pressure is the integral of its slope, the energy that of the pressure.
+        let (depth, slope, energy) = if gap <= -e {
+            (-gap, 1.0, 0.5 * gap * gap + e * e / 6.0)
+        } else {
+            let share = (e - gap) / (2.0 * e);
+            (e * share * share, share, 2.0 * e * e * share * share * share / 3.0)
+        };
+        let mut dashpot = -c * slope * opening;
+        if k * depth + dashpot < 0.0 {
+            dashpot = -k * depth;
+        }
+        let kt = law.tangential * k;
+        let trial = kt * (slip + along * DT);
+        let limit = law.friction * k * depth;
+        let shear = if trial.abs() <= limit { trial } else { limit * trial.signum() };
+        let elastic = [slip, shear / kt].map(|slip| 0.5 * kt * slip * slip);
+        // Work of the mean force over the step, less what the spring has stored of it.
+        let friction = 0.5 * (kt * slip + shear) * along * DT - (elastic[1] - elastic[0]);
+        let heat = -0.5 * (damping + dashpot) * opening * DT;
+        [k * depth + dashpot, -shear, shear / kt, dashpot, k * energy + elastic[1], friction, heat]
+    }
+
+    /// Random states about contact, of points that stick and of points that slide.
+    fn states() -> Vec<State> {
+        let mut seed = 1882_u64;
+        let mut random = |scale: f64| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            scale * ((seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+        };
+        (0..50 * LANES)
+            .map(|_| {
+                [
+                    random(1e-3),
+                    0.02 + random(0.01),
+                    random(2.0),
+                    random(5.0),
+                    random(3e-4),
+                    random(2.0).max(0.0),
+                ]
+            })
+            .collect()
+    }
+
+    fn kernel<N: Number>(like: N, law: &Law) -> LawKernel<N> {
+        let pass = PassLaw { law: *law, thickness: THICKNESS, fastest: 10.0, softness: 0.0, together: true };
+        LawKernel::new(like, &pass, THICKNESS, DT, 1.0, 0.0, 0.0)
+    }
+
+    fn act<N: Number>(law: &Law, [gap, weight, opening, along, slip, damping]: [N; 6]) -> [N; 8] {
+        let sliding = Sliding { opening, along };
+        let state = PointState { within: gap.constant(1.0), gap, weight, sliding, slip, damping };
+        let mut totals = Totals::none(gap);
+        let acts = kernel(gap, law).act::<true>(&state, &mut totals);
+        let Totals { stored, friction, damping, .. } = totals;
+        [acts.on, acts.pressure, acts.shear, acts.slip, acts.damping, stored, friction, damping]
+    }
+
+    fn check(what: &str, law: &Law, state: State, found: [f64; 8]) {
+        // Some twenty roundings, of terms of these sizes.
+        const ROUNDING: f64 = 2e-14;
+        let expected = textbook(law, state);
+        let on = state[0] < law.onset;
+        assert_eq!(found[0] == 1.0, on, "{what}: {state:?}");
+        // Forces are of use only where points are on.
+        let counted = if on { 0 } else { 2 };
+        let k = law.stiffness * state[1] * THICKNESS;
+        let force = k * 1e-3;
+        let sizes = [force, force, 1e-3, force, force * 1e-3, force * 1e-3, force * 1e-3];
+        for i in counted..expected.len() {
+            let off = (found[i + 1] - expected[i]).abs();
+            assert!(
+                off <= ROUNDING * sizes[i],
+                "{what}, number {i}: {state:?} gives {found:?}, not {expected:?}"
+            );
+        }
+    }
+
+    struct InLanes<'a>(&'a Law);
+
+    impl WithSimd for InLanes<'_> {
+        type Output = usize;
+
+        fn with_simd<S: Simd>(self, simd: S) -> usize {
+            let len = Vector::<S>::LEN;
+            for group in states().chunks_exact(len) {
+                let mut columns = [Vector::all(simd, 0.0); 6];
+                for (i, column) in columns.iter_mut().enumerate() {
+                    let numbers: Vec<f64> = group.iter().map(|state| state[i]).collect();
+                    *column = Vector::load(simd, &numbers, 0);
+                }
+                let mut found = [[0.0; LANES]; 8];
+                for (vector, numbers) in act(self.0, columns).into_iter().zip(&mut found) {
+                    vector.store(numbers, 0);
+                }
+                for (l, state) in group.iter().enumerate() {
+                    check(&format!("lane {l} of {len}"), self.0, *state, found.map(|numbers| numbers[l]));
+                }
+            }
+            len
+        }
+    }
+
+    #[test]
+    fn analytic_law_of_a_textbook_at_single_points_and_in_every_lane() {
+        let plain = Law::penalty(1e6).expect("a positive stiffness");
+        let damped = plain.with_damping(0.1, 1.0).expect("a possible ratio");
+        let rough = damped.with_friction(0.2).expect("a possible coefficient");
+        for law in [plain, damped, rough, rough.with_onset(2e-4).expect("a possible onset")] {
+            let (mut sticks, mut slides) = (0, 0);
+            for state in states() {
+                check("single point", &law, state, act(&law, state));
+                let [pressure, shear, _, damping, ..] = textbook(&law, state);
+                let limit = law.friction * (pressure - damping) * (1.0 - 1e-12);
+                sticks += usize::from(shear != 0.0 && shear.abs() < limit);
+                slides += usize::from(shear != 0.0 && shear.abs() >= limit);
+            }
+            assert!(law.friction == 0.0 || (sticks > 10 && slides > 10), "{sticks} stick, {slides} slide");
+            assert_eq!(InLanes(&law).with_simd(Scalar), 1);
+            #[cfg(target_arch = "x86_64")]
+            if let Some(avx2) = pulp::x86::V3::try_new() {
+                assert_eq!(Simd::vectorize(avx2, InLanes(&law)), 4);
+            }
+            assert!(Arch::new().dispatch(InLanes(&law)) <= LANES);
+        }
+    }
+}

@@ -14,10 +14,12 @@ use super::{
     row::{Outcome, Row},
 };
 use crate::{
-    facet::{Facet, MovingFacet, Push},
-    patch::{FOUND, Patch, SplineFacet, choose_all, spread, within_patch},
+    facet::{Facet, MovingFacet},
+    foot::Push,
+    patch::{FOUND, Patch, choose_all, spread, within_patch},
     plane::{choose, choose_each, force_of},
     polynomial::{Coefficients, Polynomial},
+    spline_facet::SplineFacet,
     surface::Surface,
 };
 

@@ -8,8 +8,8 @@ use super::{
     row::Outcome,
 };
 use crate::{
-    facet::{Facet, MovingFacet, Push},
-    foot::Sliding,
+    facet::{Facet, MovingFacet},
+    foot::{Push, Sliding},
     memory::{Candidate, Histories, NEVER},
     narrow_phase::find_foot,
     pass_law::PassLaw,
