@@ -2,7 +2,7 @@
 //! points one by one as well.
 //!
 //! `forces` one evaluation, the searches that fall due included; `search` one evaluation with a search.
-//! Positions rest while the step number advances, so that candidates sleep and wake as they do in motion.
+//! Positions rest while the step number advances, so that candidates become inactive and active as they do in motion.
 
 use std::f64::consts::TAU;
 use std::time::Duration;

@@ -11,14 +11,16 @@ use stribeck_solver::{
 };
 
 use crate::{
+    broad_phase::Tree,
     error::Error,
+    foot::Push,
+    kernel::evaluate::Sum,
     law::Law,
-    pass::{LEAST_SPEED, LONGEST_REST, Memory, Pass, SPEED_MARGIN, Weights},
+    memory::Memory,
+    pass::Pass,
+    pass_law::{LEAST_SPEED, MOST_STEPS_APART, PassLaw, SPEED_MARGIN},
     points::{Method, Points},
-    search::Tree,
-    shape::Push,
     surface::Surface,
-    touch::Sum,
 };
 
 /// Two surfaces that may touch.
@@ -103,13 +105,13 @@ struct Pair {
     result: PairResult,
 }
 
-/// What a pair came to in the last step. It lies together, and a pair that sleeps leaves it alone: one thread reads that of all
+/// What a pair came to in the last step. It lies together, and an idle pair leaves it alone: one thread reads that of all
 /// pairs, and lines that another has written are slow to come.
 #[derive(Debug, Default)]
 struct PairResult {
     /// Nothing acts before this step.
-    asleep: u64,
-    /// How long it took, in units of some ten nanoseconds; zero for a pair that slept.
+    idle_until: u64,
+    /// How long it took, in units of some ten nanoseconds; zero for an idle pair.
     work: usize,
     /// Of each pass.
     sum: [Sum; 2],
@@ -255,7 +257,7 @@ impl Contacts {
         for (pass, memory) in self.pairs.iter_mut().flat_map(|p| &mut p.passes).zip(state.passes) {
             pass.remember(memory);
         }
-        self.pairs.iter_mut().for_each(|pair| pair.result.asleep = 0);
+        self.pairs.iter_mut().for_each(|pair| pair.result.idle_until = 0);
         self.search = state.search;
         self.energy.friction = state.friction;
         self.energy.damping = state.damping;
@@ -278,7 +280,7 @@ impl Contacts {
         let fastest = self.surfaces.iter().flat_map(|s| &s.slots).map(square).fold(0.0, f64::max).sqrt();
         // Two points may approach each other, each at the highest speed.
         let fastest = 2.0 * (SPEED_MARGIN * fastest).max(LEAST_SPEED);
-        // Who dozes counts on the speed of the search before.
+        // Points that are inactive count on the speed of the search before.
         let slower = (self.search.fastest / fastest).min(1.0);
         let threads = self.threads();
         let Self { trees, surfaces, pairs, push, .. } = self;
@@ -292,12 +294,12 @@ impl Contacts {
                 pass.take(&pair.found, surfaces, at, slower);
             }
             pair.result.push.reserve(pair.passes.iter().map(Pass::most_pushes).sum());
-            pair.result.asleep = 0;
+            pair.result.idle_until = 0;
         };
         share_out(pairs, threads, LEAST_WORK, &|pair| LEAST_WORK + pair.found.len(), &find);
         push.reserve(pairs.iter().map(|pair| pair.result.push.capacity()).max().unwrap_or(0));
         let rest = if at.dt > 0.0 { self.skin / (fastest * at.dt) } else { 0.0 };
-        let next = at.step + rest.clamp(1.0, LONGEST_REST) as u64;
+        let next = at.step + rest.clamp(1.0, MOST_STEPS_APART) as u64;
         self.search = Schedule { next, fastest, afresh: self.preload.is_some() };
     }
 
@@ -306,7 +308,7 @@ impl Contacts {
         if self.parallel { micropool::num_threads() + 1 } else { 1 }
     }
 
-    fn weights(&self, spec: &PairSpec) -> Weights {
+    fn weights(&self, spec: &PairSpec) -> PassLaw {
         weights(spec, self.thickness, self.search.fastest, self.preload, self.together)
     }
 }
@@ -322,11 +324,11 @@ impl Pair {
         &mut self,
         surfaces: &[Surface],
         at: &Moment<'_>,
-        weights: &impl Fn(&PairSpec) -> Weights,
+        weights: &impl Fn(&PairSpec) -> PassLaw,
         push: &mut Vec<Push>,
     ) {
         let result = &mut self.result;
-        if at.step < result.asleep {
+        if at.step < result.idle_until {
             if result.work > 0 {
                 (result.work, result.sum) = (0, [Sum::default(); 2]);
             }
@@ -334,11 +336,11 @@ impl Pair {
         }
         let w = weights(&self.spec);
         self.passes.iter().for_each(|pass| pass.fetch(surfaces, at));
-        (result.work, result.asleep) = (0, u64::MAX);
+        (result.work, result.idle_until) = (0, u64::MAX);
         for (pass, sum) in self.passes.iter_mut().zip(&mut result.sum) {
             *sum = pass.evaluate(surfaces, at, &w, push);
-            result.work += pass.work;
-            result.asleep = result.asleep.min(pass.memory.asleep);
+            result.work += sum.work;
+            result.idle_until = result.idle_until.min(pass.memory.idle_until);
         }
     }
 }
@@ -375,11 +377,11 @@ fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize)
 }
 
 /// Two passes carry half of the stiffness each.
-fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>, together: bool) -> Weights {
+fn weights(spec: &PairSpec, thickness: f64, fastest: f64, preload: Option<f64>, together: bool) -> PassLaw {
     let law = if preload.is_some() { Law { damping: 0.0, friction: 0.0, ..spec.law } } else { spec.law };
     let share = if spec.sides == Sides::Both { 0.5 } else { 1.0 };
     let softness = preload.unwrap_or(0.0);
-    Weights { law, thickness: share * thickness, fastest, softness, together }
+    PassLaw { law, thickness: share * thickness, fastest, softness, together }
 }
 
 /// Adds forces at nodes, and leaves none.

@@ -1,5 +1,7 @@
 //! Contact laws: penalty, damping, Coulomb friction (THEORY §4.2–4.3).
 
+use stribeck_simd::lanes::Number;
+
 use crate::error::Error;
 
 /// Normal and tangential law of one pair of surfaces.
@@ -54,21 +56,6 @@ impl Law {
         Ok(self)
     }
 
-    /// Effective penetration [m], its fall with the gap [-] and its work, all per stiffness (THEORY §4.2).
-    #[inline(always)]
-    pub(crate) fn depth(&self, gap: f64) -> [f64; 3] {
-        let e = self.onset;
-        if gap <= -e {
-            return [-gap, 1.0, 0.5 * gap * gap + e * e / 6.0];
-        }
-        let t = e - gap;
-        if t <= 0.0 {
-            return [0.0; 3];
-        }
-        let per = 0.25 / e;
-        [per * t * t, 2.0 * per * t, per * t * t * t / 3.0]
-    }
-
     /// Adds Coulomb friction.
     ///
     /// # Errors
@@ -77,6 +64,43 @@ impl Law {
         check("friction coefficient", coefficient, (0.0..=10.0).contains(&coefficient), "between 0 and 10")?;
         self.friction = coefficient;
         Ok(self)
+    }
+}
+
+/// The parabola with which the pressure sets in, over any [`Number`] (THEORY §4.2).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Onset<N> {
+    gap: N,
+    quarter: N,
+    work: N,
+}
+
+impl<N: Number> Onset<N> {
+    /// Of the kind of `like`; `None` for the sharp corner.
+    #[inline(always)]
+    pub(crate) fn new(like: N, gap: f64) -> Option<Self> {
+        // No closure, see `plane.rs`.
+        if gap > 0.0 {
+            let [quarter, work] = [0.25 / gap, gap * gap / 6.0];
+            Some(Self { gap: like.constant(gap), quarter: like.constant(quarter), work: like.constant(work) })
+        } else {
+            None
+        }
+    }
+
+    /// Effective penetration [m], its fall with the gap [-] and its work, all per stiffness, at gaps below the onset.
+    #[inline(always)]
+    pub(crate) fn depth(&self, gap: N) -> [N; 3] {
+        let Self { gap: e, quarter, work } = *self;
+        let t = e - gap;
+        let (rising, slope) = (quarter * t * t, (quarter + quarter) * t);
+        let partial = quarter * t * t * t * e.constant(1.0 / 3.0);
+        let whole = (e.constant(0.5) * gap).times_plus(gap, work);
+        [
+            gap.choose_below(-e, -gap, rising),
+            gap.choose_below(-e, e.constant(1.0), slope),
+            gap.choose_below(-e, whole, partial),
+        ]
     }
 }
 

@@ -1,9 +1,19 @@
-//! Contact between oriented surfaces: search, closest-point projection, penalty, damping and Coulomb friction.
+//! Contact between oriented surfaces in the plane: search, closest points, penalty, damping and Coulomb friction, for explicit
+//! dynamics.
 //!
-//! To the solver, contact is one more force on nodes: [`Contacts`] implements [`Force`](stribeck_solver::Force).
-//! A [`Surface`] is a boundary polyline of a body, a [`PairSpec`] says which two may touch, by which [`Law`], and where
-//! the law acts ([`Method`]): at nodes, or at points on every facet. Each pair is evaluated in two passes of half the
-//! stiffness, the points of either surface against the facets of the other.
+//! To the solver, contact is one more force on nodes: [`Contacts`] implements [`Force`](stribeck_solver::Force). Three things
+//! make it up, in this order:
+//!
+//! 1. a [`Surface`] for each boundary that may touch: a polyline of nodes, which may stand for a smooth curve
+//!    ([`Surface::smoothed`]) and move as a spline of its nodes ([`Surface::splined`]);
+//! 2. a [`PairSpec`] for each two surfaces that may touch, with a [`Law`] and a [`Method`], which says where the law acts: at
+//!    nodes, or at points on every facet;
+//! 3. [`Contacts::new`] with all of them; the result goes into the list of forces of every step.
+//!
+//! Each pair is evaluated in two passes of half the stiffness, the points of either surface against the facets of the other.
+//! A pass searches now and then (broad phase: bounding-volume trees of [parry2d](https://parry.rs)), follows the closest points
+//! of what may touch from step to step (narrow phase), and leaves points inactive that cannot touch yet. [`project`] answers
+//! for a single point: its gap to a surface, and where.
 //!
 //! # Conventions
 //!
@@ -77,43 +87,61 @@
 //!
 //! | Question | File |
 //! |---|---|
-//! | What is a surface, what acts between two? | `surface.rs`, `law.rs` |
-//! | What is the gap, at corners and ends too? | `projection.rs` |
-//! | Which curve does a polyline stand for? | `smooth.rs` |
+//! | What is a surface, what acts between two? | `surface.rs`, `polyline.rs`, `law.rs` |
+//! | Which curve does a polyline stand for, and how does it move? | `smooth.rs`, `spline.rs`, `splined.rs` |
 //! | Where does the law act? | `points.rs` |
-//! | What does one pass do, in contact and out of it? | `pass.rs`, `evaluation.rs`, `touch.rs` |
-//! | How are many points done at a time? | `row.rs`, `meeting.rs`, `spline_row.rs`, `patch_row.rs`, `touch_row.rs`, `band.rs` |
-//! | Who is near whom? | `search.rs`, `nearest.rs` |
+//! | Which facets are near each other? | `broad_phase.rs` |
+//! | What is the gap, at corners and ends too? | `narrow_phase.rs`, on facets of two kinds: `chord.rs`, `spline_facet.rs` and `patch.rs` |
+//! | What does a pass ask of a facet? | `facet.rs` |
+//! | How do points move against facets, what do forces on them do to facets? | `foot.rs`, `plane.rs`, `polynomial.rs` |
+//! | What does a pass do, and remember from step to step? | `pass.rs`, `pass_law.rs`, `memory.rs` |
 //! | How does it all become one force? | `contacts.rs` |
+//!
+//! What is hot lies in `kernel/`:
+//!
+//! | Question | File |
+//! |---|---|
+//! | What acts at a point in contact? | `law.rs` |
+//! | What does one evaluation of a pass do? | `evaluate.rs` |
+//! | How are the points of a facet done in vectors? | `row.rs`, on chords `chord_row.rs`, on splines `patch_row.rs` |
+//! | And those of facets with few points, a facet in each lane? | `chord_band.rs`, `chord_lanes.rs` |
+//! | What do points of one chord see of another chord? | `chord_pair.rs` |
+//! | What about points near ends and corners? | `single_points.rs` |
+//! | From which facet does a point set out after a search? | `nearest_chord.rs` |
+//!
+//! The mathematics stands once, over a [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a vector for rows and
+//! bands of them.
 
 // Units stand in brackets, as in "gap [m]", and are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
-mod band;
+mod broad_phase;
+mod chord;
 mod contacts;
 mod error;
-mod evaluation;
+mod facet;
+mod foot;
+mod kernel;
 mod law;
-mod meeting;
-mod nearest;
+mod memory;
+mod narrow_phase;
 mod pass;
-mod patch_row;
+mod pass_law;
+mod patch;
+mod plane;
 mod points;
-mod projection;
-mod row;
-mod search;
-mod shape;
+mod polyline;
+mod polynomial;
 mod smooth;
 mod spline;
-mod spline_row;
+mod spline_facet;
+mod splined;
 mod surface;
-mod touch;
-mod touch_row;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
 pub use law::Law;
+pub use narrow_phase::{Projection, project};
 pub use points::Method;
-pub use projection::{Projection, project};
 pub use smooth::Smoothing;
 pub use surface::Surface;

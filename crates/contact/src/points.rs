@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::LANES;
 
-use crate::{band, surface::Surface};
+use crate::surface::Surface;
 
 /// Where the penalty acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +23,9 @@ impl Method {
     /// Most points on a facet: a point on every thirtieth of a facet sees nothing new.
     pub const MOST_POINTS: usize = 32;
 }
+
+/// Facets with more points than this fill vectors of their own; others share vectors with their neighbours.
+pub(crate) const FEW_POINTS: usize = 4;
 
 /// Contact points. Facets whose points lie and weigh alike share a pattern, so that what all rows of points read stays in
 /// cache. Behind the last one each field has room for a vector that reads on.
@@ -151,7 +154,7 @@ impl Pattern {
     /// Room that its points take in memory: whole vectors where they are done row by row.
     #[inline(always)]
     pub(crate) fn room(self) -> u32 {
-        if self.points as usize > band::MOST_POINTS {
+        if self.points as usize > FEW_POINTS {
             self.points.next_multiple_of(LANES as u32)
         } else {
             self.points

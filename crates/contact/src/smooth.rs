@@ -1,6 +1,6 @@
 //! Smooth surfaces: how far the true curve stands off the chords of a polyline (THEORY §4.4).
 
-use crate::surface::Vertices;
+use crate::polyline::Vertices;
 
 /// What a polyline stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]

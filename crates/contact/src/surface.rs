@@ -2,6 +2,7 @@
 
 use crate::{
     error::Error,
+    polyline::{Vertices, neighbour},
     smooth::{KINK, Rise, Smoothing, height, rises},
     spline::Spline,
 };
@@ -29,58 +30,9 @@ pub struct Surface {
     /// True for a vertex where two smoothed facets join without a kink.
     pub(crate) smooth: Vec<bool>,
     /// True when every facet is its chord, and hangs on its own two nodes.
-    flat: bool,
+    pub(crate) flat: bool,
     /// How the curve hangs on its nodes; `None` when each facet hangs on its own two.
     pub(crate) spline: Option<Spline>,
-}
-
-/// Vertices of a polyline in given positions.
-pub(crate) struct Vertices<'a> {
-    slots: &'a [u32],
-    closed: bool,
-    x: &'a [f64],
-    y: &'a [f64],
-}
-
-impl Vertices<'_> {
-    pub(crate) fn facets(&self) -> usize {
-        if self.closed { self.slots.len() } else { self.slots.len() - 1 }
-    }
-
-    /// Numbers of the two vertices of a facet.
-    pub(crate) fn vertices(&self, f: usize) -> (usize, usize) {
-        (f, if f + 1 == self.slots.len() { 0 } else { f + 1 })
-    }
-
-    /// Positions of the two ends of a facet [m].
-    pub(crate) fn ends(&self, f: usize) -> ([f64; 2], [f64; 2]) {
-        let at = |v: usize| {
-            let slot = self.slots[v] as usize;
-            [self.x[slot], self.y[slot]]
-        };
-        let (a, b) = self.vertices(f);
-        (at(a), at(b))
-    }
-
-    pub(crate) fn before(&self, f: usize) -> Option<usize> {
-        neighbour(self.facets(), self.closed, f, false)
-    }
-
-    pub(crate) fn after(&self, f: usize) -> Option<usize> {
-        neighbour(self.facets(), self.closed, f, true)
-    }
-}
-
-#[inline(always)]
-fn neighbour(facets: usize, closed: bool, facet: usize, forward: bool) -> Option<usize> {
-    let last = facets - 1;
-    match (forward, closed) {
-        (true, _) if facet < last => Some(facet + 1),
-        (false, _) if facet > 0 => Some(facet - 1),
-        (true, true) => Some(0),
-        (false, true) => Some(last),
-        _ => None,
-    }
 }
 
 impl Surface {
@@ -169,15 +121,6 @@ impl Surface {
             })
             .collect();
         Ok(self)
-    }
-
-    /// The same curve, moving as a spline of its nodes instead of facet by facet; to be asked for after
-    /// [`smoothed`](Self::smoothed), in the same positions.
-    pub fn splined(mut self, x: &[f64], y: &[f64]) -> Self {
-        self.spline = Some(Spline::new(&self, x, y));
-        self.flat = false;
-        self.smooth = self.corner.iter().map(|corner| !corner).collect();
-        self
     }
 
     /// Number of facets.

@@ -1,5 +1,6 @@
-//! Closest-point projection: against a search over all facets, at corners, beyond ends.
+//! Closest-point projection: against a search over all facets and against parry2d, at corners, beyond ends.
 
+use parry2d_f64::{math::Vector, query::PointQueryWithLocation, shape::Polyline};
 use proptest::{prelude::*, test_runner::RngSeed};
 use stribeck_contact::{Projection, Surface, project};
 
@@ -170,4 +171,75 @@ fn invariant_open_surfaces_end() {
     }
     // The ends themselves belong to the wall.
     assert!(above(0.0, 2).is_some() && above(3.0, 0).is_some());
+}
+
+/// A point of parry2d, whose bounding-volume trees are our broad phase.
+fn vector([x, y]: [f64; 2]) -> Vector {
+    Vector::new(x, y)
+}
+
+/// A polyline about the origin that is neither convex nor even: radii within a tenth, angles within a third of their
+/// mean distance.
+fn uneven() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
+    prop::collection::vec((-0.05..0.05_f64, -0.33..0.33_f64), 12..80).prop_map(|vertices| {
+        let n = vertices.len() as f64;
+        let at = |(k, (radius, angle)): (usize, (f64, f64))| {
+            let (s, c) = (std::f64::consts::TAU * (k as f64 + angle) / n).sin_cos();
+            ((1.0 + radius) * c, (1.0 + radius) * s)
+        };
+        vertices.into_iter().enumerate().map(at).unzip()
+    })
+}
+
+proptest! {
+    #![proptest_config(cases())]
+
+    #[test]
+    fn peer_closest_points_of_parry2d_on_polylines((x, y) in uneven(), closed in any::<bool>(), side in 0..80_usize, along in 0.0..1.0_f64, off in -0.4..0.4_f64, offset in 0..3_usize) {
+        // parry2d 0.31.1, `Polyline::project_local_point_and_get_location`.
+        let n = x.len();
+        let slots = (0..n as u32).collect();
+        let surface = Surface::new("polyline", slots, closed, &x, &y).expect("a polyline with facets");
+        let facets = if closed { n } else { n - 1 };
+        let indices = (0..facets).map(|f| [f as u32, ((f + 1) % n) as u32]).collect();
+        let theirs = Polyline::new(x.iter().zip(&y).map(|(x, y)| vector([*x, *y])).collect(), Some(indices));
+
+        // A point beside a facet, closer to it than the facets' shortest: farther off, two places may be equally close.
+        let (a, b) = (side % facets, (side % facets + 1) % n);
+        let (tx, ty) = (x[b] - x[a], y[b] - y[a]);
+        let shortest = (0..facets).map(|f| (x[(f + 1) % n] - x[f]).hypot(y[(f + 1) % n] - y[f])).fold(1.0, f64::min);
+        let off = off * shortest / tx.hypot(ty);
+        let p = [x[a] + along * tx + off * ty, y[a] + along * ty - off * tx];
+
+        let (found, (facet, _)) = theirs.project_local_point_and_get_location(vector(p), false);
+        let distance = (found.point - vector(p)).length();
+        // A search leaves the nearest facet or one beside it to start from.
+        let start = facet as usize + offset;
+        let start = if closed { (start + n - 1) % n } else { start.saturating_sub(1).min(facets - 1) };
+        match project(&surface, &x, &y, p, start) {
+            Some(ours) => {
+                prop_assert!((ours.gap.abs() - distance).abs() < ROUNDING, "{ours:?}, {found:?}");
+                let next = (ours.facet + 1) % n;
+                let foot = [
+                    x[ours.facet] + ours.place * (x[next] - x[ours.facet]),
+                    y[ours.facet] + ours.place * (y[next] - y[ours.facet]),
+                ];
+                prop_assert!((vector(foot) - found.point).length() < 1e-6, "{ours:?}, {found:?}");
+                // The gradient of a distance is the direction from the closest point, outwards when it is apart.
+                let away = (vector(p) - found.point) / ours.gap;
+                let close = distance < 1e-4;
+                prop_assert!(close || (away - vector(ours.normal)).length() < 1e-8, "{ours:?}, {found:?}");
+                if closed {
+                    let inside = slowly(&x, &y, p).1 < 0.0;
+                    prop_assert!(distance < ROUNDING || inside == (ours.gap < 0.0), "{ours:?}, inside {inside}");
+                }
+            }
+            // Beyond the ends of an open surface there is no gap: there the closest point is the first or the last node.
+            None => {
+                let ends = [[x[0], y[0]], [x[n - 1], y[n - 1]]];
+                let at_end = ends.iter().any(|end| (vector(*end) - found.point).length() < ROUNDING);
+                prop_assert!(!closed && at_end, "no foot, but {found:?}");
+            }
+        }
+    }
 }

@@ -12,15 +12,33 @@ use pulp::{Simd, bytemuck};
 /// Numbers in a line of cache. No vector is longer, and arrays are cut into groups of that many.
 pub const LANES: usize = 8;
 
-/// What a kernel can do with numbers, single ones or vectors.
+/// What a kernel does with numbers.
+///
+/// A kernel that is written over it chooses between two values where a program for single numbers would branch; flags are
+/// numbers too, one for yes and zero for no.
 pub trait Number:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// self · factor + term. Vectors round once, whatever the instruction set; a single number rounds twice.
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
     /// A constant of the same kind.
     fn constant(self, value: f64) -> Self;
+
+    /// The square root.
+    fn sqrt(self) -> Self;
+
+    /// The smaller of two numbers.
+    fn min(self, other: Self) -> Self;
+
+    /// The larger of two numbers.
+    fn max(self, other: Self) -> Self;
+
+    /// `yes` where this is below `limit`, `no` elsewhere.
+    fn choose_below(self, limit: Self, yes: Self, no: Self) -> Self;
+
+    /// Of flags: bit l is set where number l is one. A single number is number 0.
+    fn bits(self) -> u64;
 }
 
 impl Number for f64 {
@@ -32,6 +50,31 @@ impl Number for f64 {
     #[inline(always)]
     fn constant(self, value: f64) -> f64 {
         value
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn min(self, other: f64) -> f64 {
+        self.min(other)
+    }
+
+    #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        self.max(other)
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: f64, yes: f64, no: f64) -> f64 {
+        if self < limit { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        u64::from(self > 0.5)
     }
 }
 
@@ -67,7 +110,7 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: simd.splat_f64s(value) }
     }
 
-    /// One in each lane l whose bit l of `bits` is set, zero in the others: the inverse of [`bits`](Self::bits).
+    /// One in each lane l whose bit l is set, zero in the others: what [`bits`](Number::bits) makes of it.
     #[inline(always)]
     pub fn ones(simd: S, bits: u64) -> Self {
         const BITS: [u64; LANES] = [1, 2, 4, 8, 16, 32, 64, 128];
@@ -137,19 +180,6 @@ impl<S: Simd> Vector<S> {
         Self { lanes: simd.rotate_right_f64s(simd.transmute_f64s_u64s(joined), 1), ..self }
     }
 
-    /// For numbers that are zero or one: bit l is set where that in lane l is one.
-    #[inline(always)]
-    pub fn bits(self) -> u64 {
-        const WEIGHTS: [f64; LANES] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
-        let set = self.simd.less_than_f64s(self.simd.splat_f64s(0.5), self.lanes);
-        // With AVX-512 a mask register holds these very bits.
-        if let &[bits] = pulp::bytemuck::bytes_of(&set) {
-            return u64::from(bits);
-        }
-        let weights = Self::load(self.simd, &WEIGHTS, 0);
-        self.simd.reduce_sum_f64s((self * weights).lanes) as u64
-    }
-
     /// The smallest of all numbers.
     #[inline(always)]
     pub fn smallest(self) -> f64 {
@@ -166,34 +196,6 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     pub fn sum(self) -> f64 {
         self.simd.reduce_sum_f64s(self.lanes)
-    }
-}
-
-impl<S: Simd> Vector<S> {
-    /// The square root of each number.
-    #[inline(always)]
-    pub fn sqrt(self) -> Self {
-        Self { lanes: self.simd.sqrt_f64s(self.lanes), ..self }
-    }
-
-    /// The smaller of two numbers, lane by lane.
-    #[inline(always)]
-    pub fn min(self, other: Self) -> Self {
-        Self { lanes: self.simd.min_f64s(self.lanes, other.lanes), ..self }
-    }
-
-    /// The larger of two numbers, lane by lane.
-    #[inline(always)]
-    pub fn max(self, other: Self) -> Self {
-        Self { lanes: self.simd.max_f64s(self.lanes, other.lanes), ..self }
-    }
-
-    /// `yes` where this is below `limit`, `no` elsewhere.
-    #[inline(always)]
-    pub fn choose_below(self, limit: Self, yes: Self, no: Self) -> Self {
-        let below = self.simd.less_than_f64s(self.lanes, limit.lanes);
-        let (yes, no) = (self.simd.transmute_u64s_f64s(yes.lanes), self.simd.transmute_u64s_f64s(no.lanes));
-        Self { lanes: self.simd.transmute_f64s_u64s(self.simd.select_u64s(below, yes, no)), ..self }
     }
 }
 
@@ -246,6 +248,40 @@ impl<S: Simd> Number for Vector<S> {
     #[inline(always)]
     fn constant(self, value: f64) -> Self {
         Self::all(self.simd, value)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self { lanes: self.simd.sqrt_f64s(self.lanes), ..self }
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self { lanes: self.simd.min_f64s(self.lanes, other.lanes), ..self }
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self { lanes: self.simd.max_f64s(self.lanes, other.lanes), ..self }
+    }
+
+    #[inline(always)]
+    fn choose_below(self, limit: Self, yes: Self, no: Self) -> Self {
+        let below = self.simd.less_than_f64s(self.lanes, limit.lanes);
+        let (yes, no) = (self.simd.transmute_u64s_f64s(yes.lanes), self.simd.transmute_u64s_f64s(no.lanes));
+        Self { lanes: self.simd.transmute_f64s_u64s(self.simd.select_u64s(below, yes, no)), ..self }
+    }
+
+    #[inline(always)]
+    fn bits(self) -> u64 {
+        const WEIGHTS: [f64; LANES] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
+        let set = self.simd.less_than_f64s(self.simd.splat_f64s(0.5), self.lanes);
+        // A mask register holds these very bits.
+        if let &[bits] = pulp::bytemuck::bytes_of(&set) {
+            return u64::from(bits);
+        }
+        let weights = Self::load(self.simd, &WEIGHTS, 0);
+        self.simd.reduce_sum_f64s((self * weights).lanes) as u64
     }
 }
 

@@ -1,31 +1,31 @@
-//! Many facets with few points each, as in a seat: a facet in each lane.
+//! Bands of chords with few points each: a chord in each lane.
 //!
-//! What lies near the end of the other chord or near a corner is left over.
+//! Points the end of the other chord or near a corner is left over.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 use stribeck_solver::state::Moment;
 
+use super::{
+    chord_lanes::{ChordLanes, Joints, gather},
+    chord_pair::{ChordPair, ChordPoints, MovingChord},
+    law::{LawKernel, Totals},
+};
 use crate::{
-    meeting::{Chord, Joined, Joints, Meeting, Spots, gather},
-    pass::Candidate,
-    points::Points,
-    shape::Push,
+    foot::Push,
+    memory::{Candidate, Histories},
+    plane::choose,
+    points::{FEW_POINTS, Points},
     surface::Surface,
-    touch::Histories,
-    touch_row::{Law, Work},
 };
 
-/// Facets with more points than this fill vectors of their own.
-pub(crate) const MOST_POINTS: usize = 4;
-
 /// Some facets of a pass, at most as many as there are lanes, whose points lie side by side.
-pub(crate) struct Band<'a> {
+pub(crate) struct ChordBand<'a> {
     pub(crate) points: &'a Points,
     pub(crate) candidates: &'a [Candidate],
-    /// Of all points of the pass: where they were found last, until when they doze, what they remember.
+    /// Of all points of the pass: where they were found last, until when they are inactive, what they remember.
     pub(crate) nearest: &'a [u32],
-    pub(crate) doze: &'a mut [f64],
+    pub(crate) inactive_until: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
 }
 
@@ -33,37 +33,37 @@ pub(crate) struct Band<'a> {
 pub(crate) struct BandOutcome<V: Simd> {
     /// Facets of which a point touches.
     pub(crate) touched: u64,
-    /// Facets whose first, second and so on point is awake and left over.
-    pub(crate) left: [u64; MOST_POINTS],
-    /// When the next point of each facet wakes; of use where none touches and none is left.
+    /// Facets whose first, second and so on point is active and left over.
+    pub(crate) left: [u64; FEW_POINTS],
+    /// When the next point of each facet becomes active; of use where none touches and none is left.
     pub(crate) soonest: Vector<V>,
     /// Sum of the forces on the facets [N].
     pub(crate) force: [f64; 2],
 }
 
-impl Band<'_> {
+impl ChordBand<'_> {
     /// Evaluates the points that certainly touch and pushes their forces.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // the facets' whole situation
     pub(crate) fn touch<V: Simd, const MEMORY: bool>(
         self,
         simd: V,
-        law: &Law<V>,
+        law: &LawKernel<Vector<V>>,
         now: f64,
         primary: &Surface,
         at: &Moment<'_>,
-        work: &mut Work<V>,
+        totals: &mut Totals<Vector<V>>,
         push: &mut Vec<Push>,
     ) -> BandOutcome<V> {
-        let Self { points, candidates, nearest, doze, history } = self;
+        let Self { points, candidates, nearest, inactive_until, history } = self;
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         let soon = Vector::all(simd, now + 1.0);
         let base = candidates[0].first as usize;
-        // Lanes without a facet go along with the first one; their points never wake.
+        // Lanes without a facet go along with the first one; their points are never active.
         let lanes = Vector::<V>::LEN;
         let mut pattern = [candidates[0].pattern.first; LANES];
         let mut alike = true;
-        let own = Joined::new(lanes, |l| {
+        let own = ChordLanes::new(lanes, |l| {
             let candidate = candidates.get(l).unwrap_or(&candidates[0]);
             pattern[l] = candidate.pattern.first;
             alike &= pattern[l] == pattern[0];
@@ -71,16 +71,16 @@ impl Band<'_> {
         });
         let mut chord = None;
         let mut on_own = OnChords::none(simd, own);
-        let mut met: Option<(Facing, Meeting<V>, OnChords<V>)> = None;
-        let (mut touched, mut left) = (0, [0; MOST_POINTS]);
+        let mut met: Option<(Facing, ChordPair<Vector<V>>, OnChords<V>)> = None;
+        let (mut touched, mut left) = (0, [0; FEW_POINTS]);
         let mut soonest = Vector::all(simd, f64::INFINITY);
         for k in 0..points.most {
             let i = base + k * LANES;
-            let mut dozes = Vector::load(simd, doze, i);
-            let awake = dozes.choose_below(soon, one, zero);
-            left[k] = awake.bits();
+            let mut until = Vector::load(simd, inactive_until, i);
+            let active = until.choose_below(soon, one, zero);
+            left[k] = active.bits();
             if left[k] == 0 {
-                soonest = soonest.min(dozes);
+                soonest = soonest.min(until);
                 continue;
             }
             // Points of a facet mostly meet the same chord.
@@ -91,37 +91,37 @@ impl Band<'_> {
                 }
                 let mine = match chord {
                     Some(mine) => mine,
-                    None => Chord::each(simd, at, &own),
+                    None => MovingChord::each(simd, at, &own),
                 };
                 chord = Some(mine);
                 let facing = Facing::new(primary, facets);
-                let meeting = Meeting::new(&mine, &Chord::each(simd, at, &facing.chords));
+                let pair = ChordPair::new(&mine, &MovingChord::each(simd, at, &facing.chords));
                 let on_other = OnChords::none(simd, facing.chords);
-                met = Some((facing, meeting, on_other));
+                met = Some((facing, pair, on_other));
             }
-            let Some((facing, meeting, on_other)) = &mut met else { continue };
+            let Some((facing, pair, on_other)) = &mut met else { continue };
             let (place, weight) = if alike {
                 let i = pattern[0] as usize + k;
                 (Vector::all(simd, points.place[i]), Vector::all(simd, points.weight[i]))
             } else {
-                // Facets with fewer points never wake here.
+                // Facets with fewer points are never active here.
                 let of = pattern.map(|first| (first + k as u32).min(points.place.len() as u32 - 1));
                 (gather(simd, &points.place, &of), gather(simd, &points.weight, &of))
             };
-            let spots = Spots {
-                open: Vector::ones(simd, left[k] & !facing.beside_corner),
+            let of_band = ChordPoints {
+                active: Vector::ones(simd, left[k] & !facing.beside_corner),
                 place,
                 weight,
                 slip: if MEMORY { Vector::load(simd, &history.slip, i) } else { zero },
                 damping: if MEMORY { Vector::load(simd, &history.damping, i) } else { zero },
             };
-            let acting = meeting.act::<MEMORY>(law, &spots, work);
+            let acting = pair.act::<MEMORY>(law, &of_band, totals);
             let (on, apart) = (acting.acts.on.bits(), acting.acts.apart.bits());
             if apart != 0 {
-                dozes = zero.choose_below(acting.acts.apart, acting.acts.doze, dozes);
-                dozes.store(doze, i);
+                until = choose(acting.acts.apart, acting.acts.inactive_until, until);
+                until.store(inactive_until, i);
             }
-            soonest = soonest.min(dozes);
+            soonest = soonest.min(until);
             left[k] &= !(on | apart);
             if on == 0 {
                 continue;
@@ -132,7 +132,7 @@ impl Band<'_> {
                 acting.acts.damping.store(&mut history.damping, i);
             }
             let [fx, fy] = acting.force;
-            on_own.add(on, [fx, fy], spots.place);
+            on_own.add(on, [fx, fy], of_band.place);
             on_other.add(on, [-fx, -fy], acting.foot);
         }
         if let Some((.., on_other)) = &met {
@@ -146,7 +146,7 @@ impl Band<'_> {
 /// The chords that a band's points face.
 struct Facing {
     facets: [u32; LANES],
-    chords: Joined,
+    chords: ChordLanes,
     /// Bits of those beside a corner.
     beside_corner: u64,
 }
@@ -157,7 +157,7 @@ impl Facing {
         let mut facets = [0; LANES];
         facets[..found.len()].copy_from_slice(found);
         let mut beside_corner = 0;
-        let chords = Joined::new(found.len(), |l| {
+        let chords = ChordLanes::new(found.len(), |l| {
             let facet = found[l] as usize;
             beside_corner |= u64::from(primary.beside_corner[facet]) << l;
             let (a, b) = primary.ends(facet);
@@ -170,7 +170,7 @@ impl Facing {
 /// Forces on a chord in each lane.
 #[derive(Clone, Copy)]
 struct OnChords<V: Simd> {
-    chords: Joined,
+    chords: ChordLanes,
     /// Sum of the forces, and of their products with their place on the chord.
     force: [Vector<V>; 2],
     with_place: [Vector<V>; 2],
@@ -180,7 +180,7 @@ struct OnChords<V: Simd> {
 
 impl<V: Simd> OnChords<V> {
     #[inline(always)]
-    fn none(simd: V, chords: Joined) -> Self {
+    fn none(simd: V, chords: ChordLanes) -> Self {
         let zero = [Vector::all(simd, 0.0); 2];
         Self { chords, force: zero, with_place: zero, lanes: 0 }
     }

@@ -6,7 +6,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{points::Points, surface::Surface};
 
 /// The points of one facet, and facets of the other surface that may be near them.
-pub(crate) struct Nearest<'a> {
+pub(crate) struct NearestChord<'a> {
     pub(crate) secondary: &'a Surface,
     pub(crate) primary: &'a Surface,
     pub(crate) points: &'a Points,
@@ -19,7 +19,7 @@ pub(crate) struct Nearest<'a> {
     pub(crate) found: &'a mut Vec<u32>,
 }
 
-impl WithSimd for Nearest<'_> {
+impl WithSimd for NearestChord<'_> {
     type Output = ();
 
     /// Chords stand for curves: near enough to begin a walk.
