@@ -25,7 +25,7 @@ pub(crate) struct Options {
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let terminal =
-        Terminal { root: workspace::root(), began: Instant::now(), interrupt: Interrupt::listen(None)? };
+        Terminal { root: workspace::root(), began: Instant::now(), interrupt: Interrupt::listen()? };
     let answer = options.study.run(&terminal)?;
     if let Some(said) = answer.said {
         println!("{said}");

@@ -1,8 +1,8 @@
 //! Ctrl-C.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 use stribeck_scene::run_dir::Reservation;
@@ -10,43 +10,67 @@ use stribeck_scene::run_dir::Reservation;
 /// What a shell reports for a program ended by Ctrl-C.
 pub const EXIT_CODE: u8 = 130;
 
-/// Whether Ctrl-C was pressed.
+/// Whether Ctrl-C was pressed. The first asks for an end in good order, the second ends the program.
 #[derive(Debug, Clone)]
-pub struct Interrupt(Arc<AtomicBool>);
+pub struct Interrupt(Arc<Shared>);
+
+#[derive(Debug, Default)]
+struct Shared {
+    pressed: AtomicBool,
+    /// The place of a run that need not be waited for before its first step.
+    place: Mutex<Option<Reservation>>,
+}
 
 impl Interrupt {
-    /// Listens from now on; once a process. The first Ctrl-C asks for an end in good order, or ends the program at once
-    /// when the run in `place` has not taken a step; the second ends it in any case.
+    /// Listens from now on; once a process.
     ///
     /// # Errors
     /// When the system does not allow it.
-    pub fn listen(place: Option<Reservation>) -> Result<Self> {
-        let flag = Arc::new(AtomicBool::new(false));
-        let seen = Arc::clone(&flag);
-        let exit = || std::process::exit(i32::from(EXIT_CODE));
+    pub fn listen() -> Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let seen = Arc::clone(&shared);
         ctrlc::set_handler(move || {
-            if seen.swap(true, Ordering::Relaxed) {
+            if seen.pressed.swap(true, Ordering::SeqCst) {
                 exit();
             }
-            if let Some(place) = &place {
-                place.unless_started(|| {
-                    eprintln!("\ninterrupted before the first step: nothing was changed");
-                    exit();
-                });
-            }
+            seen.end_before_the_first_step();
             eprintln!("\ninterrupted: finishing the step; press Ctrl-C again to stop at once");
         })
         .context("cannot listen for Ctrl-C")?;
-        Ok(Self(flag))
+        Ok(Self(shared))
+    }
+
+    /// Lets Ctrl-C end the program at once until the run in `place` takes its first step; what was made for it is removed.
+    pub fn need_not_wait_for(&self, place: Reservation) {
+        *self.0.place.lock().unwrap_or_else(PoisonError::into_inner) = Some(place);
+        // It may have been pressed while the place was made.
+        if self.is_pressed() {
+            self.0.end_before_the_first_step();
+        }
     }
 
     /// Whether it was pressed.
     pub fn is_pressed(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.0.pressed.load(Ordering::SeqCst)
     }
 
     /// What a watched run is to do.
     pub fn flow(&self) -> ControlFlow<()> {
         if self.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
+}
+
+impl Shared {
+    fn end_before_the_first_step(&self) {
+        if let Some(place) = &*self.place.lock().unwrap_or_else(PoisonError::into_inner) {
+            place.unless_started(|| {
+                eprintln!("\ninterrupted before the first step: nothing was changed");
+                exit();
+            });
+        }
+    }
+}
+
+fn exit() -> ! {
+    std::process::exit(i32::from(EXIT_CODE))
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use stribeck_analysis::report;
 use stribeck_bearing::simulation::{self, Progress};
 use stribeck_scene::Error;
@@ -52,6 +52,7 @@ fn threads(text: &str) -> Result<usize, String> {
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let threads = options.threads.unwrap_or_else(host::cores);
+    let interrupt = Interrupt::listen()?;
     let (scene, dir) = match &options.resume {
         Some(run) => reopen(&place.locate_run(run), &options.set)?,
         None => {
@@ -60,9 +61,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             (scene, dir)
         }
     };
+    interrupt.need_not_wait_for(dir.reservation());
     eprintln!("{}: {} ms, {} threads → {}", scene.name, scene.solver.duration_ms, threads, shown(dir.path()));
 
-    let interrupt = Interrupt::listen(Some(dir.reservation()))?;
     let mut meter = Meter::new(scene.solver.duration_ms);
     let mut watch = |progress: &Progress| {
         meter.show(progress);
@@ -79,7 +80,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         announce(info);
     }
     let complete = finished.as_ref().is_ok_and(|info| info.status == Status::Complete);
-    let dir = if complete { dir.take_place()? } else { dir };
+    let dir = if complete { take_place(dir)? } else { dir };
     if dir.has_started() && !complete {
         let path = shown(dir.path());
         if let Some(old) = dir.replaces() {
@@ -122,6 +123,14 @@ fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
         Err(Error::FolderInUse { .. }) if options.out.is_none() => Ok(RunDir::create_numbered(folder)?),
         done => Ok(done?),
     }
+}
+
+/// Puts a complete run where the user wants it.
+fn take_place(dir: RunDir) -> Result<RunDir> {
+    let path = shown(dir.path());
+    dir.take_place().with_context(|| {
+        format!("the new run is complete, but lies in `{path}` and not yet in the place of the earlier one: move it there")
+    })
 }
 
 /// A run to go on with, and its scene under `overrides`, which may change the duration and nothing else.
