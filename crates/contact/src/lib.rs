@@ -117,3 +117,7 @@ pub use points::Method;
 pub use projection::{Projection, project};
 pub use smooth::Smoothing;
 pub use surface::Surface;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -81,3 +81,7 @@ pub use peak::{Peak, Sinusoid};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
 pub use window::Window;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -100,3 +100,7 @@ pub use quality::{BodyQuality, Quality};
 pub use rectangle::Rectangle;
 pub use seated_block::SeatedBlock;
 pub use strips::{Strip, find_strips};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -123,3 +123,7 @@ pub use error::Error;
 pub use force::Force;
 pub use material::Elastic;
 pub use model::{Behaviour, Model, Motion};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
