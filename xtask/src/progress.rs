@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_times_are_written_for_people() {
+    fn example_times_are_written_for_people() {
         assert_eq!(clock(7.26), "7.3 s");
         assert_eq!(clock(185.4), "3:05");
         assert_eq!(clock(7385.0), "2:03:05");
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_a_line_holds_time_eta_energy_and_pace() {
+    fn example_a_line_holds_time_eta_energy_and_pace() {
         let meter = Meter::new(30.0);
         let progress = Progress {
             step: 250,

@@ -171,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_static_curve_has_a_hole_and_relieving_neighbours() {
+    fn example_static_curve_has_a_hole_and_relieving_neighbours() {
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
         let prediction = Prediction::of(&scene, &mesh(1257, 1030));
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_a_sound_bearing_has_no_passage() {
+    fn example_a_sound_bearing_has_no_passage() {
         let scene = Scene { defect: None, ..Scene::default() };
         let prediction = Prediction::of(&scene, &mesh(0, 0));
         assert!(prediction.passages.is_empty() && prediction.defect.is_none());

@@ -24,7 +24,7 @@ const EVENT_MS: f64 = 0.5;
 const LENGTH: f64 = 0.05;
 
 #[test]
-fn analytic_a_simulated_passage_gives_events_length_and_pictures() {
+fn example_a_simulated_passage_gives_events_length_and_pictures() {
     let scene =
         Scene::parse(include_str!("../../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
     let folder = Scratch(std::env::temp_dir().join(format!("stribeck-quick-{}", std::process::id())));

@@ -201,7 +201,7 @@ fn analytic_bouncing_disc() {
 }
 
 #[test]
-fn analytic_penetration_is_pressure_over_stiffness() {
+fn example_penetration_is_pressure_over_stiffness() {
     // A column on a floor, in equilibrium: it sinks by ρ g H/k, and the resultant is its weight.
     let (height, width) = (0.01, 0.02);
     for (method, tolerance) in [

@@ -87,7 +87,7 @@ fn converges_nagata_to_an_ellipse_with_order_three() {
 }
 
 #[test]
-fn invariant_corners_stay_sharp() {
+fn example_corners_stay_sharp() {
     // A semicircle over a straight base: the two corners and the base keep their places, the arc bulges.
     let n = 20;
     let mut at: Vec<[f64; 2]> =
@@ -114,7 +114,7 @@ fn invariant_corners_stay_sharp() {
 }
 
 #[test]
-fn invariant_too_coarse_a_polygon_is_refused() {
+fn refuses_too_coarse_a_polygon() {
     let (x, y) = circle(5, 1.0, [0.0; 2], 0.0);
     let slots = (0..5).collect();
     let found = Surface::new("pentagon", slots, true, &x, &y)

@@ -103,7 +103,7 @@ fn analytic_bending_modes_of_a_free_ring() {
 }
 
 #[test]
-fn analytic_free_fall() {
+fn example_free_fall() {
     // Leapfrog sums the fall exactly: from rest half a step before the start, y = g Δt² n (n + 1)/2.
     let mut mesh = Mesh::new();
     let disc = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");

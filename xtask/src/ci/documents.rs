@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_crates_and_architecture_agree() {
+    fn example_crates_and_architecture_agree() {
         let exist = BTreeSet::from(["mesh".to_owned(), "solver".to_owned()]);
         assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
         let complaints = compare_crates("crates/mesh and crates/mush", &exist);
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_glossaries_out_of_order_are_found() {
+    fn example_glossaries_out_of_order_are_found() {
         assert!(compare_terms("**Bore** x\n**cage** y").is_empty());
         assert_eq!(compare_terms("**cage** x\n**Bore** y").len(), 1);
         assert_eq!(compare_terms("**cage** x\n## More\n**Cage** y").len(), 1);
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_commands_that_do_not_exist_are_found() {
+    fn example_commands_that_do_not_exist_are_found() {
         let root = Path::new("/nowhere");
         for fine in [
             "cargo xtask simulate",

@@ -66,13 +66,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_code_is_found_in_fences_and_backticks() {
+    fn example_code_is_found_in_fences_and_backticks() {
         let text = "Run `cargo xtask ci` or `x`.\n```sh\ncargo xtask simulate\n```\nno code";
         assert_eq!(code(text), ["cargo xtask ci", "x", "cargo xtask simulate"]);
     }
 
     #[test]
-    fn analytic_sections_and_their_citations() {
+    fn example_sections_and_their_citations() {
         assert_eq!(section_number("## 4.1 Gap"), Some("4.1"));
         assert_eq!(section_number("### §12. Statics"), Some("12"));
         assert_eq!(section_number("## Contact"), None);
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_terms_of_a_glossary() {
+    fn example_terms_of_a_glossary() {
         let text =
             "# Words\n**bore** a hole\n- **cage** a ring\n## More\n| **apex** | top |\nplain **bold** text";
         assert_eq!(terms(text), [vec![], vec!["bore", "cage"], vec!["apex"]]);

@@ -70,7 +70,7 @@ mod tests {
     use super::word_of_bearings;
 
     #[test]
-    fn invariant_words_are_found_in_prose_and_identifiers() {
+    fn example_words_are_found_in_prose_and_identifiers() {
         for line in
             ["the rollers turn", "let roller_count = 1;", "struct CageBody;", "const ROLLER: f64", "Spalls!"]
         {
