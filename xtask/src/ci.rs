@@ -1,9 +1,12 @@
 //! `cargo xtask ci`: everything that must hold before a change is accepted.
 
+mod code_map;
 mod documents;
 mod layers;
 mod markdown;
+mod packages;
 mod sources;
+mod tests;
 mod validation;
 
 use std::path::Path;
@@ -24,13 +27,16 @@ pub(crate) struct Options {
 /// One check: its name, and what is wrong (nothing, when all is well).
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
-const CHECKS: [Check; 7] = [
+const CHECKS: [Check; 10] = [
     ("crates depend on each other in one direction", layers::check),
     ("only bearing and above know bearings", sources::check_words),
     ("ARCHITECTURE names every crate", documents::check_architecture),
+    ("ARCHITECTURE names files and tests that exist, and every source file", code_map::check),
     ("THEORY has every section that code cites", documents::check_citations),
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
     ("commands in the documents exist", documents::check_commands),
+    ("tests have a prefix, and a source where they need one", tests::check),
+    ("crates can be published", packages::check),
     ("VALIDATION says what the tests say", validation::check),
 ];
 
