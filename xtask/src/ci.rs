@@ -27,9 +27,10 @@ pub(crate) struct Options {
 /// One check: its name, and what is wrong (nothing, when all is well).
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
-const CHECKS: [Check; 10] = [
+const CHECKS: [Check; 11] = [
     ("crates depend on each other in one direction", layers::check),
     ("only bearing and above know bearings", sources::check_words),
+    ("libraries never print and never read the clock", sources::check_silence),
     ("ARCHITECTURE names every crate", documents::check_architecture),
     ("ARCHITECTURE names files and tests that exist, and every source file", code_map::check),
     ("THEORY has every section that code cites", documents::check_citations),

@@ -151,6 +151,7 @@ mod tests {
     }
 
     /// The paper's bearing with the counts of its 0.5 mm mesh.
+    /// Source: Singh et al. 2014, table 1; THEORY §5.2.
     #[test]
     fn analytic_paper_events_and_lines() {
         // Entries and exits of rollers 1 to 3 computed from Table 1 apart from this program [ms].

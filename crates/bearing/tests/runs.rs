@@ -95,6 +95,7 @@ fn last_angle_deg(run: &Run, roller: usize) -> f64 {
 
 /// The preloaded bearing rolls: the cage turns at f_s·D_i/(D_i + D_o), the rollers carry load and weight, the energy
 /// ledger closes.
+/// Source: THEORY §5.1, rolling without slip.
 #[test]
 fn analytic_bearing_rolls_and_carries_its_load() {
     // Cage, load and ledger within 1 % each: what the project asks of the full scene too. On a 2 mm mesh the cage runs

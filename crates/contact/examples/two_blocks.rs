@@ -1,5 +1,6 @@
-//! A block hits an equal one at rest: they part after the time in which a wave runs to the far end and back, and the momentum
-//! goes over whole (Goldsmith, *Impact*, §3.1). Printed for both ways of placing contact, on finer and finer meshes.
+//! A block hits an equal one at rest: they part after the time in which a wave runs to the far end and back, 2L/c, and the
+//! momentum goes over whole (Johnson, *Contact Mechanics*, 1985, §11.1). Printed for both ways of placing contact, on finer
+//! and finer meshes.
 //!
 //! `cargo run --release -p stribeck-contact --example two_blocks`
 

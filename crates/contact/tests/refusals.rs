@@ -27,6 +27,7 @@ fn refuses_impossible_laws() {
     assert!(law.with_friction(0.0).and_then(|l| l.with_damping(0.0, 1.0)).is_ok());
 }
 
+/// Source: THEORY §4.2.
 #[test]
 fn analytic_damping_of_two_equal_layers() {
     // Two masses m/A on one spring k/A have the reduced mass m/2: critical damping 2 √(k m/2) per area.

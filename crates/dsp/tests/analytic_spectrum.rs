@@ -47,6 +47,7 @@ fn analytic_window_widths() {
     assert!((Window::Hann.width_6db_bins(len).unwrap() - 2.0).abs() < 1e-12);
 }
 
+/// Source: Harris 1978.
 #[test]
 fn analytic_window_response_is_the_transform_of_its_samples() {
     const ROUNDING: f64 = 1e-13;
@@ -136,6 +137,7 @@ fn example_peak_on_a_flank_says_so() {
     assert!((flank.frequency_hz - 4680.0).abs() < 0.1, "{flank:?}");
 }
 
+/// Source: Welch 1967; THEORY §7.1.
 #[test]
 fn analytic_density_of_white_noise() {
     // Variance 1/12 spread over half the sample rate, 500 Hz. 399 overlapping Hann segments leave 6 % in each

@@ -305,6 +305,7 @@ mod tests {
 
     /// A plane wave that alternates from column to column has ω² = 4 in endless squares, free corners make a hundredth
     /// more of it, and one by one squares have 5.7.
+    /// Source: THEORY §2.4.
     #[test]
     fn analytic_squares_vibrate_as_the_grid_wave() {
         let grid = Rectangle { x0: 0.0, y0: 0.0, width: 16.0, height: 16.0, columns: 16, rows: 16 };

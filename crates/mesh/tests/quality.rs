@@ -78,6 +78,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The closed form is the eigenvalue of the element, for any shape and place.
+    /// Source: THEORY §2.4.
     #[test]
     fn analytic_length_is_the_eigenvalue(
         shift in prop::array::uniform8(-0.3_f64..0.3),

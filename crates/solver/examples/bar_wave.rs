@@ -1,7 +1,7 @@
 //! A pressure wave runs along a bar: its speed on finer and finer meshes against √((λ + 2µ)/ρ).
 //!
 //! The bar is struck at its left end with a constant pressure. Its front passes the middle of the bar when the particles
-//! there have half the speed p/(ρc) of those behind it (Graff, *Wave Motion in Elastic Solids*, §2.1).
+//! there have half the speed p/(ρc) of those behind it (Achenbach, *Wave Propagation in Elastic Solids*, 1973, §1.3).
 //!
 //! `cargo run --release -p stribeck-solver --example bar_wave`
 

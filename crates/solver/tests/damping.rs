@@ -32,6 +32,7 @@ fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
     [now.mechanical(), d.heat.at_last_positions()]
 }
 
+/// Source: THEORY §2.6.
 #[test]
 fn analytic_mass_damping_brakes_a_flight() {
     // v = v₀ exp(−α t), relative to rest.
@@ -46,6 +47,7 @@ fn analytic_mass_damping_brakes_a_flight() {
     assert_close(d.rigid_motion(&all(&d)).velocity[0], expected, 1.1 * share, "speed");
 }
 
+/// Source: THEORY §2.6.
 #[test]
 fn analytic_mass_damping_decays_a_vibration() {
     // A mode of a lightly damped oscillator falls as exp(−α t/2), its energy as exp(−α t), whatever its frequency. The bar
@@ -126,6 +128,7 @@ fn conserves_rigid_motion_under_relative_damping() {
     assert_close(heat, vibration, 0.01, "heat of damping");
 }
 
+/// Source: THEORY §2.6.
 #[test]
 fn analytic_mass_damping_on_an_orbit_takes_the_velocity_across_it() {
     // A disc half a metre from the origin runs around it, spins and drifts outwards. Running and spin stay; the drift,

@@ -89,22 +89,19 @@ pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// README, CONTRIBUTING and what lies in `docs/`.
+/// README, CONTRIBUTING, what lies in `docs/` and `docs/notes/`, and the README of every crate.
 fn documents(root: &Path) -> Result<Vec<String>> {
-    let mut names = vec!["README.md".to_owned()];
-    for name in ["CONTRIBUTING.md"] {
-        if root.join(name).exists() {
-            names.push(name.to_owned());
-        }
+    let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
+    for folder in ["docs", "docs/notes"] {
+        let entries =
+            std::fs::read_dir(root.join(folder)).with_context(|| format!("cannot read {folder}"))?;
+        let files =
+            entries.flatten().map(|entry| format!("{folder}/{}", entry.file_name().to_string_lossy()));
+        names.extend(files.filter(|name| name.ends_with(".md")));
     }
-    let entries = std::fs::read_dir(root.join("docs")).context("cannot read docs/")?;
-    let mut docs: Vec<String> = entries
-        .flatten()
-        .map(|entry| format!("docs/{}", entry.file_name().to_string_lossy()))
-        .filter(|name| name.ends_with(".md"))
-        .collect();
-    docs.sort();
-    names.append(&mut docs);
+    names.extend(layers::crates(root)?.iter().map(|name| format!("crates/{name}/README.md")));
+    names.retain(|name| root.join(name).exists());
+    names.sort();
     Ok(names)
 }
 
