@@ -27,7 +27,7 @@ pub(crate) struct Options {
 /// One check: its name, and what is wrong (nothing, when all is well).
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
-const CHECKS: [Check; 11] = [
+const CHECKS: [Check; 12] = [
     ("crates depend on each other in one direction", layers::check),
     ("only bearing and above know bearings", sources::check_words),
     ("libraries never print and never read the clock", sources::check_silence),
@@ -35,6 +35,7 @@ const CHECKS: [Check; 11] = [
     ("ARCHITECTURE names files and tests that exist, and every source file", code_map::check),
     ("THEORY has every section that code cites", documents::check_citations),
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
+    ("links in the documents lead somewhere", documents::check_links),
     ("commands in the documents exist", documents::check_commands),
     ("tests have a prefix, and a source where they need one", tests::check),
     ("crates can be published", packages::check),

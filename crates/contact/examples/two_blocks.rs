@@ -17,11 +17,16 @@ const SPEED: f64 = 2.0;
 fn main() -> Result<(), Box<dyn Error>> {
     println!("columns   contact at         time/(2L/c)   speeds after [m/s]   energy lost");
     for columns in [25, 50, 100] {
-        for (name, method) in [("nodes", Method::Collocated), ("3 points a facet", Method::Integrated { points: 3 })] {
+        for (name, method) in
+            [("nodes", Method::Collocated), ("3 points a facet", Method::Integrated { points: 3 })]
+        {
             let after = collide(columns, method)?;
             let [first, second] = after.speeds;
             let lost = 100.0 * after.energy_lost;
-            println!("{columns:7}   {name:16}   {:11.3}   {first:8.3} {second:9.3}   {lost:9.2} %", after.contact_time);
+            println!(
+                "{columns:7}   {name:16}   {:11.3}   {first:8.3} {second:9.3}   {lost:9.2} %",
+                after.contact_time
+            );
         }
     }
     Ok(())
@@ -39,7 +44,8 @@ struct Outcome {
 
 fn collide(columns: usize, method: Method) -> Result<Outcome, Box<dyn Error>> {
     let steel = Elastic::new(208e9, 0.3, 7800.0)?;
-    let block = Rectangle { x0: 0.0, y0: 0.0, width: LENGTH, height: 0.01, columns, rows: columns / 10 + 1 }.part()?;
+    let block = Rectangle { x0: 0.0, y0: 0.0, width: LENGTH, height: 0.01, columns, rows: columns / 10 + 1 }
+        .part()?;
     let mut mesh = Mesh::new();
     let moving = mesh.add("moving block", &block.translated(-LENGTH - 1e-6, 0.0));
     let resting = mesh.add("resting block", &block);
@@ -60,8 +66,7 @@ fn collide(columns: usize, method: Method) -> Result<Outcome, Box<dyn Error>> {
     let bodies = bodies.map(|slots| slots.collect::<Vec<u32>>());
 
     let (x, y) = (&dynamics.state.x, &dynamics.state.y);
-    let surfaces =
-        vec![Surface::new("right", right, false, x, y)?, Surface::new("left", left, false, x, y)?];
+    let surfaces = vec![Surface::new("right", right, false, x, y)?, Surface::new("left", left, false, x, y)?];
     // As stiff as one cell.
     let law = Law::penalty(steel.plane_strain_modulus() * columns as f64 / LENGTH)?;
     let pair = PairSpec { first: 0, second: 1, law, method, sides: Sides::Both };

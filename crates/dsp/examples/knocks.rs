@@ -24,7 +24,10 @@ fn main() -> Result<()> {
     let spectrum = Welch::for_grid(SAMPLE_RATE_HZ, samples, 10.0)?.estimate(&signal)?;
     let line = spectrum.sinusoid(&spectrum.peak(1000.0, 20_000.0)?)?;
     let resolution_hz = spectrum.resolution().resolution_hz;
-    println!("loudest line    {:8.1} Hz, {:.2} m/s², to {resolution_hz:.0} Hz", line.frequency_hz, line.amplitude);
+    println!(
+        "loudest line    {:8.1} Hz, {:.2} m/s², to {resolution_hz:.0} Hz",
+        line.frequency_hz, line.amplitude
+    );
 
     // Forwards and backwards, so that the knocks stay where they were.
     let quiet = Notch::new(SAMPLE_RATE_HZ, line.frequency_hz, 15.0)?.filtfilt(&signal)?;
@@ -41,7 +44,10 @@ fn main() -> Result<()> {
         let near = KNOCK_HZ * f64::from(multiple);
         let peak = rates.peak(near - 20.0, near + 20.0)?;
         let above_db = rates.stands_above_db(&peak, near - 40.0, near + 40.0, 8.0)?;
-        println!("  knocks {multiple} ×   {:8.1} Hz, {above_db:.0} dB above its surroundings", peak.frequency_hz);
+        println!(
+            "  knocks {multiple} ×   {:8.1} Hz, {above_db:.0} dB above its surroundings",
+            peak.frequency_hz
+        );
     }
     Ok(())
 }

@@ -51,12 +51,20 @@
 //!
 //! # Where to look
 //!
-//! | Question | File |
+//! | To … | use |
 //! |---|---|
-//! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
-//! | How is a shape divided? | `annulus.rs`, `grading.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
-//! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
-//! | How are bad cells made better? | `relax.rs` one by one, `fair.rs` and `patch.rs` as a whole |
+//! | make a ring, cut a groove into it, make it coarser away from one circle | [`Annulus`], [`Groove`], [`Grading`] |
+//! | make a disc with a given number of facets | [`Disc`] |
+//! | make a block: plain, with a seat for a ring, between two arcs | [`Rectangle`], [`SeatedBlock`], [`ArcBlock`] |
+//! | turn a body, move it, ask for its area, its surfaces, its centre | [`Part`] |
+//! | put bodies together, know where their nodes went | [`Mesh::add`], [`Placed`] |
+//! | judge elements, know the critical time step that they allow | [`Quality`], [`characteristic_length`] |
+//! | make bad cells better | [`relax`] |
+//! | see it in ParaView | [`vtu::write`] |
+//! | load nodes as they lie in memory | [`find_strips`] |
+//!
+//! Bodies from another mesher need no generator: the fields of [`Part`] are public. `examples/ring_and_disc.rs` prints
+//! the quality of two bodies and writes them to a file.
 
 mod mesh;
 mod part;

@@ -89,6 +89,18 @@ pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
+/// Every file that a document links to exists.
+pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in documents(root)? {
+        let text = read(root, &name)?;
+        let folder = root.join(&name).parent().map_or_else(|| root.to_owned(), Path::to_owned);
+        let missing = markdown::links(&text).into_iter().filter(|target| !folder.join(target).exists());
+        complaints.extend(missing.map(|target| format!("{name} links to `{target}`, which is not there")));
+    }
+    Ok(complaints)
+}
+
 /// README, CONTRIBUTING, what lies in `docs/` and `docs/notes/`, and the README of every crate.
 fn documents(root: &Path) -> Result<Vec<String>> {
     let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
