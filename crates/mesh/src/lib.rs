@@ -49,7 +49,7 @@
 //! # }
 //! ```
 //!
-//! # Where to look
+//! # What to use
 //!
 //! | To … | use |
 //! |---|---|
@@ -59,12 +59,20 @@
 //! | turn a body, move it, ask for its area, its surfaces, its centre | [`Part`] |
 //! | put bodies together, know where their nodes went | [`Mesh::add`], [`Placed`] |
 //! | judge elements, know the critical time step that they allow | [`Quality`], [`characteristic_length`] |
-//! | make bad cells better | [`relax`] |
 //! | see it in ParaView | [`vtu::write`] |
 //! | load nodes as they lie in memory | [`find_strips`] |
 //!
 //! Bodies from another mesher need no generator: the fields of [`Part`] are public. `examples/ring_and_disc.rs` prints
 //! the quality of two bodies and writes them to a file.
+//!
+//! # Where to look
+//!
+//! | Question | File |
+//! |---|---|
+//! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
+//! | How is a shape divided? | `annulus.rs`, `grading.rs`, `groove.rs`, `disc.rs` (`core_grid.rs`, `gap.rs`), `rectangle.rs`, … |
+//! | What is the size of an element? | `characteristic.rs`, `quality.rs` |
+//! | How are bad cells made better? | `relax.rs` one by one, `fair.rs` and `patch.rs` as a whole |
 
 mod mesh;
 mod part;
