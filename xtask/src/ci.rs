@@ -6,7 +6,7 @@ mod layers;
 mod markdown;
 mod packages;
 mod sources;
-mod tests;
+mod test_names;
 mod validation;
 
 use std::path::Path;
@@ -37,7 +37,7 @@ const CHECKS: [Check; 12] = [
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
     ("links in the documents lead somewhere", documents::check_links),
     ("commands in the documents exist", documents::check_commands),
-    ("tests have a prefix, and a source where they need one", tests::check),
+    ("tests have a prefix, and a source where they need one", test_names::check),
     ("crates can be published", packages::check),
     ("VALIDATION says what the tests say", validation::check),
 ];

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::{layers, markdown, sources, tests};
+use super::{layers, markdown, sources, test_names};
 
 /// Files that every crate may have; ARCHITECTURE says once what is in them.
 const EVERYWHERE: [&str; 4] = ["lib.rs", "error.rs", "mod.rs", "tests.rs"];
@@ -23,7 +23,7 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>> {
     let mut folders: Vec<String> =
         layers::crates(root)?.iter().map(|name| format!("crates/{name}")).collect();
     folders.push("xtask".to_owned());
-    let tests: BTreeSet<String> = tests::all(root)?.into_iter().map(|test| test.name).collect();
+    let tests: BTreeSet<String> = test_names::all(root)?.into_iter().map(|test| test.name).collect();
     Ok(compare(&text, &files, &folders, &tests))
 }
 
@@ -58,7 +58,7 @@ fn compare(
                 } else if !known(name) && !files.iter().any(|file| file.ends_with(&format!("/{name}"))) {
                     complaints.push(format!("ARCHITECTURE names `{name}`: there is no such file"));
                 }
-            } else if tests::has_prefix(name) && !tests.contains(name) {
+            } else if test_names::has_prefix(name) && !tests.contains(name) {
                 complaints.push(format!("ARCHITECTURE names the test `{name}`: there is none"));
             }
         }
@@ -74,7 +74,7 @@ fn compare(
 }
 
 #[cfg(test)]
-mod checks {
+mod tests {
     use super::*;
 
     fn set(names: &[&str]) -> BTreeSet<String> {
