@@ -53,7 +53,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
             println!("         {complaint}");
         }
         if !complaints.is_empty() {
-            failed.push(name.to_owned());
+            failed.push((*name).to_owned());
         }
     }
     if !options.quick {
