@@ -1,10 +1,13 @@
 //! `cargo xtask ci`: everything that must hold before a change is accepted.
 
 mod circles;
+mod code_map;
 mod documents;
 mod layers;
 mod markdown;
+mod packages;
 mod sources;
+mod test_names;
 mod validation;
 
 use std::path::Path;
@@ -25,14 +28,19 @@ pub(crate) struct Options {
 /// One check: its name, and what is wrong (nothing, when all is well).
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
-const CHECKS: [Check; 8] = [
+const CHECKS: &[Check] = &[
     ("crates depend on each other in one direction", layers::check),
     ("modules use each other in one direction", circles::check),
-    ("only bearing and above know bearings", sources::check_words),
+    ("only scene, bearing and above know bearings", sources::check_words),
+    ("libraries never print and never read the clock", sources::check_silence),
     ("ARCHITECTURE names every crate", documents::check_architecture),
+    ("ARCHITECTURE names files and tests that exist, and every source file", code_map::check),
     ("THEORY has every section that code cites", documents::check_citations),
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
+    ("links in the documents lead somewhere", documents::check_links),
     ("commands in the documents exist", documents::check_commands),
+    ("tests have a prefix, and a source where they need one", test_names::check),
+    ("crates can be published", packages::check),
     ("VALIDATION says what the tests say", validation::check),
 ];
 
@@ -47,7 +55,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
             println!("         {complaint}");
         }
         if !complaints.is_empty() {
-            failed.push(name.to_owned());
+            failed.push((*name).to_owned());
         }
     }
     if !options.quick {

@@ -111,7 +111,7 @@ mod tests {
     use super::check_names;
 
     #[test]
-    fn invariant_unknown_peers_are_refused_with_those_that_exist() {
+    fn refuses_unknown_peers_with_those_that_exist() {
         assert!(check_names(&[]).is_ok());
         assert!(check_names(&["numba".to_owned(), "scipy".to_owned()]).is_ok());
         assert!(check_names(&["nastran".to_owned()]).is_err_and(|e| e.to_string().contains("akantu")));

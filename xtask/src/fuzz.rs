@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_generated_bad_inputs_get_an_answer() {
+    fn survives_generated_bad_inputs_with_an_answer() {
         let code = run(&Options { cases: 800, seed: 7, kind: None }).expect("a folder for temporary files");
         assert_eq!(code, ExitCode::SUCCESS);
     }

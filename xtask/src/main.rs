@@ -53,7 +53,7 @@ mod tests {
     use super::Cli;
 
     #[test]
-    fn invariant_the_command_line_is_consistent() {
+    fn example_the_command_line_is_consistent() {
         Cli::command().debug_assert();
     }
 }

@@ -5,7 +5,7 @@
 use std::process::Command;
 
 #[test]
-fn invariant_random_kills_leave_runs_that_end_with_the_same_bytes() {
+fn survives_random_kills_with_the_same_bytes() {
     // Five here; `cargo xtask study kills` does a hundred.
     let output = Command::new(env!("CARGO_BIN_EXE_xtask"))
         .args(["study", "kills", "--kills", "5", "--duration-ms", "0.6", "--no-page"])

@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_knocks_show_their_rate_and_its_multiples() {
+    fn example_knocks_show_their_rate_and_its_multiples() {
         let (_, finding) = analyse(&knocks(0.4), 1e5, &family()).unwrap().unwrap();
         assert!(finding.periods > 36.0);
         for line in &finding.lines {
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_a_short_record_says_why_there_is_none() {
+    fn refuses_a_short_record_and_says_why() {
         let why = analyse(&knocks(0.03), 1e5, &family()).unwrap().unwrap_err();
         assert!(why.contains("2.7 periods"), "{why}");
         assert!(analyse(&[], 1e5, &family()).unwrap().is_err());

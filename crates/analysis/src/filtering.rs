@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_a_short_record_gives_no_attenuation() {
+    fn refuses_an_attenuation_of_a_short_record() {
         let filter = Filter::new(1e5, PAPER_CENTRE_HZ).unwrap();
         let found = filter.finding(&[1.0; 50], &[1.0; 50]);
         assert_eq!((found.attenuation_db, found.attenuation_settled_db), (None, None));

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_level_of_a_sine() {
+    fn example_level_of_a_sine() {
         let sine: Vec<f64> =
             (0..1000).map(|n| 50.0 * (std::f64::consts::TAU * 0.05 * n as f64).sin()).collect();
         let found = level(&sine, &[0..500, 500..1000]).unwrap();

@@ -80,3 +80,7 @@ pub mod report;
 mod error;
 
 pub use error::Error;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_running_mean_removes_a_whole_period() {
+    fn example_running_mean_removes_a_whole_period() {
         let tone: Vec<f64> =
             (0..400).map(|n| 10.0 + (std::f64::consts::TAU * n as f64 / 20.0).sin()).collect();
         assert!(running_mean(&tone, 20).iter().all(|v| (v - 10.0).abs() < 1e-12));

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_few_facets_need_more_friction_than_the_paper_has() {
+    fn example_few_facets_need_more_friction_than_the_paper_has() {
         // THEORY §5.4: two cosines of amplitude h₁ g under the load Q are climbed by a couple 2 N_v Q h₁ g, against 2µQr.
         let of = |facets| {
             let mut scene = scene(facets, RollerCopies::Translated);
@@ -172,7 +172,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
+    fn example_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
         // Rollers at 41.7 Hz against a cage of 3.75 Hz, BPFO 90 Hz. 112 facets are 4 2/3 a roller: a third of BPFO is missing
         // to five. 120 are five, and copies that turn with the pattern have no phase at all.
         let at = |facets, copies| pattern_hz(&scene(facets, copies), 41.7, 3.75) - facets as f64 * 41.7;
@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_phases_follow_copies_and_parity() {
+    fn example_phases_follow_copies_and_parity() {
         let of = |facets, copies| Lumped::of(&scene(facets, copies)).unwrap();
         // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded rollers not all of
         // it), 120 = 5·24 are all in step.

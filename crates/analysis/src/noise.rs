@@ -155,7 +155,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_ripple_leaves_a_cubic_alone_and_finds_a_sine() {
+    fn example_ripple_leaves_a_cubic_alone_and_finds_a_sine() {
         let cubic = |t: f64| 1000.0 + 50.0 * t - 30.0 * t * t + 20.0 * t * t * t;
         let force = |ripple: f64| -> Vec<f64> {
             (0..500).map(|i| cubic(i as f64 / 500.0) + ripple * (0.9 * i as f64).sin()).collect()
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_spectrum_of_a_sine() {
+    fn example_spectrum_of_a_sine() {
         let sine: Vec<f64> = (0..1000)
             .map(|i| 3.0 * STANDARD_GRAVITY * (std::f64::consts::TAU * 0.05 * i as f64).sin())
             .collect();

@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_plan_of_the_paper() {
+    fn example_plan_of_the_paper() {
         let mut scene = Scene::default();
         scene.mesh.size_mm = 2.0;
         scene.mesh.roller_facets = 112;

@@ -152,6 +152,7 @@ mod tests {
     }
 
     /// The paper's bearing with the counts of its 0.5 mm mesh.
+    /// Source: Singh et al. 2014, table 1; THEORY §5.2.
     #[test]
     fn analytic_paper_events_and_lines() {
         // Entries and exits of rollers 1 to 3 computed from Table 1 apart from this program [ms].
@@ -172,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_static_curve_has_a_hole_and_relieving_neighbours() {
+    fn example_static_curve_has_a_hole_and_relieving_neighbours() {
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
         let prediction = Prediction::of(&scene, &mesh(1257, 1030));
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_a_sound_bearing_has_no_passage() {
+    fn example_a_sound_bearing_has_no_passage() {
         let scene = Scene { defect: None, ..Scene::default() };
         let prediction = Prediction::of(&scene, &mesh(0, 0));
         assert!(prediction.passages.is_empty() && prediction.defect.is_none());

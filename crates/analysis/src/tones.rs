@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_a_tone_in_noise_is_measured_and_merged_honestly() {
+    fn example_a_tone_in_noise_is_measured_and_merged() {
         // Uniform noise of ±10 g has a density of 33.3/50 000 g²/Hz: under 50 Hz it moves 40 g by about 0.4 g.
         const LEVEL_TOLERANCE_G: f64 = 1.5;
         let tones = measure("side", &paper_lines(), &spectrum_of(&tone_in_noise(3000))).unwrap();
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_a_long_record_splits_the_lines() {
+    fn example_a_long_record_splits_the_lines() {
         // 0.3 s resolve 3.3 Hz: the line 2.3 Hz above the prediction belongs to the rollers alone.
         let tones = measure("side", &paper_lines(), &spectrum_of(&tone_in_noise(30_000))).unwrap();
         assert!(tones[0].unresolved_from.is_empty());
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_recorded_motion_claims_a_line_that_slip_has_moved() {
+    fn example_recorded_motion_claims_a_line_that_slip_has_moved() {
         // Rollers 1 % slower than rolling: the line is out of reach of the prediction without slip.
         let mut lines = harmonics(&[("roller vertices".into(), 4721.2)], 1, 5e4);
         let signal = tone_in_noise(30_000);
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_silence_measures_nothing() {
+    fn example_silence_measures_nothing() {
         let tones = measure("side", &paper_lines(), &spectrum_of(&vec![0.0; 3000])).unwrap();
         assert!(tones.iter().all(|t| t.measured_hz.is_none() && t.level_g.is_none()));
         assert_eq!((dominant(&tones, "side"), clearest(&tones)), (None, None));

@@ -90,7 +90,7 @@ fn title_of(browser: &Path, page: &Path, profile: &Path, dark: bool) -> String {
 }
 
 #[test]
-fn invariant_a_browser_draws_every_figure_without_an_error() {
+fn example_a_browser_draws_every_figure_without_an_error() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser");
     synthetic::write(&folder.0, Status::Complete, 3000);

@@ -32,7 +32,7 @@ fn whole(name: &str) -> (Scratch, Summary) {
 }
 
 #[test]
-fn analytic_every_number_of_the_synthetic_run_comes_back() {
+fn roundtrip_every_number_of_the_synthetic_run() {
     // The slope of least squares of exact data is exact to rounding.
     const EXACT: f64 = 1e-6;
     // The median moves a step by less than a tenth of the facet period of 0.21 ms; a slip of 0.1 % moves nothing more.
@@ -59,7 +59,7 @@ fn analytic_every_number_of_the_synthetic_run_comes_back() {
 }
 
 #[test]
-fn analytic_tone_levels_and_notch_of_the_synthetic_run() {
+fn example_tone_levels_and_notch_of_the_synthetic_run() {
     let (_folder, summary) = whole("levels");
     let tone = &summary.tones[0];
     assert_eq!((tone.sensor.as_str(), tone.name.as_str(), tone.harmonic), ("side", "roller_vertices", 1));
@@ -94,7 +94,7 @@ fn analytic_tone_levels_and_notch_of_the_synthetic_run() {
 }
 
 #[test]
-fn invariant_the_summary_has_its_stable_names() {
+fn golden_the_summary_has_its_stable_names() {
     let (folder, summary) = whole("names");
     let text = read(&folder.0, "summary.json");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
@@ -151,7 +151,7 @@ fn invariant_the_summary_has_its_stable_names() {
 }
 
 #[test]
-fn invariant_the_page_holds_every_figure_and_needs_no_network() {
+fn example_the_page_holds_every_figure_and_needs_no_network() {
     let (folder, _) = whole("page");
     let page = read(&folder.0, "report.html");
     assert!((page.len() as u64) < PAGE_LIMIT_BYTES, "{} bytes", page.len());
@@ -244,7 +244,7 @@ fn invariant_a_run_whose_mesh_cannot_be_read_has_a_report_without_its_pictures()
 }
 
 #[test]
-fn invariant_every_number_of_the_paper_has_a_row_without_a_blank() {
+fn example_every_number_of_the_paper_has_a_row_without_a_blank() {
     let (folder, summary) = whole("paper");
     let page = read(&folder.0, "report.html");
     for row in &summary.paper {
@@ -313,7 +313,7 @@ fn invariant_every_number_of_the_paper_has_a_row_without_a_blank() {
 }
 
 #[test]
-fn invariant_the_ledger_tells_mesh_from_physics() {
+fn example_the_ledger_tells_mesh_from_physics() {
     use stribeck_analysis::artefacts::Family;
     let (_, summary) = whole("ledger");
     let of = |family| summary.artefacts.iter().filter(move |a| a.family == family);
@@ -335,7 +335,7 @@ fn invariant_the_same_directory_gives_the_same_bytes() {
 }
 
 #[test]
-fn invariant_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
+fn example_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
     let folder = Scratch::new("diverged");
     // 4 ms: roller 1 has entered the defect and not left it.
     synthetic::write(&folder.0, Status::Diverged, 400);
@@ -350,7 +350,7 @@ fn invariant_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
 }
 
 #[test]
-fn invariant_a_trace_cut_inside_a_row_or_of_no_row_is_reported() {
+fn survives_a_trace_cut_inside_a_row_or_of_no_row() {
     for (name, samples, cut) in [("cut", 500, 12_345), ("none", 0, 0), ("one", 1, 0)] {
         let folder = Scratch::new(name);
         synthetic::write(&folder.0, Status::Interrupted, samples);
@@ -368,7 +368,7 @@ fn invariant_a_trace_cut_inside_a_row_or_of_no_row_is_reported() {
 }
 
 #[test]
-fn invariant_samples_after_a_bad_number_are_left_out() {
+fn survives_samples_after_a_bad_number() {
     let folder = Scratch::new("nan");
     synthetic::write(&folder.0, Status::Diverged, 300);
     let trace = folder.0.join("trace.npy");
@@ -384,7 +384,7 @@ fn invariant_samples_after_a_bad_number_are_left_out() {
 }
 
 #[test]
-fn invariant_what_is_no_run_is_refused_with_advice() {
+fn refuses_what_is_no_run_with_advice() {
     let folder = Scratch::new("absent");
     let error = report::write(&folder.0).expect_err("nothing there").to_string();
     assert!(error.contains("is not a run") && error.contains("`scene.ron` is missing"), "{error}");

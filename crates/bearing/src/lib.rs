@@ -11,3 +11,7 @@ mod recorder;
 pub mod simulation;
 mod start;
 mod time_loop;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

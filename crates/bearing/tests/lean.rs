@@ -23,7 +23,7 @@ fn assembled(scene: &Scene) -> Assembly {
 
 /// 30 % of the elements is what a lean scene may have at most; facets that roll stay what they are.
 #[test]
-fn invariant_lean_scene_has_a_quarter_of_the_elements() {
+fn example_lean_scene_has_a_quarter_of_the_elements() {
     const SHARE: f64 = 0.30;
     let (uniform, lean) = (assembled(&Scene::default()), assembled(&lean()));
     let (before, after) = (uniform.mesh_info(), lean.mesh_info());
@@ -45,7 +45,7 @@ fn invariant_lean_scene_has_a_quarter_of_the_elements() {
 /// No coarse cell, no transition and no column of the seat holds the time step back; the third layer along the rims of
 /// rollers, whose cells become narrower inwards, costs 3 %.
 #[test]
-fn invariant_lean_scene_keeps_the_critical_step() {
+fn example_lean_scene_keeps_the_critical_step() {
     let of = |scene: &Scene| {
         let machine = assembled(scene).machine(scene, 1).expect("a model that can be solved");
         machine.dynamics.critical_time_step(&[&machine.contacts], 0.0).time_step
@@ -58,7 +58,7 @@ fn invariant_lean_scene_keeps_the_critical_step() {
 /// The seat has the nodes of the ring's back and at its ends continues the ring's facets, so that long facets do not
 /// press against the vertices of the other surface.
 #[test]
-fn invariant_seat_and_ring_meet_node_to_node() {
+fn example_seat_and_ring_meet_node_to_node() {
     let lean = assembled(&lean());
     let mesh = &lean.model.mesh;
     let body = |name: &str| mesh.bodies.iter().find(|b| b.name == name).expect("a body of this name");
@@ -87,7 +87,7 @@ fn invariant_seat_and_ring_meet_node_to_node() {
 
 /// A ring too thin for the transition keeps its fine cells; the scene stays valid.
 #[test]
-fn invariant_thin_rings_stay_fine() {
+fn example_thin_rings_stay_fine() {
     let mut scene = Scene::default();
     scene.mesh.size_mm = 2.0;
     scene.mesh.roller_facets = 88;
@@ -105,7 +105,7 @@ fn invariant_thin_rings_stay_fine() {
 
 /// `--set mesh.grading.fine_layers=1` grades a scene that was not, with the default for the other field.
 #[test]
-fn invariant_an_override_opens_the_grading() {
+fn example_an_override_opens_the_grading() {
     let set = |what: &str| Scene::default().with_overrides(&[what]).expect("a field of a scene").mesh.grading;
     let default = GradingScene::default();
     assert_eq!(set("mesh.grading.fine_layers=1"), Some(GradingScene { fine_layers: 1, ..default }));
@@ -114,7 +114,7 @@ fn invariant_an_override_opens_the_grading() {
 }
 
 #[test]
-fn invariant_refusals_name_field_and_remedy() {
+fn refuses_with_field_and_remedy() {
     let refused =
         |text: &str| Scene::parse(text, "scene.ron").expect_err("an impossible grading").to_string();
     for (text, parts) in [
@@ -152,7 +152,7 @@ fn first_forces(scene: &Scene, folder: &str) -> Vec<f64> {
 /// Static load distribution, uniform and graded: rings that are coarse outside and rollers that are coarse inside must
 /// share the load as fine ones do.
 #[test]
-fn peer_graded_bearing_carries_its_load_like_the_uniform_one() {
+fn example_graded_bearing_carries_its_load_like_the_uniform_one() {
     // Of the largest force. What the project asks of a lean scene is 5 %; compliance of the coarse cells costs less.
     const TOLERANCE: f64 = 0.02;
     let mut scene = Scene::default();

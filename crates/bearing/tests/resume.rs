@@ -215,7 +215,7 @@ fn copy(from: &Path, to: &Path) {
 /// What `kill -9` leaves is what lies in the folder at that moment: the run goes on from the last checkpoint, of the start
 /// or of the hundredth sample, and forgets what was written after it.
 #[test]
-fn invariant_a_killed_run_goes_on_from_its_last_checkpoint() {
+fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
     let scene = coarse(1.25);
     let whole = Folder::new();
     let killed = [(3, Folder::new()), (104, Folder::new())];
@@ -242,7 +242,7 @@ fn invariant_a_killed_run_goes_on_from_its_last_checkpoint() {
 
 /// A checkpoint that was cut off, at any length, is refused with advice and the traces are left alone.
 #[test]
-fn invariant_a_checkpoint_cut_anywhere_is_refused_and_never_panics() {
+fn refuses_a_checkpoint_cut_anywhere() {
     let folder = broken_off();
     let (whole, trace) = (folder.bytes("checkpoint"), folder.bytes("trace.npy"));
     let steps = (whole.len() - HEADER) / 60;
@@ -258,7 +258,7 @@ fn invariant_a_checkpoint_cut_anywhere_is_refused_and_never_panics() {
 
 /// One wrong byte anywhere is noticed.
 #[test]
-fn invariant_a_damaged_checkpoint_is_refused_and_never_panics() {
+fn refuses_a_damaged_checkpoint() {
     let folder = broken_off();
     let whole = folder.bytes("checkpoint");
     let steps = (whole.len() - HEADER) / 60;
@@ -274,7 +274,7 @@ fn invariant_a_damaged_checkpoint_is_refused_and_never_panics() {
 /// Damage under a length and a checksum that fit: what is wrong is found deeper, and gets an answer too. A failure shrinks
 /// to the fewest bytes.
 #[test]
-fn invariant_a_forged_checkpoint_gets_an_answer() {
+fn refuses_a_forged_checkpoint() {
     let folder = broken_off();
     let whole = folder.bytes("checkpoint");
     let dir = RunDir::open(&folder.0).expect("a run");
@@ -305,7 +305,7 @@ fn invariant_a_forged_checkpoint_gets_an_answer() {
 
 /// Every reason has its own words, and says what to do.
 #[test]
-fn analytic_what_cannot_go_on_says_why() {
+fn refuses_what_cannot_go_on_and_says_why() {
     let folder = broken_off();
     let checkpoint = folder.bytes("checkpoint");
     let with = |name: &str, bytes: &[u8]| {
@@ -361,7 +361,7 @@ fn analytic_what_cannot_go_on_says_why() {
 /// Clocks that are set back, jump ahead or stand still change times in `run.json` and nothing else: checkpoints are still
 /// written, and no time runs backwards.
 #[test]
-fn invariant_a_clock_that_jumps_changes_no_sample() {
+fn survives_a_clock_that_jumps() {
     let whole = Folder::new();
     start(&coarse(1.25), 1, &whole, &mut until(0));
     for jump in [-1e9, 1e9, f64::NAN, 0.0] {
@@ -395,7 +395,7 @@ fn invariant_a_clock_that_jumps_changes_no_sample() {
 
 /// Where no checkpoint can be written the run goes on and says so, once.
 #[test]
-fn invariant_a_checkpoint_that_cannot_be_written_costs_a_warning() {
+fn survives_a_checkpoint_that_cannot_be_written() {
     let folder = Folder::new();
     // A folder in the place of the new file stands for a disk that refuses it.
     fs::create_dir_all(folder.file("checkpoint.part")).expect("writable");

@@ -95,6 +95,7 @@ fn last_angle_deg(run: &Run, roller: usize) -> f64 {
 
 /// The preloaded bearing rolls: the cage turns at f_s·D_i/(D_i + D_o), the rollers carry load and weight, the energy
 /// ledger closes.
+/// Source: THEORY §5.1, rolling without slip.
 #[test]
 fn analytic_bearing_rolls_and_carries_its_load() {
     // Cage, load and ledger within 1 % each: what the project asks of the full scene too. On a 2 mm mesh the cage runs
@@ -129,7 +130,7 @@ fn analytic_bearing_rolls_and_carries_its_load() {
 /// The preload leaves equilibrium: before the first roller reaches the defect the vertical force through the rollers
 /// stays near the load, while a load put on at once overshoots by its own size.
 #[test]
-fn invariant_preloaded_start_does_not_ring() {
+fn example_preloaded_start_does_not_ring() {
     // What remains is the facet passing of a coarse polygon.
     const RIPPLE: f64 = 0.2;
     let (info, run) = run(&coarse(0.5), 1);
@@ -142,7 +143,7 @@ fn invariant_preloaded_start_does_not_ring() {
 /// Bearings whose rollers lie loosely while the preload is sought: the rings of the paper's mesh are thin, or nothing but
 /// their weight moves the rollers that carry nothing. Those must not be thrown out.
 #[test]
-fn invariant_thin_and_slow_bearings_find_their_equilibrium() {
+fn example_thin_and_slow_bearings_find_their_equilibrium() {
     let lean = ("lean.ron", include_str!("../../../fixtures/scenes/lean.ron"));
     let quick = ("quick.ron", include_str!("../../../fixtures/scenes/quick.ron"));
     for ((name, text), thickness_mm, speed_rpm) in
@@ -173,7 +174,7 @@ fn invariant_same_bits_with_1_2_and_3_threads() {
 
 /// Stiffness damping shortens the step, its heat closes the ledger, and threads change no bit.
 #[test]
-fn invariant_stiffness_damping_is_paid_and_counted() {
+fn example_stiffness_damping_is_paid_and_counted() {
     /// Of the peak strain energy: what a bearing may miss before it is warned.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
@@ -224,7 +225,7 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
 /// A step above the critical one creates energy: the run stops by itself, says where and what to try, and what it wrote
 /// stays readable.
 #[test]
-fn invariant_diverging_run_stops_and_stays_readable() {
+fn survives_a_run_that_diverges() {
     let mut scene = coarse(2.0);
     scene.solver.time_step_factor = 1.3;
     let (info, run) = run(&scene, 1);
@@ -239,7 +240,7 @@ fn invariant_diverging_run_stops_and_stays_readable() {
 
 /// An interrupted run keeps every sample up to the interruption.
 #[test]
-fn invariant_interrupted_run_keeps_its_samples() {
+fn survives_an_interruption_with_its_samples() {
     let folder = Folder::new();
     let mut samples = 0;
     let info = run_watched(&coarse(2.0), 1, &folder, &mut |p| {

@@ -145,3 +145,7 @@ pub use narrow_phase::{Projection, project};
 pub use points::Method;
 pub use smooth::Smoothing;
 pub use surface::Surface;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

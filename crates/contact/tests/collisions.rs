@@ -98,6 +98,7 @@ fn analytic_two_equal_bars() {
     }
 }
 
+/// Source: 2L/c: Johnson 1985, §11.1.
 #[test]
 fn converges_contact_time_of_bars() {
     let exact = 0.1 / steel().dilatational_speed();
@@ -203,6 +204,7 @@ fn conserves_the_ledger_of_a_collision() {
     }
 }
 
+/// Source: THEORY §2.5: the trapezoidal rule is of second order.
 #[test]
 fn converges_the_ledger_of_a_collision() {
     // What is missing falls with the square of the step: every term is counted over the same span as the others.

@@ -73,6 +73,7 @@ fn block(friction: f64, method: Method, slope: f64) -> OnFloor {
     OnFloor::new(&part, "bottom", law, method, [G * slope.sin(), -G * slope.cos()])
 }
 
+/// Source: Coulomb's law, THEORY §4.3.
 #[test]
 fn analytic_block_slides_to_a_stop() {
     // It stops after v²/(2 µ g), in the time v/(µ g), its energy turned into heat.
@@ -94,6 +95,7 @@ fn analytic_block_slides_to_a_stop() {
     }
 }
 
+/// Source: Coulomb's law, THEORY §4.3.
 #[test]
 fn analytic_block_sticks_below_the_angle_of_friction() {
     // µ = 0.2 holds up to 11.3°.
@@ -115,6 +117,7 @@ fn analytic_block_sticks_below_the_angle_of_friction() {
     }
 }
 
+/// Source: Coulomb's law, THEORY §4.3.
 #[test]
 fn analytic_block_slides_above_the_angle_of_friction() {
     // a = g (sin α − µ cos α).
@@ -139,6 +142,7 @@ fn analytic_block_slides_above_the_angle_of_friction() {
     }
 }
 
+/// Source: Kleppner and Kolenkow, *An Introduction to Mechanics* (2014), chapter 7.
 #[test]
 fn analytic_from_sliding_to_rolling() {
     // A disc set down at v₀ without spin: friction passes through the contact, about which the angular momentum
@@ -168,6 +172,7 @@ fn analytic_from_sliding_to_rolling() {
     assert_close(-turn * radius, way, 0.01, "it rolls without slip, clockwise to the right");
 }
 
+/// Source: Kleppner and Kolenkow, *An Introduction to Mechanics* (2014), chapter 5.
 #[test]
 fn analytic_bouncing_disc() {
     // Dropped from h it comes back to h; the flight between two contacts lasts 2 √(2h/g).
@@ -201,7 +206,7 @@ fn analytic_bouncing_disc() {
 }
 
 #[test]
-fn analytic_penetration_is_pressure_over_stiffness() {
+fn example_penetration_is_pressure_over_stiffness() {
     // A column on a floor, in equilibrium: it sinks by ρ g H/k, and the resultant is its weight.
     let (height, width) = (0.01, 0.02);
     for (method, tolerance) in [

@@ -12,7 +12,7 @@ fn says<T>(result: Result<T, Error>, words: &[&str]) {
 }
 
 #[test]
-fn invariant_laws_must_be_possible() {
+fn refuses_impossible_laws() {
     for stiffness in [0.0, -1e14, f64::NAN, f64::INFINITY] {
         says(Law::penalty(stiffness), &["penalty stiffness [Pa/m]", &stiffness.to_string(), "positive"]);
     }
@@ -27,6 +27,7 @@ fn invariant_laws_must_be_possible() {
     assert!(law.with_friction(0.0).and_then(|l| l.with_damping(0.0, 1.0)).is_ok());
 }
 
+/// Source: THEORY §4.2.
 #[test]
 fn analytic_damping_of_two_equal_layers() {
     // Two masses m/A on one spring k/A have the reduced mass m/2: critical damping 2 √(k m/2) per area.
@@ -35,7 +36,7 @@ fn analytic_damping_of_two_equal_layers() {
 }
 
 #[test]
-fn invariant_pairs_must_exist_and_have_points() {
+fn refuses_pairs_that_do_not_exist_or_have_no_points() {
     let (x, y) = ([0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]);
     let law = Law::penalty(1e14).expect("a positive stiffness");
     let made = |[first, second]: [usize; 2], method, thickness, positions: usize| {
@@ -58,7 +59,7 @@ fn invariant_pairs_must_exist_and_have_points() {
 }
 
 #[test]
-fn invariant_surfaces_must_have_facets() {
+fn refuses_surfaces_without_facets() {
     let (x, y) = ([0.0, 1.0, 1.0, f64::NAN], [0.0, 0.0, 0.0, 0.0]);
     let surface = |slots: &[u32], closed| Surface::new("rim", slots.to_vec(), closed, &x, &y);
     says(surface(&[], false), &["`rim`", "at least one facet"]);

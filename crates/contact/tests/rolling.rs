@@ -113,7 +113,7 @@ fn ripple(kind: Ground, recipe: Recipe, positions: usize) -> f64 {
 }
 
 #[test]
-fn invariant_a_rolling_roller_feels_no_facets() {
+fn example_a_rolling_roller_feels_no_facets() {
     // What the project asks for.
     const LARGEST: f64 = 1e-3;
     for kind in [Ground::Flat, Ground::Raceway] {

@@ -246,7 +246,7 @@ fn invariant_search_keeps_up_with_motion() {
 }
 
 #[test]
-fn invariant_a_sharp_corner_is_felt() {
+fn example_a_sharp_corner_is_felt() {
     // A square on its corner is pushed by 0.002 into the flat side of an octagon: no node of that side is near.
     let apothem = (TAU / 16.0).cos();
     let centre = [0.05, apothem + 0.1 - 0.002];
@@ -302,7 +302,7 @@ fn invariant_points_done_together_push_as_points_done_singly() {
 }
 
 #[test]
-fn invariant_the_tangent_outlives_the_preload() {
+fn example_the_tangent_outlives_the_preload() {
     let shapes = Shapes::new([60, 45], [1.0, 0.7], [[0.0; 2], [1.69, 0.01]], [0.02, 0.3]);
     let mut contacts = shapes
         .contacts(Law::penalty(STIFFNESS).expect("a positive stiffness"), Method::Integrated { points: 4 });
@@ -429,7 +429,7 @@ fn invariant_a_resumed_run_has_the_same_bits() {
 }
 
 #[test]
-fn invariant_memory_of_other_contacts_is_refused() {
+fn refuses_the_state_of_other_contacts() {
     let (mut d, mut contacts) = tumbling(3);
     run(&mut d, &mut contacts, 10);
     let shapes = Shapes::new([12, 12], [1.0, 1.0], [[0.0; 2], [1.9, 0.0]], [0.0; 2]);

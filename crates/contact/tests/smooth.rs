@@ -49,6 +49,7 @@ fn worst_gap(facets: usize, smoothing: Smoothing) -> f64 {
     worst
 }
 
+/// Source: THEORY §4.4.
 #[test]
 fn analytic_gap_of_a_polygonised_circle() {
     // Chords of a 112-gon leave its circle by R (1 − cos(π/112)) = 3.54 µm, Nagata patches by 0.7 nm (the height is
@@ -62,6 +63,7 @@ fn analytic_gap_of_a_polygonised_circle() {
     }
 }
 
+/// Source: Nagata 2005; THEORY §4.4.
 #[test]
 fn converges_nagata_to_an_ellipse_with_order_three() {
     // Chords have order two. A vertex direction from three points has order two, times the facet's length order three;
@@ -87,7 +89,7 @@ fn converges_nagata_to_an_ellipse_with_order_three() {
 }
 
 #[test]
-fn invariant_corners_stay_sharp() {
+fn example_corners_stay_sharp() {
     // A semicircle over a straight base: the two corners and the base keep their places, the arc bulges.
     let n = 20;
     let mut at: Vec<[f64; 2]> =
@@ -114,7 +116,7 @@ fn invariant_corners_stay_sharp() {
 }
 
 #[test]
-fn invariant_too_coarse_a_polygon_is_refused() {
+fn refuses_too_coarse_a_polygon() {
     let (x, y) = circle(5, 1.0, [0.0; 2], 0.0);
     let slots = (0..5).collect();
     let found = Surface::new("pentagon", slots, true, &x, &y)

@@ -22,6 +22,20 @@
 //! The transform picks its instructions at run time, so results agree to rounding, not to the bit, between
 //! machines of different instruction sets.
 //!
+//! # Where to look
+//!
+//! | To know … | use |
+//! |---|---|
+//! | what frequencies a record holds, and how strong | [`Welch`]: [`Welch::for_grid`] for one record, [`Welch::new`] for averages |
+//! | the frequency and amplitude of a line, and whether it stands out | [`Spectrum::peak`], [`Spectrum::sinusoid`], [`Spectrum::stands_above_db`] |
+//! | how much there is in a band | [`Spectrum::band_rms`] |
+//! | what can be told apart at all | [`Resolution`] |
+//! | what is left without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
+//! | how often something knocks | [`EnvelopeSpectrum`], after [`PeriodCount`] has said that the record is long enough |
+//! | root mean square, crest factor, kurtosis | [`statistics`] |
+//!
+//! `examples/knocks.rs` does all of it to one signal.
+//!
 //! # A measured sine
 //!
 //! An accelerometer sampled at 100 kHz for 30 ms sees 50 m/s² at 4671 Hz. Where is the line, how strong is
@@ -56,8 +70,6 @@
 //! # }
 //! ```
 
-// Units stand in square brackets, which rustdoc takes for links.
-
 mod error;
 mod window;
 
@@ -81,3 +93,7 @@ pub use peak::{Peak, Sinusoid};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
 pub use window::Window;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -12,6 +12,7 @@ fn largest(signal: &[f64]) -> f64 {
     signal.iter().fold(0.0_f64, |most, x| x.abs().max(most))
 }
 
+/// Source: Orfanidis, *Introduction to Signal Processing* (1996), chapter 11.
 #[test]
 fn analytic_notch_width_is_centre_over_quality() {
     // The two −3 dB frequencies, found by bisection, are f₀/Q apart, also close to half the sample rate.
@@ -38,6 +39,7 @@ fn analytic_notch_width_is_centre_over_quality() {
     }
 }
 
+/// Source: Orfanidis, *Introduction to Signal Processing* (1996), chapter 11.
 #[test]
 fn analytic_notch_magnitude_beside_the_centre() {
     // 4671 Hz, Q = 15, 100 kHz: −3.96 dB at 4545 Hz, as printed to two decimals.
@@ -63,6 +65,7 @@ fn analytic_notch_magnitude_is_what_the_filter_does() {
     }
 }
 
+/// Source: Orfanidis, *Introduction to Signal Processing* (1996), chapter 11.
 #[test]
 fn analytic_notch_transient() {
     // τ = Q/(π f₀) = 1.022 ms for a narrow notch; 60 dB are 6.9 time constants, 7.06 ms.
@@ -128,6 +131,7 @@ fn invariant_zero_phase_filtering_commutes_with_reversal_in_the_middle() {
     assert!(worst < 1e-5, "{worst}");
 }
 
+/// Source: Randall and Antoni 2011; THEORY §7.3.
 #[test]
 fn analytic_envelope_of_an_amplitude_modulated_tone() {
     // (1 + 0.6 cos Ωt) cos ωt, both with whole periods in the record: the envelope is the bracket exactly,
@@ -153,7 +157,7 @@ fn analytic_envelope_of_an_amplitude_modulated_tone() {
 }
 
 #[test]
-fn analytic_periods_in_a_record() {
+fn example_periods_in_a_record() {
     // 30 ms of something that repeats 90.1 times a second holds 2.7 periods; ten take 0.111 s.
     let count = PeriodCount::new(0.03, 90.1).unwrap();
     assert_eq!(count.verdict(), PeriodVerdict::TooFew);
@@ -167,7 +171,7 @@ fn analytic_periods_in_a_record() {
 }
 
 #[test]
-fn analytic_statistics_of_a_sine_and_of_an_impulse() {
+fn example_statistics_of_a_sine_and_of_an_impulse() {
     const ROUNDING: f64 = 1e-12;
     let x = sine(3.0, 10.0, 1000.0, 1000);
     assert!(statistics::mean(&x).unwrap().abs() < ROUNDING);

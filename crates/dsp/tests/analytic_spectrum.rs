@@ -47,6 +47,7 @@ fn analytic_window_widths() {
     assert!((Window::Hann.width_6db_bins(len).unwrap() - 2.0).abs() < 1e-12);
 }
 
+/// Source: Harris 1978.
 #[test]
 fn analytic_window_response_is_the_transform_of_its_samples() {
     const ROUNDING: f64 = 1e-13;
@@ -65,7 +66,7 @@ fn analytic_window_response_is_the_transform_of_its_samples() {
 }
 
 #[test]
-fn analytic_amplitude_of_a_sine_is_read_back() {
+fn example_amplitude_of_a_sine_is_read_back() {
     // 50 m/s² at 4671 Hz for 30 ms at 100 kHz. What remains of the error is leakage of the negative
     // frequency.
     const AMPLITUDE: f64 = 1e-3;
@@ -94,7 +95,7 @@ fn analytic_amplitude_of_a_sine_is_read_back() {
 }
 
 #[test]
-fn analytic_amplitude_with_every_window() {
+fn example_amplitude_with_every_window() {
     // A boxcar leaks as 1/distance, so the mirror image 280 bins away is felt most there.
     for (window, tolerance) in [
         (Window::Boxcar, 3e-3),
@@ -110,7 +111,7 @@ fn analytic_amplitude_with_every_window() {
 }
 
 #[test]
-fn analytic_peak_is_interpolated() {
+fn example_peak_is_interpolated() {
     // On a padded grid the parabola is as good as exact; without padding the documented 0.02 resolutions
     // hold.
     let rate = 1e5;
@@ -128,7 +129,7 @@ fn analytic_peak_is_interpolated() {
 }
 
 #[test]
-fn analytic_peak_on_a_flank_says_so() {
+fn example_peak_on_a_flank_says_so() {
     let spectrum =
         estimate(1e5, &sine(1.0, 4671.0, 1e5, 3000), &WelchOptions::for_grid(1e5, 3000, 3.0).unwrap());
     let flank = spectrum.peak(4680.0, 4700.0).unwrap();
@@ -136,6 +137,7 @@ fn analytic_peak_on_a_flank_says_so() {
     assert!((flank.frequency_hz - 4680.0).abs() < 0.1, "{flank:?}");
 }
 
+/// Source: Welch 1967; THEORY §7.1.
 #[test]
 fn analytic_density_of_white_noise() {
     // Variance 1/12 spread over half the sample rate, 500 Hz. 399 overlapping Hann segments leave 6 % in each
@@ -159,7 +161,7 @@ fn analytic_density_of_white_noise() {
 }
 
 #[test]
-fn analytic_line_above_noise() {
+fn example_line_above_noise() {
     // A sine of amplitude A on a density S stands 10 log₁₀(A²/2 / (1.5 resolution) / S) above the mean of the
     // noise; the median of the averaged noise is its mean but for 0.1 dB.
     let (rate, amplitude) = (1000.0, 0.5);
@@ -176,7 +178,7 @@ fn analytic_line_above_noise() {
 }
 
 #[test]
-fn analytic_grid_and_resolution_are_stated_apart() {
+fn example_grid_and_resolution_are_stated_apart() {
     // 30 ms at 100 kHz on a grid of 3 Hz: resolution 33.3, −3 dB 48.0, −6 dB 66.7, noise bandwidth 50 Hz.
     let short = Welch::for_grid(1e5, 3000, 3.0).unwrap();
     let r = short.resolution();

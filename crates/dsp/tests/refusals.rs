@@ -16,7 +16,7 @@ fn plan_error(rate: f64, record: usize, options: &WelchOptions) -> Error {
 }
 
 #[test]
-fn invariant_impossible_plans_are_refused() {
+fn refuses_impossible_plans() {
     let good = WelchOptions::new(100);
     for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         says(plan_error(rate, 100, &good), &["sample_rate_hz", "greater than 0"]);
@@ -42,7 +42,7 @@ fn invariant_impossible_plans_are_refused() {
 }
 
 #[test]
-fn invariant_bad_signals_are_refused_and_leave_the_output_alone() {
+fn refuses_bad_signals_and_leaves_the_output_alone() {
     let mut plan = Welch::new(100.0, 64, &WelchOptions::new(16)).unwrap();
     let mut out = plan.estimate(&(0..64).map(f64::from).collect::<Vec<_>>()).unwrap();
     let before = out.values().to_vec();
@@ -63,7 +63,7 @@ fn invariant_bad_signals_are_refused_and_leave_the_output_alone() {
 }
 
 #[test]
-fn invariant_impossible_bands_are_refused() {
+fn refuses_impossible_bands() {
     let ramp: Vec<f64> = (0..64).map(|n| f64::from(n * n % 7)).collect();
     let spectrum = Welch::new(100.0, 64, &WelchOptions::new(64)).unwrap().estimate(&ramp).unwrap();
     for (low, high) in
@@ -84,7 +84,7 @@ fn invariant_impossible_bands_are_refused() {
 }
 
 #[test]
-fn invariant_impossible_notches_are_refused() {
+fn refuses_impossible_notches() {
     for centre in [0.0, -1.0, 50.0, 51.0, f64::NAN, f64::INFINITY] {
         says(Notch::new(100.0, centre, 15.0).unwrap_err(), &["centre_hz", "50 Hz"]);
     }
@@ -105,7 +105,7 @@ fn invariant_impossible_notches_are_refused() {
 }
 
 #[test]
-fn invariant_impossible_envelopes_and_statistics_are_refused() {
+fn refuses_impossible_envelopes_and_statistics() {
     says(Envelope::new(0).err().unwrap(), &["record: 0 samples"]);
     says(Envelope::in_band(100.0, 64, 20.0, 10.0).err().unwrap(), &["band = 20 to 10 Hz"]);
     says(Envelope::in_band(100.0, 64, 10.0, 11.0).err().unwrap(), &["1 usable points"]);

@@ -49,6 +49,22 @@
 //! # }
 //! ```
 //!
+//! # What to use
+//!
+//! | To … | use |
+//! |---|---|
+//! | make a ring, cut a groove into it, make it coarser away from one circle | [`Annulus`], [`Groove`], [`Grading`] |
+//! | make a disc with a given number of facets | [`Disc`] |
+//! | make a block: plain, with a seat for a ring, between two arcs | [`Rectangle`], [`SeatedBlock`], [`ArcBlock`] |
+//! | turn a body, move it, ask for its area, its surfaces, its centre | [`Part`] |
+//! | put bodies together, know where their nodes went | [`Mesh::add`], [`Placed`] |
+//! | judge elements, know the critical time step that they allow | [`Quality`], [`characteristic_length`] |
+//! | see it in ParaView | [`vtu::write`] |
+//! | load nodes as they lie in memory | [`find_strips`] |
+//!
+//! Bodies from another mesher need no generator: the fields of [`Part`] are public. `examples/ring_and_disc.rs` prints
+//! the quality of two bodies and writes them to a file.
+//!
 //! # Where to look
 //!
 //! | Question | File |
@@ -106,3 +122,7 @@ pub use quality::{BodyQuality, Quality};
 pub use rectangle::Rectangle;
 pub use seated_block::SeatedBlock;
 pub use strips::{Strip, find_strips};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

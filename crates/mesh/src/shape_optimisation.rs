@@ -269,7 +269,7 @@ mod tests {
     /// A wall of 0.2 mm among cells of 0.5 mm costs a tenth of the time step of squares, among cells of 1 mm an eighth, where columns that follow it
     /// straight would cost four tenths; short grooves cost up to a fifth, deep ones a third.
     #[test]
-    fn invariant_grooves_keep_the_time_step() {
+    fn example_grooves_keep_the_time_step() {
         let graded = Grading { fine: Circle::Inner, fine_layers: 2, transitions: 1 };
         for (mesh, (facets, layers)) in [(1257, 20), (628, 10)].into_iter().enumerate() {
             for (length, depth, least) in [

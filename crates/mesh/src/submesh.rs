@@ -289,7 +289,7 @@ mod tests {
 
     /// One element alone vibrates as the formula for its length says; in these shapes hourglass stiffness has no part in it.
     #[test]
-    fn analytic_single_elements_have_their_characteristic_length() {
+    fn example_single_elements_have_their_characteristic_length() {
         let shapes: [&[[f64; 2]]; 3] = [
             &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             &[[0.0, 0.0], [1.1, -0.1], [1.2, 0.8], [0.1, 0.9]],
@@ -305,6 +305,7 @@ mod tests {
 
     /// A plane wave that alternates from column to column has ω² = 4 in endless squares, free corners make a hundredth
     /// more of it, and one by one squares have 5.7.
+    /// Source: THEORY §2.4.
     #[test]
     fn analytic_squares_vibrate_as_the_grid_wave() {
         let grid = Rectangle { x0: 0.0, y0: 0.0, width: 16.0, height: 16.0, columns: 16, rows: 16 };
@@ -315,7 +316,7 @@ mod tests {
 
     /// Nodes of a submesh have the mass of the whole part: what is far away does not change its frequencies.
     #[test]
-    fn invariant_mass_of_the_surroundings_counts() {
+    fn example_mass_of_the_surroundings_counts() {
         let grid = |n: usize| {
             let side = n as f64;
             let grid = Rectangle { x0: 0.0, y0: 0.0, width: side, height: side, columns: n, rows: n };
@@ -332,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_derivative_is_that_of_differences() {
+    fn example_derivative_is_that_of_differences() {
         let grid = Rectangle { x0: 0.0, y0: 0.0, width: 4.0, height: 3.0, columns: 4, rows: 3 };
         let mut part = grid.part().expect("a grid");
         for (i, (x, y)) in part.x.iter_mut().zip(&mut part.y).enumerate() {

@@ -67,7 +67,7 @@ mod tests {
 
     /// 2 on the diagonal and −1 beside it: 2 − 2 cos(kπ/(n + 1)), vectors sin(ikπ/(n + 1)).
     #[test]
-    fn analytic_second_difference() {
+    fn example_eigenvalues_of_the_second_difference() {
         for n in [1, 2, 3, 32] {
             let pairs = eigenpairs(vec![2.0; n], vec![-1.0; n - 1]);
             assert_eq!(pairs.len(), n);
@@ -84,7 +84,7 @@ mod tests {
 
     /// A diagonal matrix, equal eigenvalues, and NaN.
     #[test]
-    fn hostile_matrices() {
+    fn example_matrices_that_fall_apart_or_hold_no_number() {
         let pairs = eigenpairs(vec![1.0, 1.0, 5.0], vec![0.0, 0.0]);
         assert_eq!(pairs.iter().map(|p| p.0).collect::<Vec<_>>(), [5.0, 1.0, 1.0]);
         assert!(eigenpairs(vec![f64::NAN; 3], vec![1.0; 2]).is_empty());

@@ -40,7 +40,7 @@ fn wall_column(part: &Part, n: usize) -> usize {
 }
 
 #[test]
-fn analytic_area_of_two_polygons() {
+fn example_area_of_two_polygons() {
     let part = ring(None);
     let expected = polygon(0.11, 1257) - polygon(0.1, 1257);
     // The sum over 25 140 elements adds their roundings.
@@ -49,7 +49,7 @@ fn analytic_area_of_two_polygons() {
 }
 
 #[test]
-fn invariant_boundary_is_two_oriented_circles() {
+fn example_boundary_is_two_oriented_circles() {
     let part = ring(None);
     assert_boundary_is(&part, &["inner", "outer"]);
     // Solid on the left: the outer circle encloses it, the inner one is walked the other way round.
@@ -70,7 +70,7 @@ fn invariant_boundary_is_two_oriented_circles() {
 }
 
 #[test]
-fn invariant_rows_are_two_strips_each() {
+fn example_rows_are_two_strips_each() {
     let part = ring(Some(GROOVE));
     let strips = find_strips(&part.quads);
     assert_eq!(strips.len(), 2 * 20, "one strip and the quadrilateral that closes the row");
@@ -89,7 +89,7 @@ fn invariant_rows_are_two_strips_each() {
 
 /// The groove takes the polygonal ring sector between floor and inner surface out of the ring.
 #[test]
-fn analytic_groove_has_its_length_depth_and_area() {
+fn example_groove_has_its_length_depth_and_area() {
     let part = ring(Some(GROOVE));
     let n = 1257;
     let sector = GROOVE.length / RING.inner_radius;
@@ -124,7 +124,7 @@ fn analytic_groove_has_its_length_depth_and_area() {
 }
 
 #[test]
-fn invariant_groove_keeps_facets_outer_circle_and_orientation() {
+fn example_groove_keeps_facets_outer_circle_and_orientation() {
     let (plain, cut) = (ring(None), ring(Some(GROOVE)));
     assert_eq!(surface(&cut, "inner").facets(), 1257);
     assert_eq!(cut.quads, plain.quads, "no element is removed or renumbered");
@@ -144,7 +144,7 @@ fn invariant_groove_keeps_facets_outer_circle_and_orientation() {
 
 /// Beyond two thicknesses from the walls the cells of a row are alike, so that solvers need only one of them.
 #[test]
-fn invariant_cells_away_from_a_groove_are_alike() {
+fn example_cells_away_from_a_groove_are_alike() {
     let part = ring(Some(GROOVE));
     let wall = wall_column(&part, 1257);
     let beside = (2.0 * 0.01 / (TAU * 0.1 / 1257.0)).ceil() as usize + 1;
@@ -171,7 +171,7 @@ fn invariant_cells_away_from_a_groove_are_alike() {
 
 /// A cell of 0.2 mm among cells of 0.5 mm would have 0.4 of the length; slanted cells keep three quarters.
 #[test]
-fn invariant_groove_keeps_the_critical_step() {
+fn example_groove_keeps_the_critical_step() {
     let kept = relative_length(&ring(Some(GROOVE)), 0.5e-3);
     assert!(kept > 0.72, "the groove leaves {kept:.3} of the length of a 0.5 mm square");
     assert!(relative_length(&ring(None), 0.5e-3) > 0.99);
@@ -208,7 +208,7 @@ fn issue_groove_in_a_single_layer() {
 
 /// The deepest groove that is promised, through six layers of ten.
 #[test]
-fn invariant_deepest_groove_stays_in_order() {
+fn example_deepest_groove_stays_in_order() {
     let groove = Some(Groove { depth: 6e-3, ..GROOVE });
     let part = Annulus { facets: 628, layers: 10, groove, ..RING }.part().expect("60 % of the thickness");
     assert!(smallest_jacobian(&part) > 0.0);
@@ -216,7 +216,7 @@ fn invariant_deepest_groove_stays_in_order() {
 }
 
 #[test]
-fn invariant_refusals_name_field_and_limit() {
+fn refuses_with_field_and_limit() {
     let refused = |annulus: Annulus| annulus.part().expect_err("a ring that cannot be made").to_string();
     let with = |groove: Groove| Annulus { groove: Some(groove), ..RING };
     for (message, parts) in [

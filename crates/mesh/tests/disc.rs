@@ -40,12 +40,12 @@ fn assert_is_a_disc(disc: Disc, part: &Part) {
 }
 
 #[test]
-fn analytic_default_disc_is_the_polygon() {
+fn example_default_disc_is_the_polygon() {
     assert_is_a_disc(DISC, &made(DISC));
 }
 
 #[test]
-fn invariant_default_disc_has_about_a_thousand_even_cells() {
+fn example_default_disc_has_about_a_thousand_even_cells() {
     let part = made(DISC);
     let elements = part.quads.len() + part.triangles.len();
     assert!((1000..=1250).contains(&elements), "{elements} elements");
@@ -55,7 +55,7 @@ fn invariant_default_disc_has_about_a_thousand_even_cells() {
 }
 
 #[test]
-fn invariant_uniform_discs_keep_the_critical_step() {
+fn example_uniform_discs_keep_the_critical_step() {
     for facets in [15, 16, 31, 56, 97, 112, 113, 120, 224, 500] {
         let size = TAU * DISC.radius / facets as f64;
         let disc = Disc { facets, size, ..DISC };
@@ -67,7 +67,7 @@ fn invariant_uniform_discs_keep_the_critical_step() {
 }
 
 #[test]
-fn invariant_coarse_and_fine_rims_on_one_core() {
+fn example_coarse_and_fine_rims_on_one_core() {
     for facets in 8..=40 {
         assert_is_a_disc(Disc { facets, ..DISC }, &made(Disc { facets, ..DISC }));
     }
@@ -78,7 +78,7 @@ fn invariant_coarse_and_fine_rims_on_one_core() {
 
 /// Squares twenty times smaller or larger than the facets make needles, but never an element inside out.
 #[test]
-fn invariant_sizes_far_from_the_facet_length() {
+fn example_sizes_far_from_the_facet_length() {
     for (facets, size) in [(8, 0.05e-3), (13, 0.2e-3), (24, 0.05e-3), (200, 9e-3), (500, 50e-3)] {
         let disc = Disc { facets, size, ..DISC };
         assert_is_a_disc(disc, &made(disc));
@@ -98,7 +98,7 @@ fn invariant_rotation_turns_the_whole_pattern() {
 }
 
 #[test]
-fn invariant_rows_are_strips() {
+fn example_rows_are_strips() {
     let part = made(DISC);
     let strips = find_strips(&part.quads);
     assert_eq!(strips.iter().map(|s| s.len).sum::<usize>(), part.quads.len());
@@ -111,7 +111,7 @@ fn invariant_rows_are_strips() {
 }
 
 #[test]
-fn invariant_refusals_name_field_and_limit() {
+fn refuses_with_field_and_limit() {
     for (disc, parts) in [
         (Disc { radius: 0.0, ..DISC }, ["radius", "above zero"]),
         (Disc { size: f64::NAN, ..DISC }, ["size", "NaN"]),
@@ -143,7 +143,7 @@ proptest! {
 /// A fine rim around a core of three times larger squares: each layer is a row of quadrilaterals, no cell is smaller
 /// than in a disc of fine cells, and far fewer cells are needed.
 #[test]
-fn invariant_layers_around_a_coarse_core() {
+fn example_layers_around_a_coarse_core() {
     let coarse = Disc { size: 1.5e-3, ..DISC };
     let fine = made(DISC);
     for layers in 0..=coarse.most_layers() {

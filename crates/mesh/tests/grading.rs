@@ -35,7 +35,7 @@ fn polygon(radius: f64, n: usize) -> f64 {
 /// remain (cells of 1.59 mm), and area, boundary and both circles are those of two polygons. Where three do not divide
 /// the facets, one or two groups of two facets cost 2 quadrilaterals and a triangle each.
 #[test]
-fn analytic_area_surfaces_and_counts() {
+fn example_area_surfaces_and_counts() {
     for (facets, threes, pairs) in [(1257, 419, 0), (1256, 418, 1), (1255, 417, 2)] {
         for fine in [Circle::Inner, Circle::Outer] {
             let part = made(Annulus { facets, ..RING }, Grading { fine, ..INWARDS });
@@ -67,7 +67,7 @@ fn analytic_area_surfaces_and_counts() {
 
 /// Fine cells keep their size: the ring is the uniform one down to the last fine row.
 #[test]
-fn invariant_fine_rows_are_those_of_the_uniform_ring() {
+fn example_fine_rows_are_those_of_the_uniform_ring() {
     let (uniform, graded) = (RING.part().expect("a ring"), made(RING, INWARDS));
     let fine = 3 * 1257;
     assert_eq!(graded.x[..fine], uniform.x[..fine]);
@@ -77,7 +77,7 @@ fn invariant_fine_rows_are_those_of_the_uniform_ring() {
 
 /// All but the cells above the zigzag, the first coarse row and the one that closes each row lie in strips.
 #[test]
-fn invariant_most_cells_lie_in_strips() {
+fn example_most_cells_lie_in_strips() {
     let part = made(RING, INWARDS);
     let strips: Vec<usize> = find_strips(&part.quads).iter().map(|s| s.len).filter(|&len| len > 1).collect();
     assert_eq!(strips, [1256, 1256, 1256, 418, 418, 418, 418]);
@@ -85,7 +85,7 @@ fn invariant_most_cells_lie_in_strips() {
 
 /// A transition has no cell of a shorter characteristic length than a fine square, so it costs no time step.
 #[test]
-fn invariant_grading_keeps_the_critical_step() {
+fn example_grading_keeps_the_critical_step() {
     for (layers, transitions) in [(10, 1), (20, 1), (20, 2), (60, 3)] {
         let side = 0.01 / layers as f64;
         for fine_layers in [1, 2] {
@@ -106,7 +106,7 @@ fn invariant_grading_keeps_the_critical_step() {
 
 /// The groove has the same walls and floor as in the uniform ring.
 #[test]
-fn invariant_groove_in_the_fine_circle() {
+fn example_groove_in_the_fine_circle() {
     let ring = Annulus { start_angle: 0.0, groove: Some(GROOVE), ..RING };
     let uniform = ring.part().expect("a ring with a groove");
     for fine_layers in [1, 2, 3] {
@@ -155,7 +155,7 @@ fn invariant_no_transition_is_the_uniform_ring() {
 }
 
 #[test]
-fn invariant_refusals_name_field_and_limit() {
+fn refuses_with_field_and_limit() {
     let refused = |ring: Annulus, grading: Grading| {
         ring.graded_part(&grading).expect_err("a ring that cannot be graded").to_string()
     };

@@ -39,7 +39,7 @@ fn decoded<T, const N: usize>(bytes: &[u8], decode: fn([u8; N]) -> T) -> Vec<T> 
 }
 
 #[test]
-fn invariant_file_gives_back_the_mesh() {
+fn roundtrip_file_gives_back_the_mesh() {
     let mesh = mesh();
     let height: Vec<f64> = mesh.y.iter().map(|y| y + 0.1).collect();
     let velocity: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(x, y)| [-*y, *x, 0.0]).collect();
@@ -99,7 +99,7 @@ fn invariant_file_gives_back_the_mesh() {
 }
 
 #[test]
-fn invariant_header_counts_points_and_cells() {
+fn example_header_counts_points_and_cells() {
     let mesh = mesh();
     let mut file = Vec::new();
     vtu::write(&mut file, &mesh, &[], &[]).expect("a file");
@@ -111,7 +111,7 @@ fn invariant_header_counts_points_and_cells() {
 }
 
 #[test]
-fn invariant_meshes_of_one_kind_or_none() {
+fn example_meshes_of_one_kind_or_none() {
     let mut triangle = Mesh::new();
     let (x, y) = (vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]);
     triangle.add("triangle", &Part { x, y, triangles: vec![[0, 1, 2]], ..Part::default() });
@@ -123,7 +123,7 @@ fn invariant_meshes_of_one_kind_or_none() {
 }
 
 #[test]
-fn invariant_refusals_name_the_array() {
+fn refuses_arrays_of_another_length_by_name() {
     let mesh = mesh();
     let short = [1.0, 2.0];
     let fields = [vtu::Field::scalar("pressure", &short)];

@@ -200,6 +200,7 @@ mod tests {
         assert!((ours - theirs).abs() <= relative * theirs.abs(), "{ours} instead of {theirs}");
     }
 
+    /// Source: Singh et al. 2014, table 1.
     #[test]
     fn analytic_speeds_of_table_1() {
         let k = paper();
@@ -214,6 +215,7 @@ mod tests {
         assert_close(k.contact_speed_m_s, 2.358_755_227_143_012_3, ROUNDING);
     }
 
+    /// Source: THEORY §5.1.
     #[test]
     fn analytic_roller_spin_lies_in_the_band_of_the_three_definitions() {
         let k = paper();
@@ -232,6 +234,7 @@ mod tests {
         assert!(k.cage_rad_s < 0.0 && k.roller_rad_s > 0.0);
     }
 
+    /// Source: THEORY §5.2.
     #[test]
     fn analytic_facet_tones_of_the_paper_mesh() {
         let facets = FacetCounts { roller: 112, outer: 1257.0, inner: 1030.0 };
@@ -243,6 +246,7 @@ mod tests {
         assert_eq!(tones[0].harmonic_hz(6), 6.0 * tones[0].hz);
     }
 
+    /// Source: Singh et al. 2014, equation (2).
     #[test]
     fn analytic_equation_2_of_the_paper() {
         // The paper rounds its cage frequency to 3.75 Hz and the inner raceway to 164 mm.
@@ -252,6 +256,7 @@ mod tests {
         assert_close(inner, 3864.0, ROUNDED_INPUT);
     }
 
+    /// Source: Singh et al. 2014, table 1, computed apart from this program (`fixtures/reference/event_times.json`).
     #[test]
     fn analytic_event_times_of_the_reference() {
         let text = include_str!("../../../fixtures/reference/event_times.json");
@@ -270,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_crossings_repeat_at_bpfo() {
+    fn example_crossings_repeat_at_bpfo() {
         // One second: exits come at 24 times the cage frequency, whatever the roller's first angle.
         let k = paper();
         let scene = Scene::default();
@@ -285,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_a_standing_shaft_has_no_events() {
+    fn example_a_standing_shaft_has_no_events() {
         let scene = Scene::default();
         let defect = scene.defect.as_ref().expect("the default has one");
         assert_eq!(Kinematics::new(&scene.bearing, 0.0).crossings(defect, 94.0, 1.0).len(), 0);

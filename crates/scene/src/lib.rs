@@ -60,3 +60,7 @@ pub mod trace;
 
 pub use error::Error;
 pub use scene::Scene;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

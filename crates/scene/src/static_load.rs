@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_bad_loads_and_positions_are_refused() {
+    fn refuses_bad_loads_and_positions() {
         let scene = Scene::default();
         let rings = RigidRings::new(&Geometry::of(&scene));
         assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());

@@ -74,3 +74,7 @@
 pub mod field;
 pub mod lanes;
 pub mod threads;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

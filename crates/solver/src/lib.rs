@@ -121,3 +121,7 @@ pub use force::Force;
 pub use kernel::layout;
 pub use material::Elastic;
 pub use model::{Behaviour, Model, Motion};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

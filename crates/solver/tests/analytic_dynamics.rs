@@ -103,7 +103,7 @@ fn analytic_bending_modes_of_a_free_ring() {
 }
 
 #[test]
-fn analytic_free_fall() {
+fn example_free_fall() {
     // Leapfrog sums the fall exactly: from rest half a step before the start, y = g Δt² n (n + 1)/2.
     let mut mesh = Mesh::new();
     let disc = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
@@ -129,6 +129,7 @@ fn analytic_free_fall() {
     assert!(d.elastic_energy().strain < 1e-12 * d.gravity_work().abs(), "nothing is strained");
 }
 
+/// Source: Lumped masses as in THEORY §1.
 #[test]
 fn analytic_rigid_block_under_a_couple() {
     // θ = M t²/(2 I) with the moment of inertia of masses lumped to a grid of m × n cells:
@@ -172,6 +173,7 @@ fn couple_work(d: &mut Dynamics, load: &mut NodalLoad) -> f64 {
     load.energy().supplied / now.kinetic
 }
 
+/// Source: THEORY §2.3: central differences are of second order.
 #[test]
 fn converges_time_step_second_order() {
     // The same bar set off at 1 cm/s, its end after three quarters of a period; the error against a step sixteen
@@ -198,6 +200,7 @@ fn converges_time_step_second_order() {
     }
 }
 
+/// Source: THEORY §2.5.
 #[test]
 fn analytic_driven_ring_turns_as_one() {
     // A ring launched at the speed of its driven bore stays in rigid rotation: kinetic energy ½ I ω², no drive work.

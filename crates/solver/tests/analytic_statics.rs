@@ -129,7 +129,7 @@ fn analytic_cantilever() {
 }
 
 #[test]
-fn analytic_column_under_its_weight() {
+fn example_column_under_its_weight() {
     // A column on a base without friction at its sides (held in x: uniaxial strain): the top sinks by
     // ρ g H²/(2 (λ + 2µ)), with lumped masses exactly.
     let height = 0.2;
@@ -147,7 +147,7 @@ fn analytic_column_under_its_weight() {
 }
 
 #[test]
-fn invariant_a_run_from_equilibrium_does_not_ring() {
+fn example_a_run_from_equilibrium_does_not_ring() {
     // The column again, now in time: what was in equilibrium stays.
     let mut model = body(&rectangle(0.02, 0.2, 2, 20));
     model.gravity = [0.0, -9.81];

@@ -175,7 +175,7 @@ fn invariant_the_limit_is_sharp() {
 }
 
 #[test]
-fn invariant_rigid_bodies_on_springs_limit_the_step() {
+fn example_rigid_bodies_on_springs_limit_the_step() {
     // A rigid block on a spring at each corner: ω² = 4 k/M for translation; the bound adds the rotation.
     let mut model = body(&rectangle(0.02, 0.01, 1, 1));
     model.behaviour[0] = Behaviour::Rigid;
@@ -196,7 +196,7 @@ fn invariant_rigid_bodies_on_springs_limit_the_step() {
 
 /// A body all of whose nodes are held vibrates at no frequency.
 #[test]
-fn hostile_held_bodies_have_no_limit() {
+fn example_held_bodies_have_no_limit() {
     let mut model = body(&rectangle(0.02, 0.01, 2, 1));
     model.motion.fill(Motion::Held);
     let d = lay_out(&model);
@@ -205,7 +205,7 @@ fn hostile_held_bodies_have_no_limit() {
 }
 
 #[test]
-fn invariant_a_ring_has_the_step_of_its_shortest_cells() {
+fn example_a_ring_has_the_step_of_its_shortest_cells() {
     // Halving the cells halves the step.
     let step = |facets, layers| {
         let ring = Annulus {

@@ -32,6 +32,7 @@ fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
     [now.mechanical(), d.heat.at_last_positions()]
 }
 
+/// Source: THEORY §2.6.
 #[test]
 fn analytic_mass_damping_brakes_a_flight() {
     // v = v₀ exp(−α t), relative to rest.
@@ -46,6 +47,7 @@ fn analytic_mass_damping_brakes_a_flight() {
     assert_close(d.rigid_motion(&all(&d)).velocity[0], expected, 1.1 * share, "speed");
 }
 
+/// Source: THEORY §2.6.
 #[test]
 fn analytic_mass_damping_decays_a_vibration() {
     // A mode of a lightly damped oscillator falls as exp(−α t/2), its energy as exp(−α t), whatever its frequency. The bar
@@ -126,8 +128,9 @@ fn conserves_rigid_motion_under_relative_damping() {
     assert_close(heat, vibration, 0.01, "heat of damping");
 }
 
+/// Source: THEORY §2.6.
 #[test]
-fn analytic_mass_damping_on_a_track_takes_the_velocity_across_it() {
+fn analytic_mass_damping_on_an_orbit_takes_the_velocity_across_it() {
     // A disc half a metre from the origin runs around it, spins and drifts outwards. Running and spin stay; the drift,
     // and what departs from a rigid motion, fall by (1 − αΔt/2)/(1 + αΔt/2) in a step in which nothing else pushes.
     let mut d = ready(&disc_at(0.3, 0.4), 0.9);
@@ -157,7 +160,7 @@ fn analytic_mass_damping_on_a_track_takes_the_velocity_across_it() {
 }
 
 #[test]
-fn invariant_damping_set_in_the_middle_of_a_run_acts_at_once() {
+fn example_damping_set_in_the_middle_of_a_run_acts_at_once() {
     // Whatever the number of the step: a body in flight must not be braked against a frame that was never placed.
     for late in [0, 10, 63] {
         let mut d = ready(&disc_at(0.0, 0.0), 0.9);
@@ -200,7 +203,7 @@ fn invariant_a_damped_run_resumes_with_the_same_bits() {
 }
 
 #[test]
-fn invariant_rates_must_be_possible() {
+fn refuses_impossible_rates() {
     for rate in [-1.0, f64::NAN, f64::INFINITY] {
         let text = MassDamping::new(rate, Vec::new()).expect_err("refused").to_string();
         assert!(text.contains("mass damping rate [1/s]") && text.contains("zero or positive"), "{text}");

@@ -58,7 +58,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
     #[test]
-    fn invariant_any_mesh_gets_an_answer(mesh in mesh(), loaded in 0_usize..14) {
+    fn survives_any_mesh_with_an_answer(mesh in mesh(), loaded in 0_usize..14) {
         let nodes = mesh.x.len();
         if let Ok(model) = Model::new(mesh, steel(), THICKNESS) {
             let loaded = vec![true; if loaded > 2 { nodes } else { loaded }];
@@ -74,7 +74,7 @@ proptest! {
 }
 
 #[test]
-fn invariant_foreign_nodes_and_bodies_are_named() {
+fn refuses_foreign_nodes_and_bodies_by_name() {
     let sound = body(&rectangle(1e-3, 1e-3, 2, 2));
     let refused = |change: &dyn Fn(&mut Model)| {
         let mut model = sound.clone();
@@ -91,7 +91,7 @@ fn invariant_foreign_nodes_and_bodies_are_named() {
 }
 
 #[test]
-fn invariant_distortion_tells_area_and_stretch() {
+fn example_distortion_tells_area_and_stretch() {
     let mut d = ready(&body(&rectangle(2e-3, 1e-3, 4, 2)), 0.9);
     let rest = d.distortion();
     assert!((rest.least_area - 1.0).abs() < 1e-12 && (rest.largest_stretch - 1.0).abs() < 1e-12, "{rest:?}");

@@ -16,7 +16,7 @@ fn says<T>(result: Result<T, Error>, words: &[&str]) {
 }
 
 #[test]
-fn invariant_materials_must_be_possible() {
+fn refuses_impossible_materials() {
     says(Elastic::new(-1.0, 0.3, 7800.0), &["Young's modulus [Pa]", "-1", "positive"]);
     says(Elastic::new(0.0, 0.3, 7800.0), &["Young's modulus [Pa]"]);
     says(Elastic::new(f64::NAN, 0.3, 7800.0), &["Young's modulus [Pa]", "NaN"]);
@@ -28,7 +28,7 @@ fn invariant_materials_must_be_possible() {
 }
 
 #[test]
-fn analytic_moduli_of_steel() {
+fn example_moduli_of_steel() {
     // E = 208 GPa, ν = 0.3: µ = E/2.6, λ = E·0.3/(1.3·0.4), E' = E/0.91.
     let s = steel();
     assert_close(s.shear(), 80e9, 1e-12, "µ");
@@ -45,7 +45,7 @@ fn after(change: impl FnOnce(&mut Model)) -> Result<Dynamics, Error> {
 }
 
 #[test]
-fn invariant_models_must_be_possible() {
+fn refuses_impossible_models() {
     let mut mesh = Mesh::new();
     mesh.add("plate", &rectangle(1.0, 1.0, 2, 2));
     for thickness in [0.0, -0.01, f64::NAN] {
@@ -59,7 +59,7 @@ fn invariant_models_must_be_possible() {
 }
 
 #[test]
-fn invariant_lists_must_fit_the_mesh() {
+fn refuses_lists_that_do_not_fit_the_mesh() {
     says(after(|m| m.motion.truncate(3)), &["number of motions = 3", "each node"]);
     says(after(|m| m.materials.clear()), &["number of materials = 0", "each body"]);
     says(after(|m| m.behaviour.push(Behaviour::Rigid)), &["number of behaviours = 2", "each body"]);
@@ -68,7 +68,7 @@ fn invariant_lists_must_fit_the_mesh() {
 }
 
 #[test]
-fn invariant_elements_must_have_area() {
+fn refuses_elements_without_area() {
     let bad = ["element 2", "body `body`", "counter-clockwise"];
     says(after(|m| m.mesh.quads[2].reverse()), &bad);
     says(after(|m| m.mesh.quads[2] = [0, 1, 1, 0]), &bad);
@@ -80,7 +80,7 @@ fn invariant_elements_must_have_area() {
 }
 
 #[test]
-fn invariant_nodes_must_have_mass() {
+fn refuses_nodes_without_mass() {
     let mut part: Part = rectangle(1.0, 1.0, 2, 2);
     part.x.push(3.0);
     part.y.push(3.0);
@@ -97,7 +97,7 @@ fn invariant_nodes_must_have_mass() {
 }
 
 #[test]
-fn invariant_the_time_step_must_be_positive() {
+fn refuses_a_time_step_that_is_not_positive() {
     let mut d = lay_out(&body(&rectangle(1.0, 1.0, 2, 2)));
     for dt in [0.0, -1e-9, f64::NAN, f64::INFINITY] {
         says(d.set_time_step(dt), &["time step [s]", "positive"]);
@@ -105,7 +105,7 @@ fn invariant_the_time_step_must_be_positive() {
 }
 
 #[test]
-fn invariant_statics_needs_a_support() {
+fn refuses_statics_without_support() {
     // A free plate under a load has no equilibrium; the error names body, place and advice.
     let model = body(&rectangle(1.0, 1.0, 2, 2));
     let mut d = lay_out(&model);
@@ -118,7 +118,7 @@ fn invariant_statics_needs_a_support() {
 }
 
 #[test]
-fn invariant_statics_refuses_what_is_not_a_number() {
+fn refuses_statics_of_what_is_not_a_number() {
     let mut model = body(&rectangle(1.0, 1.0, 2, 2));
     for n in 0..3 {
         model.motion[n] = Motion::Held;
@@ -129,7 +129,7 @@ fn invariant_statics_refuses_what_is_not_a_number() {
 }
 
 #[test]
-fn invariant_a_held_body_is_already_in_equilibrium() {
+fn example_a_held_body_is_already_in_equilibrium() {
     let mut model = body(&rectangle(1.0, 1.0, 2, 2));
     model.motion.fill(Motion::Held);
     let mut d = lay_out(&model);

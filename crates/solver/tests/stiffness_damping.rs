@@ -62,6 +62,7 @@ fn shake(d: &mut Dynamics, speed: f64) {
     }
 }
 
+/// Source: THEORY §2.7.
 #[test]
 fn analytic_stiffness_damping_of_a_bar_grows_with_frequency() {
     // A mode of the angular frequency ω falls as exp(−ζω t) with ζ = βω/2: energy as exp(−βω² t). Longitudinal modes
@@ -160,6 +161,7 @@ fn conserves_the_ledger_of_stiffness_damping() {
     assert!(worst < 5e-3 * (heat - none), "{:e} of the heat is missing", worst / (heat - none));
 }
 
+/// Source: THEORY §2.7.
 #[test]
 fn analytic_forces_turned_ahead_brake_a_spin() {
     // Elements see a body turned by βω ahead and push in directions turned by as much: momentum stays, and the centripetal

@@ -72,14 +72,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_processor_time_of_a_stat_line() {
+    fn example_processor_time_of_a_stat_line() {
         let stat = "42 (a ) name) S 1 42 42 0 -1 4194304 100 0 0 0 250 50 0 0 20 0 2 0 1 1 1";
         assert_eq!(cpu_of(stat), Some(3.0));
         assert_eq!(cpu_of("nonsense"), None);
     }
 
     #[test]
-    fn analytic_processor_name_of_cpuinfo() {
+    fn example_processor_name_of_cpuinfo() {
         assert_eq!(
             processor_name("processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\n"),
             Some("Some CPU @ 2 GHz")

@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_a_line_holds_time_eta_energy_and_pace() {
+    fn example_a_line_holds_time_eta_energy_and_pace() {
         let meter = Meter::new(30.0);
         let progress = Progress {
             step: 250,

@@ -89,7 +89,7 @@ fn assert_same_files(whole: &Path, pieces: &Path) {
 }
 
 #[test]
-fn invariant_killed_runs_and_full_disks_lose_nothing() {
+fn survives_kills_and_full_disks_without_loss() {
     let folder = Folder::new("nothing");
     let [whole, killed] = ["whole", "killed"].map(|name| folder.run(name));
     assert!(simulate(&whole, "1").status().expect("it starts").success());
@@ -120,7 +120,7 @@ fn invariant_killed_runs_and_full_disks_lose_nothing() {
 }
 
 #[test]
-fn invariant_a_folder_that_cannot_be_written_is_said_at_once() {
+fn refuses_a_folder_that_cannot_be_written_at_once() {
     // The kernel's own folder takes no files, not even from root.
     let output =
         simulate(Path::new("/proc/stribeck"), "1").stderr(Stdio::piped()).output().expect("it starts");
@@ -132,7 +132,7 @@ fn invariant_a_folder_that_cannot_be_written_is_said_at_once() {
 }
 
 #[test]
-fn invariant_an_interrupted_process_can_go_on() {
+fn survives_an_interruption_and_goes_on() {
     let folder = Folder::new("term");
     let [whole, ended] = ["whole", "ended"].map(|name| folder.run(name));
     assert!(simulate(&whole, "1").status().expect("it starts").success());
@@ -151,7 +151,7 @@ fn invariant_an_interrupted_process_can_go_on() {
 }
 
 #[test]
-fn invariant_a_continued_run_takes_its_scene_from_its_folder() {
+fn example_a_continued_run_takes_its_scene_from_its_folder() {
     for other in [&["--set", "mesh.size_mm=1.0"][..], &["--out", "elsewhere"], &["fixtures/scenes/quick.ron"]]
     {
         let output = Command::new(env!("CARGO_BIN_EXE_stribeck"))

@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_order_front_and_advice() {
+    fn example_order_front_and_advice() {
         let curve = |name: &str, points: Vec<Point>| Curve { name: name.into(), refined: "h", points };
         let problem = Problem {
             id: "x",

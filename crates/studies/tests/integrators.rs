@@ -23,6 +23,7 @@ fn swing(scheme: Scheme, dt: f64, steps: usize) -> Trajectory {
     t
 }
 
+/// Source: Orders of accuracy: Noh and Bathe 2013.
 #[test]
 fn converges_integrators_with_their_order() {
     for (scheme, expected) in SCHEMES.into_iter().zip([2.0, 1.0, 2.0]) {
@@ -34,6 +35,7 @@ fn converges_integrators_with_their_order() {
     }
 }
 
+/// Source: THEORY §2.4.
 #[test]
 fn analytic_limits_of_the_integrators() {
     // Central differences: 2. Tchamwa–Wielgosz: trace 2 − φΩ² and determinant 1 − (φ − 1)Ω² of its step give
@@ -60,6 +62,7 @@ fn analytic_limits_of_the_integrators() {
     assert!(noh > 3.5 && noh < 4.0, "Noh–Bathe: {noh}");
 }
 
+/// Source: Noh and Bathe 2013.
 #[test]
 fn analytic_damping_of_high_and_low_frequencies() {
     // Energy left after a hundred steps near the limit, and after a hundred steps of a twentieth of a radian.
@@ -130,6 +133,7 @@ fn standing_wave(columns: usize, choice: Choice, scheme: Scheme, factor: f64) ->
     (square / nodes as f64).sqrt() / amplitude
 }
 
+/// Source: Bilinear elements: Hughes 2000, chapter 4.
 #[test]
 fn converges_displacements_with_second_order_in_space() {
     for rule in [Rule::OnePoint, Rule::Full] {
@@ -143,7 +147,7 @@ fn converges_displacements_with_second_order_in_space() {
 }
 
 #[test]
-fn analytic_mixed_precision_and_viscosity_change_what_they_should() {
+fn example_mixed_precision_and_viscosity_change_what_they_should() {
     let double = standing_wave(32, Choice::default(), Scheme::CentralDifference, 0.5);
     // Strains of 3e-5 in numbers of seven digits: a per mille or so, and never more than a hundredth.
     let mixed = Choice { precision: Precision::Mixed, ..Choice::default() };

@@ -89,22 +89,31 @@ pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// README, CONTRIBUTING and what lies in `docs/`.
-fn documents(root: &Path) -> Result<Vec<String>> {
-    let mut names = vec!["README.md".to_owned()];
-    for name in ["CONTRIBUTING.md"] {
-        if root.join(name).exists() {
-            names.push(name.to_owned());
-        }
+/// Every file that a document links to exists.
+pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in documents(root)? {
+        let text = read(root, &name)?;
+        let folder = root.join(&name).parent().map_or_else(|| root.to_owned(), Path::to_owned);
+        let missing = markdown::links(&text).into_iter().filter(|target| !folder.join(target).exists());
+        complaints.extend(missing.map(|target| format!("{name} links to `{target}`, which is not there")));
     }
-    let entries = std::fs::read_dir(root.join("docs")).context("cannot read docs/")?;
-    let mut docs: Vec<String> = entries
-        .flatten()
-        .map(|entry| format!("docs/{}", entry.file_name().to_string_lossy()))
-        .filter(|name| name.ends_with(".md"))
-        .collect();
-    docs.sort();
-    names.append(&mut docs);
+    Ok(complaints)
+}
+
+/// README, CONTRIBUTING, what lies in `docs/` and `docs/notes/`, and the README of every crate.
+fn documents(root: &Path) -> Result<Vec<String>> {
+    let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
+    for folder in ["docs", "docs/notes"] {
+        let entries =
+            std::fs::read_dir(root.join(folder)).with_context(|| format!("cannot read {folder}"))?;
+        let files =
+            entries.flatten().map(|entry| format!("{folder}/{}", entry.file_name().to_string_lossy()));
+        names.extend(files.filter(|name| name.ends_with(".md")));
+    }
+    names.extend(layers::crates(root)?.iter().map(|name| format!("crates/{name}/README.md")));
+    names.retain(|name| root.join(name).exists());
+    names.sort();
     Ok(names)
 }
 
@@ -133,7 +142,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_crates_and_architecture_agree() {
+    fn example_crates_and_architecture_agree() {
         let exist = BTreeSet::from(["mesh".to_owned(), "solver".to_owned()]);
         assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
         let complaints = compare_crates("crates/mesh and crates/mush", &exist);
@@ -141,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_glossaries_out_of_order_are_found() {
+    fn example_glossaries_out_of_order_are_found() {
         assert!(compare_terms("**Bore** x\n**cage** y").is_empty());
         assert_eq!(compare_terms("**cage** x\n**Bore** y").len(), 1);
         assert_eq!(compare_terms("**cage** x\n## More\n**Cage** y").len(), 1);
@@ -149,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_commands_that_do_not_exist_are_found() {
+    fn example_commands_that_do_not_exist_are_found() {
         let root = Path::new("/nowhere");
         for fine in [
             "cargo xtask simulate",

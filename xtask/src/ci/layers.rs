@@ -75,7 +75,7 @@ mod tests {
     use super::compare;
 
     #[test]
-    fn invariant_arrows_against_the_layers_are_found() {
+    fn example_arrows_against_the_layers_are_found() {
         let manifest = "[package]\nname = \"stribeck-solver\"\n[dependencies]\nstribeck-mesh.workspace = true\n\
                         stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = true\n";
         let complaints = compare("solver", manifest, &["mesh"]);

@@ -16,6 +16,17 @@ pub(crate) fn code(text: &str) -> Vec<&str> {
     found
 }
 
+/// Targets of links to files, `[text](docs/x.md#section)` → `docs/x.md`, and of pictures; none of links to the network.
+pub(crate) fn links(text: &str) -> Vec<&str> {
+    let mut targets: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+    targets.retain(|target| !target.contains("://") && !target.contains(char::is_whitespace));
+    targets
+        .into_iter()
+        .filter_map(|target| target.split('#').next())
+        .filter(|file| !file.is_empty())
+        .collect()
+}
+
 /// Number of a section heading, `## 4.1 Gap` or `## §4.1 Gap` → `4.1`.
 pub(crate) fn section_number(line: &str) -> Option<&str> {
     let title = line.strip_prefix('#')?.trim_start_matches('#').trim_start();
@@ -66,13 +77,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_code_is_found_in_fences_and_backticks() {
+    fn example_code_is_found_in_fences_and_backticks() {
         let text = "Run `cargo xtask ci` or `x`.\n```sh\ncargo xtask simulate\n```\nno code";
         assert_eq!(code(text), ["cargo xtask ci", "x", "cargo xtask simulate"]);
     }
 
     #[test]
-    fn analytic_sections_and_their_citations() {
+    fn example_links_to_files() {
+        let text = "[a](docs/x.md#part) and ![b](y.svg), [c](https://example.org), [d](#here), `f[0](x, y)`";
+        assert_eq!(links(text), ["docs/x.md", "y.svg"]);
+    }
+
+    #[test]
+    fn example_sections_and_their_citations() {
         assert_eq!(section_number("## 4.1 Gap"), Some("4.1"));
         assert_eq!(section_number("### §12. Statics"), Some("12"));
         assert_eq!(section_number("## Contact"), None);
@@ -82,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_terms_of_a_glossary() {
+    fn example_terms_of_a_glossary() {
         let text =
             "# Words\n**bore** a hole\n- **cage** a ring\n## More\n| **apex** | top |\nplain **bold** text";
         assert_eq!(terms(text), [vec![], vec!["bore", "cage"], vec!["apex"]]);

@@ -4,10 +4,18 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
+use super::layers;
+
 /// Crates that must be of use outside bearings.
 const GENERAL: [&str; 5] = ["mesh", "simd", "solver", "contact", "dsp"];
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
+
+/// Crates that may print and read the clock: programs, and what only the project's development uses.
+const LOUD: [&str; 3] = ["stribeck", "studies", "testing"];
+/// What prints or reads the clock.
+const NOISES: [&str; 6] =
+    ["print!(", "println!(", "eprint!(", "eprintln!(", "Instant::now(", "SystemTime::now("];
 
 /// All Rust files below `folder`, sorted.
 pub(crate) fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
@@ -45,6 +53,30 @@ pub(crate) fn check_words(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
+/// Libraries never print and never read the clock.
+pub(crate) fn check_silence(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in layers::crates(root)?.iter().filter(|name| !LOUD.contains(&name.as_str())) {
+        for file in rust_files(&root.join("crates").join(name).join("src"))? {
+            let text =
+                std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
+            for (number, line) in text.lines().enumerate() {
+                if let Some(noise) = noise(line) {
+                    let file = file.strip_prefix(root).unwrap_or(&file).display();
+                    complaints.push(format!("{file}:{}: `{noise}…)` in a library", number + 1));
+                }
+            }
+        }
+    }
+    Ok(complaints)
+}
+
+/// What a line of code, comments apart, prints or asks the clock with.
+fn noise(line: &str) -> Option<&'static str> {
+    let code = line.split("//").next().unwrap_or_default();
+    NOISES.into_iter().find(|noise| code.contains(noise))
+}
+
 /// The first word of bearings in a line, also as part of an identifier (`roller_count`, `CageBody`).
 fn word_of_bearings(line: &str) -> Option<&'static str> {
     let mut spaced = String::with_capacity(line.len() + 8);
@@ -67,10 +99,10 @@ fn word_of_bearings(line: &str) -> Option<&'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::word_of_bearings;
+    use super::{noise, word_of_bearings};
 
     #[test]
-    fn invariant_words_are_found_in_prose_and_identifiers() {
+    fn example_words_are_found_in_prose_and_identifiers() {
         for line in
             ["the rollers turn", "let roller_count = 1;", "struct CageBody;", "const ROLLER: f64", "Spalls!"]
         {
@@ -79,6 +111,17 @@ mod tests {
         for line in ["a package", "the controller", "let blockage = 1;", "BlockAge", "scrollers", "race way"]
         {
             assert_eq!(word_of_bearings(line), None, "{line}");
+        }
+    }
+
+    #[test]
+    fn example_what_prints_or_asks_the_clock_is_found() {
+        for line in ["    println!(\"x\");", "let t = std::time::Instant::now();", "eprint!(\"x\"); // once"]
+        {
+            assert!(noise(line).is_some(), "{line}");
+        }
+        for line in ["//! println!(\"{quality}\");", "figure(\"Instantaneous\")", "writeln!(out)?"] {
+            assert_eq!(noise(line), None, "{line}");
         }
     }
 }

@@ -173,7 +173,7 @@ mod tests {
     const LINE: &str = "stribeck-solver\tspeed of a wave\tm/s\tAchenbach 1973, §1.3\tanalytic_speed\t5.8561234e3\t5.8560e3\t1e-3";
 
     #[test]
-    fn analytic_rows_are_rendered_with_their_digits() {
+    fn example_rows_are_rendered_with_their_digits() {
         let text = render(&[parse(LINE).expect("a row")]);
         let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 % | 0.1 % | Achenbach 1973, §1.3 | `analytic_speed` |";
         assert!(text.contains("## solver") && text.contains(row), "{text}");
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_rounding_is_no_change_and_everything_else_is() {
+    fn example_rounding_is_no_change_and_everything_else_is() {
         let line = |ours: &str, word: &str| {
             let row = LINE.replace("5.8561234e3", ours).replace("Achenbach", word);
             render(&[parse(&row).expect("a row")]).lines().last().unwrap_or_default().to_owned()

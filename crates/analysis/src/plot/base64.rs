@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_one_is_3f800000() {
+    fn example_one_is_3f800000() {
         assert_eq!(floats(&[1.0]), "AACAPw==");
     }
 }

@@ -297,7 +297,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_ranges_are_never_points_and_ignore_gaps() {
+    fn example_ranges_are_never_points_and_ignore_gaps() {
         let line = |y: Vec<f64>| {
             Figure::new("f", "f", Axis::plain("x", ""), Axis::plain("y", "g")).with(Series::sampled(
                 "s",

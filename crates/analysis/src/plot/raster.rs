@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_letters_leave_ink() {
+    fn example_letters_leave_ink() {
         let drawing = |words: &str| {
             let svg = format!(
                 "<svg width=\"60\" height=\"20\" xmlns=\"http://www.w3.org/2000/svg\"><rect width=\"60\" height=\"20\" fill=\"#fff\"/>\

@@ -296,7 +296,7 @@ mod tests {
     use crate::plot::{Band, Mark, Series};
 
     #[test]
-    fn invariant_everything_asked_for_is_in_the_picture() {
+    fn example_everything_asked_for_is_in_the_picture() {
         let y = (0..3000).map(|n| 100.0 * (0.3 * n as f64).sin()).collect();
         let mut figure =
             Figure::new("a", "Acceleration <raw>", Axis::si("Time", "s"), Axis::plain("a_y", "g"))
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_an_empty_figure_still_draws_its_frame() {
+    fn example_an_empty_figure_still_draws_its_frame() {
         let figure = Figure::new("e", "Empty", Axis::si("Time", "s"), Axis::plain("a", "g"));
         assert!(figure.to_svg().unwrap().contains("Empty"));
     }

@@ -64,7 +64,7 @@ fn write_run(path: &Path) {
 }
 
 #[test]
-fn invariant_a_run_reads_back_equal() {
+fn roundtrip_a_run_reads_back_equal() {
     let folder = Scratch::new("equal");
     write_run(&folder.0);
     let run = Run::read(&folder.0).expect("complete");
@@ -173,7 +173,7 @@ fn invariant_many_at_once_get_a_folder_each() {
 }
 
 #[test]
-fn invariant_two_runs_never_share_a_folder() {
+fn refuses_two_runs_in_one_folder() {
     let folder = Scratch::new("shared");
     let first = RunDir::create(&folder.0).expect("free");
     let error = RunDir::create(&folder.0).expect_err("taken").to_string();
@@ -183,7 +183,7 @@ fn invariant_two_runs_never_share_a_folder() {
 }
 
 #[test]
-fn invariant_the_lock_of_a_dead_process_does_not_block() {
+fn survives_the_lock_of_a_dead_process() {
     let folder = Scratch::new("dead");
     std::fs::create_dir_all(&folder.0).expect("temporary folder");
     std::fs::write(folder.0.join(LOCK), "999999999\n").expect("writable");
@@ -191,7 +191,7 @@ fn invariant_the_lock_of_a_dead_process_does_not_block() {
 }
 
 #[test]
-fn invariant_foreign_folders_are_refused_and_left_alone() {
+fn refuses_foreign_folders_and_leaves_them_alone() {
     let folder = Scratch::new("foreign");
     std::fs::create_dir_all(&folder.0).expect("temporary folder");
     std::fs::write(folder.0.join("thesis.tex"), "years of work").expect("writable");
@@ -201,14 +201,14 @@ fn invariant_foreign_folders_are_refused_and_left_alone() {
 }
 
 #[test]
-fn invariant_a_run_that_never_starts_leaves_no_folder() {
+fn example_a_run_that_never_starts_leaves_no_folder() {
     let folder = Scratch::new("never");
     drop(RunDir::create(&folder.0).expect("free"));
     assert!(!folder.0.exists());
 }
 
 #[test]
-fn analytic_missing_and_broken_runs_say_what_is_wrong() {
+fn refuses_missing_and_broken_runs() {
     let folder = Scratch::new("broken");
     let error = Run::read(&folder.0).expect_err("missing").to_string();
     assert!(error.contains("`scene.ron` is missing"), "{error}");

@@ -231,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn invariant_every_number_of_a_scene_has_a_range() {
+    fn example_every_number_of_a_scene_has_a_range() {
         let mut scene = Scene::default();
         scene.mesh.outer_facets = Some(1257);
         scene.mesh.inner_facets = Some(1030);
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_the_defaults_are_in_range() {
+    fn example_the_defaults_are_in_range() {
         assert_eq!(findings(&Scene::default()).len(), 0);
     }
 }

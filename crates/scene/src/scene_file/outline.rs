@@ -263,7 +263,7 @@ mod tests {
     "#;
 
     #[test]
-    fn analytic_every_field_is_found_with_its_value() {
+    fn example_every_field_is_found_with_its_value() {
         let outline = Outline::of(TEXT);
         let value = |path: &str| outline.get(path).map(|entry| &TEXT[entry.value.clone()]);
         assert_eq!(value("bearing.rollers"), Some("24"));
@@ -277,14 +277,14 @@ mod tests {
     }
 
     #[test]
-    fn analytic_the_innermost_field_is_found_from_a_place() {
+    fn example_the_innermost_field_is_found_from_a_place() {
         let outline = Outline::of(TEXT);
         let at = TEXT.find("2.5e1").expect("the text contains it");
         assert_eq!(outline.at(at + 1).map(|entry| entry.path.as_str()), Some("bearing.thickness_mm"));
     }
 
     #[test]
-    fn invariant_single_values_are_told_from_fragments() {
+    fn example_single_values_are_told_from_fragments() {
         for good in ["1.0", "None", "(a: 1)", "[1, 2]", "\"x\"", "Some((a: (b: 2)))", " -3e4 "] {
             assert!(is_single_value(good), "{good}");
         }
@@ -295,7 +295,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn invariant_any_text_is_scanned_without_panic(text in "[ -~\\n(){}\\[\\]\"#r:,/*é]{0,80}") {
+        fn survives_any_text(text in "[ -~\\n(){}\\[\\]\"#r:,/*é]{0,80}") {
             let outline = Outline::of(&text);
             for entry in &outline.entries {
                 prop_assert!(text.get(entry.value.clone()).is_some());
@@ -303,7 +303,7 @@ mod tests {
         }
 
         #[test]
-        fn invariant_a_truncated_text_is_scanned_without_panic(cut in 0..TEXT.len()) {
+        fn survives_a_truncated_text(cut in 0..TEXT.len()) {
             if let Some(part) = TEXT.get(..cut) {
                 let outline = Outline::of(part);
                 prop_assert!(outline.entries.len() <= Outline::of(TEXT).entries.len());

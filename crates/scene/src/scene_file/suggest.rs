@@ -111,12 +111,12 @@ mod tests {
     const ALL: &[&str] = &["bearing.rollers", "mesh.size_mm", "operation.load_n", "solver.duration_ms"];
 
     #[test]
-    fn analytic_a_missing_unit_is_proposed() {
+    fn refuses_a_missing_unit_and_proposes_it() {
         assert!(field("load", SIBLINGS, ALL).contains("`load_n`"));
     }
 
     #[test]
-    fn analytic_another_unit_is_converted() {
+    fn refuses_another_unit_and_converts_it() {
         assert_eq!(
             field("load_kn", SIBLINGS, ALL),
             "did you mean `load_n`? 1 in `load_kn` is 1000 in `load_n`"
@@ -125,18 +125,18 @@ mod tests {
     }
 
     #[test]
-    fn analytic_a_typing_error_is_recognised() {
+    fn refuses_a_typing_error_and_recognises_it() {
         assert_eq!(field("sped_rpm", SIBLINGS, ALL), "did you mean `speed_rpm`?");
     }
 
     #[test]
-    fn analytic_a_name_in_the_wrong_section_is_sent_home() {
+    fn refuses_a_name_in_the_wrong_section_and_says_where_it_belongs() {
         assert_eq!(field("size_mm", SIBLINGS, ALL), "`size_mm` belongs in `mesh: ( … )`");
         assert_eq!(field("duration", SIBLINGS, ALL), "`duration_ms` belongs in `solver: ( … )`");
     }
 
     #[test]
-    fn analytic_a_stranger_gets_the_list() {
+    fn refuses_an_unknown_name_with_the_list() {
         assert_eq!(field("qqq", SIBLINGS, ALL), "valid here: `load_n`, `speed_rpm`, `gravity_m_s2`");
     }
 }

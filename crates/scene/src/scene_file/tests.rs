@@ -27,12 +27,12 @@ fn mark(problem: &Problem) -> (usize, usize, String) {
 }
 
 #[test]
-fn analytic_an_empty_group_is_the_default_scene() {
+fn example_an_empty_group_is_the_default_scene() {
     assert_eq!(parse("()").expect("valid"), Scene::default());
 }
 
 #[test]
-fn invariant_the_scene_of_the_paper_spells_out_the_defaults() {
+fn example_the_scene_of_the_paper_spells_out_the_defaults() {
     let text = include_str!("../../../../fixtures/scenes/singh2014.ron");
     assert_eq!(parse(text).expect("valid"), Scene::default());
     let spelled: Vec<String> =
@@ -43,14 +43,14 @@ fn invariant_the_scene_of_the_paper_spells_out_the_defaults() {
 }
 
 #[test]
-fn invariant_the_quick_scene_holds_the_exit_of_roller_1() {
+fn example_the_quick_scene_holds_the_exit_of_roller_1() {
     let scene = parse(include_str!("../../../../fixtures/scenes/quick.ron")).expect("valid");
     assert_eq!(scene.bearing, Scene::default().bearing);
     assert!(scene.solver.duration_ms > 5.08 + 0.5, "the exit and half a millisecond of ringing");
 }
 
 #[test]
-fn invariant_the_resolved_scene_reads_back_equal() {
+fn roundtrip_the_resolved_scene_reads_back_equal() {
     let mut scene = Scene { defect: None, ..Scene::default() };
     scene.mesh.outer_facets = Some(1257);
     scene.bearing.thickness_mm = 0.1 + 0.2;
@@ -64,7 +64,7 @@ fn invariant_the_resolved_scene_reads_back_equal() {
 }
 
 #[test]
-fn analytic_the_hash_is_fnv_1a_of_the_content() {
+fn example_the_hash_is_fnv_1a_of_the_content() {
     let plain = parse("()").expect("valid");
     let spelled = parse("( /* same */ mesh: (size_mm: 0.5))").expect("valid");
     assert_eq!(plain.hash(), spelled.hash());
@@ -74,7 +74,7 @@ fn analytic_the_hash_is_fnv_1a_of_the_content() {
 }
 
 #[test]
-fn invariant_a_later_field_changes_the_hash_only_where_it_is_used() {
+fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
     // The hash of the paper's scene before there was stiffness damping, with what were defaults then: a field that it does not
     // use leaves it alone.
     let hash = |solver: &str| {
@@ -87,7 +87,7 @@ fn invariant_a_later_field_changes_the_hash_only_where_it_is_used() {
 }
 
 #[test]
-fn analytic_an_unknown_field_shows_line_column_and_the_right_name() {
+fn refuses_an_unknown_field_with_line_column_and_the_right_name() {
     let problem = only(parse("(\n  operation: (\n    load_kn: 50,\n  ),\n)"));
     assert_eq!(mark(&problem), (3, 5, "load_kn".to_owned()));
     assert_eq!(problem.field, "operation.load_kn");
@@ -104,7 +104,7 @@ fn analytic_an_unknown_field_shows_line_column_and_the_right_name() {
 }
 
 #[test]
-fn analytic_the_message_draws_the_line_and_the_mark() {
+fn refuses_with_the_line_and_a_mark() {
     let error = parse("(\n  // ü\n  bearing: (roller_diameter_mm: -18.0),\n)").expect_err("negative");
     let expected = "\
 `bearing.roller_diameter_mm` is -18, outside its range
@@ -119,7 +119,7 @@ fn analytic_the_message_draws_the_line_and_the_mark() {
 }
 
 #[test]
-fn analytic_numbers_outside_their_range_are_all_reported() {
+fn refuses_all_numbers_outside_their_range() {
     let text = "(solver: (time_step_factor: 1.7, duration_ms: 0), material: (poissons_ratio: 0.5), \
                 contact: (friction: NaN), operation: (load_n: inf), mesh: (roller_facets: 7))";
     let error = parse(text).expect_err("five errors");
@@ -138,7 +138,7 @@ fn analytic_numbers_outside_their_range_are_all_reported() {
 }
 
 #[test]
-fn analytic_wrong_types_name_the_field_and_what_belongs_there() {
+fn refuses_wrong_types_with_field_and_what_belongs_there() {
     for (text, field, value, kind) in [
         ("(bearing: (rollers: 24.5))", "bearing.rollers", "24.5", "whole number"),
         ("(bearing: (rollers: -3))", "bearing.rollers", "-3", "whole number"),
@@ -158,7 +158,7 @@ fn analytic_wrong_types_name_the_field_and_what_belongs_there() {
 }
 
 #[test]
-fn analytic_a_wrong_word_is_corrected() {
+fn refuses_a_wrong_word_and_corrects_it() {
     let problem = only(parse("(contact: (method: colocated))"));
     assert_eq!(problem.field, "contact.method");
     assert_eq!(problem.suggestion, "did you mean `collocated`?");
@@ -166,7 +166,7 @@ fn analytic_a_wrong_word_is_corrected() {
 }
 
 #[test]
-fn analytic_broken_text_is_located() {
+fn refuses_broken_text_and_locates_it() {
     let problem = only(parse("(bearing: (rollers: 24"));
     assert!(problem.message.contains("ends too early"), "{problem}");
     let problem = only(parse(""));
@@ -182,7 +182,7 @@ fn analytic_broken_text_is_located() {
 }
 
 #[test]
-fn analytic_overlapping_bodies_are_refused_with_numbers() {
+fn refuses_overlapping_bodies_with_numbers() {
     let problem = only(parse("(bearing: (\n inner_race_diameter_mm: 165.0))"));
     assert!(problem.message.contains("200 − inner raceway 165 − 2 × roller 18 = -1 mm"), "{problem}");
     assert_eq!(mark(&problem), (2, 26, "165.0".to_owned()));
@@ -193,7 +193,7 @@ fn analytic_overlapping_bodies_are_refused_with_numbers() {
 }
 
 #[test]
-fn analytic_roller_count_on_the_pitch_circle() {
+fn refuses_more_rollers_than_fit_the_pitch_circle() {
     // 2 asin(18 / 181.98) = 11.355°, so 31 rollers touch nowhere and 32 do. A pocket of radius 9.9 mm cuts ±5.85° out of
     // the cage, more than half of 360° / 31.
     assert!(parse("(cage: None, bearing: (rollers: 31))").is_ok());
@@ -204,7 +204,7 @@ fn analytic_roller_count_on_the_pitch_circle() {
 }
 
 #[test]
-fn analytic_impossible_cage_adapter_defect_mesh_and_sampling() {
+fn refuses_impossible_cage_adapter_defect_mesh_and_sampling() {
     for (text, field, words) in [
         ("(cage: (outer_diameter_mm: 200))", "cage.outer_diameter_mm", "between the raceways"),
         ("(cage: (thickness_mm: 17))", "cage.outer_diameter_mm", "between the raceways"),
@@ -241,7 +241,7 @@ fn analytic_impossible_cage_adapter_defect_mesh_and_sampling() {
 }
 
 #[test]
-fn analytic_overrides_reach_every_kind_of_field() {
+fn example_overrides_reach_every_kind_of_field() {
     let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid");
     assert_eq!(set(&["mesh.size_mm=1"]).mesh.size_mm, 1.0);
     assert_eq!(set(&["mesh.roller_facets=56"]).mesh.roller_facets, 56);
@@ -261,7 +261,7 @@ fn analytic_overrides_reach_every_kind_of_field() {
 }
 
 #[test]
-fn analytic_errors_in_overrides_point_at_the_command_line() {
+fn refuses_overrides_and_points_at_the_command_line() {
     let refuse = |argument: &str| only(Scene::default().with_overrides(&[argument]));
     for (argument, words) in [
         ("mesh.size=1", "did you mean `mesh.size_mm`?"),
@@ -297,7 +297,7 @@ fn analytic_a_file_that_may_not_be_read_is_not_looked_for_elsewhere() {
 }
 
 #[test]
-fn analytic_an_override_may_repair_a_file_or_break_it() {
+fn example_an_override_may_repair_a_file_or_break_it() {
     let folder = std::env::temp_dir().join(format!("stribeck-scene-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("temporary folder");
     let path = folder.join("x.ron");
@@ -310,7 +310,7 @@ fn analytic_an_override_may_repair_a_file_or_break_it() {
 }
 
 #[test]
-fn analytic_files_that_are_no_scene_are_refused() {
+fn refuses_files_that_are_no_scene() {
     let folder = std::env::temp_dir().join(format!("stribeck-files-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("temporary folder");
     let refuse = |name: &str, bytes: &[u8]| {
@@ -331,14 +331,14 @@ fn analytic_files_that_are_no_scene_are_refused() {
 }
 
 #[test]
-fn invariant_deep_nesting_is_refused() {
+fn refuses_deep_nesting() {
     assert!(parse(&"(".repeat(100_000)).is_err());
     assert!(parse(&format!("(bearing: {}", "[".repeat(100_000))).is_err());
     assert!(Scene::default().with_overrides(&[format!("bearing={}", "(a:".repeat(50_000))]).is_err());
 }
 
 #[test]
-fn invariant_a_scene_cut_anywhere_is_refused_and_never_panics() {
+fn refuses_a_scene_cut_anywhere() {
     let text = Scene::default().to_ron();
     let end = text.trim_end().len();
     for cut in (0..end).filter(|cut| text.is_char_boundary(*cut)) {
@@ -349,19 +349,19 @@ fn invariant_a_scene_cut_anywhere_is_refused_and_never_panics() {
 
 proptest! {
     #[test]
-    fn invariant_any_text_gets_an_answer(text in "[(){}\\[\\]:,\"a-z_0-9. \\n\\-é]{0,60}") {
+    fn survives_any_scene_text_with_an_answer(text in "[(){}\\[\\]:,\"a-z_0-9. \\n\\-é]{0,60}") {
         let shown = parse(&text).map_or_else(|e| e.to_string(), |scene| scene.to_ron());
         prop_assert!(!shown.is_empty());
     }
 
     #[test]
-    fn invariant_any_override_gets_an_answer(text in "[a-z_.=(){}\\[\\]0-9\"é ]{0,40}") {
+    fn survives_any_override_with_an_answer(text in "[a-z_.=(){}\\[\\]0-9\"é ]{0,40}") {
         let shown = Scene::default().with_overrides(&[text]).map_or_else(|e| e.to_string(), |s| s.to_ron());
         prop_assert!(!shown.is_empty());
     }
 
     #[test]
-    fn invariant_a_damaged_scene_gets_an_answer(at in 0_usize..1500, with in "[(){}:,\"0-9a-z. ]{1}") {
+    fn survives_a_damaged_scene_with_an_answer(at in 0_usize..1500, with in "[(){}:,\"0-9a-z. ]{1}") {
         let mut text = Scene::default().to_ron();
         let at = at.min(text.len() - 1);
         text.replace_range(at..=at, &with);
@@ -370,7 +370,7 @@ proptest! {
     }
 
     #[test]
-    fn invariant_every_number_survives_the_round_trip(load in 1e-3_f64..1e9, angle in -360.0_f64..360.0) {
+    fn roundtrip_every_number_of_a_scene(load in 1e-3_f64..1e9, angle in -360.0_f64..360.0) {
         let mut scene = Scene::default();
         scene.operation.load_n = load;
         scene.bearing.first_roller_deg = angle;

@@ -44,7 +44,7 @@ fn rows(count: usize) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn analytic_the_file_is_a_structured_npy_array() {
+fn example_the_file_is_a_structured_npy_array() {
     let file = Scratch::new();
     let bytes = file.write(&["time_s", "ay_m_s2"], &rows(3));
     let data = bytes.len() - 3 * 16;
@@ -66,7 +66,7 @@ fn invariant_equal_samples_make_equal_bytes() {
 }
 
 #[test]
-fn invariant_a_killed_run_loses_at_most_a_hundred_rows() {
+fn survives_a_kill_but_for_a_hundred_rows() {
     let file = Scratch::new();
     let mut writer = TraceWriter::create(&file.0, &["time_s", "x"]).expect("writable");
     for row in rows(250) {
@@ -82,7 +82,7 @@ fn invariant_a_killed_run_loses_at_most_a_hundred_rows() {
 }
 
 #[test]
-fn invariant_a_continued_file_is_that_of_one_writer() {
+fn roundtrip_a_continued_file_is_that_of_one_writer() {
     let file = Scratch::new();
     let names = ["time_s", "x"];
     let whole = file.write(&names, &rows(7));
@@ -100,7 +100,7 @@ fn invariant_a_continued_file_is_that_of_one_writer() {
 }
 
 #[test]
-fn invariant_a_file_that_cannot_be_continued_is_left_alone() {
+fn refuses_to_continue_a_foreign_file_and_leaves_it_alone() {
     let file = Scratch::new();
     let whole = file.write(&["time_s", "x"], &rows(3));
     let refuse = |bytes: &[u8], names: &[&str], rows, words: &str| {
@@ -118,7 +118,7 @@ fn invariant_a_file_that_cannot_be_continued_is_left_alone() {
 }
 
 #[test]
-fn invariant_a_file_cut_at_any_byte_is_read_or_refused() {
+fn survives_a_file_cut_at_any_byte() {
     let file = Scratch::new();
     let bytes = file.write(&["time_s", "x"], &rows(4));
     let data = bytes.len() - 4 * 16;
@@ -131,7 +131,7 @@ fn invariant_a_file_cut_at_any_byte_is_read_or_refused() {
 }
 
 #[test]
-fn invariant_a_file_damaged_at_any_byte_never_panics() {
+fn survives_a_file_damaged_at_any_byte() {
     let file = Scratch::new();
     let bytes = file.write(&["time_s", "x"], &rows(2));
     for at in 0..bytes.len() {
@@ -146,7 +146,7 @@ fn invariant_a_file_damaged_at_any_byte_never_panics() {
 }
 
 #[test]
-fn analytic_foreign_files_are_refused_with_a_reason() {
+fn refuses_foreign_files_with_a_reason() {
     let file = Scratch::new();
     let npy = |text: &str| {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
@@ -176,7 +176,7 @@ fn analytic_foreign_files_are_refused_with_a_reason() {
 }
 
 #[test]
-fn invariant_wrong_rows_and_names_are_refused() {
+fn refuses_wrong_rows_and_names() {
     let file = Scratch::new();
     let mut writer = TraceWriter::create(&file.0, &["time_s", "x"]).expect("writable");
     assert!(writer.push(&[1.0]).is_err());
@@ -187,7 +187,7 @@ fn invariant_wrong_rows_and_names_are_refused() {
 }
 
 #[test]
-fn analytic_many_channels_take_version_2() {
+fn example_many_channels_take_version_2() {
     let file = Scratch::new();
     let names: Vec<String> = (0..4000).map(|i| format!("roller.{i}.outer_n")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -202,7 +202,7 @@ fn analytic_many_channels_take_version_2() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn analytic_a_full_disk_says_what_is_safe() {
+fn survives_a_full_disk_and_says_what_is_safe() {
     // The kernel's /dev/full refuses every write as a full disk does.
     let error = TraceWriter::create("/dev/full", &["time_s"]).map(|_| ()).expect_err("full").to_string();
     assert!(error.contains("cannot create `/dev/full`") && error.contains("Nothing was written"), "{error}");
@@ -210,7 +210,7 @@ fn analytic_a_full_disk_says_what_is_safe() {
 
 proptest! {
     #[test]
-    fn invariant_any_bits_survive_the_round_trip(
+    fn roundtrip_any_bits_of_a_trace(
         channels in 1_usize..5,
         bits in proptest::collection::vec(any::<u64>(), 0..800),
     ) {

@@ -283,7 +283,7 @@ mod tests {
     use crate::{Dynamics, Elastic, Model};
 
     #[test]
-    fn invariant_elements_that_are_alike_are_whole_groups_or_the_last() {
+    fn example_elements_that_are_alike_are_whole_groups_or_the_last() {
         let of = |shapes: &[(u8, usize)]| {
             let shapes: Vec<u8> = shapes.iter().flat_map(|&(shape, n)| vec![shape; n]).collect();
             alike(shapes.len(), |i, j| shapes[i] == shapes[j])
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn invariant_strips_of_a_grooved_ring_are_mostly_alike() {
+    fn example_strips_of_a_grooved_ring_are_mostly_alike() {
         let groove = Some(Groove { centre_angle: 0.5 * PI, length: 0.01, depth: 0.2e-3 });
         let ring = Annulus {
             inner_radius: 0.1,
