@@ -26,7 +26,7 @@ const ROWS_PER_FLUSH: u64 = 100;
 /// trace.finish()?;
 /// assert_eq!(Trace::read(&path)?.get("ay_m_s2"), Some(&[9.81][..]));
 /// # std::fs::remove_file(&path).ok();
-/// # Ok::<(), stribeck_bearing::error::Error>(())
+/// # Ok::<(), stribeck_scene::Error>(())
 /// ```
 #[derive(Debug)]
 pub struct TraceWriter {
