@@ -25,5 +25,5 @@ pub use ledger::{Balance, Ledger, Scale};
 pub use plan::{Pair, Plan};
 pub use preload::{Preload, Settled, UndecidedMotion};
 pub use snapshot::Snapshot;
-pub use system::System;
+pub use system::{Parts, System};
 pub use workers::Workers;

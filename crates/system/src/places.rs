@@ -33,6 +33,11 @@ impl System {
         self.dynamics.mass()[self.slot(node)]
     }
 
+    /// Nodes of the mesh.
+    pub fn node_count(&self) -> usize {
+        self.dynamics.layout().slot_of_node.len()
+    }
+
     /// Number of the body of that name.
     ///
     /// # Errors

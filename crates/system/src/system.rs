@@ -1,7 +1,9 @@
 //! A system in motion: its step, its time step, its energies.
 
-use stribeck_contact::Resultant;
-use stribeck_solver::{Behaviour, Dynamics, Velocities, critical::damped_time_step, damping::MassDamping};
+use stribeck_contact::{Contacts, Resultant};
+use stribeck_solver::{
+    Behaviour, Dynamics, Force, Velocities, critical::damped_time_step, damping::MassDamping,
+};
 
 use crate::{
     error::Error,
@@ -36,6 +38,17 @@ pub struct System {
     ledger: Ledger,
     /// Velocities before a step, for the kinetic energy at its start.
     before: Velocities,
+}
+
+/// What a system is made of.
+#[non_exhaustive]
+pub struct Parts {
+    /// Elements and their motion.
+    pub dynamics: Dynamics,
+    /// Contact, if there are pairs.
+    pub contacts: Option<Contacts>,
+    /// Loads and the laws of the user, as one force.
+    pub others: Box<dyn Force + Send>,
 }
 
 impl System {
@@ -216,6 +229,13 @@ impl System {
         let node = self.dynamics.layout().node_of_slot[slot].unwrap_or(0);
         let [x, y] = self.position(node);
         Err(Error::UnannouncedForce { body: self.body_of(node).to_owned(), x_mm: 1e3 * x, y_mm: 1e3 * y })
+    }
+
+    /// Takes a system apart, to measure one part of a step alone. What is left speaks in the solver's own numbers.
+    pub fn into_parts(self) -> Parts {
+        let Forces { contacts, loads, further } = self.forces;
+        let others = Box::new(Forces { contacts: None, loads, further });
+        Parts { dynamics: self.dynamics, contacts, others }
     }
 
     /// Steps taken.
