@@ -10,18 +10,16 @@ use stribeck_system::{Pair, Plan, Preload, UndecidedMotion};
 /// Relative error of the approach under the load that was found [-].
 pub fn error() -> Result<f64, Box<dyn std::error::Error>> {
     let (radius, approach, thickness) = (0.01, 15e-6, 0.02);
-    let disc = Disc { radius, facets: 720, size: 2.5e-4, rotation: 0.0 }.part()?;
-    let plate =
-        Rectangle { x0: -0.002, y0: 0.0, width: 0.004, height: 0.001, columns: 20, rows: 5 }.part()?;
+    let disc = Disc { radius, facets: 720, size: 4e-4, rotation: 0.0 }.part()?;
+    let plate = Rectangle { x0: -2e-3, y0: 0.0, width: 4e-3, height: 1e-3, columns: 20, rows: 5 }.part()?;
     let steel = Elastic::new(208e9, 0.3, 7800.0)?;
     let mut plan = Plan::new(thickness);
     let body = plan.add("disc", &disc, steel)?.body;
     plan.smooth("disc.rim", Smoothing::Arc { centre: [0.0; 2] }, false)?;
     plan.constrain("disc.centre", Motion::HeldX)?;
     let law = Law::penalty(20.0 * steel.plane_strain_modulus() / 1e-4)?;
-    for (name, y, side) in
-        [("floor", approach - radius - 0.001, "top"), ("roof", radius - approach, "bottom")]
-    {
+    let reach = radius - approach;
+    for (name, y, side) in [("floor", -reach - 1e-3, "top"), ("roof", reach, "bottom")] {
         plan.add(name, &plate.translated(0.0, y), steel)?;
         plan.constrain(name, Motion::Held)?;
         plan.contact(Pair::new("disc.rim", &format!("{name}.{side}"), law))?;
