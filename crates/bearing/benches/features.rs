@@ -9,12 +9,13 @@ use std::path::Path;
 use std::time::Instant;
 
 use motion::{CLOSING, machine};
-use stribeck_bearing::assembly::Machine;
 use stribeck_scene::scene::Scene;
+use stribeck_contact::Contacts;
 use stribeck_solver::{
-    Velocities,
+    Dynamics, Force, Velocities,
     damping::{Frame, MassDamping},
 };
+use stribeck_system::Parts;
 
 /// Steps of a round, and rounds.
 const STEPS: usize = 40;
@@ -37,7 +38,9 @@ struct Variant {
 /// A variant in motion.
 struct Moving {
     variant: Variant,
-    machine: Machine,
+    dynamics: Dynamics,
+    contacts: Option<Contacts>,
+    load: Box<dyn Force + Send>,
     elements: usize,
     before: Velocities,
     /// Processor time of each round [ns per element-step].
@@ -76,22 +79,23 @@ impl Moving {
     fn new(variant: Variant) -> Self {
         let (mut machine, elements) = machine(&variant.scene, 1);
         if let Some(rate) = variant.damping {
-            let mut frames: Vec<_> = machine.standing_bodies.iter().map(|&b| (b, Frame::Rest)).collect();
+            let mut frames = vec![(machine.outer, Frame::Rest), (machine.adapter, Frame::Rest)];
             frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Tangential { centre: [0.0; 2] })));
-            machine.dynamics.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
+            machine.system.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
         }
+        let Parts { dynamics, mut contacts, others, .. } = machine.system.into_parts();
+        contacts = contacts.filter(|_| variant.contact);
         let before = Velocities::default();
-        let mut moving = Self { variant, machine, elements, before, rounds: Vec::new() };
+        let mut moving = Self { variant, dynamics, contacts, load: others, elements, before, rounds: Vec::new() };
         (0..CLOSING).for_each(|_| moving.step());
         moving
     }
 
     fn step(&mut self) {
-        let Machine { dynamics, contacts, load, .. } = &mut self.machine;
-        if self.variant.contact {
-            dynamics.step(&mut [load, contacts])
-        } else {
-            dynamics.step(&mut [load])
+        let Self { dynamics, contacts, load, .. } = self;
+        match contacts {
+            Some(contacts) => dynamics.step(&mut [&mut **load, contacts]),
+            None => dynamics.step(&mut [&mut **load]),
         }
         if self.variant.energies && dynamics.state.step.is_multiple_of(SAMPLE as u64) {
             dynamics.velocities_into(&mut self.before);

@@ -11,18 +11,10 @@ use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use motion::{CLOSING, machine};
-use stribeck_bearing::assembly::Machine;
 use stribeck_scene::scene::Scene;
 use stribeck_solver::Force;
 use stribeck_solver::state::NodeForces;
-
-/// Runs work inside a pool of that many threads, or right here for one.
-fn within<T: Send>(pool: Option<&micropool::ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
-}
+use stribeck_system::{Parts, System, Workers};
 
 fn step(criterion: &mut Criterion) {
     let lean = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes/lean.ron");
@@ -35,38 +27,33 @@ fn step(criterion: &mut Criterion) {
             .warm_up_time(Duration::from_millis(500))
             .measurement_time(Duration::from_secs(2));
         for threads in [1, 2] {
-            let pool = (threads > 1).then(|| {
-                micropool::ThreadPoolBuilder::default()
-                    .num_threads(threads - 1)
-                    .idle_spin_cycles(20_000)
-                    .build()
-            });
-            let pool = pool.as_ref();
+            let workers = Workers::new(threads).expect("threads");
             let (mut m, elements) = machine(scene, threads);
             group.throughput(Throughput::Elements(elements as u64));
-            within(pool, || {
-                (0..CLOSING).for_each(|_| m.dynamics.step(&mut [&mut m.load, &mut m.contacts]));
-            });
-            let carrying = m.contacts.resultants().filter(|r| r.penetration > 0.0).count();
+            let system = &mut m.system;
+            let step = |system: &mut System| system.step().expect("a time step is set");
+            workers.run(|| (0..CLOSING).for_each(|_| step(system)));
+            let carrying = system.resultants().filter(|r| r.penetration > 0.0).count();
             println!("{name}: {elements} elements, {carrying} pairs carry");
+            group.bench_function(format!("everything, {threads} threads"), |bench| {
+                workers.run(|| bench.iter(|| step(system)));
+            });
 
-            let Machine { dynamics, contacts, load, .. } = &mut m;
+            let Parts { mut dynamics, contacts, mut others, .. } = m.system.into_parts();
+            let mut contacts = contacts.expect("a bearing has contacts");
             let n = dynamics.state.x.len();
             let mut force = NodeForces::zeros(n);
             let mut at = dynamics.moment();
             group.bench_function(format!("contact alone, {threads} threads"), |bench| {
-                within(pool, || {
+                workers.run(|| {
                     bench.iter(|| {
                         at.step += 1;
                         contacts.accumulate(at, &mut force);
                     });
                 });
             });
-            group.bench_function(format!("everything, {threads} threads"), |bench| {
-                within(pool, || bench.iter(|| dynamics.step(&mut [load, contacts])));
-            });
             group.bench_function(format!("without contact, {threads} threads"), |bench| {
-                within(pool, || bench.iter(|| dynamics.step(&mut [load])));
+                workers.run(|| bench.iter(|| dynamics.step(&mut [&mut *others])));
             });
         }
         group.finish();

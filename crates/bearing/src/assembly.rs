@@ -5,13 +5,12 @@ use std::{
     ops::Range,
 };
 
-use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Smoothing, Surface};
+use stribeck_contact::{Law, Method, Sides, Smoothing};
 use stribeck_mesh::{
     Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
 };
-use stribeck_solver::{
-    Behaviour, Dynamics, Elastic, Model, Motion, critical::damped_time_step, force::NodalLoad,
-};
+use stribeck_solver::{Behaviour, Elastic, Model, Motion, critical::damped_time_step};
+use stribeck_system::{Pair, Plan, System};
 
 use crate::{error::Error, grading};
 use stribeck_scene::{
@@ -30,9 +29,14 @@ const FLATTEST: f64 = 0.91;
 /// Integration points on a facet of the adapter's seat: two conforming surfaces need fewer than a line contact.
 const SEAT_POINTS: usize = 2;
 
-/// Places of the raceways among the contact surfaces; the outer ring's back and the seat have the other two of four.
-const OUTER_RACEWAY: usize = 0;
-const INNER_RACEWAY: usize = 2;
+/// Names of the contact surfaces that every scene has.
+const OUTER_RACEWAY: &str = "outer raceway";
+const BACK: &str = "outer ring's back";
+const INNER_RACEWAY: &str = "inner raceway";
+const SEAT: &str = "adapter seat";
+
+/// Name of the surface that carries the load.
+const TOP: &str = "adapter's top";
 
 /// A scene made into bodies, in mesh numbers.
 #[derive(Debug)]
@@ -50,49 +54,41 @@ pub struct Assembly {
     cage: Option<Placed>,
 }
 
-/// The same in slot numbers, ready to run.
+/// The same, ready to run; bodies by their numbers in the mesh.
 #[derive(Debug)]
 pub struct Machine {
-    /// Bodies in motion.
-    pub dynamics: Dynamics,
-    /// All contacts.
-    pub contacts: Contacts,
-    /// The load on the adapter.
-    pub load: NodalLoad,
-    /// Slots of the outer ring.
-    pub outer: Vec<u32>,
-    /// Slots of the inner ring.
-    pub inner: Vec<u32>,
-    /// Slots of the adapter.
-    pub adapter: Vec<u32>,
-    /// Bodies that neither turn nor roll: outer ring and adapter, by their numbers in the mesh.
-    pub standing_bodies: [usize; 2],
-    /// Slots of each roller.
-    pub rollers: Vec<RollerSlots>,
-    /// Number of the cage among the rigid bodies.
+    /// Bodies in motion, contact and the load.
+    pub system: System,
+    /// The outer ring.
+    pub outer: usize,
+    /// The inner ring.
+    pub inner: usize,
+    /// The adapter.
+    pub adapter: usize,
+    /// Each roller.
+    pub rollers: Vec<Roller>,
+    /// The cage, which moves as one piece.
     pub cage: Option<usize>,
-    /// Slots on the outer surface of the outer ring.
+    /// Nodes on the outer surface of the outer ring.
     pub housing: Vec<u32>,
     /// Contact pairs by what touches.
     pub pairs: Pairs,
 }
 
-/// Slots of one roller.
+/// One roller.
 #[derive(Debug, Clone)]
-pub struct RollerSlots {
+pub struct Roller {
     /// Number of the body in the mesh.
     pub body: usize,
-    /// All of them.
-    pub all: Vec<u32>,
-    /// The one in the centre.
+    /// The node in the centre.
     pub centre: u32,
-    /// One on the rim, for the angle.
+    /// A node on the rim, for the angle.
     pub rim: u32,
 }
 
 /// Which contact pair is whose; the resultant of a roller's is the force on the roller.
 ///
-/// They follow one another from the outside in, the seat first: see [`Contacts::new`].
+/// They follow one another from the outside in, the seat first: see [`Plan::contact`].
 #[derive(Debug, Clone, Copy)]
 pub struct Pairs {
     rollers: usize,
@@ -258,88 +254,51 @@ impl Assembly {
     /// # Errors
     /// When the solver or contact refuses the model.
     pub fn machine(&self, scene: &Scene, threads: usize) -> Result<Machine, Error> {
-        let model = &self.model;
-        let mut loaded = vec![false; model.mesh.x.len()];
-        let top = surface(&self.adapter, "top");
-        let mut touching = vec![
-            surface(&self.outer, "inner"),
-            surface(&self.outer, "outer"),
-            surface(&self.inner, "outer"),
-            surface(&self.adapter, "seat"),
-        ];
-        touching.extend(self.rollers.iter().map(|r| surface(r, "rim")));
-        let first_piece = touching.len();
-        let pieces = self.cage.iter().flat_map(|c| &c.surfaces).map(|(_, s)| s);
-        touching.extend(pieces);
-        for &n in touching.iter().flat_map(|s| &s.nodes).chain(&top.nodes) {
-            loaded[n as usize] = true;
-        }
-
-        let mut dynamics = Dynamics::new(model, &loaded, threads)?;
-        dynamics.set_stiffness_damping(1e-9 * scene.solver.stiffness_damping_ns)?;
-        let slot = |&n: &u32| dynamics.layout().slot_of_node[n as usize];
-        let slots = |s: &stribeck_mesh::Surface| s.nodes.iter().map(slot).collect::<Vec<u32>>();
-        let body =
-            |b: usize| model.mesh.bodies[b].nodes.clone().map(|n| slot(&(n as u32))).collect::<Vec<u32>>();
-        let (x, y) = (&dynamics.state.x, &dynamics.state.y);
-        let centres: Vec<[f64; 2]> = self
+        let mut plan = Plan::from(self.model.clone());
+        plan.stiffness_damping = 1e-9 * scene.solver.stiffness_damping_ns;
+        // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
+        let spline = scene.contact.interpolation == ContactInterpolation::Spline;
+        plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
+        plan.smooth(OUTER_RACEWAY, smoothing(scene.contact.surface, [0.0; 2]), spline)?;
+        plan.surface(BACK, surface(&self.outer, "outer").clone())?;
+        plan.surface(INNER_RACEWAY, surface(&self.inner, "outer").clone())?;
+        plan.smooth(INNER_RACEWAY, smoothing(scene.contact.surface, [0.0; 2]), spline)?;
+        plan.surface(SEAT, surface(&self.adapter, "seat").clone())?;
+        let mesh = &self.model.mesh;
+        let rollers: Vec<Roller> = self
             .rollers
             .iter()
-            .map(|r| slot(&r.mark("centre").expect("a disc marks its centre")) as usize)
-            .map(|n| [x[n], y[n]])
-            .collect();
-        let names = ["outer raceway", "outer ring's back", "inner raceway", "adapter seat"];
-        let surfaces = touching
-            .iter()
-            .enumerate()
-            .map(|(i, s)| {
-                let name = names.get(i).map_or_else(|| format!("surface {i}"), |n| (*n).to_owned());
-                let surface = Surface::new(name, slots(s), s.closed, x, y)?;
-                // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
-                let centre = match i.checked_sub(names.len()) {
-                    None if i == OUTER_RACEWAY || i == INNER_RACEWAY => [0.0; 2],
-                    Some(roller) if roller < centres.len() => centres[roller],
-                    _ => return Ok(surface),
-                };
-                let surface = surface.smoothed(smoothing(scene.contact.surface, centre), x, y)?;
-                Ok::<_, Error>(match scene.contact.interpolation {
-                    ContactInterpolation::Spline => surface.splined(x, y),
-                    ContactInterpolation::Linear => surface,
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-
-        let (specs, pairs) = self.pairs(scene, first_piece)?;
-        let mut contacts = Contacts::new(surfaces, &specs, model.thickness, x, y)?;
-        contacts.set_parallel(threads > 1);
-
-        let rollers = self
-            .rollers
-            .iter()
-            .map(|r| RollerSlots {
+            .map(|r| Roller {
                 body: r.body,
-                all: body(r.body),
-                centre: slot(&r.mark("centre").expect("a disc marks its centre")),
-                rim: slot(&surface(r, "rim").nodes[0]),
+                centre: r.mark("centre").expect("a disc marks its centre"),
+                rim: surface(r, "rim").nodes[0],
             })
             .collect();
+        for (i, (placed, roller)) in self.rollers.iter().zip(&rollers).enumerate() {
+            let centre = [mesh.x[roller.centre as usize], mesh.y[roller.centre as usize]];
+            plan.surface(&rim(i), surface(placed, "rim").clone())?;
+            plan.smooth(&rim(i), smoothing(scene.contact.surface, centre), spline)?;
+        }
+        for (i, (_, piece)) in self.cage.iter().flat_map(|c| &c.surfaces).enumerate() {
+            plan.surface(&cage_piece(i), piece.clone())?;
+        }
+        plan.surface(TOP, surface(&self.adapter, "top").clone())?;
+        plan.load(TOP, [0.0, -scene.operation.load_n])?;
+        let pairs = self.touch(&mut plan, scene)?;
         Ok(Machine {
-            contacts,
-            load: NodalLoad::on_edge(&slots(top), x, y, [0.0, -scene.operation.load_n]),
-            standing_bodies: [self.outer.body, self.adapter.body],
-            outer: body(self.outer.body),
-            inner: body(self.inner.body),
-            adapter: body(self.adapter.body),
+            system: plan.build(threads)?,
+            outer: self.outer.body,
+            inner: self.inner.body,
+            adapter: self.adapter.body,
             rollers,
-            cage: self.cage.as_ref().map(|_| 0),
-            housing: slots(surface(&self.outer, "outer")),
+            cage: self.cage.as_ref().map(|cage| cage.body),
+            housing: surface(&self.outer, "outer").nodes.clone(),
             pairs,
-            dynamics,
         })
     }
 
-    /// All contact pairs, in the order of [`Pairs`].
-    fn pairs(&self, scene: &Scene, first_piece: usize) -> Result<(Vec<PairSpec>, Pairs), Error> {
+    /// Lets surfaces touch, in the order of [`Pairs`].
+    fn touch(&self, plan: &mut Plan, scene: &Scene) -> Result<Pairs, Error> {
         let c = &scene.contact;
         let size = 1e-3 * scene.mesh.size_mm;
         let steel = self.model.materials[0];
@@ -357,19 +316,43 @@ impl Assembly {
             ContactPasses::One => Sides::First,
         };
         let n = self.rollers.len();
-        let of_roller = |i: usize, second| PairSpec { first: 4 + i, second, law: rolling, method, sides };
-        // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
-        let seat_method = Method::Integrated { points: SEAT_POINTS };
-        let mut specs =
-            vec![PairSpec { first: 1, second: 3, law: seat, method: seat_method, sides: Sides::Both }];
-        specs.extend((0..n).map(|i| of_roller(i, OUTER_RACEWAY)));
-        if self.cage.is_some() {
-            let walls = |i| [first_piece + (i + n - 1) % n, first_piece + i];
-            specs.extend((0..n).flat_map(|i| walls(i).map(|wall| of_roller(i, wall))));
+        let of_roller = |i: usize, second: &str, with: &str| Pair {
+            name: format!("roller {} and the {with}", i + 1),
+            method,
+            sides,
+            ..Pair::new(&rim(i), second, rolling)
+        };
+        plan.contact(Pair {
+            name: "the adapter and the outer ring".to_owned(),
+            // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
+            method: Method::Integrated { points: SEAT_POINTS },
+            ..Pair::new(BACK, SEAT, seat)
+        })?;
+        for i in 0..n {
+            plan.contact(of_roller(i, OUTER_RACEWAY, "outer raceway"))?;
         }
-        specs.extend((0..n).map(|i| of_roller(i, INNER_RACEWAY)));
-        Ok((specs, Pairs { rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } }))
+        if self.cage.is_some() {
+            for i in 0..n {
+                for piece in [(i + n - 1) % n, i] {
+                    plan.contact(of_roller(i, &cage_piece(piece), "cage"))?;
+                }
+            }
+        }
+        for i in 0..n {
+            plan.contact(of_roller(i, INNER_RACEWAY, "inner raceway"))?;
+        }
+        Ok(Pairs { rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } })
     }
+}
+
+/// Name of the contact surface of a roller, from 0.
+fn rim(roller: usize) -> String {
+    format!("rim of roller {}", roller + 1)
+}
+
+/// Name of the contact surface of a piece of the cage, from 0.
+fn cage_piece(piece: usize) -> String {
+    format!("piece {} of the cage", piece + 1)
 }
 
 /// What the polyline of a body about `centre` stands for.

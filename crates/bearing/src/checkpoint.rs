@@ -13,10 +13,9 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
-use stribeck_contact::ContactState;
-use stribeck_solver::snapshot::Snapshot;
+use stribeck_system::Snapshot;
 
-use crate::{error::Error, ledger::Reference, recorder};
+use crate::{error::Error, recorder};
 use stribeck_scene::{run_info::RunInfo, scene::Scene};
 
 /// First bytes of every checkpoint.
@@ -39,12 +38,8 @@ const MAX_CONTENT: u64 = 1 << 32;
 pub(crate) struct Checkpoint {
     /// What `run.json` would say.
     pub(crate) info: RunInfo,
-    pub(crate) motion: Snapshot,
-    pub(crate) contacts: ContactState,
-    /// Work of the load [J].
-    pub(crate) load_work_j: f64,
+    pub(crate) system: Snapshot,
     pub(crate) recorder: recorder::Memory,
-    pub(crate) reference: Reference,
 }
 
 impl Checkpoint {

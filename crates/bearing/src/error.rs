@@ -24,6 +24,10 @@ pub enum Error {
     #[error("contact: {0}")]
     Contact(#[from] stribeck_contact::Error),
 
+    /// The bodies cannot be set in motion.
+    #[error("system: {0}")]
+    System(stribeck_system::Error),
+
     /// The system gives no threads.
     #[error("cannot start {threads} worker threads: {source}. Try fewer with --threads")]
     Threads {
@@ -46,5 +50,16 @@ pub enum Error {
 impl From<SceneError> for Error {
     fn from(error: SceneError) -> Self {
         Self::Scene(error.into())
+    }
+}
+
+impl From<stribeck_system::Error> for Error {
+    fn from(error: stribeck_system::Error) -> Self {
+        match error {
+            stribeck_system::Error::Solver(error) => Self::Solver(error),
+            stribeck_system::Error::Contact(error) => Self::Contact(error),
+            stribeck_system::Error::Threads { threads, source } => Self::Threads { threads, source },
+            other => Self::System(other),
+        }
     }
 }

@@ -48,12 +48,12 @@ impl Frames {
             kept: "Samples are safe; free the disk, or set `output.frames: None`".into(),
             source,
         })?;
-        let (mesh, state) = (&assembly.model.mesh, &machine.dynamics.state);
+        let (mesh, system) = (&assembly.model.mesh, &machine.system);
         let mut file = TraceWriter::create(self.folder.join(format!("{sample:06}.npy")), &COLUMNS)?;
-        for (node, &slot) in machine.dynamics.layout().slot_of_node.iter().enumerate() {
-            let (x, y) = (state.x[slot as usize], state.y[slot as usize]);
+        for node in 0..mesh.x.len() {
+            let [x, y] = system.position(node as u32);
             if self.window.holds(x, y) {
-                file.push(&[state.time, node as f64, x - mesh.x[node], y - mesh.y[node]])?;
+                file.push(&[system.time(), node as f64, x - mesh.x[node], y - mesh.y[node]])?;
             }
         }
         Ok(file.finish()?)

@@ -6,7 +6,6 @@ pub mod error;
 mod frames;
 mod grading;
 mod guards;
-mod ledger;
 mod recorder;
 pub mod simulation;
 mod start;

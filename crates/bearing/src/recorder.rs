@@ -24,7 +24,7 @@ pub(crate) struct Recorder {
 /// What the recorder carries from sample to sample.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(crate) struct Memory {
-    /// Slot of each sensor, chosen at the start.
+    /// Node of each sensor, chosen at the start.
     sensors: Vec<u32>,
     /// Velocity of each sensor at the last sample.
     at_sample: Vec<[f64; 2]>,
@@ -35,8 +35,10 @@ pub(crate) struct Memory {
 
 impl Recorder {
     pub(crate) fn new(scene: &Scene, machine: &Machine) -> Self {
-        let state = &machine.dynamics.state;
-        let angle = |&n: &u32| state.y[n as usize].atan2(state.x[n as usize]);
+        let angle = |&n: &u32| {
+            let [x, y] = machine.system.position(n);
+            y.atan2(x)
+        };
         let sensors: Vec<u32> = Geometry::of(scene)
             .sensor_angles
             .into_iter()
@@ -47,7 +49,7 @@ impl Recorder {
             .collect();
         let rollers = machine.rollers.len();
         let memory = Memory {
-            at_sample: sensors.iter().map(|&n| velocity(machine, n)).collect(),
+            at_sample: sensors.iter().map(|&n| machine.system.velocity(n)).collect(),
             sensors,
             rim_angle: (0..rollers).map(|i| rim_angle(machine, i)).collect(),
             spin: vec![0.0; rollers],
@@ -57,8 +59,8 @@ impl Recorder {
 
     /// A recorder that goes on; `None` when the memory is that of another machine.
     pub(crate) fn resume(machine: &Machine, memory: Memory) -> Option<Self> {
-        let slots = machine.dynamics.state.x.len();
-        let fits = memory.sensors.iter().all(|&n| (n as usize) < slots)
+        let nodes = machine.system.node_count();
+        let fits = memory.sensors.iter().all(|&n| (n as usize) < nodes)
             && memory.at_sample.len() == memory.sensors.len()
             && [&memory.rim_angle, &memory.spin].iter().all(|v| v.len() == machine.rollers.len());
         fits.then(|| Self::with(memory, machine))
@@ -68,7 +70,7 @@ impl Recorder {
         Self {
             before_step: vec![[0.0; 2]; memory.sensors.len()],
             memory,
-            force: vec![[0.0; 2]; machine.contacts.resultants().count()],
+            force: vec![[0.0; 2]; machine.system.resultants().count()],
             steps: 0,
             row: Vec::new(),
         }
@@ -108,13 +110,13 @@ impl Recorder {
     /// Before every step.
     pub(crate) fn before_step(&mut self, machine: &Machine) {
         for (before, &n) in self.before_step.iter_mut().zip(&self.memory.sensors) {
-            *before = velocity(machine, n);
+            *before = machine.system.velocity(n);
         }
     }
 
     /// After every step: adds up the contact forces that acted in it.
     pub(crate) fn after_step(&mut self, machine: &Machine) {
-        for (sum, Resultant { force, .. }) in self.force.iter_mut().zip(machine.contacts.resultants()) {
+        for (sum, Resultant { force, .. }) in self.force.iter_mut().zip(machine.system.resultants()) {
             sum[0] += force[0];
             sum[1] += force[1];
         }
@@ -123,14 +125,14 @@ impl Recorder {
 
     /// The row of one sample; sums begin anew.
     pub(crate) fn sample(&mut self, machine: &Machine) -> &[f64] {
-        let state = &machine.dynamics.state;
-        let dt = machine.dynamics.time_step();
+        let system = &machine.system;
+        let dt = system.time_step();
         let interval = dt * self.steps as f64;
         self.row.clear();
-        self.row.push(state.time);
+        self.row.push(system.time());
         let Memory { sensors, at_sample, rim_angle: last_angle, spin } = &mut self.memory;
         for (i, &n) in sensors.iter().enumerate() {
-            let now = velocity(machine, n);
+            let now = system.velocity(n);
             for (before, span) in [(at_sample[i], interval), (self.before_step[i], dt)] {
                 self.row.push((now[0] - before[0]) / span);
                 self.row.push((now[1] - before[1]) / span);
@@ -142,13 +144,13 @@ impl Recorder {
             [sum(0) / self.steps as f64, sum(1) / self.steps as f64]
         };
         for (i, roller) in machine.rollers.iter().enumerate() {
-            let c = roller.centre as usize;
+            let [x, y] = system.position(roller.centre);
             let angle = rim_angle(machine, i);
             let turned = angle - last_angle[i];
             // Less than half a turn lies between two samples.
             spin[i] += turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
             last_angle[i] = angle;
-            self.row.extend([state.x[c], state.y[c], spin[i]]);
+            self.row.extend([x, y, spin[i]]);
             let pairs = &machine.pairs;
             for ring in [pairs.outer(i), pairs.inner(i)] {
                 self.row.extend(mean(ring..ring + 1));
@@ -157,8 +159,7 @@ impl Recorder {
                 self.row.extend(mean(pairs.cage(i)));
             }
         }
-        if let Some(cage) = machine.cage {
-            let at = &machine.dynamics.rigid[cage];
+        if let Some(at) = machine.cage.and_then(|cage| system.rigid(cage)) {
             self.row.extend([at.centre[0], at.centre[1], at.angle]);
         }
         let seat = machine.pairs.seat();
@@ -169,15 +170,9 @@ impl Recorder {
     }
 }
 
-/// Velocity of a slot [m/s].
-fn velocity(machine: &Machine, slot: u32) -> [f64; 2] {
-    let s = &machine.dynamics.state;
-    [s.vx[slot as usize], s.vy[slot as usize]]
-}
-
 /// Angle of the line from a roller's centre to its first rim node [rad].
 fn rim_angle(machine: &Machine, roller: usize) -> f64 {
-    let s = &machine.dynamics.state;
-    let (c, r) = (machine.rollers[roller].centre as usize, machine.rollers[roller].rim as usize);
-    (s.y[r] - s.y[c]).atan2(s.x[r] - s.x[c])
+    let [[cx, cy], [x, y]] =
+        [machine.rollers[roller].centre, machine.rollers[roller].rim].map(|n| machine.system.position(n));
+    (y - cy).atan2(x - cx)
 }

@@ -3,11 +3,7 @@
 use std::ops::ControlFlow;
 
 use stribeck_mesh::vtu;
-use stribeck_solver::{
-    Force,
-    critical::damped_time_step,
-    damping::{Frame, MassDamping},
-};
+use stribeck_solver::damping::{Frame, MassDamping};
 
 use crate::{
     assembly::{Assembly, Machine},
@@ -90,11 +86,11 @@ pub fn simulate(
         Start::Preloaded => preload(&mut machine, scene, &assembly.kinematics)?,
         Start::Sudden => None,
     };
-    let critical = critical_time_step(&machine);
+    let critical = machine.system.critical_time_step();
     let interval = 1e-6 * scene.output.interval_us;
     let steps_per_sample = (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
     let dt = interval / steps_per_sample as f64;
-    machine.dynamics.set_time_step(dt)?;
+    machine.system.set_time_step(dt, Some(critical))?;
     launch(&mut machine, &assembly.kinematics);
     damp(scene, &mut machine)?;
 
@@ -178,7 +174,7 @@ fn go_on(
     let mut machine = assembly.machine(&scene, host.threads)?;
     let mesh = assembly.mesh_info();
     progress.elements = mesh.quads + mesh.triangles;
-    machine.dynamics.set_time_step(saved.info.time_step_s)?;
+    machine.system.set_time_step(saved.info.time_step_s, Some(saved.info.critical_time_step_s))?;
     damp(&scene, &mut machine)?;
 
     let info = &mut saved.info;
@@ -276,18 +272,10 @@ fn may_go_on(dir: &RunDir, scene: &Scene) -> Result<Option<String>, Error> {
     Err(Error::Resume { path: dir.path().to_owned(), reason: reason.to_owned() })
 }
 
-/// Critical time step with contact; damping of contact and of stiffness acts half a step late and counts with the step it
-/// is used at.
-pub(crate) fn critical_time_step(machine: &Machine) -> f64 {
-    let forces: [&dyn Force; 1] = [&machine.contacts];
-    let first = machine.dynamics.critical_time_step(&forces, 0.0).time_step;
-    let damped = damped_time_step(first, machine.dynamics.stiffness_damping());
-    machine.dynamics.critical_time_step(&forces, 0.9 * damped).time_step
-}
-
 fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
-    let mass = |slots: &[u32]| slots.iter().map(|&n| machine.dynamics.mass()[n as usize]).sum::<f64>();
-    scene.operation.load_n + scene.operation.gravity_m_s2 * (mass(&machine.outer) + mass(&machine.adapter))
+    let system = &machine.system;
+    let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
+    scene.operation.load_n + scene.operation.gravity_m_s2 * (mass(machine.outer) + mass(machine.adapter))
 }
 
 /// Sets the mass damping of the scene, if it has one.
@@ -302,21 +290,19 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
     };
     // The inner ring's bore is driven: what is damped there would only be fed in again.
-    let mut frames: Vec<(usize, Frame)> = machine.standing_bodies.iter().map(|&b| (b, standing)).collect();
+    let mut frames: Vec<(usize, Frame)> = vec![(machine.outer, standing), (machine.adapter, standing)];
     frames.extend(machine.rollers.iter().map(|r| (r.body, rolling)));
-    machine.dynamics.set_mass_damping(&MassDamping::new(rate, frames)?);
+    machine.system.set_mass_damping(&MassDamping::new(rate, frames)?);
     Ok(())
 }
 
 /// Writes the mesh at the start of the run: as the preload has left it, and free of stress
 /// ([`stribeck_scene::mesh_file`]).
 fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<(), Error> {
-    let layout = machine.dynamics.layout();
     let mut mesh = assembly.model.mesh.clone();
     let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(&x, &y)| [x, y, 0.0]).collect();
-    for (n, &slot) in layout.slot_of_node.iter().enumerate() {
-        mesh.x[n] = machine.dynamics.state.x[slot as usize];
-        mesh.y[n] = machine.dynamics.state.y[slot as usize];
+    for n in 0..mesh.x.len() {
+        [mesh.x[n], mesh.y[n]] = machine.system.position(n as u32);
     }
     let moved: Vec<[f64; 3]> = reference
         .iter()

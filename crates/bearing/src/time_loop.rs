@@ -2,15 +2,14 @@
 
 use std::ops::ControlFlow;
 
-use stribeck_solver::{Force, Velocities};
+use stribeck_system::{Ledger, Workers};
 
 use crate::{
     assembly::{Assembly, Machine},
     checkpoint::{Checkpoint, identity},
     error::Error,
     frames::Frames,
-    guards::Guards,
-    ledger::{COLUMNS, Ledger, Reference},
+    guards::{self, Guards},
     recorder::Recorder,
     simulation::{Host, Progress},
 };
@@ -21,17 +20,26 @@ use stribeck_scene::{
     trace::TraceWriter,
 };
 
-/// Imbalance is never measured against less than this share of the kinetic energy.
-const ROUNDING: f64 = 1e-9;
+/// Columns of `energy.npy`.
+const COLUMNS: [&str; 11] = [
+    "time_s",
+    "kinetic_j",
+    "strain_j",
+    "hourglass_j",
+    "contact_j",
+    "friction_j",
+    "damping_j",
+    "contact_damping_j",
+    "external_j",
+    "drive_j",
+    "relative_error",
+];
 
 /// Checkpoint and `run.json` are written again after this many samples …
 const SAVE_EVERY: usize = 100;
 
 /// … but not so often that it would take more than this share of the time.
 const SAVE_SHARE: f64 = 0.005;
-
-/// Rounds of waiting until a thread that has nothing to do goes to sleep: about a millisecond.
-const SPINS_BEFORE_SLEEP: usize = 20_000;
 
 /// A run in its time loop.
 pub(crate) struct Run<'a> {
@@ -44,9 +52,6 @@ pub(crate) struct Run<'a> {
     trace: TraceWriter,
     energy: TraceWriter,
     frames: Option<Frames>,
-    reference: Reference,
-    /// Velocities before a step, for the kinetic energy at its start.
-    before: Velocities,
     guards: Guards,
 }
 
@@ -74,17 +79,16 @@ impl<'a> Run<'a> {
     pub(crate) fn start(
         scene: &Scene,
         assembly: &'a Assembly,
-        machine: Machine,
+        mut machine: Machine,
         info: RunInfo,
         dir: &RunDir,
     ) -> Result<Self, Error> {
+        guards::arm(scene, &mut machine.system);
         Ok(Self {
             recorder: Recorder::new(scene, &machine),
             trace: TraceWriter::create(dir.trace(), &Recorder::names(scene))?,
             energy: TraceWriter::create(dir.energy(), &COLUMNS)?,
             frames: Frames::of(scene, dir.frames()),
-            reference: Reference::default(),
-            before: Velocities::default(),
             guards: Guards::new(scene, assembly, &machine),
             identity: identity(scene),
             info,
@@ -107,11 +111,11 @@ impl<'a> Run<'a> {
         };
         let elsewhere =
             || other("this program makes another model of the scene than the checkpoint has".into());
-        if saved.info.mesh != assembly.mesh_info() || !machine.contacts.restore(saved.contacts) {
+        if saved.info.mesh != assembly.mesh_info() {
             return Err(elsewhere());
         }
-        machine.dynamics.restore(saved.motion).map_err(|e| other(e.to_string()))?;
-        machine.load.supplied = saved.load_work_j;
+        guards::arm(scene, &mut machine.system);
+        machine.system.restore(saved.system).map_err(|e| other(e.to_string()))?;
         let recorder = Recorder::resume(&machine, saved.recorder).ok_or_else(elsewhere)?;
         let rows = saved.info.samples as u64;
         Ok(Self {
@@ -119,8 +123,6 @@ impl<'a> Run<'a> {
             trace: TraceWriter::resume(dir.trace(), &Recorder::names(scene), rows)?,
             energy: TraceWriter::resume(dir.energy(), &COLUMNS, rows)?,
             frames: Frames::of(scene, dir.frames()),
-            reference: saved.reference,
-            before: Velocities::default(),
             guards: Guards::new(scene, assembly, &machine),
             identity: identity(scene),
             info: saved.info,
@@ -140,7 +142,7 @@ impl<'a> Run<'a> {
         let steps_per_sample = (self.info.interval_s / self.info.time_step_s).round().max(1.0) as usize;
         let samples = self.info.steps_planned as usize / steps_per_sample;
         let earlier = (self.info.wall_s, self.info.cpu_s);
-        let pool = workers(host.threads)?;
+        let workers = Workers::new(host.threads)?;
         let began = (host.wall_s)();
         let mut saved = Saved { sample: self.info.samples, wall_s: began, ..Saved::default() };
         if self.info.samples == 0 {
@@ -151,24 +153,21 @@ impl<'a> Run<'a> {
         progress.steps = self.info.steps_planned;
         for sample in self.info.samples + 1..=samples {
             // The steps of an interval run inside the pool: a fork from outside costs much more than one within.
-            let ledger = match &pool {
-                Some(pool) => pool.install(|| self.interval(steps_per_sample)),
-                None => self.interval(steps_per_sample),
-            };
-            let error = self.account(&ledger)?;
+            let ledger = workers.run(|| self.interval(steps_per_sample))?;
+            self.write(&ledger)?;
             if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
                 frames.write(sample, self.assembly, &self.machine)?;
             }
-            let state = &self.machine.dynamics.state;
-            self.info.steps = state.step;
+            let system = &self.machine.system;
+            self.info.steps = system.steps();
             self.info.samples = sample;
             // Clocks may jump; times that are written only grow.
             self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
             self.info.cpu_s = self.info.cpu_s.max(earlier.1 + (host.cpu_s)());
-            progress.step = state.step;
-            progress.time_s = state.time;
-            progress.energy_error = error;
-            let stop = self.guards.look(&mut self.info, self.assembly, &self.machine, &ledger, error);
+            progress.step = system.steps();
+            progress.time_s = system.time();
+            progress.energy_error = ledger.relative_error;
+            let stop = self.guards.look(&mut self.info, &mut self.machine);
             if stop.is_some() {
                 self.info.status = Status::Diverged;
                 self.info.stop_reason = stop;
@@ -215,7 +214,7 @@ impl<'a> Run<'a> {
             && !saved.failed
         {
             saved.failed = true;
-            let at = 1e3 * self.machine.dynamics.state.time;
+            let at = 1e3 * self.machine.system.time();
             self.info.warnings.push(format!("no checkpoint at {at:.3} ms, the run went on: {error}"));
         }
         saved.sample = self.info.samples;
@@ -227,109 +226,41 @@ impl<'a> Run<'a> {
     fn checkpoint(&self) -> Checkpoint {
         Checkpoint {
             info: self.info.clone(),
-            motion: self.machine.dynamics.snapshot(),
-            contacts: self.machine.contacts.state(),
-            load_work_j: self.machine.load.supplied,
+            system: self.machine.system.snapshot(),
             recorder: self.recorder.memory().clone(),
-            reference: self.reference,
         }
     }
 
     /// Takes the steps of one sampling interval; the last one is accounted for.
-    fn interval(&mut self, steps: usize) -> Ledger {
-        if self.reference.balance.is_none() {
-            self.reference.gravity_work = self.machine.dynamics.gravity_work();
-        }
-        let mut ledger = Ledger::default();
-        for s in 0..steps {
-            let last = s + 1 == steps;
-            let first = self.reference.balance.is_none();
-            if last {
-                self.recorder.before_step(&self.machine);
-            }
-            if last || first {
-                ledger = self.step_with_ledger();
-                if first {
-                    self.reference.balance = Some(ledger.balance());
-                }
-            } else {
-                self.step();
-            }
+    fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
+        for _ in 1..steps {
+            self.machine.system.step()?;
             self.recorder.after_step(&self.machine);
         }
-        ledger
+        self.recorder.before_step(&self.machine);
+        let ledger = self.machine.system.step_with_ledger()?;
+        self.recorder.after_step(&self.machine);
+        Ok(ledger)
     }
 
-    fn step(&mut self) {
-        let m = &mut self.machine;
-        m.dynamics.step(&mut [&mut m.load, &mut m.contacts]);
+    /// Writes one sample.
+    fn write(&mut self, l: &Ledger) -> Result<(), Error> {
+        let balance = self.machine.system.balance();
+        self.info.energy.peak_strain_j = balance.peak_strain;
+        self.info.energy.max_relative_error = balance.largest_error;
+        self.energy.push(&[
+            l.time,
+            l.kinetic,
+            l.strain,
+            l.hourglass,
+            l.contact,
+            l.friction,
+            l.damping,
+            l.contact_damping,
+            l.external,
+            l.drive,
+            l.relative_error,
+        ])?;
+        Ok(self.trace.push(self.recorder.sample(&self.machine))?)
     }
-
-    fn step_with_ledger(&mut self) -> Ledger {
-        let d = &self.machine.dynamics;
-        d.velocities_into(&mut self.before);
-        let elastic = d.elastic_energy();
-        let gravity = d.gravity_work();
-        self.step();
-        let m = &self.machine;
-        let contact = m.contacts.energy();
-        Ledger {
-            kinetic: m.dynamics.kinetic_energy(&self.before),
-            strain: elastic.strain,
-            hourglass: elastic.hourglass,
-            contact: contact.stored,
-            friction: contact.friction,
-            damping: m.dynamics.heat.at_last_positions(),
-            contact_damping: contact.damping,
-            external: m.load.energy().supplied + (gravity - self.reference.gravity_work),
-            drive: m.dynamics.drive.at_last_positions(),
-        }
-    }
-
-    /// Writes one sample; returns the relative imbalance.
-    fn account(&mut self, l: &Ledger) -> Result<f64, Error> {
-        let energy = &mut self.info.energy;
-        energy.peak_strain_j = energy.peak_strain_j.max(l.strain);
-        let imbalance = (l.balance() - self.reference.balance.unwrap_or(0.0)).abs();
-        // Where nothing is strained, the rounding of a large kinetic energy is no imbalance.
-        let scale = energy.peak_strain_j.max(ROUNDING * l.kinetic.abs());
-        let scale = if scale > 0.0 { scale } else { 1.0 };
-        let error = if imbalance.is_finite() { imbalance / scale } else { f64::INFINITY };
-        energy.max_relative_error = energy.max_relative_error.max(error);
-        let time = self.machine.dynamics.state.time - self.machine.dynamics.time_step();
-        self.energy.push(&l.row(time, error))?;
-        self.trace.push(self.recorder.sample(&self.machine))?;
-        Ok(error)
-    }
-}
-
-/// A pool for the time loop; none for one thread.
-///
-/// The thread that calls is one of them. The others wait awake between two forks, which are some ten microseconds apart:
-/// put to sleep, they would come back too late for every one of them.
-fn workers(threads: usize) -> Result<Option<micropool::ThreadPool>, Error> {
-    if threads < 2 {
-        return Ok(None);
-    }
-    try_threads(threads - 1).map_err(|source| Error::Threads { threads, source })?;
-    let pool = micropool::ThreadPoolBuilder::default().num_threads(threads - 1);
-    Ok(Some(pool.idle_spin_cycles(SPINS_BEFORE_SLEEP).build()))
-}
-
-/// Starts and ends so many threads at a time, because a pool cannot say that it got fewer.
-fn try_threads(threads: usize) -> std::io::Result<()> {
-    let gate = std::sync::Arc::new(std::sync::RwLock::new(()));
-    let closed = gate.write();
-    let started: Vec<_> = (0..threads)
-        .map(|_| {
-            let gate = gate.clone();
-            std::thread::Builder::new().spawn(move || drop(gate.read()))
-        })
-        .collect();
-    drop(closed);
-    started.into_iter().try_for_each(|thread| {
-        // A thread that only waits for a gate cannot fail.
-        let _ = thread?.join();
-        Ok(())
-    })
 }

@@ -48,7 +48,8 @@ fn example_lean_scene_has_a_quarter_of_the_elements() {
 fn example_lean_scene_keeps_the_critical_step() {
     let of = |scene: &Scene| {
         let machine = assembled(scene).machine(scene, 1).expect("a model that can be solved");
-        machine.dynamics.critical_time_step(&[&machine.contacts], 0.0).time_step
+        let parts = machine.system.into_parts();
+        parts.dynamics.critical_time_step(&[&parts.contacts.expect("a bearing has contacts")], 0.0).time_step
     };
     let (before, after) = (of(&Scene::default()), of(&lean()));
     assert!(before > 76e-9, "{before:e} s of the uniform scene");

@@ -292,6 +292,12 @@ impl Dynamics {
         self.state.time = self.state.step as f64 * self.time_step;
     }
 
+    /// A slot on which a force has acted since the start although nobody announced its node: nothing has read that force.
+    pub fn unread_force(&self) -> Option<usize> {
+        let NodeForces { fx, fy } = &self.forces;
+        (0..fx.len()).find(|&slot| fx[slot] != 0.0 || fy[slot] != 0.0)
+    }
+
     /// Sets the mass-proportional damping of elastic bodies; replaces an earlier one.
     ///
     /// Frames are placed at the next step and then at every 64th step, counted from the first of the run; a

@@ -63,6 +63,11 @@ impl NodalLoad {
     pub fn new(loads: Vec<(u32, f64, f64)>) -> Self {
         Self { loads, supplied: 0.0 }
     }
+
+    /// The loads as (slot, force x [N], force y [N]).
+    pub fn loads(&self) -> &[(u32, f64, f64)] {
+        &self.loads
+    }
 }
 
 impl Force for NodalLoad {

@@ -5,13 +5,14 @@ use std::path::Path;
 use anyhow::{Context, Result};
 
 /// Every crate and what it depends on of ours. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 10] = [
+const LAYERS: [(&str, &[&str]); 11] = [
     ("mesh", &[]),
     ("simd", &[]),
     ("solver", &["mesh", "simd"]),
     ("contact", &["mesh", "simd", "solver"]),
     ("scene", &[]),
-    ("bearing", &["contact", "mesh", "scene", "solver"]),
+    ("system", &["contact", "mesh", "solver"]),
+    ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("analysis", &["dsp", "scene"]),
     ("studies", &["analysis", "contact", "mesh", "scene", "solver"]),

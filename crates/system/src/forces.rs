@@ -1,0 +1,74 @@
+//! The one list of all that pushes on nodes besides the elements: loads, contact, and what the user adds.
+
+use stribeck_contact::Contacts;
+use stribeck_solver::{
+    Force,
+    force::RankOne,
+    state::{Energy, Moment, NodeForces},
+};
+
+use crate::load::Load;
+
+/// All forces of a system, as one.
+#[derive(Default)]
+pub(crate) struct Forces {
+    pub(crate) loads: Vec<Load>,
+    /// None without contact pairs.
+    pub(crate) contacts: Option<Contacts>,
+    /// Laws of the user, with their names.
+    pub(crate) further: Vec<(String, Box<dyn Force + Send>)>,
+}
+
+impl std::fmt::Debug for Forces {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let further: Vec<&str> = self.further.iter().map(|(name, _)| name.as_str()).collect();
+        let Self { loads, contacts, .. } = self;
+        f.debug_struct("Forces")
+            .field("loads", loads)
+            .field("contacts", contacts)
+            .field("further", &further)
+            .finish()
+    }
+}
+
+impl Forces {
+    fn all(&self) -> impl Iterator<Item = &dyn Force> {
+        let loads = self.loads.iter().map(|load| load as &dyn Force);
+        let contacts = self.contacts.iter().map(|contacts| contacts as &dyn Force);
+        loads.chain(contacts).chain(self.further.iter().map(|(_, force)| &**force as &dyn Force))
+    }
+
+    /// Energy of contact alone [J].
+    pub(crate) fn of_contact(&self) -> Energy {
+        self.contacts.as_ref().map_or_else(Energy::default, Contacts::energy)
+    }
+
+    /// Energy of loads and of the user's laws [J].
+    pub(crate) fn of_others(&self) -> Energy {
+        let mut sum = Energy::default();
+        let further = self.further.iter().map(|(_, force)| force.energy());
+        for energy in self.loads.iter().map(Force::energy).chain(further) {
+            sum.stored += energy.stored;
+            sum.friction += energy.friction;
+            sum.damping += energy.damping;
+            sum.supplied += energy.supplied;
+        }
+        sum
+    }
+}
+
+impl Force for Forces {
+    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+        self.loads.iter_mut().for_each(|load| load.accumulate(at, force));
+        self.contacts.iter_mut().for_each(|contacts| contacts.accumulate(at, force));
+        self.further.iter_mut().for_each(|(_, law)| law.accumulate(at, force));
+    }
+
+    fn stiffness_bound(&self, dt: f64, bound: &mut [f64]) {
+        self.all().for_each(|force| force.stiffness_bound(dt, bound));
+    }
+
+    fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne<'_>)) {
+        self.all().for_each(|force| force.tangent(x, y, visit));
+    }
+}

@@ -1,0 +1,334 @@
+//! Guard rails: what is watched at every look, when it is worth a warning, when to stop.
+//!
+//! | watched | warning | stop |
+//! |---|---|---|
+//! | imbalance of energy; no number at all | `energy_warning_percent` | `energy_stop_percent` |
+//! | hourglass over strain energy | `hourglass_warning_percent` | |
+//! | penetration over element size | `penetration_warning_percent` | `penetration_stop_percent` |
+//! | area of an element over its area at rest | | `area_stop_percent` |
+//! | time step over the critical one as elements deform | above 1 | |
+//!
+//! A warning is given once, at the first look above its limit. What has been seen is in [`Seen`], and so in snapshots: a
+//! system that is continued warns as an unbroken one does.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{ledger::Scale, system::System};
+
+/// The critical time step is computed again each time the largest strain has grown by this much [-]; stretched by one per
+/// cent, elements are stiffer by one and a half.
+const STRAIN_STEP: f64 = 0.01;
+
+/// Strain energy below this share of its peak makes no hourglass share: noise over noise.
+const STRAINED: f64 = 0.01;
+
+/// When to warn and when to stop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// What the imbalance of energy is measured against.
+    pub energy_scale: Scale,
+    /// Imbalance of energy above which there is a warning [%].
+    pub energy_warning_percent: f64,
+    /// … and above which to stop [%].
+    pub energy_stop_percent: f64,
+    /// Hourglass energy over strain energy above which there is a warning [%].
+    pub hourglass_warning_percent: f64,
+    /// Penetration over the element size above which there is a warning [%].
+    pub penetration_warning_percent: f64,
+    /// … and above which to stop [%]; at 200 % contact takes a point for one on the far side of a body and lets go.
+    pub penetration_stop_percent: f64,
+    /// Area of an element over its area at rest below which to stop [%].
+    pub area_stop_percent: f64,
+    /// The element size [m]; `None` takes the shortest facet of all contact surfaces.
+    pub element_size: Option<f64>,
+    /// Elements are looked at, and a small imbalance is warned of, at every so many looks: to look at all elements costs as
+    /// much as two steps.
+    pub elements_every: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            energy_scale: Scale::TotalEnergy,
+            energy_warning_percent: 1.0,
+            energy_stop_percent: 25.0,
+            hourglass_warning_percent: 10.0,
+            penetration_warning_percent: 10.0,
+            penetration_stop_percent: 100.0,
+            area_stop_percent: 20.0,
+            element_size: None,
+            elements_every: 1,
+        }
+    }
+}
+
+/// What the user calls the things that messages advise to change.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Words {
+    /// Time step over the critical one.
+    pub time_step_factor: &'static str,
+    /// Penalty stiffness of contact.
+    pub penalty: &'static str,
+    /// Size of elements.
+    pub element_size: &'static str,
+    /// Scale of the hourglass stiffness.
+    pub hourglass_scale: &'static str,
+    /// Out-of-plane thickness.
+    pub thickness: &'static str,
+    /// The load.
+    pub load: &'static str,
+    /// Follows "start".
+    pub preloaded: &'static str,
+}
+
+impl Default for Words {
+    fn default() -> Self {
+        Self {
+            time_step_factor: "time step factor",
+            penalty: "penalty stiffness",
+            element_size: "element size",
+            hourglass_scale: "hourglass scale",
+            thickness: "thickness",
+            load: "load",
+            preloaded: "from equilibrium",
+        }
+    }
+}
+
+/// The worst that looks have seen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Seen {
+    /// Looks so far.
+    pub looks: u64,
+    /// The imbalance of energy has been warned of.
+    pub energy_warned: bool,
+    /// Largest hourglass energy over strain energy [-].
+    pub hourglass_share: f64,
+    /// Deepest penetration over the element size [-].
+    pub penetration_share: f64,
+    /// Least area of an element over its area at rest [-]; infinite before it was looked at.
+    pub least_area: f64,
+    /// Largest strain for which the critical time step has been computed again [-].
+    pub strain_checked: f64,
+}
+
+impl Default for Seen {
+    fn default() -> Self {
+        Self {
+            looks: 0,
+            energy_warned: false,
+            hourglass_share: 0.0,
+            penetration_share: 0.0,
+            least_area: f64::INFINITY,
+            strain_checked: 0.0,
+        }
+    }
+}
+
+/// What is watched.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Watched {
+    /// The balance of energy, and that all numbers are numbers.
+    Energy,
+    /// Energy in the hourglass stiffness.
+    Hourglass,
+    /// Penetration of contact surfaces.
+    Penetration,
+    /// The area of elements.
+    Distortion,
+    /// The time step of the deformed mesh.
+    TimeStep,
+}
+
+/// Something beyond its limit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// What it is about.
+    pub watched: Watched,
+    /// Whether to go on would be of no use.
+    pub stops: bool,
+    /// What was found, when and where, and what to try.
+    pub message: String,
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl System {
+    /// Looks whether all is well after [`System::step_with_ledger`], whose ledger it judges: what is beyond its limits, in
+    /// the order of the table above. Every guard looks, so that the worst of each is known.
+    pub fn look(&mut self) -> Vec<Finding> {
+        let mut seen = *self.seen();
+        seen.looks += 1;
+        let found = [
+            self.look_at_energy(&mut seen),
+            self.look_at_hourglass(&mut seen),
+            self.look_at_penetration(&mut seen),
+            self.look_at_elements(&mut seen),
+        ];
+        self.seen = seen;
+        found.into_iter().flatten().collect()
+    }
+
+    fn look_at_energy(&self, seen: &mut Seen) -> Option<Finding> {
+        let Limits { energy_scale, energy_warning_percent, energy_stop_percent, elements_every, .. } =
+            self.limits;
+        let [warning, stop] = [energy_warning_percent, energy_stop_percent].map(|p| 0.01 * p);
+        let (error, over, words) = (self.last_ledger().relative_error, energy_scale.words(), &self.words);
+        let (time_step_factor, penalty, when) = (words.time_step_factor, words.penalty, self.when());
+        let found = |stops, message| Some(Finding { watched: Watched::Energy, stops, message });
+        if error > stop {
+            let what = if error.is_finite() {
+                format!(
+                    "energy is out of balance by {:.1} % of the {over} (limit {:.0} %)",
+                    100.0 * error,
+                    100.0 * stop
+                )
+            } else {
+                "a position or a velocity is no number any more".to_owned()
+            };
+            return found(
+                true,
+                format!(
+                    "{what} {when}; the fastest node is {}. Try a smaller {time_step_factor}, a smaller {penalty}, or look for \
+                     bodies that overlap",
+                    self.fastest()
+                ),
+            );
+        }
+        // A load that comes suddenly is soon larger than the energy of the first looks.
+        if error > warning && !seen.energy_warned && seen.looks.is_multiple_of(elements_every.max(1)) {
+            seen.energy_warned = true;
+            return found(
+                false,
+                format!(
+                    "energy is out of balance by {:.2} % of the {over} (limit {energy_warning_percent} %) {when}: take a smaller \
+                     {time_step_factor}, a smaller {penalty}, or start {}",
+                    100.0 * error,
+                    words.preloaded
+                ),
+            );
+        }
+        None
+    }
+
+    fn look_at_hourglass(&self, seen: &mut Seen) -> Option<Finding> {
+        let (ledger, limit) = (self.last_ledger(), self.limits.hourglass_warning_percent);
+        if ledger.strain.is_nan() || ledger.strain <= STRAINED * self.balance().peak_strain {
+            return None;
+        }
+        let share = ledger.hourglass / ledger.strain;
+        let is_new = passes(share, &mut seen.hourglass_share, 0.01 * limit);
+        is_new.then(|| Finding {
+            watched: Watched::Hourglass,
+            stops: false,
+            message: format!(
+                "hourglass energy is {:.1} % of the strain energy (limit {limit} %) {}: elements bend more than they stretch. Take \
+                 a smaller {}, or another {}",
+                100.0 * share,
+                self.when(),
+                self.words.element_size,
+                self.words.hourglass_scale
+            ),
+        })
+    }
+
+    fn look_at_penetration(&self, seen: &mut Seen) -> Option<Finding> {
+        let deepest = self.resultants().enumerate().map(|(pair, r)| (pair, r.penetration)).max_by(|a, b| {
+            // The first of equals.
+            a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))
+        });
+        let (pair, depth) = deepest?;
+        let share = depth / self.limits.element_size.unwrap_or(self.shortest_facet);
+        let Limits { penetration_warning_percent, penetration_stop_percent, .. } = self.limits;
+        let is_new = passes(share, &mut seen.penetration_share, 0.01 * penetration_warning_percent);
+        let stops = share > 0.01 * penetration_stop_percent;
+        let limit = if stops { penetration_stop_percent } else { penetration_warning_percent };
+        (stops || is_new).then(|| Finding {
+            watched: Watched::Penetration,
+            stops,
+            message: format!(
+                "{} penetrate each other by {:.1} µm, {:.0} % of the element size (limit {limit} %) {}: take a larger {}, a larger \
+                 {} or less {}",
+                self.pairs[pair],
+                1e6 * depth,
+                100.0 * share,
+                self.when(),
+                self.words.penalty,
+                self.words.thickness,
+                self.words.load
+            ),
+        })
+    }
+
+    fn look_at_elements(&self, seen: &mut Seen) -> Option<Finding> {
+        if !seen.looks.is_multiple_of(self.limits.elements_every.max(1)) {
+            return None;
+        }
+        let (now, words) = (self.dynamics.distortion(), &self.words);
+        seen.least_area = seen.least_area.min(now.least_area);
+        if now.least_area < 0.01 * self.limits.area_stop_percent {
+            let message = format!(
+                "an element at x = {:.3} mm, y = {:.3} mm has {:.1} % of its area left (limit {} %) {}: it is about to turn inside \
+                 out, beyond what a linear material means. Take less {}, a larger {}, or start {}",
+                1e3 * now.place[0],
+                1e3 * now.place[1],
+                100.0 * now.least_area,
+                self.limits.area_stop_percent,
+                self.when(),
+                words.load,
+                words.thickness,
+                words.preloaded
+            );
+            return Some(Finding { watched: Watched::Distortion, stops: true, message });
+        }
+        let strain = (now.largest_stretch - 1.0).max(1.0 - now.least_area);
+        if strain <= seen.strain_checked + STRAIN_STEP {
+            return None;
+        }
+        seen.strain_checked = strain;
+        let (step, critical) = (self.time_step(), self.critical_time_step());
+        (step > critical).then(|| {
+            let advice = match self.reference_time_step {
+                Some(first) => format!("take a {} below {:.2}", words.time_step_factor, critical / first),
+                None => "take a smaller one".to_owned(),
+            };
+            Finding {
+                watched: Watched::TimeStep,
+                stops: false,
+                message: format!(
+                    "the time step of {:.3} ns is above the critical one of the deformed mesh, {:.3} ns, {}: {advice}",
+                    1e9 * step,
+                    1e9 * critical,
+                    self.when()
+                ),
+            }
+        })
+    }
+
+    fn when(&self) -> String {
+        format!("at step {}, t = {:.5} ms", self.steps(), 1e3 * self.time())
+    }
+
+    /// Where the fastest node is; one whose velocity is no number is faster than all others.
+    fn fastest(&self) -> String {
+        let (node, speed) = self.fastest_node();
+        let [x, y] = self.position(node);
+        format!(
+            "in the {} at x = {:.3} mm, y = {:.3} mm with {speed:.3e} m/s",
+            self.body_of(node),
+            1e3 * x,
+            1e3 * y
+        )
+    }
+}
+
+/// Notes the largest value so far; true when it is the first above `limit`.
+fn passes(value: f64, largest: &mut f64, limit: f64) -> bool {
+    let first = value > limit && *largest <= limit;
+    *largest = largest.max(value);
+    first
+}
