@@ -1,6 +1,6 @@
 //! What a scene means: ranges first, then what must fit together. Every value that is proposed has been tried.
 
-use super::finding::Finding;
+use super::finding::{Finding, Proposal};
 use super::origin::Origin;
 use super::overrides;
 use super::problem::SceneError;
@@ -10,20 +10,12 @@ use crate::scene::Scene;
 
 /// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
 pub(crate) fn check(scene: &Scene, origin: &Origin<'_>) -> Result<(), SceneError> {
-    let mut found = findings(scene);
+    let found = findings(scene);
     if found.is_empty() {
         return Ok(());
     }
     let schema = Schema::new();
-    for remedy in found.iter_mut().flat_map(|finding| &mut finding.remedies) {
-        if let Some(default) = schema.plain_default(&remedy.field) {
-            *remedy = remedy.clone().value(default, "the default");
-        }
-    }
-    let problem = |finding: &Finding| {
-        let repairs = |field: &str, value: &str| repairs(scene, &found, finding, field, value);
-        origin.problem(finding.clone(), repairs)
-    };
+    let problem = |finding: &Finding| origin.problem(tried(finding, &found, scene, &schema));
     Err(SceneError::new(found.iter().map(problem).collect()))
 }
 
@@ -38,11 +30,25 @@ fn findings(scene: &Scene) -> Vec<Finding> {
     found
 }
 
-/// Whether `value` at `field` removes `finding` from those `found`, and brings no other.
-fn repairs(scene: &Scene, found: &[Finding], finding: &Finding, field: &str, value: &str) -> bool {
-    let Ok((repaired, _)) = overrides::apply(scene.clone(), &[format!("{field}={value}")]) else {
-        return false;
-    };
+/// The finding with at most one value in each remedy: the one that leaves fewest of those `found`, this one not.
+fn tried(finding: &Finding, found: &[Finding], scene: &Scene, schema: &Schema) -> Finding {
+    let mut finding = finding.clone();
+    let this = finding.clone();
+    for remedy in &mut finding.remedies {
+        let default = schema.plain_default(&remedy.field).map(|value| Proposal::new(value, "the default"));
+        let values = remedy.values.drain(..).chain(default);
+        let left =
+            |value: &Proposal| left_by(&format!("{}={}", remedy.field, value.value), &this, found, scene);
+        let passing = values.filter_map(|value| Some((left(&value)?, value)));
+        remedy.values = passing.min_by_key(|(left, _)| *left).map(|(_, value)| value).into_iter().collect();
+    }
+    finding
+}
+
+/// How many findings are left with the override `argument`; `None` when `finding` is among them, or a new one.
+fn left_by(argument: &str, finding: &Finding, found: &[Finding], scene: &Scene) -> Option<usize> {
+    let (repaired, _) = overrides::apply(scene.clone(), &[argument]).ok()?;
+    let left = findings(&repaired);
     let known = |left: &Finding| found.iter().any(|old| old.is_about_the_same_as(left));
-    findings(&repaired).iter().all(|left| !left.is_about_the_same_as(finding) && known(left))
+    left.iter().all(|left| !left.is_about_the_same_as(finding) && known(left)).then_some(left.len())
 }

@@ -31,6 +31,12 @@ pub(crate) struct Proposal {
     pub note: String,
 }
 
+impl Proposal {
+    pub(crate) fn new(value: impl Into<String>, note: &str) -> Self {
+        Self { value: value.into(), note: note.to_owned() }
+    }
+}
+
 impl Finding {
     pub(crate) fn new(message: String, remedies: Vec<Remedy>) -> Self {
         Self { message, remedies }
@@ -55,7 +61,7 @@ impl Remedy {
 
     /// Adds a value to propose.
     pub(crate) fn value(mut self, value: impl Into<String>, note: &str) -> Self {
-        self.values.push(Proposal { value: value.into(), note: note.to_owned() });
+        self.values.push(Proposal::new(value, note));
         self
     }
 }

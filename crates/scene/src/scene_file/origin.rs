@@ -60,14 +60,14 @@ impl<'a> Origin<'a> {
         Self { file: "", text: "", outline: Outline::default(), overrides }
     }
 
-    /// Blames one field of a finding, and proposes a value that `repairs(field, value)`.
+    /// Blames one field of a finding, and proposes the first value of its remedy.
     ///
     /// The command line was written last, and a default by nobody: what was written later is blamed first, and among
     /// equals the likeliest culprit that one value can repair.
-    pub(crate) fn problem(&self, finding: Finding, repairs: impl Fn(&str, &str) -> bool) -> Problem {
+    pub(crate) fn problem(&self, finding: Finding) -> Problem {
         let mut candidates: Vec<Candidate> = Vec::with_capacity(finding.remedies.len());
         for remedy in finding.remedies {
-            let proposal = remedy.values.into_iter().find(|proposal| repairs(&remedy.field, &proposal.value));
+            let proposal = remedy.values.into_iter().next();
             let place = self.written(&remedy.field);
             candidates.push(Candidate { field: remedy.field, allowed: remedy.allowed, proposal, place });
         }
@@ -113,7 +113,7 @@ impl<'a> Origin<'a> {
 struct Candidate {
     field: String,
     allowed: String,
-    /// A value that repairs the scene.
+    /// A value that repairs what was found.
     proposal: Option<Proposal>,
     place: Option<Place>,
 }

@@ -140,7 +140,7 @@ impl fmt::Display for Problem {
             Place::CommandLine { argument, column, width } => {
                 writeln!(f, "  --> command line")?;
                 const FLAG: &str = "--set ";
-                excerpt(f, "", &format!("{FLAG}{argument}"), column + FLAG.len(), *width)?;
+                excerpt(f, " ", &format!("{FLAG}{argument}"), column + FLAG.len(), *width)?;
             }
             Place::Unwritten { file } if !file.is_empty() => writeln!(f, "  --> {file}")?,
             Place::Unwritten { .. } => {}

@@ -5,6 +5,9 @@ use super::wording::number;
 /// Names closer than this (Jaro–Winkler, 1 is equal) are worth proposing.
 const NEAR: f64 = 0.80;
 
+/// A part of a name has as many letters at least.
+const PART: usize = 4;
+
 /// Unit suffixes: text, dimension, size in the first unit of that dimension.
 const UNITS: &[(&str, &str, f64)] = &[
     ("m", "length", 1.0),
@@ -79,6 +82,9 @@ pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> Option<Stri
     }
     // `roller_count` for `rollers` is near; so is `diameter` inside `roller_diameter_mm`, once the unit is off.
     if let Some(name) = nearest(found, siblings) {
+        return Some(format!("did you mean `{name}`?"));
+    }
+    if let Some(name) = siblings.iter().find(|name| stem.len() >= PART && split_unit(name).0.contains(stem)) {
         return Some(format!("did you mean `{name}`?"));
     }
     let elsewhere = all.iter().find_map(|path| {

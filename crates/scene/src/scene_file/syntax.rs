@@ -126,6 +126,12 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
             fault.message = "the scene ends too early: a closing bracket or a value is missing".to_owned();
             fault.suggestion = "is the file cut off? Every `(` needs its `)`".to_owned();
         }
+        E::ExpectedNamedStructLike(_) | E::ExpectedStructLike => {
+            value_fault(text, path, &outline, &schema, &mut fault);
+            if fault.allowed.is_empty() {
+                fault.message = "a group `( … )` is expected here".to_owned();
+            }
+        }
         _ => value_fault(text, path, &outline, &schema, &mut fault),
     }
     fault
@@ -158,7 +164,10 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
     let kind = schema.kind(&entry.path);
     fault.field.clone_from(&entry.path);
     fault.range = entry.value.clone();
-    fault.message = format!("`{}` is `{}`, which is not {}", entry.path, shown(value), kind.words());
+    let is_count = matches!(kind, Kind::Count | Kind::OptionalCount);
+    let too_large = is_count && value.bytes().all(|b| b.is_ascii_digit());
+    let not = if too_large { "too large".to_owned() } else { format!("not {}", kind.words()) };
+    fault.message = format!("`{}` is `{}`, which is {not}", entry.path, shown(value));
     fault.allowed = allowed(schema, &entry.path);
     fault.proposal = proposal(value, kind)
         .or_else(|| schema.plain_default(&entry.path).map(|default| (default.to_owned(), "the default")));
