@@ -209,7 +209,8 @@ pub enum ContactInterpolation {
 pub enum ContactPasses {
     /// Those of both bodies, each with half of the stiffness.
     Two,
-    /// Those of the roller alone: half the work, for points that stand closer than the features of a raceway.
+    /// Those of the roller alone, with the whole stiffness: half the work, for points that stand closer than the features
+    /// of a raceway.
     One,
 }
 
@@ -247,7 +248,7 @@ pub struct SolverScene {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingFrame {
-    /// A roller's motion along its track and its spin: what drives and brakes rolling stays friction alone, while
+    /// A roller's motion along the raceways and its spin: what drives and brakes rolling stays friction alone, while
     /// rattling across the clearance is damped, as oil would. Outer ring and adapter: rest.
     Rolling,
     /// The rigid motion of each body: only its vibration is damped.

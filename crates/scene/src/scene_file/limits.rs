@@ -2,10 +2,9 @@
 
 use std::fmt;
 
-use super::origin::Finding;
-use super::suggest::shortest;
-use super::syntax::Schema;
-use crate::scene::Scene;
+use super::finding::{Finding, Remedy};
+use super::wording::{number, shown};
+use crate::scene::{GradingScene, Scene};
 
 /// Longest name of a scene or sensor: they become folder and channel names.
 const MAX_NAME: usize = 64;
@@ -41,19 +40,35 @@ impl Range {
 
 impl fmt::Display for Range {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let from = if self.low_included { "from" } else { "above" };
-        let to = if self.high_included { "to" } else { "and below" };
-        write!(f, "{from} {} {to} {}", self.low, self.high)
+        let (low, high) = (number(self.low), number(self.high));
+        match (self.low_included, self.high_included) {
+            (true, true) => write!(f, "{low} to {high}"),
+            (true, false) => write!(f, "{low} or more, less than {high}"),
+            (false, true) => write!(f, "more than {low}, at most {high}"),
+            (false, false) => write!(f, "more than {low}, less than {high}"),
+        }
     }
 }
 
 /// Everything outside its range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let schema = Schema::new();
-    let mut found: Vec<Finding> =
-        numbers(scene).into_iter().filter_map(|number| number.finding(&schema)).collect();
+    let mut found: Vec<Finding> = numbers(scene).iter().filter_map(Number::finding).collect();
     found.extend(names(scene));
     found
+}
+
+/// What the number at `path` may be, `3 to 400`; `None` for a field that is no number.
+pub(crate) fn allowed(path: &str) -> Option<String> {
+    numbers(&with_everything()).iter().find(|number| number.path == path).map(Number::allowed)
+}
+
+/// A scene in which no optional number is absent.
+fn with_everything() -> Scene {
+    let mut scene = Scene::default();
+    scene.mesh.outer_facets = Some(1257);
+    scene.mesh.inner_facets = Some(1030);
+    scene.mesh.grading = Some(GradingScene::default());
+    scene
 }
 
 /// One number of the scene and what it may be.
@@ -65,24 +80,27 @@ struct Number {
 }
 
 impl Number {
-    fn finding(&self, schema: &Schema) -> Option<Finding> {
+    fn allowed(&self) -> String {
+        format!("{} {}", self.range, self.unit).trim_end().to_owned()
+    }
+
+    fn finding(&self) -> Option<Finding> {
         let Self { path, value, range, unit } = self;
         if range.contains(*value) {
             return None;
         }
         let message = if value.is_finite() {
-            format!("`{path}` is {value}, outside its range")
+            format!("`{path}` is {}, outside its range", number(*value))
         } else {
             format!("`{path}` is {value}, which is not a finite number")
         };
-        let default = schema.default_of(path).map(|v| format!("the default is {v}"));
-        let suggestion = if *value < 0.0 && range.contains(-value) {
-            format!("without the minus sign: {}", -value)
-        } else {
-            default.unwrap_or_default()
-        };
-        let allowed = format!("{range} {unit}").trim_end().to_owned();
-        Some(Finding { fields: vec![path.clone()], message, allowed, suggestion })
+        let mut remedy = Remedy::new(path, self.allowed());
+        if *unit == "°" {
+            remedy = remedy.number(value % 360.0, "the same angle");
+        } else if *value < 0.0 && range.contains(-value) {
+            remedy = remedy.number(-value, "without the minus sign");
+        }
+        Some(Finding::new(message, vec![remedy]))
     }
 }
 
@@ -178,28 +196,31 @@ fn names(scene: &Scene) -> Vec<Finding> {
     }
     let sensors = &scene.output.sensors;
     if sensors.is_empty() || sensors.len() > MAX_SENSORS {
-        found.push(Finding {
-            fields: vec!["output.sensors".to_owned()],
-            message: format!("`output.sensors` has {} entries", sensors.len()),
-            allowed: format!("1 to {MAX_SENSORS} sensors"),
-            suggestion: "the report needs one acceleration at least: `[(name: \"side\", angle_deg: 0.0)]`"
-                .to_owned(),
-        });
+        let remedy = Remedy::new("output.sensors", format!("1 to {MAX_SENSORS} sensors"))
+            .value("[(name: \"side\", angle_deg: 0.0)]", "the report needs one acceleration at least");
+        found.push(Finding::new(format!("`output.sensors` has {} entries", sensors.len()), vec![remedy]));
     }
     for (i, sensor) in sensors.iter().enumerate() {
         let path = format!("output.sensors[{i}].name");
         if !(plain(&sensor.name, "_") && sensor.name.starts_with(|c: char| c.is_ascii_alphabetic())) {
             found.push(bad_name(path, &sensor.name, SENSOR));
         } else if let Some(first) = sensors[..i].iter().position(|other| other.name == sensor.name) {
-            found.push(Finding {
-                fields: vec![path],
-                message: format!("sensors {first} and {i} are both called `{}`", sensor.name),
-                allowed: "a name of its own for each sensor".to_owned(),
-                suggestion: format!("rename one of them, for example `{}_2`", sensor.name),
-            });
+            let message = format!("sensors {first} and {i} are both called `{}`", sensor.name);
+            let remedies = [path, format!("output.sensors[{first}].name")];
+            found.push(Finding::new(message, remedies.map(|field| another_name(field, &sensor.name)).into()));
         }
     }
     found
+}
+
+/// Most names that are tried in search of a free one.
+const NAMES_TRIED: usize = 9;
+
+/// A name beside `name`; whether it is free is tried later.
+fn another_name(field: String, name: &str) -> Remedy {
+    let stem: String = name.chars().take(MAX_NAME - 2).collect();
+    let remedy = Remedy::new(field, "a name of its own for each sensor");
+    (2..=NAMES_TRIED).fold(remedy, |remedy, n| remedy.value(format!("\"{stem}_{n}\""), ""))
 }
 
 fn bad_name(path: String, name: &str, allowed: &str) -> Finding {
@@ -207,23 +228,10 @@ fn bad_name(path: String, name: &str, allowed: &str) -> Finding {
     if !kept.starts_with(|c: char| c.is_ascii_alphabetic()) {
         kept.insert(0, 's');
     }
-    let shown = shorten(name);
-    Finding {
-        message: format!("`{path}` is {shown:?}, which cannot name a folder or a channel"),
-        fields: vec![path],
-        allowed: allowed.to_owned(),
-        suggestion: format!("{kept:?}"),
-    }
-}
-
-fn shorten(text: &str) -> String {
-    let shown: String = text.chars().take(MAX_NAME).collect();
-    if shown.len() < text.len() { shown + "…" } else { shown }
-}
-
-/// A number as the messages of this module family write it.
-pub(crate) fn number(value: f64) -> String {
-    shortest(value)
+    let message = format!("`{path}` is \"{}\", which cannot name a folder or a channel", shown(name));
+    let remedy = Remedy::new(path, allowed).value(format!("\"{kept}\""), "");
+    let remedy = (2..=NAMES_TRIED).fold(remedy, |remedy, n| remedy.value(format!("\"{kept}_{n}\""), ""));
+    Finding::new(message, vec![remedy])
 }
 
 #[cfg(test)]
@@ -232,10 +240,7 @@ mod tests {
 
     #[test]
     fn example_every_number_of_a_scene_has_a_range() {
-        let mut scene = Scene::default();
-        scene.mesh.outer_facets = Some(1257);
-        scene.mesh.inner_facets = Some(1030);
-        scene.mesh.grading = Some(crate::scene::GradingScene::default());
+        let scene = with_everything();
         let text = scene.to_ron();
         let outline = super::super::outline::Outline::of(&text);
         let listed: Vec<String> = numbers(&scene).into_iter().map(|number| number.path).collect();

@@ -1,20 +1,9 @@
-//! Who wrote a field: a line of the file, an argument of the command line, or nobody (a default).
+//! Who wrote a field: a line of the file, an argument of the command line, or nobody (a default); and so, who is to blame
+//! where several fields do not go together.
 
+use super::finding::{Finding, Proposal};
 use super::outline::Outline;
 use super::problem::{Place, Problem, place_in_file};
-
-/// Something wrong with the meaning of a scene, before its place is known.
-#[derive(Debug, Clone)]
-pub(crate) struct Finding {
-    /// Fields involved, the culprit first. The first one that somebody wrote is underlined.
-    pub fields: Vec<String>,
-    /// What is wrong, with the value.
-    pub message: String,
-    /// What would be accepted.
-    pub allowed: String,
-    /// What to try.
-    pub suggestion: String,
-}
 
 /// One accepted `field=value`.
 #[derive(Debug, Clone)]
@@ -28,8 +17,22 @@ pub(crate) struct Override {
 impl Override {
     /// The part behind `=`, underlined.
     pub(crate) fn place_of_value(&self) -> Place {
-        let from = self.argument.find('=').map_or(0, |at| at + 1);
-        command_line(&self.argument, from, self.argument.len())
+        command_line(&self.argument, self.value_start(), self.argument.len())
+    }
+
+    /// The value of the field `rest` inside this override's value (empty: the whole); `None` where it is left out.
+    fn place_of(&self, rest: &str) -> Option<Place> {
+        if rest.is_empty() {
+            return Some(self.place_of_value());
+        }
+        let from = self.value_start();
+        let outline = Outline::of(&self.argument[from..]);
+        let value = outline.get(rest)?.value.clone();
+        Some(command_line(&self.argument, from + value.start, from + value.end))
+    }
+
+    fn value_start(&self) -> usize {
+        self.argument.find('=').map_or(0, |at| at + 1)
     }
 }
 
@@ -57,28 +60,70 @@ impl<'a> Origin<'a> {
         Self { file: "", text: "", outline: Outline::default(), overrides }
     }
 
-    /// Gives a finding its place.
+    /// Blames one field of a finding, and proposes the first value of its remedy.
+    ///
+    /// The command line was written last, and a default by nobody: what was written later is blamed first, and among
+    /// equals the likeliest culprit that one value can repair.
     pub(crate) fn problem(&self, finding: Finding) -> Problem {
-        let written = finding.fields.iter().find_map(|field| self.written(field));
-        let place = written.unwrap_or_else(|| Place::Unwritten { file: self.file.to_owned() });
-        Problem {
-            field: finding.fields.into_iter().next().unwrap_or_default(),
-            message: finding.message,
-            allowed: finding.allowed,
-            suggestion: finding.suggestion,
-            place,
+        let mut candidates: Vec<Candidate> = Vec::with_capacity(finding.remedies.len());
+        for remedy in finding.remedies {
+            let proposal = remedy.values.into_iter().next();
+            let place = self.written(&remedy.field);
+            candidates.push(Candidate { field: remedy.field, allowed: remedy.allowed, proposal, place });
         }
+        let last = candidates.iter().map(Candidate::rank).max().unwrap_or(0);
+        let among = |candidate: &&Candidate| candidate.rank() == last;
+        let best = candidates.iter().filter(among).find(|candidate| candidate.proposal.is_some());
+        let Some(blamed) = best.or_else(|| candidates.iter().find(among)) else {
+            return Problem::new(finding.message, Place::Unwritten { file: self.file.to_owned() });
+        };
+        let nowhere = Place::Unwritten { file: self.file.to_owned() };
+        let mut problem = Problem::new(finding.message, blamed.place.clone().unwrap_or(nowhere));
+        problem.field.clone_from(&blamed.field);
+        problem.allowed.clone_from(&blamed.allowed);
+        let another = candidates.iter().find(|candidate| candidate.proposal.is_some());
+        match best.or(another) {
+            Some(Candidate { field, proposal: Some(Proposal { value, note }), .. }) => {
+                problem.propose(field, value, note);
+            }
+            _ => {
+                problem.suggestion =
+                    "no single value repairs this; change several of the fields together".to_owned()
+            }
+        }
+        problem
     }
 
     /// Where `field` was written; an override of the field or of a section around it wins over the file.
     fn written(&self, field: &str) -> Option<Place> {
-        let covers = |path: &str| {
-            field == path || field.strip_prefix(path).is_some_and(|rest| rest.starts_with(['.', '[']))
+        let within = |path: &str| {
+            let rest = field.strip_prefix(path)?;
+            (rest.is_empty() || rest.starts_with(['.', '['])).then(|| rest.trim_start_matches('.').to_owned())
         };
-        if let Some(by) = self.overrides.iter().rev().find(|by| covers(&by.path)) {
-            return Some(by.place_of_value());
+        let by = self.overrides.iter().rev().find_map(|by| Some((by, within(&by.path)?)));
+        if let Some((by, rest)) = by {
+            return by.place_of(&rest);
         }
         let entry = self.outline.get(field)?;
         Some(place_in_file(self.file, self.text, entry.value.clone()))
+    }
+}
+
+/// A field that may be to blame.
+struct Candidate {
+    field: String,
+    allowed: String,
+    /// A value that repairs what was found.
+    proposal: Option<Proposal>,
+    place: Option<Place>,
+}
+
+impl Candidate {
+    fn rank(&self) -> u8 {
+        match self.place {
+            Some(Place::CommandLine { .. }) => 2,
+            Some(_) => 1,
+            None => 0,
+        }
     }
 }

@@ -6,8 +6,10 @@
 use super::origin::{Override, command_line};
 use super::outline::{Outline, is_single_value};
 use super::problem::{Place, Problem, SceneError};
-use super::suggest;
-use super::syntax::{Schema, deserialize};
+use super::schema::Schema;
+use super::syntax::deserialize;
+use super::wording::{list, shown};
+use super::{foreign, suggest};
 use crate::scene::Scene;
 
 /// Applies `arguments` in order; the result is not yet checked for meaning.
@@ -29,7 +31,7 @@ fn apply_one(scene: &Scene, argument: &str, schema: &Schema) -> Result<(Scene, O
     let whole = command_line(argument, 0, argument.len());
     let Some((path, value)) = argument.split_once('=') else {
         let example = "write `--set field=value`, for example `--set mesh.size_mm=1.0`";
-        return Err(refuse("", format!("`{argument}` has no `=`"), example.to_owned(), whole));
+        return Err(refuse("", format!("`{}` has no `=`", shown(argument)), example.to_owned(), whole));
     };
     let path = path.trim();
     let text = scene.to_ron();
@@ -39,18 +41,34 @@ fn apply_one(scene: &Scene, argument: &str, schema: &Schema) -> Result<(Scene, O
 
     let value = quoted(value.trim(), schema.default_of(path));
     if !is_single_value(&value) {
-        let message = format!("`{path}` is given `{value}`, which is not one complete value");
-        let suggestion = match schema.default_of(path) {
-            Some(default) if !default.contains('\n') => format!("`{path}={default}` is the default"),
-            _ => format!("`{path}` takes {}", schema.kind(path)),
-        };
-        return Err(refuse(path, message, suggestion, by.place_of_value()));
+        return Err(incomplete(path, &value, schema, by.place_of_value()));
     }
     let text = write(&text, &outline, path, &value);
     match deserialize(&text) {
         Ok(scene) => Ok((scene, by)),
         Err(fault) => Err(Box::new(fault.problem(by.place_of_value()))),
     }
+}
+
+/// Refuses a value that is not one value: a bracket is missing, or something follows.
+fn incomplete(path: &str, value: &str, schema: &Schema, place: Place) -> Box<Problem> {
+    let mut problem = Problem::new("", place);
+    problem.field = path.to_owned();
+    if foreign::comma_number(value) == Some(value.len()) {
+        problem.message = format!("`{path}` is given `{}`, with a decimal comma", shown(value));
+        let note = "with a decimal point and without thousands separators";
+        problem.propose(path, &foreign::with_point(value), note);
+        return Box::new(problem);
+    }
+    problem.message = match value {
+        "" => format!("`{path}` is given no value"),
+        _ => format!("`{path}` is given `{}`, which is not one complete value", shown(value)),
+    };
+    match schema.plain_default(path) {
+        Some(default) => problem.propose(path, default, "the default"),
+        None => problem.suggestion = format!("`{path}` takes {}", schema.kind(path).words()),
+    }
+    Box::new(problem)
 }
 
 /// Refuses a path that no scene has.
@@ -85,22 +103,28 @@ fn known(path: &str, argument: &str, schema: &Schema, outline: &Outline) -> Resu
     let named = |p: &&&str| p.rsplit_once('.').is_some_and(|(_, name)| suggest::same_quantity(name, leaf));
     let suggestion = match full.iter().find(named) {
         // Right name, wrong section or none: the most common slip. A slip of the unit deserves the factor.
-        Some(home) if !home.starts_with(&format!("{section}.")) => format!("did you mean `{home}`?"),
+        Some(home) if !home.starts_with(&format!("{section}.")) => Some(format!("did you mean `{home}`?")),
         _ => match suggest::nearest(path, &full).filter(|near| near.contains('.')) {
-            Some(near) if section.is_empty() => format!("did you mean `{near}`?"),
-            _ => with_section(suggest::field(name, &siblings, &full), section, &siblings),
+            Some(near) if section.is_empty() => Some(format!("did you mean `{near}`?")),
+            _ => suggest::field(name, &siblings, &full).map(|words| with_section(words, section, &siblings)),
         },
     };
-    Err(refuse(path, format!("no field `{path}` in a scene"), suggestion, mark))
+    let message = match path {
+        "" => "the name of a field is missing in front of `=`".to_owned(),
+        _ => format!("no field `{}` in a scene", shown(path)),
+    };
+    let mut problem = refuse(path, message, suggestion.unwrap_or_default(), mark);
+    problem.allowed = with_section(list(&siblings), section, &siblings);
+    Err(problem)
 }
 
-/// Writes the names of a suggestion as `--set` wants them, with their section.
-fn with_section(suggestion: String, section: &str, names: &[&str]) -> String {
+/// Writes the names in a text as `--set` wants them, with their section.
+fn with_section(text: String, section: &str, names: &[&str]) -> String {
     if section.is_empty() {
-        return suggestion;
+        return text;
     }
     let full = |text: String, name: &&str| text.replace(&format!("`{name}`"), &format!("`{section}.{name}`"));
-    names.iter().fold(suggestion, full)
+    names.iter().fold(text, full)
 }
 
 /// Quotes a bare word for a text field: the shell has already eaten the user's quotes.
@@ -125,11 +149,8 @@ fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
 }
 
 fn refuse(field: &str, message: String, suggestion: String, place: Place) -> Box<Problem> {
-    Box::new(Problem { field: field.to_owned(), message, allowed: String::new(), suggestion, place })
-}
-
-impl From<Box<Problem>> for SceneError {
-    fn from(problem: Box<Problem>) -> Self {
-        (*problem).into()
-    }
+    let mut problem = Problem::new(message, place);
+    problem.field = field.to_owned();
+    problem.suggestion = suggestion;
+    Box::new(problem)
 }

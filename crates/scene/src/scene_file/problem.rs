@@ -2,7 +2,6 @@
 
 use std::fmt;
 use std::ops::Range;
-use std::path::Path;
 
 /// Source lines are shown up to this many characters around the mark, so that a one-line megabyte stays readable.
 const SHOWN_WIDTH: usize = 110;
@@ -24,6 +23,8 @@ pub struct Problem {
     pub allowed: String,
     /// What to try; empty when there is nothing to say.
     pub suggestion: String,
+    /// What removes this problem, as `--set` takes it: `bearing.rollers=24`; `None` where no one value does.
+    pub repair: Option<String>,
     /// Where the value was written.
     pub place: Place,
 }
@@ -77,6 +78,43 @@ impl From<Problem> for SceneError {
     }
 }
 
+impl From<Box<Problem>> for SceneError {
+    fn from(problem: Box<Problem>) -> Self {
+        (*problem).into()
+    }
+}
+
+impl Problem {
+    /// A problem without advice.
+    pub(crate) fn new(message: impl Into<String>, place: Place) -> Self {
+        let message = message.into();
+        let (field, allowed, suggestion) = (String::new(), String::new(), String::new());
+        Self { field, message, allowed, suggestion, repair: None, place }
+    }
+
+    /// Proposes `value` for `field`, written as it would be where the problem stands.
+    pub(crate) fn propose(&mut self, field: &str, value: &str, note: &str) {
+        let written = match &self.place {
+            Place::CommandLine { .. } => format!("--set {}", for_a_shell(field, value)),
+            // The line that is shown says which section is meant.
+            Place::File { .. } if field == self.field => {
+                let name = field.rsplit('.').next().unwrap_or(field);
+                if name.ends_with(']') { format!("`{value}`") } else { format!("`{name}: {value}`") }
+            }
+            _ => format!("`{field}: {value}`"),
+        };
+        self.suggestion = if note.is_empty() { written } else { format!("{written} ({note})") };
+        self.repair = Some(format!("{field}={value}"));
+    }
+}
+
+/// `field=value` as a word of a shell.
+fn for_a_shell(field: &str, value: &str) -> String {
+    let bare = value.trim_matches('"');
+    let plain = |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || "._+-".contains(c));
+    if plain(bare) && plain(field) { format!("{field}={bare}") } else { format!("'{field}={value}'") }
+}
+
 impl std::error::Error for SceneError {}
 
 impl fmt::Display for SceneError {
@@ -102,7 +140,7 @@ impl fmt::Display for Problem {
             Place::CommandLine { argument, column, width } => {
                 writeln!(f, "  --> command line")?;
                 const FLAG: &str = "--set ";
-                excerpt(f, "", &format!("{FLAG}{argument}"), column + FLAG.len(), *width)?;
+                excerpt(f, " ", &format!("{FLAG}{argument}"), column + FLAG.len(), *width)?;
             }
             Place::Unwritten { file } if !file.is_empty() => writeln!(f, "  --> {file}")?,
             Place::Unwritten { .. } => {}
@@ -164,18 +202,6 @@ pub(crate) fn offset(text: &str, line: usize, column: usize) -> usize {
         .map(char::len_utf8)
         .sum();
     before + within
-}
-
-/// A problem with a file as a whole.
-pub(crate) fn whole_file(path: &Path, message: String, suggestion: &str) -> SceneError {
-    Problem {
-        field: String::new(),
-        message,
-        allowed: String::new(),
-        suggestion: suggestion.to_owned(),
-        place: Place::Unwritten { file: path.display().to_string() },
-    }
-    .into()
 }
 
 /// The last character boundary at or before `at`.

@@ -1,7 +1,12 @@
 //! What the user may have meant: the nearest name, the missing or other unit, the section where a name belongs.
 
+use super::wording::number;
+
 /// Names closer than this (Jaro–Winkler, 1 is equal) are worth proposing.
 const NEAR: f64 = 0.80;
+
+/// A part of a name has as many letters at least.
+const PART: usize = 4;
 
 /// Unit suffixes: text, dimension, size in the first unit of that dimension.
 const UNITS: &[(&str, &str, f64)] = &[
@@ -60,47 +65,39 @@ pub(crate) fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
     (best.0 >= NEAR).then_some(best.1)
 }
 
-/// What to write instead of the unknown field `found`.
+/// What to write instead of the unknown field `found`; `None` where nothing is like it.
 ///
 /// `siblings` are the names valid in that place, `all` the dotted paths of every field there is.
-pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> String {
+pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> Option<String> {
     let (stem, unit) = split_unit(found);
     if let Some(name) = siblings.iter().find(|name| split_unit(name).0 == stem) {
-        return match (unit, split_unit(name).1) {
+        return Some(match (unit, split_unit(name).1) {
             (None, Some(_)) => format!("did you mean `{name}`? The unit is part of the name"),
             (Some(ours), Some(theirs)) if ours.1 == theirs.1 => {
-                let factor = shortest(ours.2 / theirs.2);
+                let factor = number(ours.2 / theirs.2);
                 format!("did you mean `{name}`? 1 in `{found}` is {factor} in `{name}`")
             }
             _ => format!("did you mean `{name}`?"),
-        };
+        });
     }
     // `roller_count` for `rollers` is near; so is `diameter` inside `roller_diameter_mm`, once the unit is off.
     if let Some(name) = nearest(found, siblings) {
-        return format!("did you mean `{name}`?");
+        return Some(format!("did you mean `{name}`?"));
+    }
+    if let Some(name) = siblings.iter().find(|name| stem.len() >= PART && split_unit(name).0.contains(stem)) {
+        return Some(format!("did you mean `{name}`?"));
     }
     let elsewhere = all.iter().find_map(|path| {
         let (section, name) = path.rsplit_once('.')?;
         (name == found || split_unit(name).0 == stem).then_some((section, name))
     });
     if let Some((section, name)) = elsewhere {
-        return format!("`{name}` belongs in `{section}: ( … )`");
+        return Some(format!("`{name}` belongs in `{section}: ( … )`"));
     }
     let stems: Vec<&str> = siblings.iter().map(|name| split_unit(name).0).collect();
-    match nearest(stem, &stems).and_then(|near| siblings.iter().find(|name| split_unit(name).0 == near)) {
-        Some(name) => format!("did you mean `{name}`?"),
-        None => format!("valid here: {}", list(siblings)),
-    }
-}
-
-/// `` `a`, `b`, `c` ``.
-pub(crate) fn list(names: &[&str]) -> String {
-    names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
-}
-
-/// A number with at most nine significant digits and no rounding dust.
-pub(crate) fn shortest(value: f64) -> String {
-    format!("{value:.8e}").parse::<f64>().unwrap_or(value).to_string()
+    let near = nearest(stem, &stems)?;
+    let name = siblings.iter().find(|name| split_unit(name).0 == near)?;
+    Some(format!("did you mean `{name}`?"))
 }
 
 #[cfg(test)]
@@ -110,33 +107,34 @@ mod tests {
     const SIBLINGS: &[&str] = &["load_n", "speed_rpm", "gravity_m_s2"];
     const ALL: &[&str] = &["bearing.rollers", "mesh.size_mm", "operation.load_n", "solver.duration_ms"];
 
+    fn said(found: &str) -> String {
+        field(found, SIBLINGS, ALL).expect("something is like it")
+    }
+
     #[test]
     fn refuses_a_missing_unit_and_proposes_it() {
-        assert!(field("load", SIBLINGS, ALL).contains("`load_n`"));
+        assert!(said("load").contains("`load_n`"));
     }
 
     #[test]
     fn refuses_another_unit_and_converts_it() {
-        assert_eq!(
-            field("load_kn", SIBLINGS, ALL),
-            "did you mean `load_n`? 1 in `load_kn` is 1000 in `load_n`"
-        );
-        assert!(field("gravity_g", SIBLINGS, ALL).contains("9.80665 in `gravity_m_s2`"));
+        assert_eq!(said("load_kn"), "did you mean `load_n`? 1 in `load_kn` is 1000 in `load_n`");
+        assert!(said("gravity_g").contains("9.80665 in `gravity_m_s2`"));
     }
 
     #[test]
     fn refuses_a_typing_error_and_recognises_it() {
-        assert_eq!(field("sped_rpm", SIBLINGS, ALL), "did you mean `speed_rpm`?");
+        assert_eq!(said("sped_rpm"), "did you mean `speed_rpm`?");
     }
 
     #[test]
     fn refuses_a_name_in_the_wrong_section_and_says_where_it_belongs() {
-        assert_eq!(field("size_mm", SIBLINGS, ALL), "`size_mm` belongs in `mesh: ( … )`");
-        assert_eq!(field("duration", SIBLINGS, ALL), "`duration_ms` belongs in `solver: ( … )`");
+        assert_eq!(said("size_mm"), "`size_mm` belongs in `mesh: ( … )`");
+        assert_eq!(said("duration"), "`duration_ms` belongs in `solver: ( … )`");
     }
 
     #[test]
-    fn refuses_an_unknown_name_with_the_list() {
-        assert_eq!(field("qqq", SIBLINGS, ALL), "valid here: `load_n`, `speed_rpm`, `gravity_m_s2`");
+    fn analytic_to_a_stranger_nothing_is_like() {
+        assert_eq!(field("qqq", SIBLINGS, ALL), None);
     }
 }

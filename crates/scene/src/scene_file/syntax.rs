@@ -2,100 +2,13 @@
 
 use ron::error::SpannedError;
 
+use super::dialect::dialect;
 use super::outline::Outline;
 use super::problem::{Place, Problem, SceneError, offset, place_in_file};
-use super::{dialect, suggest};
-use crate::scene::{GradingScene, Scene};
-
-/// Every field that a scene has, from the defaults.
-pub(crate) struct Schema {
-    text: String,
-    outline: Outline,
-}
-
-impl Schema {
-    pub(crate) fn new() -> Self {
-        let mut scene = Scene::default();
-        // Absent by default, but its fields must be known.
-        scene.mesh.grading = Some(GradingScene::default());
-        let text = scene.to_ron();
-        let outline = Outline::of(&text);
-        Self { text, outline }
-    }
-
-    /// Dotted paths of all fields, list items left out.
-    pub(crate) fn paths(&self) -> Vec<&str> {
-        self.outline
-            .entries
-            .iter()
-            .map(|entry| entry.path.as_str())
-            .filter(|path| !path.contains('['))
-            .collect()
-    }
-
-    /// The default of `path` as text; any item of a list stands for its siblings.
-    pub(crate) fn default_of(&self, path: &str) -> Option<&str> {
-        let path = first_item(path);
-        self.outline.get(&path).map(|entry| &self.text[entry.value.clone()])
-    }
-
-    /// Names valid directly inside `section` (empty: the root).
-    pub(crate) fn names_in(&self, section: &str) -> Vec<&str> {
-        let section = first_item(section);
-        let prefix = if section.is_empty() { String::new() } else { format!("{section}.") };
-        let names = self.outline.entries.iter().filter_map(|entry| entry.path.strip_prefix(&prefix));
-        names.filter(|name| !name.contains(['.', '['])).collect()
-    }
-
-    /// True when `value` is a number and `path` takes one: then the fault lies behind it.
-    fn accepts(&self, path: &str, value: &str) -> bool {
-        let default = self.default_of(path).unwrap_or_default();
-        if default == "None" || default.parse::<u64>().is_ok() {
-            value.parse::<u64>().is_ok()
-        } else {
-            // Rust also reads `nan` and `infinity`, RON does not.
-            let starts_like_one = value.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-            default.parse::<f64>().is_ok() && value.parse::<f64>().is_ok() && starts_like_one
-        }
-    }
-
-    /// What belongs into `path`, in words.
-    pub(crate) fn kind(&self, path: &str) -> &'static str {
-        let value = self.default_of(path).unwrap_or_default();
-        match value.chars().next() {
-            // The two optional counts are `None` by default; so is nothing else.
-            _ if value == "None" => "a whole number, or `None`",
-            Some('"') => "a text in double quotes",
-            Some('(') if ["cage", "defect"].contains(&path) => "a group `( … )`, or `None`",
-            Some('(') => "a group `( … )`",
-            Some('[') => "a list `[ … ]`",
-            _ if value.parse::<u64>().is_ok() => "a whole number of 0 or more",
-            _ if value.parse::<f64>().is_ok() => "a number",
-            _ => "one of the listed words, without quotes",
-        }
-    }
-}
-
-/// `sensors[7].name` → `sensors[0].name`.
-fn first_item(path: &str) -> String {
-    let mut inside = false;
-    let mut out = String::with_capacity(path.len());
-    for c in path.chars() {
-        match c {
-            '[' => {
-                inside = true;
-                out.push_str("[0");
-            }
-            ']' => {
-                inside = false;
-                out.push(']');
-            }
-            _ if inside => {}
-            _ => out.push(c),
-        }
-    }
-    out
-}
+use super::schema::{Kind, Schema};
+use super::wording::{list, number, shown};
+use super::{foreign, limits, suggest};
+use crate::scene::Scene;
 
 /// Reads the types of a scene; its meaning is checked later.
 pub(crate) fn parse(text: &str, file: &str) -> Result<Scene, SceneError> {
@@ -111,18 +24,22 @@ pub(crate) struct Fault {
     pub(crate) range: std::ops::Range<usize>,
     message: String,
     allowed: String,
+    /// What to try in words.
     suggestion: String,
+    /// What to try as a value of the field, and why.
+    proposal: Option<(String, &'static str)>,
 }
 
 impl Fault {
     pub(crate) fn problem(self, place: Place) -> Problem {
-        Problem {
-            field: self.field,
-            message: self.message,
-            allowed: self.allowed,
-            suggestion: self.suggestion,
-            place,
+        let mut problem = Problem::new(self.message, place);
+        problem.field.clone_from(&self.field);
+        problem.allowed = self.allowed;
+        problem.suggestion = self.suggestion;
+        if let Some((value, note)) = self.proposal {
+            problem.propose(&self.field, &value, note);
         }
+        problem
     }
 }
 
@@ -160,7 +77,11 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
         message: format!("the scene cannot be read: {}", error.code),
         allowed: String::new(),
         suggestion: String::new(),
+        proposal: None,
     };
+    if let Some(habit) = foreign::other_format(text) {
+        return Fault { range: habit.range, message: habit.message, suggestion: habit.suggestion, ..fault };
+    }
     match &error.code {
         E::NoSuchStructField { expected, found, .. } => {
             // The path ends in the section, or in the unknown name, depending on how far serde came.
@@ -170,18 +91,18 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
                 outline.entries.iter().find(|entry| entry.path == fault.field && entry.key.end <= end + 1);
             fault.range = named.map_or(start..end, |entry| entry.key.clone());
             let inside = if home.is_empty() { "a scene".to_owned() } else { format!("`{home}`") };
-            fault.message = format!("unknown field `{found}` in {inside}");
-            fault.allowed = suggest::list(expected);
-            fault.suggestion = suggest::field(found, expected, &schema.paths());
+            fault.message = format!("unknown field `{}` in {inside}", shown(found));
+            fault.allowed = list(expected);
+            fault.suggestion = suggest::field(found, expected, &schema.paths()).unwrap_or_default();
         }
         E::NoSuchEnumVariant { expected, found, .. } => {
             fault.field = path.to_owned();
-            fault.message = format!("`{path}` is `{found}`, which is not one of its words");
-            fault.allowed = suggest::list(expected);
-            fault.suggestion = match suggest::nearest(found, expected) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => schema.default_of(path).map(|v| format!("the default is {v}")).unwrap_or_default(),
-            };
+            fault.message = format!("`{path}` is `{}`, which is not one of its words", shown(found));
+            fault.allowed = list(expected);
+            match suggest::nearest(found, expected) {
+                Some(near) => fault.suggestion = format!("did you mean `{near}`?"),
+                None => fault.proposal = schema.default_of(path).map(|word| (word.to_owned(), "the default")),
+            }
         }
         E::DuplicateStructField { field, .. } => {
             fault.field = (*field).to_owned();
@@ -191,10 +112,10 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
         E::MissingStructField { field, .. } => {
             fault.field = join(path, field);
             fault.message = format!("`{path}` has no field `{field}`, which has no default");
-            fault.suggestion = format!("add `{field}: …` ({})", schema.kind(&fault.field));
+            fault.suggestion = format!("add `{field}: …` ({})", schema.kind(&fault.field).words());
         }
         E::ExpectedDifferentStructName { found, .. } if text[end..].trim_start().starts_with('(') => {
-            fault.message = format!("`{found}(` is no part of a scene");
+            fault.message = format!("`{}(` is no part of a scene", shown(found));
             fault.suggestion = "leave the name in front of the bracket out: `( … )`".to_owned();
         }
         _ if text.trim().is_empty() => {
@@ -205,6 +126,12 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
             fault.message = "the scene ends too early: a closing bracket or a value is missing".to_owned();
             fault.suggestion = "is the file cut off? Every `(` needs its `)`".to_owned();
         }
+        E::ExpectedNamedStructLike(_) | E::ExpectedStructLike => {
+            value_fault(text, path, &outline, &schema, &mut fault);
+            if fault.allowed.is_empty() {
+                fault.message = "a group `( … )` is expected here".to_owned();
+            }
+        }
         _ => value_fault(text, path, &outline, &schema, &mut fault),
     }
     fault
@@ -212,6 +139,14 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
 
 /// A value of the wrong type: RON names the character that surprised it, the user wants the field.
 fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault: &mut Fault) {
+    if let Some((entry, habit)) = foreign::decimal_comma(text, outline, fault.range.start) {
+        fault.field.clone_from(&entry.path);
+        fault.range = habit.range;
+        fault.message = habit.message;
+        fault.allowed = allowed(schema, &entry.path);
+        fault.proposal = Some((habit.suggestion, "with a decimal point and without thousands separators"));
+        return;
+    }
     let candidates = [outline.get(path), outline.at(fault.range.end), outline.at(fault.range.start)];
     let culprit = candidates.into_iter().flatten().find(|entry| {
         let is_group =
@@ -222,19 +157,79 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
     });
     let Some(entry) = culprit else {
         fault.field = path.to_owned();
-        fault.suggestion = "look for a missing comma, bracket or quote near the mark".to_owned();
+        fault.suggestion = hint(text, fault.range.start).to_owned();
         return;
     };
     let value = &text[entry.value.clone()];
-    let shown: String = value.chars().take(40).collect();
-    let dots = if shown.len() < value.len() { "…" } else { "" };
+    let kind = schema.kind(&entry.path);
     fault.field.clone_from(&entry.path);
     fault.range = entry.value.clone();
-    fault.message = format!("`{}` is `{shown}{dots}`, which is not {}", entry.path, schema.kind(&entry.path));
-    fault.allowed = schema.kind(&entry.path).to_owned();
-    if value.eq_ignore_ascii_case("none") && fault.allowed.contains("`None`") {
-        fault.suggestion = "`None`, with a capital letter".to_owned();
-    } else if let Some(default) = schema.default_of(&entry.path).filter(|default| !default.contains('\n')) {
-        fault.suggestion = format!("the default is {default}");
+    let is_count = matches!(kind, Kind::Count | Kind::OptionalCount);
+    let too_large = is_count && value.bytes().all(|b| b.is_ascii_digit());
+    let not = if too_large { "too large".to_owned() } else { format!("not {}", kind.words()) };
+    fault.message = format!("`{}` is `{}`, which is {not}", entry.path, shown(value));
+    fault.allowed = allowed(schema, &entry.path);
+    fault.proposal = proposal(value, kind)
+        .or_else(|| schema.plain_default(&entry.path).map(|default| (default.to_owned(), "the default")));
+}
+
+/// What belongs into `path`, with its range or its words.
+fn allowed(schema: &Schema, path: &str) -> String {
+    let kind = schema.kind(path);
+    match kind {
+        Kind::Word => words_of(schema, path).map_or_else(|| kind.words().to_owned(), list),
+        _ => match limits::allowed(path) {
+            Some(range) => format!("{}, {range}", kind.words()),
+            None => kind.words().to_owned(),
+        },
+    }
+}
+
+/// The words that `path` takes. Serde knows them; asked with a word that is none of them, it says them.
+fn words_of(schema: &Schema, path: &str) -> Option<&'static [&'static str]> {
+    match dialect().from_str::<Scene>(&schema.text_with(path, "no_such_word")?).err()?.code {
+        ron::Error::NoSuchEnumVariant { expected, .. } => Some(expected),
+        _ => None,
+    }
+}
+
+/// The value that was probably meant by one of the wrong type.
+fn proposal(value: &str, kind: Kind) -> Option<(String, &'static str)> {
+    let bare = value.trim_matches('"');
+    let is_number = |text: &str| text.parse::<f64>().is_ok_and(f64::is_finite);
+    match kind {
+        Kind::OptionalCount | Kind::OptionalGroup if bare.eq_ignore_ascii_case("none") => {
+            Some(("None".to_owned(), "with a capital letter"))
+        }
+        Kind::Number if bare != value && is_number(bare) => Some((bare.to_owned(), "without quotes")),
+        Kind::Count | Kind::OptionalCount if bare.parse::<u32>().is_ok() => {
+            Some((bare.to_owned(), "without quotes"))
+        }
+        Kind::Count | Kind::OptionalCount => {
+            let count = bare.parse::<f64>().ok().filter(|count| (1.0..1e6).contains(count))?;
+            Some((number(count.round()), "rounded"))
+        }
+        Kind::Text if bare.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !bare.is_empty() => {
+            Some((format!("\"{bare}\""), "in quotes"))
+        }
+        _ => None,
+    }
+}
+
+/// What to look for where RON broke off.
+fn hint(text: &str, at: usize) -> &'static str {
+    let before = text[..at].trim_end();
+    let rest = text[at..].trim_start();
+    let next = rest.trim_start_matches(|c: char| c.is_ascii_alphanumeric() || "_ ".contains(c));
+    if rest.starts_with('{') || before.ends_with('{') {
+        "a group stands in round brackets: `( … )`"
+    } else if rest.starts_with('=') || next.starts_with('=') {
+        "a value follows a colon: `name: value`"
+    } else if rest.starts_with('"') && !before.ends_with(':') {
+        "names of fields are written without quotes: `name: value`"
+    } else if rest.starts_with('#') {
+        "`//` begins a comment"
+    } else {
+        "look for a missing comma, bracket or quote near the mark"
     }
 }

@@ -1,0 +1,197 @@
+//! How large a run may be: elements that fit the bodies in a number that fits a computer, and samples that fit a disk.
+
+use std::f64::consts::PI;
+
+use super::finding::{Finding, Remedy};
+use super::wording::{number, round_down, round_up};
+use crate::scene::Scene;
+
+/// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
+const MAX_ELEMENTS: f64 = 2e7;
+/// Rows of a trace: 10 million of 150 channels are 12 GB.
+const MAX_SAMPLES: f64 = 1e7;
+
+const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
+const OUTER_RING: &str = "bearing.outer_ring_thickness_mm";
+const INNER_RACE: &str = "bearing.inner_race_diameter_mm";
+const INNER_RING: &str = "bearing.inner_ring_thickness_mm";
+const SIZE: &str = "mesh.size_mm";
+const COARSE: &str = "mesh.grading.coarse_mm";
+
+/// Every demand that no mesh or no computer can meet, in a scene whose numbers are in range.
+pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
+    let groups = [layers, grading, too_many_elements, too_few_samples, too_many_samples];
+    groups.iter().filter_map(|group| group(scene)).collect()
+}
+
+/// One layer of elements at least in every body.
+fn layers(scene: &Scene) -> Option<Finding> {
+    let b = &scene.bearing;
+    let size = scene.mesh.size_mm;
+    let bodies = [
+        ("bearing.outer_ring_thickness_mm", b.outer_ring_thickness_mm),
+        ("bearing.inner_ring_thickness_mm", b.inner_ring_thickness_mm),
+        ("adapter.height_mm", scene.adapter.height_mm),
+    ];
+    let (body, thickness) = bodies.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    if size <= thickness {
+        return None;
+    }
+    let message = format!(
+        "`{SIZE}` is {}, more than `{body}` ({} mm): not one layer fits",
+        number(size),
+        number(thickness)
+    );
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(SIZE, format!("at most {} mm, one layer", number(thickness)))
+                .number(round_down(thickness / 4.0, 2), "four layers of elements"),
+            Remedy::new(body, format!("at least {} mm, one layer", number(size)))
+                .number(4.0 * size, "four layers of elements"),
+        ],
+    ))
+}
+
+/// Grading makes elements larger, not smaller.
+fn grading(scene: &Scene) -> Option<Finding> {
+    let size = scene.mesh.size_mm;
+    let coarse = scene.mesh.grading.as_ref()?.coarse_mm;
+    if coarse >= size {
+        return None;
+    }
+    let message = format!("`{COARSE}` is {}, finer than `{SIZE}` ({} mm)", number(coarse), number(size));
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(COARSE, format!("at least {} mm", number(size)))
+                .number(3.0 * size, "three facets become one"),
+            Remedy::new(SIZE, format!("at most {} mm", number(coarse)))
+                .number(round_down(coarse / 3.0, 2), "three facets become one"),
+        ],
+    ))
+}
+
+/// A mesh beyond any computer, with the field that asks for most of it.
+fn too_many_elements(scene: &Scene) -> Option<Finding> {
+    let parts = elements(scene);
+    let total: f64 = parts.iter().map(|part| part.1).sum();
+    let (field, most) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    if total <= MAX_ELEMENTS {
+        return None;
+    }
+    // Four parts share the elements. Those of a disc grow with the square of its facets, those of a ring with the facets.
+    let excess = most / (MAX_ELEMENTS / 4.0);
+    let b = &scene.bearing;
+    let allowed = format!("at most {} elements in all bodies", number(MAX_ELEMENTS));
+    let remedy = |field: &str| Remedy::new(field, allowed.clone());
+    let fewer = |field: &str, value: f64| remedy(field).number((value / excess).floor(), "");
+    let smaller = |field: &str, value: f64| remedy(field).number(round_down(value / excess, 2), "");
+    let larger = |field: &str, value: f64| remedy(field).number(round_up(value * excess.sqrt(), 1), "");
+    let sizes = [(OUTER_RACE, b.outer_race_diameter_mm), (OUTER_RING, b.outer_ring_thickness_mm)]
+        .into_iter()
+        .chain([(INNER_RACE, b.inner_race_diameter_mm), (INNER_RING, b.inner_ring_thickness_mm)])
+        .chain([("adapter.width_mm", scene.adapter.width_mm), ("adapter.height_mm", scene.adapter.height_mm)])
+        .map(|(field, value)| smaller(field, value));
+    let size = larger(SIZE, scene.mesh.size_mm);
+    let remedies = match field {
+        "mesh.outer_facets" | "mesh.inner_facets" => {
+            vec![remedy(field).value("None", "as many as `size_mm` makes"), size]
+        }
+        "mesh.roller_facets" => {
+            let facets = (scene.mesh.roller_facets as f64 / excess.sqrt()).floor();
+            vec![remedy(field).number(facets, ""), fewer("bearing.rollers", b.rollers as f64)]
+        }
+        COARSE => {
+            let coarse = scene.mesh.grading.as_ref().map_or(0.0, |g| g.coarse_mm);
+            std::iter::once(larger(COARSE, coarse)).chain(sizes).collect()
+        }
+        _ => std::iter::once(size).chain(sizes).collect(),
+    };
+    let message = format!("the mesh would have about {total:.1e} elements, most of them by `{field}`");
+    Some(Finding::new(message, remedies))
+}
+
+/// Roughly how many elements each field asks for. In floating point: a slip may ask for more than any integer.
+fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
+    let (b, mesh) = (&scene.bearing, &scene.mesh);
+    let layers = |thickness: f64| (thickness / mesh.size_mm).max(1.0);
+    let adapter = match &mesh.grading {
+        None => layers(scene.adapter.width_mm) * layers(scene.adapter.height_mm),
+        Some(g) => scene.adapter.width_mm * scene.adapter.height_mm / (g.coarse_mm * g.coarse_mm),
+    };
+    // The transition and the coarse rows of a graded ring cost as much as three fine layers.
+    let layers_of_ring = |thickness: f64| {
+        let graded = mesh.grading.as_ref().map_or(f64::INFINITY, |g| g.fine_layers as f64 + 3.0);
+        layers(thickness).min(graded)
+    };
+    let ring = |field, facets: Option<usize>, diameter: f64, thickness: f64| match facets {
+        Some(facets) => (field, facets as f64 * layers_of_ring(thickness)),
+        None => (SIZE, PI * diameter / mesh.size_mm * layers_of_ring(thickness)),
+    };
+    // A disc of N facets on its rim, filled with squares of the facets' length or of that of the core.
+    let facets = mesh.roller_facets as f64;
+    let facet_mm = PI * b.roller_diameter_mm / facets;
+    let core = match &mesh.grading {
+        None => 1.0,
+        Some(grading) => grading.roller_core_mm(facet_mm) / facet_mm,
+    };
+    let rollers = b.rollers as f64 * facets * facets / (4.0 * PI * core * core);
+    [
+        ring("mesh.outer_facets", mesh.outer_facets, b.outer_race_diameter_mm, b.outer_ring_thickness_mm),
+        ring("mesh.inner_facets", mesh.inner_facets, b.inner_race_diameter_mm, b.inner_ring_thickness_mm),
+        ("mesh.roller_facets", rollers),
+        (if mesh.grading.is_some() { COARSE } else { SIZE }, adapter),
+    ]
+}
+
+/// Enough samples to see something.
+fn too_few_samples(scene: &Scene) -> Option<Finding> {
+    let (interval, duration) = (scene.output.interval_us, scene.solver.duration_ms);
+    if duration * 1e3 / interval >= 2.0 {
+        return None;
+    }
+    let note = "a hundred samples";
+    let message =
+        format!("{} ms sampled every {} µs are fewer than two samples", number(duration), number(interval));
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(
+                "output.interval_us",
+                format!("at most {} µs, two samples", number(duration * 500.0)),
+            )
+            .number(duration * 10.0, note)
+            .number(duration * 500.0, "two samples"),
+            Remedy::new(
+                "solver.duration_ms",
+                format!("at least {} ms, two samples", number(interval / 500.0)),
+            )
+            .number(interval / 10.0, note)
+            .number(interval / 500.0, "two samples"),
+        ],
+    ))
+}
+
+/// A file that fits a disk.
+fn too_many_samples(scene: &Scene) -> Option<Finding> {
+    let (interval, duration) = (scene.output.interval_us, scene.solver.duration_ms);
+    let samples = duration * 1e3 / interval;
+    if samples <= MAX_SAMPLES {
+        return None;
+    }
+    let message =
+        format!("{} ms sampled every {} µs are {samples:.1e} samples", number(duration), number(interval));
+    let most = number(MAX_SAMPLES);
+    let shortest = duration * 1e3 / MAX_SAMPLES;
+    let longest = interval * 1e-3 * MAX_SAMPLES;
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new("output.interval_us", format!("at least {} µs, {most} samples", number(shortest)))
+                .number(round_up(10.0 * shortest, 1), ""),
+            Remedy::new("solver.duration_ms", format!("at most {} ms, {most} samples", number(longest)))
+                .number(round_down(longest / 10.0, 1), ""),
+        ],
+    ))
+}

@@ -1,0 +1,136 @@
+//! Every field that a scene has, its default and what kind of value it takes.
+
+use super::outline::Outline;
+use crate::scene::{GradingScene, Scene};
+
+/// Every field that a scene has, from the defaults.
+pub(crate) struct Schema {
+    text: String,
+    outline: Outline,
+}
+
+impl Schema {
+    pub(crate) fn new() -> Self {
+        let mut scene = Scene::default();
+        // Absent by default, but its fields must be known.
+        scene.mesh.grading = Some(GradingScene::default());
+        let text = scene.to_ron();
+        let outline = Outline::of(&text);
+        Self { text, outline }
+    }
+
+    /// Dotted paths of all fields, list items left out.
+    pub(crate) fn paths(&self) -> Vec<&str> {
+        self.outline
+            .entries
+            .iter()
+            .map(|entry| entry.path.as_str())
+            .filter(|path| !path.contains('['))
+            .collect()
+    }
+
+    /// The default of `path` as text; any item of a list stands for its siblings.
+    pub(crate) fn default_of(&self, path: &str) -> Option<&str> {
+        let path = first_item(path);
+        self.outline.get(&path).map(|entry| &self.text[entry.value.clone()])
+    }
+
+    /// The default of `path` where it is one word, text or number of its own.
+    pub(crate) fn plain_default(&self, path: &str) -> Option<&str> {
+        self.default_of(path).filter(|default| !default.starts_with(['(', '[']) && !path.contains('['))
+    }
+
+    /// Names valid directly inside `section` (empty: the root).
+    pub(crate) fn names_in(&self, section: &str) -> Vec<&str> {
+        let section = first_item(section);
+        let prefix = if section.is_empty() { String::new() } else { format!("{section}.") };
+        let names = self.outline.entries.iter().filter_map(|entry| entry.path.strip_prefix(&prefix));
+        names.filter(|name| !name.contains(['.', '['])).collect()
+    }
+
+    /// True when `value` is a number and `path` takes one: then the fault lies behind it.
+    pub(crate) fn accepts(&self, path: &str, value: &str) -> bool {
+        let default = self.default_of(path).unwrap_or_default();
+        if default == "None" || default.parse::<u64>().is_ok() {
+            value.parse::<u64>().is_ok()
+        } else {
+            // Rust also reads `nan` and `infinity`, RON does not.
+            let starts_like_one = value.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+            default.parse::<f64>().is_ok() && value.parse::<f64>().is_ok() && starts_like_one
+        }
+    }
+
+    /// What belongs into `path`.
+    pub(crate) fn kind(&self, path: &str) -> Kind {
+        let value = self.default_of(path).unwrap_or_default();
+        match value.chars().next() {
+            // The two optional counts are `None` by default; so is nothing else.
+            _ if value == "None" => Kind::OptionalCount,
+            Some('"') => Kind::Text,
+            Some('(') if ["cage", "defect", "mesh.grading", "output.frames"].contains(&path) => {
+                Kind::OptionalGroup
+            }
+            Some('(') => Kind::Group,
+            Some('[') => Kind::List,
+            _ if value.parse::<u64>().is_ok() => Kind::Count,
+            _ if value.parse::<f64>().is_ok() => Kind::Number,
+            _ => Kind::Word,
+        }
+    }
+
+    /// The complete default scene with `value` at `path`, as text; `None` for a field that no scene has.
+    pub(crate) fn text_with(&self, path: &str, value: &str) -> Option<String> {
+        let place = self.outline.get(&first_item(path))?.value.clone();
+        Some(format!("{}{value}{}", &self.text[..place.start], &self.text[place.end..]))
+    }
+}
+
+/// A kind of value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Number,
+    Count,
+    OptionalCount,
+    Text,
+    Word,
+    Group,
+    OptionalGroup,
+    List,
+}
+
+impl Kind {
+    /// In words, with an article.
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Count => "a whole number",
+            Self::OptionalCount => "a whole number or `None`",
+            Self::Text => "a text in double quotes",
+            Self::Word => "one of the words allowed here",
+            Self::Group => "a group `( … )`",
+            Self::OptionalGroup => "a group `( … )` or `None`",
+            Self::List => "a list `[ … ]`",
+        }
+    }
+}
+
+/// `sensors[7].name` → `sensors[0].name`.
+fn first_item(path: &str) -> String {
+    let mut inside = false;
+    let mut out = String::with_capacity(path.len());
+    for c in path.chars() {
+        match c {
+            '[' => {
+                inside = true;
+                out.push_str("[0");
+            }
+            ']' => {
+                inside = false;
+                out.push(']');
+            }
+            _ if inside => {}
+            _ => out.push(c),
+        }
+    }
+    out
+}

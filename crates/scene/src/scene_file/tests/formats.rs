@@ -1,0 +1,114 @@
+//! Habits from other formats and languages, and files that cannot be read.
+
+use super::*;
+
+#[test]
+fn issue_other_formats_are_recognised_and_ron_is_shown() {
+    for (text, format, how) in [
+        (
+            "{\"name\": \"x\", \"bearing\": {\"rollers\": 24}}",
+            "JSON",
+            "(name: \"x\", bearing: (rollers: 24))",
+        ),
+        ("name: x\nbearing:\n  rollers: 24\n", "YAML", "`(name: \"x\", …)`"),
+        ("# a bearing\nbearing:\n  rollers: 24\n", "YAML", "`(bearing: ( … ), …)`"),
+        ("name = \"x\"\n[bearing]\nrollers = 24\n", "TOML", "`(name: \"x\", …)`"),
+        ("[bearing]\nrollers = 24\n", "TOML", "`(bearing: ( … ))`"),
+        ("# a bearing\n(name: \"x\")", "`#` is not a comment", "`//` begins a comment"),
+        ("(bearing: {rollers: 24})", "a group `( … )` is expected", "a group `( … )`"),
+        ("(bearing: (rollers = 24))", "cannot be read", "`name: value`"),
+        ("(\"name\": \"x\")", "cannot be read", "without quotes"),
+    ] {
+        let problem = only(parse(text));
+        assert!(problem.message.contains(format), "{text}\n{problem}");
+        assert!(problem.to_string().contains(how), "{text}\n{problem}");
+    }
+}
+
+#[test]
+fn issue_a_decimal_comma_is_recognised() {
+    for (text, field, written, point) in [
+        ("(operation: (load_n: 50,0))", "operation.load_n", "50,0", "load_n: 50.0"),
+        ("(operation: (load_n: 50,0, speed_rpm: 500))", "operation.load_n", "50,0", "load_n: 50.0"),
+        ("(\n mesh: (\n  size_mm: 0,5,\n  roller_facets: 88))", "mesh.size_mm", "0,5", "size_mm: 0.5"),
+        ("(defect: (angle_deg: -3,25))", "defect.angle_deg", "-3,25", "angle_deg: -3.25"),
+        ("(operation: (load_n: 50.000,0))", "operation.load_n", "50.000,0", "load_n: 50000.0"),
+    ] {
+        let problem = only(parse(text));
+        assert_eq!(problem.field, field, "{text}\n{problem}");
+        assert!(problem.message.contains("decimal comma"), "{text}\n{problem}");
+        assert_eq!(mark(&problem).2, written, "{problem}");
+        assert!(problem.suggestion.contains(point), "{problem}");
+        assert!(parse(&text.replace(written, point.rsplit(' ').next().unwrap_or(""))).is_ok(), "{text}");
+    }
+    let problem = only(Scene::default().with_overrides(&["operation.load_n=50,5"]));
+    assert!(problem.to_string().contains("--set operation.load_n=50.5"), "{problem}");
+    // Commas between values are none.
+    assert!(!only(parse("(operation: (load_n: 50, 7))")).message.contains("decimal"));
+}
+
+#[test]
+fn analytic_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is() {
+    for (text, allowed, proposed) in [
+        ("(bearing: (rollers: 24.5))", "a whole number, 3 to 400", "rollers: 25"),
+        ("(bearing: (rollers: -3))", "a whole number, 3 to 400", "rollers: 24"),
+        ("(bearing: (rollers: \"24\"))", "a whole number, 3 to 400", "rollers: 24"),
+        ("(bearing: (rollers: 99999999999999999999999))", "a whole number, 3 to 400", "rollers: 24"),
+        ("(operation: (load_n: \"x\"))", "a number, more than 0, at most 1e9 N", "load_n: 50000.0"),
+        ("(operation: (load_n: \"900\"))", "a number, more than 0, at most 1e9 N", "load_n: 900"),
+        ("(operation: (load_n: NaN))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
+        ("(operation: (load_n: -inf))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
+        ("(operation: (load_n: 1e400))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
+        ("(bearing: (first_roller_deg: 454))", "-360 to 360 °", "first_roller_deg: 94"),
+        ("(mesh: (outer_facets: none))", "a whole number or `None`, 16 to 1000000", "outer_facets: None"),
+        ("(contact: (method: \"collocated\"))", "`collocated`, `integrated`", "method: integrated"),
+        ("(name: quick)", "a text in double quotes", "name: \"quick\""),
+    ] {
+        let problem = only(parse(text));
+        assert_eq!(problem.allowed, allowed, "{text}\n{problem}");
+        assert!(problem.suggestion.contains(proposed), "{text}\n{problem}");
+        let (_, value) = proposed.split_once(": ").expect("a value");
+        let at = mark(&problem);
+        let repaired = text.replacen(&at.2, value, 1);
+        assert!(parse(&repaired).is_ok(), "{repaired}");
+    }
+}
+
+#[test]
+fn issue_allowed_fields_are_listed_once() {
+    for text in ["(operation: (qqq: 1))", "(qqq: 1)"] {
+        let shown = only(parse(text)).to_string();
+        let name = if text.starts_with("(q") { "`guards`" } else { "`gravity_m_s2`" };
+        assert_eq!(shown.matches(name).count(), 1, "{shown}");
+    }
+    for argument in ["operation.qqq=1", "qqq=1"] {
+        let shown = only(Scene::default().with_overrides(&[argument])).to_string();
+        let name = if argument.starts_with('q') { "`guards`" } else { "`operation.gravity_m_s2`" };
+        assert_eq!(shown.matches(name).count(), 1, "{shown}");
+    }
+}
+
+#[test]
+fn issue_a_file_that_cannot_be_read_is_not_answered_by_check_the_path() {
+    let folder = std::env::temp_dir().join(format!("stribeck-unreadable-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).expect("writable");
+    let refuse = |name: &str| only(Scene::read(folder.join(name))).to_string();
+    write("quick.ron", b"()");
+    write("utf16.txt", b"\xff\xfe(\0)\0");
+    write("latin1.txt", b"(\n// \xfc\n)");
+    write("binary.txt", b"\x93NUMPY\x01\0");
+    for (name, message, advice) in [
+        ("", "is a folder", "quick.ron"),
+        ("utf16.txt", "UTF-16", "save it as UTF-8"),
+        ("latin1.txt", "byte 0xfc in line 2", "save it as UTF-8"),
+        ("binary.txt", "not a text file", "something else"),
+        ("quick", "no such file", "quick.ron"),
+        ("quick.ron/x", "is a file, not a folder", "check the path"),
+        ("zzz", "no such file", "check the path"),
+    ] {
+        let shown = refuse(name);
+        assert!(shown.contains(message) && shown.contains(advice), "{name}\n{shown}");
+    }
+    std::fs::remove_dir_all(&folder).expect("removable");
+}
