@@ -99,6 +99,16 @@ pub(crate) fn comma_number(text: &str) -> Option<usize> {
     (digits > 0).then_some(text.len() - fraction.len() + digits)
 }
 
+/// What to say with the number that [`with_point`] makes. Three digits behind the comma may be thousands.
+pub(crate) fn comma_note(written: &str) -> &'static str {
+    match written.rsplit_once(',') {
+        Some((whole, thousands)) if thousands.len() == 3 && !whole.contains('.') => {
+            "with a decimal point; thousands are written without a comma"
+        }
+        _ => "with a decimal point",
+    }
+}
+
 /// `50,0` → `50.0`; `50.000,0` → `50000.0`.
 pub(crate) fn with_point(written: &str) -> String {
     written.replace('.', "").replace(',', ".")

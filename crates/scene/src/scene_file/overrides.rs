@@ -56,8 +56,7 @@ fn incomplete(path: &str, value: &str, schema: &Schema, place: Place) -> Box<Pro
     problem.field = path.to_owned();
     if foreign::comma_number(value) == Some(value.len()) {
         problem.message = format!("`{path}` is given `{}`, with a decimal comma", shown(value));
-        let note = "with a decimal point and without thousands separators";
-        problem.propose(path, &foreign::with_point(value), note);
+        problem.propose(path, &foreign::with_point(value), foreign::comma_note(value));
         return Box::new(problem);
     }
     problem.message = match value {

@@ -144,7 +144,7 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
         fault.range = habit.range;
         fault.message = habit.message;
         fault.allowed = allowed(schema, &entry.path);
-        fault.proposal = Some((habit.suggestion, "with a decimal point and without thousands separators"));
+        fault.proposal = Some((habit.suggestion, foreign::comma_note(&text[fault.range.clone()])));
         return;
     }
     let candidates = [outline.get(path), outline.at(fault.range.end), outline.at(fault.range.start)];
@@ -169,7 +169,11 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
     let not = if too_large { "too large".to_owned() } else { format!("not {}", kind.words()) };
     fault.message = format!("`{}` is `{}`, which is {not}", entry.path, shown(value));
     fault.allowed = allowed(schema, &entry.path);
-    fault.proposal = proposal(value, kind)
+    let word = value.trim_matches('"');
+    let is_word = kind == Kind::Word && words_of(schema, &entry.path).is_some_and(|all| all.contains(&word));
+    fault.proposal = is_word
+        .then(|| (word.to_owned(), "without quotes"))
+        .or_else(|| proposal(value, kind))
         .or_else(|| schema.plain_default(&entry.path).map(|default| (default.to_owned(), "the default")));
 }
 

@@ -61,7 +61,7 @@ fn analytic_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is(
         ("(operation: (load_n: 1e400))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
         ("(bearing: (first_roller_deg: 454))", "-360 to 360 °", "first_roller_deg: 94"),
         ("(mesh: (outer_facets: none))", "a whole number or `None`, 16 to 1000000", "outer_facets: None"),
-        ("(contact: (method: \"collocated\"))", "`collocated`, `integrated`", "method: integrated"),
+        ("(contact: (method: \"collocated\"))", "`collocated`, `integrated`", "method: collocated"),
         ("(name: quick)", "a text in double quotes", "name: \"quick\""),
     ] {
         let problem = only(parse(text));
