@@ -59,7 +59,7 @@ fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
 #[test]
 fn example_a_simulated_passage_gives_events_length_and_pictures() {
     let scene =
-        Scene::parse(include_str!("../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
+        Scene::parse(include_str!("../../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
     let folder = Scratch(std::env::temp_dir().join(format!("stribeck-quick-{}", std::process::id())));
     let dir = RunDir::create(&folder.0).expect("a free folder");
     let host = Host {
