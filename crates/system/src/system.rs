@@ -273,13 +273,17 @@ impl System {
         self.forces.contacts.iter().flat_map(|contacts| contacts.resultants())
     }
 
-    /// What a contact pair did in the last step.
+    /// What the contact pairs of that name did in the last step together: the force on their first surfaces' bodies, and
+    /// the deepest penetration.
     ///
     /// # Errors
     /// When there is no pair of that name.
     pub fn resultant(&self, pair: &str) -> Result<Resultant, Error> {
-        let at = self.pairs.iter().position(|name| name == pair);
-        let found = at.and_then(|at| self.resultants().nth(at));
-        found.ok_or_else(|| unknown("contact pair", pair, self.pairs.iter().map(String::as_str)))
+        let of_that_name = self.pairs.iter().zip(self.resultants()).filter(|(name, _)| *name == pair);
+        let sum = of_that_name.map(|(_, resultant)| resultant).reduce(|a, b| Resultant {
+            force: [a.force[0] + b.force[0], a.force[1] + b.force[1]],
+            penetration: a.penetration.max(b.penetration),
+        });
+        sum.ok_or_else(|| unknown("contact pair", pair, self.pairs.iter().map(String::as_str)))
     }
 }
