@@ -98,7 +98,7 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
 }
 
 #[test]
-fn analytic_another_field_is_proposed_where_the_blamed_one_cannot_help() {
+fn example_another_field_is_proposed_where_the_blamed_one_cannot_help() {
     // Half the bearing with rollers of the same size: the number of rollers must change, no diameter can.
     let problem = only(parse(
         "(bearing: (outer_race_diameter_mm: 120, inner_race_diameter_mm: 83.96), cage: None, adapter: (width_mm: 90))",
@@ -109,7 +109,7 @@ fn analytic_another_field_is_proposed_where_the_blamed_one_cannot_help() {
 }
 
 #[test]
-fn analytic_a_second_sensor_of_one_name_gets_a_free_one() {
+fn example_a_second_sensor_of_one_name_gets_a_free_one() {
     let sensor = |name: &str| format!("(name: \"{name}\", angle_deg: 0)");
     let text = format!("(output: (sensors: [{}, {}, {}]))", sensor("a"), sensor("a_2"), sensor("a"));
     let problem = only(parse(&text));
