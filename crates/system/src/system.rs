@@ -198,14 +198,14 @@ impl System {
             return Err(Error::NoTimeStep);
         }
         d.velocities_into(&mut self.before);
-        let (time, elastic, gravity) = (d.state.time, d.elastic_energy(), d.gravity_work());
+        let (elastic, gravity) = (d.elastic_energy(), d.gravity_work());
         d.step(&mut [&mut self.forces]);
         self.check_announced()?;
         let d = &self.dynamics;
         let (contact, others) = (self.forces.of_contact(), self.forces.of_others());
         let gravity_work = gravity - *self.balance.gravity_work.get_or_insert(gravity);
         Ok(Ledger {
-            time,
+            time: d.state.time - d.time_step(),
             kinetic: d.kinetic_energy(&self.before),
             strain: elastic.strain,
             hourglass: elastic.hourglass,
