@@ -119,8 +119,8 @@ fn refuses_with_field_and_remedy() {
     let refused =
         |text: &str| Scene::parse(text, "scene.ron").expect_err("an impossible grading").to_string();
     for (text, parts) in [
-        ("(mesh: (grading: (coarse_mm: 0.3)))", ["coarse_mm", "0.5 mm or more"]),
-        ("(mesh: (grading: (fine_layers: 0)))", ["fine_layers", "from 1"]),
+        ("(mesh: (grading: (coarse_mm: 0.3)))", ["coarse_mm", "at least 0.5 mm"]),
+        ("(mesh: (grading: (fine_layers: 0)))", ["fine_layers", "1 to 1000"]),
         ("(mesh: (grading: (corse_mm: 2.0)))", ["corse_mm", "coarse_mm"]),
     ] {
         let message = refused(text);
