@@ -216,7 +216,7 @@ fn invariant_a_run_whose_mesh_cannot_be_read_has_a_report_without_its_pictures()
         (None, "cannot read"),
         (Some(with("reference_m", "positions_m")), "no `reference_m`: a version"),
         (Some(sound[..sound.len() / 2].to_vec()), "it ends before"),
-        (Some(with("NumberOfPoints=\"1548\"", "NumberOfPoints=\"9\"")), "does not fit its counts"),
+        (Some(with("NumberOfPoints=\"1540\"", "NumberOfPoints=\"9\"")), "does not fit its counts"),
         (Some(far), "mesh.vtu"),
         (Some(sound.clone()), ""),
     ] {
