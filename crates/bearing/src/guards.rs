@@ -11,10 +11,10 @@
 //! | time without a roller that carries anything | `unsupported_warning_ms` | |
 //! | rollers and adapter out of their place | | [`OUT_OF_PLACE`] |
 //!
-//! The fields are those of `guards` in the scene. What can be said of any bodies in motion is said by
-//! [`System::look`](stribeck_system::System::look), in the scene's words; the last two rows are said here. A warning is given once, at the first sample above its limit. What has
-//! been seen is in [`GuardInfo`](stribeck_scene::run_info::GuardInfo), and so in checkpoints: a continued run warns as an unbroken
-//! one does.
+//! The fields are those of `guards` in the scene. [`System::look`] watches what can go wrong with any bodies in motion and
+//! says it in the scene's words ([`arm`]); before the first step, and for the last two rows, it is said here. A warning is
+//! given once, at the first sample above its limit. What has been seen is in checkpoints and in
+//! [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
 
 use stribeck_solver::Elastic;
 use stribeck_system::{Limits, Scale, System, Words};

@@ -30,7 +30,8 @@ pub struct Plan {
 /// Two surfaces that may touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// Name of the pair, also in messages: "*name* penetrate each other".
+    /// Name of the pair, also in messages: "*name* penetrate each other". Several pairs may share one, and have one
+    /// resultant then.
     pub name: String,
     /// Name of one surface; the resultant of the pair is the force on its body.
     pub first: String,
@@ -173,13 +174,10 @@ impl Plan {
     /// those of one body together.
     ///
     /// # Errors
-    /// When there is no surface of one of the names, or the pair's own is taken.
+    /// When there is no surface of one of the names.
     pub fn contact(&mut self, pair: Pair) -> Result<(), Error> {
         self.find_surface(&pair.first)?;
         self.find_surface(&pair.second)?;
-        if self.pairs.iter().any(|other| other.name == pair.name) {
-            return Err(Error::TwiceNamed { name: pair.name });
-        }
         self.pairs.push(pair);
         Ok(())
     }

@@ -198,14 +198,14 @@ impl System {
             return Err(Error::NoTimeStep);
         }
         d.velocities_into(&mut self.before);
-        let (time, elastic, gravity) = (d.state.time, d.elastic_energy(), d.gravity_work());
+        let (elastic, gravity) = (d.elastic_energy(), d.gravity_work());
         d.step(&mut [&mut self.forces]);
         self.check_announced()?;
         let d = &self.dynamics;
         let (contact, others) = (self.forces.of_contact(), self.forces.of_others());
         let gravity_work = gravity - *self.balance.gravity_work.get_or_insert(gravity);
         Ok(Ledger {
-            time,
+            time: d.state.time - d.time_step(),
             kinetic: d.kinetic_energy(&self.before),
             strain: elastic.strain,
             hourglass: elastic.hourglass,
@@ -273,13 +273,17 @@ impl System {
         self.forces.contacts.iter().flat_map(|contacts| contacts.resultants())
     }
 
-    /// What a contact pair did in the last step.
+    /// What the contact pairs of that name did in the last step together: the force on their first surfaces' bodies, and
+    /// the deepest penetration.
     ///
     /// # Errors
     /// When there is no pair of that name.
     pub fn resultant(&self, pair: &str) -> Result<Resultant, Error> {
-        let at = self.pairs.iter().position(|name| name == pair);
-        let found = at.and_then(|at| self.resultants().nth(at));
-        found.ok_or_else(|| unknown("contact pair", pair, self.pairs.iter().map(String::as_str)))
+        let of_that_name = self.pairs.iter().zip(self.resultants()).filter(|(name, _)| *name == pair);
+        let sum = of_that_name.map(|(_, resultant)| resultant).reduce(|a, b| Resultant {
+            force: [a.force[0] + b.force[0], a.force[1] + b.force[1]],
+            penetration: a.penetration.max(b.penetration),
+        });
+        sum.ok_or_else(|| unknown("contact pair", pair, self.pairs.iter().map(String::as_str)))
     }
 }
