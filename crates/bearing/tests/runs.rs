@@ -141,7 +141,7 @@ fn example_preloaded_start_does_not_ring() {
 }
 
 /// Bearings whose rollers lie loosely while the preload is sought: the rings of the paper's mesh are thin, or nothing but
-/// their weight moves the rollers that carry nothing. Those must not be thrown out.
+/// their weight moves the rollers that carry nothing. Those must stay in their clearance.
 #[test]
 fn example_thin_and_slow_bearings_find_their_equilibrium() {
     let lean = ("lean.ron", include_str!("../../../fixtures/scenes/lean.ron"));
