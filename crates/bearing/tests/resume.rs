@@ -25,7 +25,7 @@ use stribeck_testing::Scratch;
 /// Bytes before the content of a checkpoint: name, version, scene hash, length, checksum.
 const HEADER: usize = 20 + 4 + 16 + 8 + 4;
 
-/// The same, short and without a preload.
+/// The coarse bearing, short and without a preload.
 fn sudden() -> Scene {
     let mut scene = coarse(0.1);
     scene.solver.start = Start::Sudden;
@@ -379,7 +379,8 @@ fn survives_a_checkpoint_that_cannot_be_written() {
     let [warning] = info.warnings.as_slice() else { panic!("{:?}", info.warnings) };
     assert!(warning.contains("no checkpoint at 0.000 ms") && warning.contains("went on"), "{warning}");
     assert!(
-        RunDir::open(folder.path()).and_then(|dir| dir.read_info()).expect("readable").warnings == info.warnings
+        RunDir::open(folder.path()).and_then(|dir| dir.read_info()).expect("readable").warnings
+            == info.warnings
     );
     assert!(refusal(&folder).contains("no checkpoint"));
 }

@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_errors_of_second_order_show_it() {
+    fn example_errors_of_second_order_show_it() {
         assert_eq!(orders(&[16.0, 4.0, 1.0]), [2.0, 2.0]);
     }
 

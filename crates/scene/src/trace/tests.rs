@@ -101,7 +101,8 @@ fn refuses_to_continue_a_foreign_file_and_leaves_it_alone() {
     let whole = file.write(&["time_s", "x"], &rows(3));
     let refuse = |bytes: &[u8], names: &[&str], rows, words: &str| {
         std::fs::write(file.path(), bytes).expect("writable");
-        let error = TraceWriter::resume(file.path(), names, rows).map(|_| ()).expect_err("foreign").to_string();
+        let error =
+            TraceWriter::resume(file.path(), names, rows).map(|_| ()).expect_err("foreign").to_string();
         assert!(error.contains(words), "{error}");
         assert!(std::fs::read(file.path()).expect("readable") == bytes, "changed although {error}");
     };
