@@ -84,8 +84,7 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
 ";
     assert_eq!(problem.to_string(), expected);
     // The command line was written after the file.
-    let folder = std::env::temp_dir().join(format!("stribeck-blame-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let folder = Scratch::create("blame");
     let path = folder.join("x.ron");
     std::fs::write(&path, Scene::default().to_ron()).expect("writable");
     for set in ["solver.duration_ms=0.0001", "output.interval_us=50000", "output=(interval_us: 50000)"] {
@@ -94,7 +93,6 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
         assert_eq!(problem.field, field, "{problem}");
         assert!(matches!(problem.place, Place::CommandLine { .. }), "{problem}");
     }
-    std::fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]
