@@ -87,7 +87,7 @@ fn patch_the_plain_path_is_the_kernel() {
         let dt = d.time_step();
         let mut plain = Reference::new(&model, Choice::default()).expect("a model of elastic bodies");
         let mut noise = Noise::new(5);
-        let v: Vec<f64> = plain.rest().iter().map(|_| noise.next()).collect();
+        let v: Vec<f64> = plain.rest().iter().map(|_| noise.uniform()).collect();
         let mut t =
             Trajectory::start(plain.rest().to_vec(), v.clone(), &mut |x, v, a| plain.accelerate(x, v, a));
         for n in 0..model.mesh.x.len() {
