@@ -15,7 +15,7 @@ const LAYERS: [(&str, &[&str]); 11] = [
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("analysis", &["dsp", "scene"]),
-    ("studies", &["analysis", "contact", "mesh", "scene", "solver"]),
+    ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
     ("stribeck", &["analysis", "bearing", "scene"]),
 ];
 
