@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use stribeck_mesh::vtu;
 use stribeck_solver::damping::{Frame, MassDamping};
 
+pub use crate::host::{Host, Progress};
 use crate::{
     assembly::{Assembly, Machine},
     checkpoint::{Checkpoint, identity},
@@ -13,7 +14,6 @@ use crate::{
     start::{launch, preload},
     time_loop::Run,
 };
-pub use crate::host::{Host, Progress};
 use stribeck_scene::{
     mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},

@@ -3,6 +3,7 @@
 use stribeck_contact::{Contacts, Resultant};
 use stribeck_solver::{
     Behaviour, Dynamics, Force, Velocities, critical::damped_time_step, damping::MassDamping,
+    state::NodeForces,
 };
 
 use crate::{
@@ -83,6 +84,12 @@ impl System {
         let first = self.dynamics.critical_time_step(&[&self.forces], 0.0).time_step;
         let damped = damped_time_step(first, self.dynamics.stiffness_damping());
         self.dynamics.critical_time_step(&[&self.forces], 0.9 * damped).time_step
+    }
+
+    /// Critical time step [s] of elements and of what contact and the user's laws are as stiff as now: sharp, but good for
+    /// these positions alone. Damping and rigid bodies are left out; infinite when nothing is stiff.
+    pub fn present_critical_time_step(&self) -> f64 {
+        self.dynamics.present_critical_time_step(&[&self.forces]).time_step
     }
 
     /// Sets the time step to `factor` of the critical one; returns it [s].
@@ -271,6 +278,19 @@ impl System {
     /// What each contact pair did in the last step, in the order of the plan.
     pub fn resultants(&self) -> impl Iterator<Item = Resultant> {
         self.forces.contacts.iter().flat_map(|contacts| contacts.resultants())
+    }
+
+    /// Force of all contact pairs on each node of the mesh at the present positions [N], in and out of equilibrium. Nothing
+    /// moves and contact remembers no more than before, but resultants are those of the present positions from here on.
+    pub fn contact_forces(&mut self) -> Vec<[f64; 2]> {
+        let mut force = NodeForces::zeros(self.dynamics.state.x.len());
+        if let Some(contacts) = &mut self.forces.contacts {
+            let memory = contacts.state();
+            contacts.accumulate(self.dynamics.moment(), &mut force);
+            contacts.restore(memory);
+        }
+        let nodes = 0..self.node_count() as u32;
+        nodes.map(|node| self.slot(node)).map(|n| [force.fx[n], force.fy[n]]).collect()
     }
 
     /// What the contact pairs of that name did in the last step together: the force on their first surfaces' bodies, and

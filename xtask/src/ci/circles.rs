@@ -348,7 +348,8 @@ mod tests {
             "fn f() { assert!(crate::b::ok()); }",
             "mod inner { use super::super::b; }",
         ] {
-            let found = circles(&[root, ("a.rs", uses), ("b.rs", "use crate::c;"), ("c.rs", "use super::a::A;")]);
+            let found =
+                circles(&[root, ("a.rs", uses), ("b.rs", "use crate::c;"), ("c.rs", "use super::a::A;")]);
             assert_eq!(names(&found), [("x", vec!["a", "b", "c"])], "{uses}");
         }
     }

@@ -19,7 +19,7 @@ const LAYERS: [(&str, &[&str]); 12] = [
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("analysis", &["dsp", "scene"]),
-    ("studies", &["analysis", "contact", "mesh", "scene", "solver"]),
+    ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
     ("stribeck", &["analysis", "bearing", "scene"]),
 ];
 
