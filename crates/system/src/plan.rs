@@ -81,11 +81,14 @@ pub(crate) enum LoadedNodes {
     Nodes(Vec<(u32, [f64; 2])>),
 }
 
+/// Makes a law of the user, given the places of its nodes.
+type MakeForce = Box<dyn FnOnce(&[u32]) -> Box<dyn Force + Send>>;
+
 /// A law of the user and the nodes on which it may push.
 pub(crate) struct PlannedForce {
     pub(crate) name: String,
     pub(crate) nodes: Vec<u32>,
-    pub(crate) make: Box<dyn FnOnce(&[u32]) -> Box<dyn Force + Send>>,
+    pub(crate) make: MakeForce,
 }
 
 impl From<Model> for Plan {
