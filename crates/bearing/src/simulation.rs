@@ -15,6 +15,7 @@ use crate::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    geometry::Geometry,
     mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},
     run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
@@ -49,14 +50,14 @@ pub fn simulate(
         Start::Sudden => None,
     };
     let critical = machine.system.critical_time_step();
-    let interval = 1e-6 * scene.output.interval_us;
+    let Geometry { interval, duration, .. } = Geometry::of(scene);
     let steps_per_sample = (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
     let dt = interval / steps_per_sample as f64;
     machine.system.set_time_step(dt, Some(critical))?;
     launch(&mut machine, &assembly.kinematics);
     damp(scene, &mut machine)?;
 
-    let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0) as usize;
+    let samples = (duration / interval).round().max(1.0) as usize;
     let mut info = RunInfo {
         version: host.version.clone(),
         commit: host.commit.clone(),
@@ -184,9 +185,9 @@ fn read_saved(dir: &RunDir, scene: &Scene) -> Result<Checkpoint, Error> {
 /// number of steps.
 fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<u64, Error> {
     let refused = |reason: String| Err(Error::Resume { path: dir.path().to_owned(), reason });
-    let interval = 1e-6 * scene.output.interval_us;
+    let Geometry { interval, duration, .. } = Geometry::of(scene);
     let per_sample = (info.interval_s / info.time_step_s).round();
-    let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0);
+    let samples = (duration / interval).round().max(1.0);
     let fits = info.interval_s == interval
         && (1.0..=MOST_STEPS).contains(&per_sample)
         && info.steps as f64 == info.samples as f64 * per_sample;
