@@ -43,7 +43,8 @@ impl Dynamics {
     /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add in
     /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms, zero leaves them
     /// out). Rigid bodies have no K: D over their mass and inertia bounds theirs. Infinite when nothing has stiffness.
-    /// Stiffness damping makes K larger by 1 + 2β/`dt`; [`damped_time_step`] guesses that `dt`.
+    /// Stiffness damping makes K larger by 1 + 2β/`dt`; [`damped_time_step`] guesses that `dt`. Structural damping makes it
+    /// larger by the stiffness of its branches.
     pub fn critical_time_step(&self, forces: &[&dyn Force], dt: f64) -> Critical {
         let mut bound = vec![0.0; self.state.x.len()];
         forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
@@ -51,7 +52,8 @@ impl Dynamics {
         let free: Vec<usize> = self.elastic_slots();
         let mut operator = Operator::new(self, bound, free, Vec::new());
         if dt > 0.0 {
-            operator.stiffer = 1.0 + 2.0 * self.stiffness_damping() / dt;
+            let damping = 2.0 * self.stiffness_damping() / dt;
+            operator.stiffer.iter_mut().for_each(|stiffer| *stiffer += damping);
         }
         let elastic = operator.largest();
         // D couples no two bodies, so the larger of the two is that of the whole.
@@ -79,8 +81,8 @@ struct Operator<'a> {
     answers: Vec<bool>,
     /// Displacement of a probe [m].
     probe: f64,
-    /// What multiplies K.
-    stiffer: f64,
+    /// What multiplies K at each of `free`.
+    stiffer: Vec<f64>,
     springs: Vec<Spring>,
 }
 
@@ -114,7 +116,9 @@ impl<'a> Operator<'a> {
         nodes.for_each(|n| *n = n.and_then(|slot| place[slot]));
         let answers =
             (0..2).flat_map(|k| free.iter().map(move |&s| dynamics.free_components(s)[k])).collect();
-        Self { dynamics, bound, free, answers, probe: probe(dynamics), stiffer: 1.0, springs }
+        let stiffening = dynamics.stiffening();
+        let stiffer = free.iter().map(|&s| stiffening[s]).collect();
+        Self { dynamics, bound, free, answers, probe: probe(dynamics), stiffer, springs }
     }
 
     /// out = M⁻½ (K + D) M⁻½ v, with K from central differences of the elastic forces.
@@ -140,7 +144,7 @@ impl<'a> Operator<'a> {
         for (i, &s) in self.free.iter().enumerate() {
             let root = mass[s].sqrt();
             let diagonal = self.bound[s] / mass[s];
-            let stiffness = self.stiffer / (2.0 * h * root);
+            let stiffness = self.stiffer[i] / (2.0 * h * root);
             out[i] = (minus.x[s] - plus.x[s]) * stiffness + diagonal * v[i];
             out[n + i] = (minus.y[s] - plus.y[s]) * stiffness + diagonal * v[n + i];
         }

@@ -20,7 +20,9 @@ use crate::{
     },
     model::{Behaviour, Model, Motion},
     rigid::{RigidBody, RigidMotion, RigidState},
+    springs::Springs,
     state::{Moment, NodeForces, State},
+    structural_damping::MAX_BRANCHES,
 };
 use stribeck_simd::{field::Field, lanes::LANES, threads::share_out};
 
@@ -62,12 +64,14 @@ pub struct Dynamics {
     parallel: bool,
     /// β of the stiffness damping [s].
     beta: f64,
+    /// Structural damping.
+    pub(crate) springs: Option<Springs>,
     pub(crate) damped: Option<Vec<DampedBody>>,
     /// Step at which the damping frames were last placed.
     pub(crate) frames_placed: Option<u64>,
 }
 
-/// One body of the mass damping: the tiles and lanes that its frame serves.
+/// One damped body: the tiles and lanes that it lies in.
 #[derive(Debug, Clone)]
 pub(crate) struct DampedBody {
     pub(crate) places: Vec<(usize, usize)>,
@@ -88,6 +92,17 @@ impl Accumulated {
         self.last = step;
     }
 
+    /// Adds a step that is not counted: it is taken to be like the last one that was.
+    pub(crate) fn repeat(&mut self) {
+        self.add(self.last);
+    }
+
+    /// Adds a step that is counted, as every `every`-th is: in between it ran straight from the last one to this.
+    pub(crate) fn count(&mut self, step: f64, every: u64) {
+        self.total += 0.5 * (every - 1) as f64 * (step - self.last);
+        self.add(step);
+    }
+
     /// Up to the time of the positions before the last step [J].
     pub fn at_last_positions(&self) -> f64 {
         self.total - 0.5 * self.last
@@ -105,6 +120,7 @@ pub(crate) struct Elements {
 
 #[derive(Debug, Clone)]
 pub(crate) struct ElasticBody {
+    pub(crate) body: usize,
     pub(crate) quads: std::ops::Range<usize>,
     pub(crate) triangles: std::ops::Range<usize>,
     pub(crate) stiffness: Stiffness,
@@ -189,6 +205,7 @@ impl Dynamics {
             gravity: model.gravity,
             parallel: threads > 1,
             beta: 0.0,
+            springs: None,
             layout,
         })
     }
@@ -279,9 +296,10 @@ impl Dynamics {
         }
         self.forces = pushed;
         let since_placed = self.place_damping_frames();
+        self.measure_spins();
         let State { x, y, vx, vy, .. } = &mut self.state;
         [x, y].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
-        if self.beta > 0.0 {
+        if self.beta > 0.0 || self.springs.is_some() {
             [vx, vy].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
         }
         self.sweep_tiles(since_placed);
@@ -336,14 +354,21 @@ impl Dynamics {
     /// damping ratio βω/2. It shortens the critical time step (THEORY §2.7).
     ///
     /// # Errors
-    /// When `beta` [s] is negative or not finite.
+    /// When `beta` [s] is negative or not finite, or positive beside structural damping.
     pub fn set_stiffness_damping(&mut self, beta: f64) -> Result<(), Error> {
         check("stiffness damping [s]", beta, beta >= 0.0, "zero or positive")?;
+        let alone = beta == 0.0 || self.springs.is_none();
+        check("stiffness damping [s]", beta, alone, "zero beside structural damping")?;
         self.beta = beta;
-        let largest = self.tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
-        let slots = if beta > 0.0 { largest } else { 0 };
-        self.scratch.iter_mut().for_each(|s| s.extrapolated = Extrapolated::new(slots));
+        self.make_room_to_see_ahead();
         Ok(())
+    }
+
+    /// Memory for where elements see the nodes, if they see them elsewhere.
+    pub(crate) fn make_room_to_see_ahead(&mut self) {
+        let largest = self.tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
+        let slots = if self.beta > 0.0 || self.springs.is_some() { largest } else { 0 };
+        self.scratch.iter_mut().for_each(|s| s.extrapolated = Extrapolated::new(slots));
     }
 
     /// β of the stiffness damping [s].
@@ -385,6 +410,11 @@ impl Dynamics {
     }
 
     fn sweep_tiles(&mut self, since_placed: f64) {
+        let branches = self.branch_steps();
+        let mut stretch: [[&mut [f64]; 2]; MAX_BRANCHES] = Default::default();
+        for (to, of) in stretch.iter_mut().zip(&mut self.state.springs.stretch) {
+            *to = of.each_mut().map(|component| &mut component[..]);
+        }
         let fields = TileFields {
             x: &mut self.state.x,
             y: &mut self.state.y,
@@ -392,20 +422,21 @@ impl Dynamics {
             vy: &mut self.state.vy,
             fx: &mut self.forces.fx,
             fy: &mut self.forces.fy,
+            stretch,
         };
         let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
         let (dt, gravity, beta) = (self.time_step, self.gravity, self.beta);
-        // With stiffness damping a pass before has just read all of a tile.
-        let fetch = self.fetch && beta == 0.0;
+        let fetch = self.fetch;
         let back = !self.state.step.is_multiple_of(2);
         let parameters = StepParameters { dt, gravity, beta, since_placed, count_heat, fetch, back };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted };
+        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, branches: &branches };
         sweep_all(runs, scratch, parameters);
         // In the order of the tiles, whatever thread each was on.
-        let StepEnergies { work, heat } =
+        let StepEnergies { work, heat, springs } =
             self.counted.iter().fold(StepEnergies::default(), |sum, &e| sum + e);
         self.drive.add(work);
+        self.count_structural_loss(branches.measure, springs);
         let before = self.heat.last;
         self.heat.add(if count_heat { heat } else { before });
         if count_heat && before > 0.0 {
@@ -466,6 +497,7 @@ impl Elements {
             bodies: (0..model.mesh.bodies.len())
                 .filter(elastic)
                 .map(|b| ElasticBody {
+                    body: b,
                     quads: model.mesh.bodies[b].quads.clone(),
                     triangles: model.mesh.bodies[b].triangles.clone(),
                     stiffness: model.stiffness(b),

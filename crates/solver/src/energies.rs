@@ -145,7 +145,7 @@ struct Part {
 impl Part {
     /// All of a body: its quadrilaterals in parts, its triangles with the first.
     fn of(body: &ElasticBody) -> impl Iterator<Item = Self> {
-        let ElasticBody { quads, triangles, stiffness } = body;
+        let ElasticBody { quads, triangles, stiffness, .. } = body;
         let parts = quads.len().div_ceil(PART).max(1);
         (0..parts).map(move |i| {
             let first = (quads.start + i * PART).min(quads.end);

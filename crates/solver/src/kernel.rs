@@ -6,7 +6,7 @@
 //! | Where do nodes and elements lie in memory? | `layout.rs`; for one tile, ready to run, `tile.rs` and `varying_references.rs` |
 //! | What happens to a tile in a step? | `sweep.rs` |
 //! | How are forces of elements computed and summed? | in strips `strip.rs`, elsewhere `gather.rs` and `batch.rs`; one element `quad_forms.rs` |
-//! | How do nodes move? | `advance.rs`; with mass damping `frames.rs` and `mass_sums.rs`, with stiffness damping `stiffness_damping.rs` |
+//! | How do nodes move? | `advance.rs`; with mass damping `frames.rs` and `mass_sums.rs`, with stiffness damping `stiffness_damping.rs`, with structural damping `structural_damping.rs` |
 //! | Which thread does which tile? | `parallel.rs`, on parts of the `fields.rs` |
 
 pub mod layout;
@@ -21,6 +21,7 @@ pub(crate) mod parallel;
 mod quad_forms;
 pub(crate) mod stiffness_damping;
 mod strip;
+pub(crate) mod structural_damping;
 pub(crate) mod sweep;
 pub(crate) mod tile;
 mod varying_references;

@@ -80,7 +80,7 @@
 //! | What pushes on nodes? | `force.rs` |
 //! | What force does an element make? | `element.rs`; all elements at any positions, `internal_forces.rs` |
 //! | What is one step? | `dynamics.rs` |
-//! | How are vibrations damped? | `damping.rs` by mass; by stiffness `kernel/stiffness_damping.rs` |
+//! | How are vibrations damped? | `damping.rs` by mass; by stiffness `kernel/stiffness_damping.rs`; over a band of frequencies `structural_damping.rs`, in motion `springs.rs` |
 //! | How do bodies move that do not deform? | `rigid.rs` |
 //! | How is equilibrium found? | `statics.rs`, `statics/` |
 //! | How long may a step be? | `critical.rs` |
@@ -102,6 +102,8 @@ mod internal_forces;
 pub mod damping;
 pub mod dynamics;
 pub mod rigid;
+pub mod springs;
+pub mod structural_damping;
 
 pub mod critical;
 pub mod statics;

@@ -7,6 +7,7 @@ use crate::{
     dynamics::{Accumulated, Dynamics},
     error::{Error, check_count},
     rigid::RigidState,
+    springs::Springs,
     state::State,
 };
 
@@ -48,7 +49,7 @@ impl Dynamics {
         }
     }
 
-    /// Continues from a snapshot of the same model. Set the time step and the mass damping before.
+    /// Continues from a snapshot of the same model. Set the time step and the dampings before.
     ///
     /// # Errors
     /// When the snapshot has other numbers of slots, rigid bodies or damped bodies; nothing is changed then.
@@ -57,6 +58,14 @@ impl Dynamics {
         for field in [&s.x, &s.y, &s.vx, &s.vy] {
             check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
         }
+        let ((branches, spins), springs) = (s.springs.counts(), self.springs.as_ref());
+        let own = self.state.springs.stretch.len();
+        check_count("branches of the snapshot", branches, own, "those of the structural damping")?;
+        for field in s.springs.stretch.iter().flatten() {
+            check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
+        }
+        let bodies = if spins == 0 { 0 } else { springs.map_or(0, Springs::bodies) };
+        check_count("spins of the snapshot", spins, bodies, "one for each body with structural damping")?;
         let (found, bodies) = (from.rigid.len(), self.rigid.len());
         check_count("rigid bodies of the snapshot", found, bodies, "those of the model")?;
         let damped = self.damped.as_deref().unwrap_or_default();
@@ -73,6 +82,7 @@ impl Dynamics {
         }
         self.frames_placed = from.frames.map(|(step, _)| step);
         self.state = from.state;
+        self.hand_out_spins();
         self.rigid = from.rigid;
         self.drive = from.drive;
         self.heat = from.heat;

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::springs::SpringState;
 use stribeck_simd::field::Field;
 
 /// Everything that changes in time. Node fields are flat arrays, one value a slot (see [`crate::layout`]).
@@ -21,6 +22,8 @@ pub struct State {
     pub vx: Field,
     /// Velocities, half a step earlier [m/s].
     pub vy: Field,
+    /// Springs of structural damping.
+    pub springs: SpringState,
 }
 
 /// What a force sees of the state: positions at `time`, velocities half a step before.

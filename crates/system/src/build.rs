@@ -20,9 +20,11 @@ impl Plan {
     /// When the solver or contact refuses something.
     pub fn build(self, threads: usize) -> Result<System, Error> {
         let announced = self.announced();
-        let Self { model, stiffness_damping, names, surfaces, pairs, loads, further } = self;
+        let Self { model, stiffness_damping, structural_damping, names, surfaces, pairs, loads, further } =
+            self;
         let mut dynamics = Dynamics::new(&model, &announced, threads)?;
         dynamics.set_stiffness_damping(stiffness_damping)?;
+        dynamics.set_structural_damping(structural_damping.as_ref())?;
         let slots = |nodes: &[u32]| -> Vec<u32> {
             nodes.iter().map(|&n| dynamics.layout().slot_of_node[n as usize]).collect()
         };

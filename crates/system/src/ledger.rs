@@ -23,7 +23,7 @@ pub struct Ledger {
     pub further: f64,
     /// Heat of friction since the start.
     pub friction: f64,
-    /// Heat of mass and stiffness damping since the start.
+    /// Heat of mass, stiffness and structural damping since the start, and what the springs of the latter hold.
     pub damping: f64,
     /// Heat of damping in contact, and in forces that the user has added, since the start.
     pub contact_damping: f64,

@@ -2,7 +2,7 @@
 
 use stribeck_contact::{Law, Method, Sides, Smoothing};
 use stribeck_mesh::{Mesh, Part, Placed, Surface};
-use stribeck_solver::{Elastic, Force, Model, Motion};
+use stribeck_solver::{Elastic, Force, Model, Motion, structural_damping::StructuralDamping};
 
 use crate::{
     error::Error,
@@ -19,6 +19,8 @@ pub struct Plan {
     /// β of the stiffness-proportional damping of elastic bodies [s]: a mode of the angular frequency ω has the damping
     /// ratio βω/2.
     pub stiffness_damping: f64,
+    /// Damping of some elastic bodies, by their numbers in the mesh, at nearly one ratio over a band of frequencies.
+    pub structural_damping: Option<StructuralDamping>,
     pub(crate) names: Names,
     /// In the order in which they were named.
     pub(crate) surfaces: Vec<NamedSurface>,
@@ -96,7 +98,8 @@ impl From<Model> for Plan {
     fn from(model: Model) -> Self {
         let names = Names { bodies: model.mesh.bodies.clone(), groups: Vec::new() };
         let (surfaces, pairs, loads, further) = Default::default();
-        Self { model, stiffness_damping: 0.0, names, surfaces, pairs, loads, further }
+        let structural_damping = None;
+        Self { model, stiffness_damping: 0.0, structural_damping, names, surfaces, pairs, loads, further }
     }
 }
 

@@ -205,6 +205,7 @@ impl System {
             return Err(Error::NoTimeStep);
         }
         d.velocities_into(&mut self.before);
+        d.measure_springs();
         let (elastic, gravity) = (d.elastic_energy(), d.gravity_work());
         d.step(&mut [&mut self.forces]);
         self.check_announced()?;
@@ -219,7 +220,7 @@ impl System {
             contact: contact.stored,
             further: others.stored,
             friction: contact.friction + others.friction,
-            damping: d.heat.at_last_positions(),
+            damping: d.heat.at_last_positions() + d.structural_loss(),
             contact_damping: contact.damping + others.damping,
             external: others.supplied + gravity_work,
             drive: d.drive.at_last_positions(),

@@ -138,7 +138,7 @@ pub(crate) trait Damping {
     const DAMPS: bool;
     /// Whether the heat of that is counted.
     const COUNTS: bool;
-    /// Whether there is stiffness damping: elements see positions that are not those of the nodes.
+    /// Whether there is stiffness or structural damping: elements see positions that are not those of the nodes.
     const STIFFNESS: bool = false;
 }
 
@@ -148,7 +148,7 @@ pub(crate) struct Undamped;
 pub(crate) struct Damped;
 /// Damping and its heat.
 pub(crate) struct Counted;
-/// The same, and stiffness damping.
+/// The same, and stiffness or structural damping.
 pub(crate) struct WithStiffness<D>(PhantomData<D>);
 
 impl Damping for Undamped {

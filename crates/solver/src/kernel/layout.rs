@@ -120,6 +120,15 @@ impl Layout {
         }
     }
 
+    /// Tiles and lanes that a body lies in; a body that is alone in its tiles has all lanes of them.
+    pub(crate) fn places(&self, body: usize) -> Vec<(usize, usize)> {
+        let lanes = self.tiles.iter().enumerate().flat_map(|(t, tile)| {
+            let owner = |lane: usize| tile.bodies.get(if tile.congruent { lane } else { 0 });
+            (0..LANES).filter(move |&lane| owner(lane) == Some(&body)).map(move |lane| (t, lane))
+        });
+        lanes.collect()
+    }
+
     /// True when there is no slot.
     pub fn is_empty(&self) -> bool {
         self.node_of_slot.is_empty()

@@ -3,6 +3,7 @@
 use crate::kernel::{
     advance::StepParameters,
     fields::TileFields,
+    structural_damping::BranchSteps,
     sweep::{Scratch, StepEnergies, sweep},
     tile::Tile,
 };
@@ -13,6 +14,8 @@ pub(crate) struct TileRuns<'a> {
     pub(crate) tiles: &'a [Tile],
     pub(crate) fields: TileFields<'a>,
     pub(crate) counted: &'a mut [StepEnergies],
+    /// What the branches of structural damping do.
+    pub(crate) branches: &'a BranchSteps,
 }
 
 impl<'a> TileRuns<'a> {
@@ -24,12 +27,14 @@ impl<'a> TileRuns<'a> {
             (_, None) => self.fields.x.len(),
         };
         let (a, b) = self.fields.split_at(nodes);
-        let (p, q) = self.counted.split_at_mut(tile);
-        (Self { tiles: left, fields: a, counted: p }, Self { tiles: right, fields: b, counted: q })
+        let ((p, q), branches) = (self.counted.split_at_mut(tile), self.branches);
+        let left = Self { tiles: left, fields: a, counted: p, branches };
+        (left, Self { tiles: right, fields: b, counted: q, branches })
     }
 
     fn take(&mut self) -> Self {
-        std::mem::replace(self, Self { tiles: &[], fields: TileFields::default(), counted: &mut [] })
+        let (tiles, fields, counted) = (&[][..], TileFields::default(), &mut [][..]);
+        std::mem::replace(self, Self { tiles, fields, counted, branches: self.branches })
     }
 
     /// From the first one on, or backwards.
@@ -39,7 +44,7 @@ impl<'a> TileRuns<'a> {
 
     fn sweep_one(self, scratch: &mut Scratch, parameters: StepParameters) {
         if let ([tile], [energies]) = (self.tiles, self.counted) {
-            *energies = sweep(tile, self.fields, scratch, parameters);
+            *energies = sweep(tile, self.fields, scratch, parameters, self.branches);
         }
     }
 }

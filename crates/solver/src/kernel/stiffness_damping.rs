@@ -2,6 +2,7 @@
 
 use pulp::{Simd, WithSimd};
 
+use crate::element::Stiffness;
 use crate::kernel::{
     advance::{Nodes, Step, StepParameters},
     fields::TileFields,
@@ -18,12 +19,12 @@ use stribeck_simd::{
 /// Where the elements of the tile at hand see its nodes, and what that changes about their forces.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Extrapolated {
-    /// Positions x + β v [m].
+    /// Positions x + β v, or x + Σ g u with structural damping [m].
     pub(crate) x: Field,
     pub(crate) y: Field,
     /// Damping force [N], in steps that count its heat.
-    fx: Field,
-    fy: Field,
+    pub(crate) fx: Field,
+    pub(crate) fy: Field,
 }
 
 impl Extrapolated {
@@ -76,22 +77,36 @@ impl WithSimd for Extrapolate<'_> {
                 (&mut *x, &mut *y)
             };
             let (fx, fy) = (&mut extrapolated.fx[..n], &mut extrapolated.fy[..n]);
-            if tile.congruent {
-                congruent_elements(simd, tile, k, x, y, fx, fy);
-            } else {
-                single_elements(simd, tile, k, x, y, fx, fy);
-            }
-            let (own_x, own_y, mass) = (&mut [][..], &mut [][..], &[][..]);
-            let step_over_mass = &tile.step_over_mass;
-            let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
-            // A loop: within a closure the compiler would not use the instruction set of this function.
-            for s in &tile.strips {
-                strip_forces(simd, s, &tile.varying, k, &mut nodes, step);
-            }
+            tile_forces(simd, tile, k, [x, y, vx, vy], [fx, fy], step);
             if !extrapolate {
+                let (fx, fy) = (&mut extrapolated.fx[..n], &mut extrapolated.fy[..n]);
                 [fx, fy].into_iter().flatten().for_each(|f| *f = -*f);
             }
         }
         extrapolated.power(tile.own, vx, vy)
+    }
+}
+
+/// Adds the forces of a tile's elements [N] at any positions of its nodes, and moves nothing.
+#[inline(always)]
+pub(crate) fn tile_forces<S: Simd>(
+    simd: S,
+    tile: &Tile,
+    k: &Stiffness<Vector<S>>,
+    [x, y, vx, vy]: [&mut [f64]; 4],
+    [fx, fy]: [&mut [f64]; 2],
+    step: &Step<S>,
+) {
+    if tile.congruent {
+        congruent_elements(simd, tile, k, x, y, fx, fy);
+    } else {
+        single_elements(simd, tile, k, x, y, fx, fy);
+    }
+    let (own_x, own_y, mass) = (&mut [][..], &mut [][..], &[][..]);
+    let step_over_mass = &tile.step_over_mass;
+    let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
+    // A loop: within a closure the compiler would not use the instruction set of this function.
+    for s in &tile.strips {
+        strip_forces(simd, s, &tile.varying, k, &mut nodes, step);
     }
 }

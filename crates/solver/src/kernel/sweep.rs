@@ -14,6 +14,7 @@ use crate::{
         gather::{congruent_elements, single_elements},
         stiffness_damping::{Extrapolate, Extrapolated},
         strip::strip,
+        structural_damping::{BranchSteps, SpringEnergies, Stretch},
         tile::Tile,
     },
     model::Motion,
@@ -26,7 +27,7 @@ pub(crate) struct Scratch {
     /// Forces on the nodes of the tile at hand; all zero between tiles.
     fx: Field,
     fy: Field,
-    /// Where elements see the nodes; empty without stiffness damping.
+    /// Where elements see the nodes; empty without stiffness and structural damping.
     pub(crate) extrapolated: Extrapolated,
     /// Where this thread, the first of two, met the other.
     pub(crate) met: Met,
@@ -50,12 +51,15 @@ pub(crate) struct StepEnergies {
     pub(crate) work: f64,
     /// Heat of damping; zero where it is not counted.
     pub(crate) heat: f64,
+    /// Of the springs of structural damping at the positions' time; zero where it is not measured.
+    pub(crate) springs: SpringEnergies,
 }
 
 impl std::ops::Add for StepEnergies {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self { work: self.work + other.work, heat: self.heat + other.heat }
+        let springs = std::array::from_fn(|b| self.springs[b] + other.springs[b]);
+        Self { work: self.work + other.work, heat: self.heat + other.heat, springs }
     }
 }
 
@@ -65,12 +69,21 @@ pub(crate) fn sweep(
     mut fields: TileFields<'_>,
     scratch: &mut Scratch,
     parameters: StepParameters,
+    branches: &BranchSteps,
 ) -> StepEnergies {
     let arch = Arch::new();
-    if parameters.beta == 0.0 || !tile.elastic {
+    if !sees_ahead(tile, &parameters) {
         return arch.dispatch(Sweep { tile, fields, scratch, parameters });
     }
+    // The first pass reads all of a tile: there is nothing left to prefetch.
+    let parameters = StepParameters { fetch: false, ..parameters };
     let extrapolated = &mut scratch.extrapolated;
+    if tile.structural.is_some() {
+        let (fields, seen) = (&mut fields, extrapolated);
+        let springs = arch.dispatch(Stretch { tile, fields: fields.again(), seen, parameters, branches });
+        let energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, parameters });
+        return StepEnergies { springs, ..energies };
+    }
     let before = arch.dispatch(Extrapolate { tile, fields: fields.again(), extrapolated, parameters });
     let mut energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, parameters });
     if parameters.count_heat {
@@ -78,6 +91,11 @@ pub(crate) fn sweep(
             0.5 * parameters.dt * (before + scratch.extrapolated.power(tile.own, fields.vx, fields.vy));
     }
     energies
+}
+
+/// Whether elements of the tile see other positions than those of the nodes.
+fn sees_ahead(tile: &Tile, parameters: &StepParameters) -> bool {
+    tile.elastic && (parameters.beta > 0.0 || tile.structural.is_some())
 }
 
 /// A sweep to be compiled for each instruction set and kind of damping.
@@ -93,7 +111,7 @@ impl WithSimd for Sweep<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> StepEnergies {
-        let stiffness = self.parameters.beta > 0.0 && self.tile.elastic;
+        let stiffness = sees_ahead(self.tile, &self.parameters);
         match (&self.tile.damping, self.parameters.count_heat) {
             (None, _) if stiffness => self.run::<S, WithStiffness<Undamped>>(simd),
             (Some(_), true) if stiffness => self.run::<S, WithStiffness<Counted>>(simd),
@@ -113,7 +131,7 @@ impl Sweep<'_> {
         let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
         let step = &Step::new(simd, &parameters, rate, frames);
         let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y } = fields;
+        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y, .. } = fields;
         let n = tile.slots.len();
         let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
         for run in &tile.loaded {
@@ -160,7 +178,7 @@ impl Sweep<'_> {
         }
         fx[tile.own..].fill(0.0);
         fy[tile.own..].fill(0.0);
-        StepEnergies { work, heat: step.heat(heat) }
+        StepEnergies { work, heat: step.heat(heat), ..StepEnergies::default() }
     }
 }
 
@@ -307,6 +325,7 @@ mod tests {
                 vy: &mut d.state.vy[own.clone()],
                 fx: &mut fx[own.clone()],
                 fy: &mut fy[own],
+                stretch: Default::default(),
             };
             in_lanes(Sweep { tile, fields, scratch: &mut scratch, parameters }, lanes);
         }

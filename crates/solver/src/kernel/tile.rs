@@ -46,8 +46,10 @@ pub(crate) struct Tile {
     pub(crate) loaded: Vec<Range<usize>>,
     /// Time step over mass [s/kg]; zero for nodes without mass.
     pub(crate) step_over_mass: Field,
-    /// Damping of this tile's bodies, if any.
+    /// Mass damping of this tile's bodies, if any.
     pub(crate) damping: Option<TileDamping>,
+    /// Structural damping of this tile's bodies, if any.
+    pub(crate) structural: Option<TileStructural>,
 }
 
 /// Mass-proportional damping of one tile.
@@ -60,6 +62,17 @@ pub(crate) struct TileDamping {
     pub(crate) mass: Field,
     /// Mass and momentum of each lane when the frames were last placed here.
     pub(crate) sums: LaneSums,
+}
+
+/// Structural damping of one tile.
+#[derive(Debug, Clone)]
+pub(crate) struct TileStructural {
+    /// Mass of each slot [kg].
+    pub(crate) mass: Field,
+    /// Mass and momentum of each lane when spins were last measured.
+    pub(crate) sums: LaneSums,
+    /// Angular velocity of the body in each lane [rad/s]; all alike in a tile of one body.
+    pub(crate) spin: [f64; LANES],
 }
 
 /// Runs of entries that are true.
@@ -173,6 +186,7 @@ impl Tile {
             loaded: runs(&loaded[..layout.own]),
             step_over_mass: Field::default(),
             damping: None,
+            structural: None,
         };
         if layout.congruent {
             tile.add_runs(layout, quads);
