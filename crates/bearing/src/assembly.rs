@@ -9,15 +9,19 @@ use stribeck_contact::{Law, Method, Sides, Smoothing};
 use stribeck_mesh::{
     Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
 };
-use stribeck_solver::{Behaviour, Elastic, Model, Motion, critical::damped_time_step};
+use stribeck_solver::{
+    Behaviour, Elastic, Model, Motion, critical::damped_time_step, structural_damping::StructuralDamping,
+};
 use stribeck_system::{Pair, Plan, System};
 
 use crate::{error::Error, grading};
 use stribeck_scene::{
-    geometry::Geometry,
+    geometry::{CageGeometry, Geometry},
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
-    scene::{ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, RollerCopies, Scene},
+    scene::{
+        ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, DampedBody, RollerCopies, Scene,
+    },
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
@@ -191,15 +195,25 @@ impl Assembly {
             })
             .collect();
 
-        let cage = cage_part(&g, path)?.map(|part| mesh.add("cage", &part));
+        let cage_mesh = g.cage.as_ref().map(|cage| {
+            let part = cage_part(&g, cage, cage.walls(path, g.roller_radius), path)?;
+            // Walls that reach farther than the cage make it no heavier.
+            let own = cage_part(&g, cage, cage.radii(), path)?;
+            Ok::<_, Error>((mesh.add("cage", &part), own.area() / part.area()))
+        });
+        let cage_mesh = cage_mesh.transpose()?;
 
         let steel = Elastic::new(g.material.youngs_modulus, g.material.poissons_ratio, g.material.density)?;
         let mut model = Model::new(mesh, steel, g.thickness)?;
         model.hourglass_scale = scene.solver.hourglass_scale;
         model.gravity = [0.0, -scene.operation.gravity_m_s2];
-        if let Some(cage) = &cage {
+        let m = &g.material;
+        if let Some((cage, lighter)) = &cage_mesh {
             model.behaviour[cage.body] = Behaviour::Rigid;
+            model.materials[cage.body] =
+                Elastic::new(m.youngs_modulus, m.poissons_ratio, lighter * m.density)?;
         }
+        let cage = cage_mesh.map(|(cage, _)| cage);
         let kinematics = Kinematics::of(scene);
         for &n in &surface(&inner, "inner").nodes {
             model.motion[n as usize] = Motion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s };
@@ -228,7 +242,25 @@ impl Assembly {
         }
     }
 
-    /// Critical time step of the stiffest element by itself [s], stiffness damping included: an estimate before anything is laid out.
+    /// Structural damping of the scene's bodies, if there is some.
+    fn structural_damping(&self, scene: &Scene) -> Result<Option<StructuralDamping>, Error> {
+        let (Some(chosen), Some(band)) =
+            (&scene.solver.structural_damping, Geometry::of(scene).structural_damping)
+        else {
+            return Ok(None);
+        };
+        let bodies = chosen.bodies.iter().flat_map(|body| match body {
+            DampedBody::OuterRing => vec![self.outer.body],
+            DampedBody::InnerRing => vec![self.inner.body],
+            DampedBody::Adapter => vec![self.adapter.body],
+            DampedBody::Rollers => self.rollers.iter().map(|roller| roller.body).collect(),
+        });
+        let damping = StructuralDamping::over_band(band.ratio, band.band, chosen.branches, bodies.collect())?;
+        Ok(Some(damping))
+    }
+
+    /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if every body had
+    /// them: an estimate before anything is laid out.
     pub fn element_time_step_s(&self, scene: &Scene) -> f64 {
         let mesh = &self.model.mesh;
         let nu = scene.material.poissons_ratio;
@@ -240,7 +272,10 @@ impl Assembly {
         let quads = quads.map(|q| characteristic_length(&q.map(corner), nu));
         let triangles = mesh.triangles.iter().map(|t| characteristic_length(&t.map(corner), nu));
         let shortest = quads.chain(triangles).fold(f64::INFINITY, f64::min);
-        let undamped = shortest / self.model.materials[0].dilatational_speed();
+        // What cannot be damped is refused when it is laid out.
+        let damping = self.structural_damping(scene).ok().flatten();
+        let stiffer = damping.map_or(1.0, |damping| damping.stiffening(f64::INFINITY));
+        let undamped = shortest / (self.model.materials[0].dilatational_speed() * stiffer.sqrt());
         damped_time_step(undamped, Geometry::of(scene).stiffness_damping)
     }
 
@@ -251,6 +286,7 @@ impl Assembly {
     pub fn machine(&self, scene: &Scene, threads: usize) -> Result<Machine, Error> {
         let mut plan = Plan::from(self.model.clone());
         plan.stiffness_damping = Geometry::of(scene).stiffness_damping;
+        plan.structural_damping = self.structural_damping(scene)?;
         // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
         let spline = scene.contact.interpolation == ContactInterpolation::Spline;
         plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
@@ -296,8 +332,7 @@ impl Assembly {
     fn touch(&self, plan: &mut Plan, scene: &Scene) -> Result<Pairs, Error> {
         let (c, g) = (&scene.contact, Geometry::of(scene));
         let base = Law::penalty(g.penalty_stiffness)?;
-        // A surface layer is half an element deep.
-        let base = base.with_damping(c.damping_ratio, 0.5 * g.material.density * g.element_size)?;
+        let base = base.with_damping(c.damping_ratio, g.contact_layer_mass)?;
         let rolling = base.with_friction(c.friction)?.with_onset(g.contact_onset)?;
         let seat = base.with_friction(c.seat_friction)?;
         let method = match c.method {
@@ -393,12 +428,9 @@ fn effective_outer_facets(g: &Geometry, facets: usize) -> f64 {
     (facets as f64 - floor - 2.0) * TAU / (TAU - sector)
 }
 
-/// All pieces of the cage as one body, or `None` without a cage. Surfaces in the order of the rollers: piece i lies
-/// between roller i and the next one counter-clockwise.
-fn cage_part(g: &Geometry, path: f64) -> Result<Option<Part>, Error> {
-    let Some(cage) = &g.cage else { return Ok(None) };
-    let outer = cage.outer_radius;
-    let inner = outer - cage.thickness;
+/// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the rollers: piece i
+/// lies between roller i and the next one counter-clockwise.
+fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: f64) -> Result<Part, Error> {
     let reach = g.roller_radius + cage.pocket_clearance;
     let half_width = pocket_half_width(inner, outer, path, reach);
     let pieces = g.rollers;
@@ -412,7 +444,7 @@ fn cage_part(g: &Geometry, path: f64) -> Result<Option<Part>, Error> {
             right_line_angle: g.roller_angle(i),
             left_line_angle: g.roller_angle(i) + TAU / pieces as f64,
             half_width,
-            rows: ((1e3 * cage.thickness / CAGE_ELEMENT_MM).round() as usize).max(1),
+            rows: ((1e3 * (outer - inner) / CAGE_ELEMENT_MM).round() as usize).max(1),
             columns: ((1e3 * arc / CAGE_ELEMENT_MM).round() as usize).max(1),
         };
         let piece = piece.part()?;
@@ -424,7 +456,7 @@ fn cage_part(g: &Geometry, path: f64) -> Result<Option<Part>, Error> {
         boundary.nodes.iter_mut().for_each(|n| *n += first);
         joined.surfaces.push((format!("piece {}", i + 1), boundary));
     }
-    Ok(Some(joined))
+    Ok(joined)
 }
 
 /// Half width of a pocket whose walls come within `reach` of the centre of a roller on radius `path`.

@@ -10,7 +10,7 @@ use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
-    scene::{DampingFrame, Scene, Start},
+    scene::{CageScene, DampedBody, DampingFrame, PocketWalls, Scene, Start, StructuralDampingScene},
 };
 use stribeck_testing::{Scratch, ledger};
 
@@ -153,6 +153,58 @@ fn example_stiffness_damping_is_paid_and_counted() {
     );
     let (_, two) = run(&scene, 2);
     assert!(one.trace == two.trace && one.energy == two.energy, "two threads: other bits");
+}
+
+/// Structural damping shortens the step by a few per cent, its loss closes the ledger, and threads change no bit.
+#[test]
+fn example_structural_damping_is_paid_and_counted() {
+    /// Of the peak strain energy: what a bearing may miss before it is warned.
+    const LEDGER: f64 = 5e-3;
+    let mut plain = coarse(0.3);
+    plain.solver.mass_damping_per_s = 0.0;
+    let mut scene = plain.clone();
+    scene.solver.structural_damping = Some(StructuralDampingScene::default());
+    let ((undamped, _), (info, one)) = (run(&plain, 1), run(&scene, 1));
+    // √(1 + Σ g) with Σ g = 0.146, where a damped body sets the step.
+    let shorter = info.critical_time_step_s / undamped.critical_time_step_s;
+    assert!((0.93..=1.0).contains(&shorter), "{shorter} of the undamped step");
+    assert!(info.energy.max_relative_error < LEDGER, "{:?}", info.energy);
+    let loss = one.energy.get("damping_j").and_then(|h| h.last().copied()).expect("a column");
+    assert!(loss > 0.0, "{loss} J");
+    let (_, two) = run(&scene, 2);
+    assert!(one.trace == two.trace && one.energy == two.energy, "two threads: other bits");
+    let mut adapter_alone = scene;
+    adapter_alone.solver.structural_damping =
+        Some(StructuralDampingScene { bodies: vec![DampedBody::Adapter], ..Default::default() });
+    let (_, less) = run(&adapter_alone, 1);
+    assert!(less.trace != one.trace, "the rings are not damped");
+}
+
+/// Pockets push rollers along their track: walls that touch them at their flanks have no other direction, corners do.
+#[test]
+fn example_straight_pockets_push_along_the_track() {
+    let across = |pocket: PocketWalls| {
+        let mut scene = coarse(1.5);
+        // Without play the cage carries idle rollers from the beginning.
+        scene.cage = Some(CageScene { pocket, pocket_clearance_um: 0.0, ..CageScene::default() });
+        let (_, run) = run(&scene, 1);
+        let (mut radial, mut all) = (0.0, 0.0);
+        for roller in 1..=scene.bearing.rollers {
+            let get = |channel: &str| column(&run, &format!("roller.{roller}.{channel}"));
+            let place = get("x_m").iter().zip(get("y_m"));
+            for ((x, y), (fx, fy)) in place.zip(get("cage_fx_n").iter().zip(get("cage_fy_n"))) {
+                radial += (fx * x + fy * y) / x.hypot(*y);
+                all += fx.hypot(*fy);
+            }
+        }
+        println!("{pocket:?}: {radial:.1} N outwards of {all:.1} N");
+        assert!(all > 0.0, "the cage touches no roller");
+        radial / all
+    };
+    // Corners 3 mm above the centres of rollers of 9 mm push inwards with a third of their force.
+    assert!(across(PocketWalls::Corners) < -0.25);
+    // Friction gives 0.005, the facets of a roller some per cent of either sign.
+    assert!(across(PocketWalls::Straight).abs() < 0.02);
 }
 
 /// Without a cage a roller with µ = 0.005 loses traction in the spall, rebounds from the exit edge and stays inside;

@@ -6,7 +6,8 @@
 
 use std::f64::consts::TAU;
 
-use crate::scene::{CageScene, DefectScene, MaterialScene, Scene};
+use crate::contact_formula::ContactNumbers;
+use crate::scene::{CageScene, DefectScene, MaterialScene, PocketWalls, Scene, StructuralDampingScene};
 
 /// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,10 +46,14 @@ pub struct Geometry {
     pub coarse_size: Option<f64>,
     /// Penalty stiffness of contact [Pa/m].
     pub penalty_stiffness: f64,
+    /// Mass of a surface layer on either side of a contact [kg/m²], for which its damping is reckoned.
+    pub contact_layer_mass: f64,
     /// Gap at which contact of rollers sets in [m].
     pub contact_onset: f64,
     /// Stiffness-proportional damping β [s].
     pub stiffness_damping: f64,
+    /// Structural damping, if there is some.
+    pub structural_damping: Option<DampedBand>,
     /// Load on the adapter, downwards [N].
     pub load: f64,
     /// Gravity, downwards [m/s²].
@@ -63,6 +68,10 @@ pub struct Geometry {
     pub frame_half_width: Option<f64>,
 }
 
+/// How far straight walls of pockets reach beyond the path of the rollers' centres, in radii of a roller: several facets,
+/// and farther than a roller that floats across its clearance or stands in a defect.
+const BEYOND_PITCH_CIRCLE: f64 = 0.2;
+
 /// The rigid cage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CageGeometry {
@@ -72,6 +81,8 @@ pub struct CageGeometry {
     pub thickness: f64,
     /// Gap between a centred roller and its pocket wall [m].
     pub pocket_clearance: f64,
+    /// Which part of a roller the walls of its pocket touch.
+    pub pocket: PocketWalls,
 }
 
 /// The rectangular spall on the outer raceway.
@@ -83,6 +94,15 @@ pub struct DefectGeometry {
     pub depth: f64,
     /// Angle of its centre [rad].
     pub angle: f64,
+}
+
+/// A damping ratio over a band of frequencies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DampedBand {
+    /// Damping ratio [-].
+    pub ratio: f64,
+    /// Ends of the band [Hz].
+    pub band: [f64; 2],
 }
 
 /// A linear elastic, isotropic material in plane strain.
@@ -102,6 +122,7 @@ impl Geometry {
         let b = &scene.bearing;
         let material = Material::of(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
+        let contact = ContactNumbers::of(scene, &material, element_size);
         let clearance_mm = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
         Self {
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
@@ -119,9 +140,11 @@ impl Geometry {
             defect: scene.defect.as_ref().map(DefectGeometry::of),
             element_size,
             coarse_size: scene.mesh.grading.as_ref().map(|grading| 1e-3 * grading.coarse_mm),
-            penalty_stiffness: scene.contact.penalty_scale * material.youngs_modulus / element_size,
+            penalty_stiffness: contact.stiffness,
+            contact_layer_mass: contact.layer_mass,
             contact_onset: 1e-6 * scene.contact.onset_um,
             stiffness_damping: 1e-9 * scene.solver.stiffness_damping_ns,
+            structural_damping: scene.solver.structural_damping.as_ref().map(DampedBand::of),
             load: scene.operation.load_n,
             gravity: scene.operation.gravity_m_s2,
             duration: 1e-3 * scene.solver.duration_ms,
@@ -154,11 +177,31 @@ impl Geometry {
 }
 
 impl CageGeometry {
-    fn of(cage: &CageScene) -> Self {
+    /// A cage in SI.
+    pub fn of(cage: &CageScene) -> Self {
         Self {
             outer_radius: 0.5e-3 * cage.outer_diameter_mm,
             thickness: 1e-3 * cage.thickness_mm,
             pocket_clearance: 1e-6 * cage.pocket_clearance_um,
+            pocket: cage.pocket,
+        }
+    }
+
+    /// Inner and outer radius of the cage itself [m].
+    pub fn radii(&self) -> [f64; 2] {
+        [self.outer_radius - self.thickness, self.outer_radius]
+    }
+
+    /// Radii between which the walls of pockets reach [m], for rollers of the radius `roller` whose centres run on the radius
+    /// `path`.
+    pub fn walls(&self, path: f64, roller: f64) -> [f64; 2] {
+        let [inner, outer] = self.radii();
+        match self.pocket {
+            PocketWalls::Corners => [inner, outer],
+            PocketWalls::Straight => {
+                let beyond = BEYOND_PITCH_CIRCLE * roller;
+                [inner.min(path - beyond), outer.max(path + beyond)]
+            }
         }
     }
 }
@@ -171,6 +214,12 @@ impl DefectGeometry {
             depth: 1e-3 * defect.depth_mm,
             angle: defect.angle_deg.to_radians(),
         }
+    }
+}
+
+impl DampedBand {
+    fn of(damping: &StructuralDampingScene) -> Self {
+        Self { ratio: 1e-2 * damping.ratio_percent, band: [1e3 * damping.from_khz, 1e3 * damping.to_khz] }
     }
 }
 
@@ -187,6 +236,17 @@ impl Material {
     /// Modulus of two touching bodies of this material, E* = E/(2(1 − ν²)) [Pa].
     pub fn contact_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 - self.poissons_ratio.powi(2)))
+    }
+
+    /// Bulk modulus K = E/(3(1 − 2ν)) [Pa].
+    pub fn bulk_modulus(&self) -> f64 {
+        self.youngs_modulus / (3.0 * (1.0 - 2.0 * self.poissons_ratio))
+    }
+
+    /// Speed of dilatational waves √((λ + 2µ)/ρ) [m/s].
+    pub fn dilatational_speed(&self) -> f64 {
+        let nu = self.poissons_ratio;
+        (self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / self.density).sqrt()
     }
 
     /// Shear modulus G = E/(2(1 + ν)) [Pa].

@@ -46,6 +46,7 @@
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
 //! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
+mod contact_formula;
 pub mod error;
 pub mod frames;
 pub mod geometry;

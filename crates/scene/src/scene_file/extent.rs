@@ -1,4 +1,5 @@
-//! How large a run may be: elements that fit the bodies in a number that fits a computer, and samples that fit a disk.
+//! How large a run may be: elements that fit the bodies in a number that fits a computer, samples that fit a disk; and bands
+//! and lists that hold something.
 
 use std::f64::consts::PI;
 
@@ -11,6 +12,9 @@ const MAX_ELEMENTS: f64 = 2e7;
 /// Rows of a trace: 10 million of 150 channels are 12 GB.
 const MAX_SAMPLES: f64 = 1e7;
 
+/// Upper over lower end of the narrowest band of structural damping.
+const NARROWEST_BAND: f64 = 2.0;
+
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
 const OUTER_RING: &str = "bearing.outer_ring_thickness_mm";
 const INNER_RACE: &str = "bearing.inner_race_diameter_mm";
@@ -20,7 +24,16 @@ const COARSE: &str = "mesh.grading.coarse_mm";
 
 /// Every demand that no mesh or no computer can meet, in a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let groups = [layers, grading, too_many_elements, too_few_samples, too_many_samples];
+    let groups = [
+        layers,
+        grading,
+        too_many_elements,
+        too_few_samples,
+        too_many_samples,
+        damped_band,
+        damped_bodies,
+        damped_twice,
+    ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
@@ -192,6 +205,67 @@ fn too_many_samples(scene: &Scene) -> Option<Finding> {
                 .number(round_up(10.0 * shortest, 1), ""),
             Remedy::new("solver.duration_ms", format!("at most {} ms, {most} samples", number(longest)))
                 .number(round_down(longest / 10.0, 1), ""),
+        ],
+    ))
+}
+
+/// A band of structural damping that branches can tell apart.
+fn damped_band(scene: &Scene) -> Option<Finding> {
+    const FROM: &str = "solver.structural_damping.from_khz";
+    const TO: &str = "solver.structural_damping.to_khz";
+    let damping = scene.solver.structural_damping.as_ref()?;
+    let (from, to) = (damping.from_khz, damping.to_khz);
+    if to >= NARROWEST_BAND * from {
+        return None;
+    }
+    let message = format!(
+        "`{TO}` is {}, less than {NARROWEST_BAND} times `{FROM}` ({} kHz): the damped band is too narrow",
+        number(to),
+        number(from)
+    );
+    let (least, most) = (NARROWEST_BAND * from, to / NARROWEST_BAND);
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(TO, format!("at least {} kHz", number(least))).number(20.0 * from, "a usual band"),
+            Remedy::new(FROM, format!("at most {} kHz", number(most))).number(to / 20.0, "a usual band"),
+        ],
+    ))
+}
+
+/// Structural damping of at least one body, and of none twice.
+fn damped_bodies(scene: &Scene) -> Option<Finding> {
+    const BODIES: &str = "solver.structural_damping.bodies";
+    let bodies = &scene.solver.structural_damping.as_ref()?.bodies;
+    let twice = (1..bodies.len()).any(|i| bodies[..i].contains(&bodies[i]));
+    let message = match (bodies.is_empty(), twice) {
+        (true, _) => format!("`{BODIES}` is empty: nothing would be damped"),
+        (_, true) => format!("`{BODIES}` names a body twice"),
+        _ => return None,
+    };
+    let allowed = "`outer_ring`, `inner_ring`, `adapter`, `rollers`, each once";
+    let remedy =
+        Remedy::new(BODIES, allowed.to_owned()).value("[outer_ring, inner_ring, adapter]", "the default");
+    Some(Finding::new(message, vec![remedy]))
+}
+
+/// Structural or stiffness damping: both let elements see other positions than those of the nodes.
+fn damped_twice(scene: &Scene) -> Option<Finding> {
+    const STRUCTURAL: &str = "solver.structural_damping";
+    const STIFFNESS: &str = "solver.stiffness_damping_ns";
+    let solver = &scene.solver;
+    if solver.structural_damping.is_none() || solver.stiffness_damping_ns == 0.0 {
+        return None;
+    }
+    let message = format!(
+        "`{STRUCTURAL}` and `{STIFFNESS}` = {} exclude each other",
+        number(solver.stiffness_damping_ns)
+    );
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(STIFFNESS, "0 ns".to_owned()).value("0.0", "structural damping alone"),
+            Remedy::new(STRUCTURAL, "`None`".to_owned()).value("None", "stiffness damping alone"),
         ],
     ))
 }

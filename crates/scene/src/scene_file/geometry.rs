@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
-use crate::scene::{CageScene, Scene};
+use crate::geometry::CageGeometry;
+use crate::scene::{CageScene, PocketWalls, Scene};
 
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
 const OUTER_RING: &str = "bearing.outer_ring_thickness_mm";
@@ -213,7 +214,15 @@ fn pockets(scene: &Scene) -> Option<Finding> {
     let pitch = (b.outer_race_diameter_mm + b.inner_race_diameter_mm) / 2.0;
     let clearance = cage.pocket_clearance_um * 1e-3;
     let pocket = b.roller_diameter_mm / 2.0 + clearance;
-    let Some(half) = widest_pocket(inner, outer, pitch / 2.0, pocket) else {
+    let [innermost, _] =
+        CageGeometry::of(cage).walls(0.5e-3 * pitch, 0.5e-3 * b.roller_diameter_mm).map(|r| 1e3 * r);
+    let half_angle = |pocket: f64| {
+        let round = widest_pocket(inner, outer, pitch / 2.0, pocket)?;
+        // Straight walls leave least of the cage at their inner ends.
+        let straight = cage.pocket == PocketWalls::Straight;
+        Some(if straight { round.max((pocket / innermost).min(1.0).asin()) } else { round })
+    };
+    let Some(half) = half_angle(pocket) else {
         return Some(pockets_miss(cage, b.roller_diameter_mm, pitch));
     };
     let half_spacing = PI / b.rollers as f64;
@@ -226,8 +235,7 @@ fn pockets(scene: &Scene) -> Option<Finding> {
         half.to_degrees(),
         half_spacing.to_degrees()
     );
-    let fits =
-        |pocket: f64| widest_pocket(inner, outer, pitch / 2.0, pocket).is_none_or(|h| h < half_spacing);
+    let fits = |pocket: f64| half_angle(pocket).is_none_or(|h| h < half_spacing);
     let largest = largest(pocket, fits);
     let closest = (largest - b.roller_diameter_mm / 2.0) * 1e3;
     Some(Finding::new(

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
-use crate::scene::{GradingScene, Scene};
+use crate::scene::{GradingScene, Scene, StructuralDampingScene};
 
 /// Longest name of a scene or sensor: they become folder and channel names.
 const MAX_NAME: usize = 64;
@@ -68,6 +68,7 @@ fn with_everything() -> Scene {
     scene.mesh.outer_facets = Some(1257);
     scene.mesh.inner_facets = Some(1030);
     scene.mesh.grading = Some(GradingScene::default());
+    scene.solver.structural_damping = Some(StructuralDampingScene::default());
     scene
 }
 
@@ -163,6 +164,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
     add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");
     add("solver.stiffness_damping_ns", solver.stiffness_damping_ns, within(0.0, 1e4), "ns");
+    if let Some(damping) = &solver.structural_damping {
+        add("solver.structural_damping.ratio_percent", damping.ratio_percent, positive(10.0), "%");
+        add("solver.structural_damping.from_khz", damping.from_khz, positive(1e4), "kHz");
+        add("solver.structural_damping.to_khz", damping.to_khz, positive(1e5), "kHz");
+        add("solver.structural_damping.branches", damping.branches as f64, within(1.0, 3.0), "");
+    }
     add("output.interval_us", output.interval_us, within(0.01, 1e6), "µs");
     add("guards.energy_warning_percent", guards.energy_warning_percent, positive(1e6), "%");
     add("guards.energy_stop_percent", guards.energy_stop_percent, positive(1e6), "%");

@@ -1,7 +1,11 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
 use super::outline::Outline;
-use crate::scene::{GradingScene, Scene};
+use crate::scene::{GradingScene, Scene, StructuralDampingScene};
+
+/// Groups that a scene may lack.
+const OPTIONAL_GROUPS: [&str; 5] =
+    ["cage", "defect", "mesh.grading", "solver.structural_damping", "output.frames"];
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -14,6 +18,7 @@ impl Schema {
         let mut scene = Scene::default();
         // Absent by default, but its fields must be known.
         scene.mesh.grading = Some(GradingScene::default());
+        scene.solver.structural_damping = Some(StructuralDampingScene::default());
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }
@@ -67,9 +72,7 @@ impl Schema {
             // The two optional counts are `None` by default; so is nothing else.
             _ if value == "None" => Kind::OptionalCount,
             Some('"') => Kind::Text,
-            Some('(') if ["cage", "defect", "mesh.grading", "output.frames"].contains(&path) => {
-                Kind::OptionalGroup
-            }
+            Some('(') if OPTIONAL_GROUPS.contains(&path) => Kind::OptionalGroup,
             Some('(') => Kind::Group,
             Some('[') => Kind::List,
             _ if value.parse::<u64>().is_ok() => Kind::Count,

@@ -88,6 +88,29 @@ fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
     };
     assert_eq!(hash(""), "d300e82243b85717");
     assert_ne!(hash("stiffness_damping_ns: 5.0"), "d300e82243b85717");
+    assert_ne!(hash("structural_damping: ()"), "d300e82243b85717");
+    let pockets = |walls: &str| parse(&format!("(cage: (pocket: {walls}))")).expect("valid").hash();
+    assert_eq!(pockets("corners"), Scene::default().hash());
+    assert_ne!(pockets("straight"), Scene::default().hash());
+}
+
+#[test]
+fn refuses_structural_damping_of_nothing() {
+    let scene =
+        |damping: &str, more: &str| parse(&format!("(solver: (structural_damping: {damping}, {more}))"));
+    assert!(scene("()", "").is_ok() && scene("(bodies: [rollers], branches: 3)", "").is_ok());
+    for (damping, more, field, words) in [
+        ("(from_khz: 30.0)", "", "solver.structural_damping.to_khz", "too narrow"),
+        ("(bodies: [])", "", "solver.structural_damping.bodies", "nothing would be damped"),
+        ("(bodies: [adapter, adapter])", "", "solver.structural_damping.bodies", "twice"),
+        ("()", "stiffness_damping_ns: 5.0", "solver.stiffness_damping_ns", "exclude each other"),
+        ("(branches: 4)", "", "solver.structural_damping.branches", "outside its range"),
+        ("(ratio_percent: 20.0)", "", "solver.structural_damping.ratio_percent", "outside its range"),
+    ] {
+        let problem = only(scene(damping, more));
+        assert_eq!(problem.field, field, "{problem}");
+        assert!(problem.message.contains(words), "{problem}");
+    }
 }
 
 #[test]
