@@ -30,6 +30,8 @@ pub struct SpringState {
     lost: Accumulated,
     /// Energy of the springs when it was last measured [J].
     held: f64,
+    /// Whether a step has been taken: springs are relaxed at the positions of the first.
+    moving: bool,
 }
 
 impl SpringState {
@@ -171,7 +173,8 @@ impl Dynamics {
         let (due, dt) = (self.state.step.is_multiple_of(MEASURE_EVERY), self.time_step());
         let Some(springs) = &mut self.springs else { return BranchSteps::default() };
         let measure = std::mem::take(&mut springs.measure) || due;
-        BranchSteps::new(springs.damping.branches(), dt, measure)
+        let moving = std::mem::replace(&mut self.state.springs.moving, true);
+        BranchSteps::new(springs.damping.branches(), if moving { dt } else { 0.0 }, measure)
     }
 
     /// Adds what dashpots lose in a step, 2E/τ, which a step that measures has found anew.
