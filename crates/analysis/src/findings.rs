@@ -7,17 +7,18 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
-use self::passages::{crossing_forces, level_finding, picked_events};
+use self::passages::{crossing_forces, level_finding, picked_events, start_up_end_s};
 use crate::Error;
 use crate::artefacts;
 use crate::enveloping;
+use crate::families::{self, Channel, FamilyFinding, Motion, RollerTrack};
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
 use crate::load::{self, Distribution};
 use crate::paper;
 use crate::prediction::{Prediction, StaticCurve};
 use crate::reading::CursorReading;
-use crate::record::Record;
+use crate::record::{Record, Roller};
 use crate::ring;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones::{self, Tone};
@@ -34,6 +35,8 @@ const SHORTEST_SPECTRUM: usize = 64;
 pub struct Findings {
     /// The numbers.
     pub summary: Summary,
+    /// True for a scene of the paper's dimensions.
+    pub of_paper: bool,
     /// What geometry predicts.
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
@@ -42,6 +45,8 @@ pub struct Findings {
     pub modes: Vec<(u32, f64)>,
     /// Time of the first usable sample [s].
     pub start_s: f64,
+    /// When the start-up is over [s]; no level of events or gaps contains it.
+    pub start_up_end_s: f64,
     /// Sampling interval [s].
     pub interval_s: f64,
     /// One entry a sensor, the leading one first.
@@ -61,8 +66,12 @@ pub struct Findings {
 pub struct SensorSignal {
     /// Name.
     pub name: String,
-    /// Mean over each interval.
+    /// Its angle, counter-clockwise from the x axis [°].
+    pub angle_deg: f64,
+    /// a_y, mean over each interval.
     pub raw_g: Vec<f64>,
+    /// a_x, mean over each interval; empty when it was not recorded.
+    pub across_g: Vec<f64>,
     /// Behind the notch; empty when there is none.
     pub filtered_g: Vec<f64>,
     /// Instantaneous nodal acceleration; empty when it was not recorded.
@@ -84,6 +93,25 @@ pub struct CrossingForce {
     pub filtered_n: Vec<f64>,
 }
 
+impl SensorSignal {
+    /// Acceleration outwards at the sensor's angle [g]; `None` without a_x.
+    pub fn radial_g(&self) -> Option<Vec<f64>> {
+        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
+        self.turned(cos, sin)
+    }
+
+    /// Acceleration along the circle, counter-clockwise [g]; `None` without a_x.
+    pub fn tangential_g(&self) -> Option<Vec<f64>> {
+        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
+        self.turned(-sin, cos)
+    }
+
+    fn turned(&self, of_x: f64, of_y: f64) -> Option<Vec<f64>> {
+        let turned = || self.across_g.iter().zip(&self.raw_g).map(|(x, y)| of_x * x + of_y * y).collect();
+        (!self.across_g.is_empty()).then(turned)
+    }
+}
+
 impl Findings {
     /// Analyses `run`. An interrupted or diverged run yields what its samples hold.
     ///
@@ -102,6 +130,7 @@ impl Findings {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
+        let families = families(run, &record, &prediction, &motion, &sensors)?;
         let filter = filter(&record, &prediction, &sensors, &measured, &mut notes)?;
         if let Some(filter) = &filter {
             filter_sensors(filter, &record, &mut sensors)?;
@@ -126,7 +155,9 @@ impl Findings {
         let span = time.last().copied().unwrap_or(0.0);
         let artefacts = match sensors.first().zip(spectrum) {
             Some((sensor, density)) => {
-                artefacts::ledger(&run.scene, &prediction, &motion, &measured, &sensor.name, density)?
+                let seen =
+                    artefacts::Seen { tones: &measured, families: &families, sensor: &sensor.name, density };
+                artefacts::ledger(&run.scene, &prediction, &motion, &seen)?
             }
             None => Vec::new(),
         };
@@ -146,6 +177,7 @@ impl Findings {
             kinematics: motion,
             events,
             load,
+            families,
             tones: measured,
             levels,
             notch,
@@ -156,8 +188,13 @@ impl Findings {
             paper: Vec::new(),
             notes,
         };
-        summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
+        let of_paper = paper::is_scene_of(&run.scene);
+        if of_paper {
+            summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
+        }
         Ok(Self {
+            of_paper,
+            start_up_end_s: start_up_end_s(time, &summary.events),
             summary,
             lines,
             modes: ring::outer_ring_modes(&run.scene, artefacts::LAST_MODE),
@@ -224,6 +261,8 @@ fn sensor_signals(
         let raw_density = welch.as_mut().map(|w| w.estimate(&raw_g)).transpose().map_err(Error::Signal)?;
         signals.push(SensorSignal {
             name: sensor.name.clone(),
+            angle_deg: sensor.angle_deg,
+            across_g: record.acceleration_g(&sensor.name, "ax").unwrap_or_default(),
             instant_g: record.acceleration_g(&sensor.name, "ay_instant").unwrap_or_default(),
             raw_g,
             filtered_g: Vec::new(),
@@ -232,6 +271,47 @@ fn sensor_signals(
         });
     }
     Ok(signals)
+}
+
+/// Which polygon makes the lines: combs fitted to the recorded motion, over all sensors and the contact forces.
+fn families(
+    run: &Run,
+    record: &Record<'_>,
+    prediction: &Prediction,
+    motion: &kinematics::KinematicsFinding,
+    sensors: &[SensorSignal],
+) -> Result<Vec<FamilyFinding>, Error> {
+    let rollers = record.rollers();
+    let track =
+        |r: &Roller<'_>| RollerTrack { orbit: r.orbit(), spin: r.spin.to_vec(), load_n: r.outer_normal() };
+    let tracks = Motion {
+        interval_s: record.interval_s(),
+        shaft_rad_s: prediction.kinematics.shaft_rad_s,
+        bpfo_hz: motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz),
+        rollers: rollers.iter().map(track).collect(),
+    };
+    let channel = |sensor: &str, component: &str, values: Vec<f64>| Channel {
+        sensor: sensor.to_owned(),
+        component: component.to_owned(),
+        values,
+    };
+    let mut accelerations = Vec::new();
+    for sensor in sensors.iter().filter(|s| !s.raw_g.is_empty()) {
+        accelerations.push(channel(&sensor.name, "ay", sensor.raw_g.clone()));
+        if !sensor.across_g.is_empty() {
+            accelerations.push(channel(&sensor.name, "ax", sensor.across_g.clone()));
+        }
+    }
+    let sum = |of: fn(&Roller<'_>, usize) -> f64| -> Vec<f64> {
+        (0..record.len()).map(|n| rollers.iter().map(|r| of(r, n)).sum()).collect()
+    };
+    let forces = vec![
+        channel("outer raceway", "fx", sum(|r, n| r.outer_fx[n])),
+        channel("outer raceway", "fy", sum(|r, n| r.outer_fy[n])),
+        channel("inner raceway", "fx", sum(|r, n| r.inner_fx[n])),
+        channel("inner raceway", "fy", sum(|r, n| r.inner_fy[n])),
+    ];
+    families::identify(&tracks, &prediction.candidates(&run.scene, &run.info.mesh), &accelerations, &forces)
 }
 
 /// Every line at every sensor.
