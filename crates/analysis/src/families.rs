@@ -33,8 +33,8 @@ use crate::Error;
 pub const SCAN: f64 = 1.5;
 /// Steps of the scan in a resolution.
 const STEPS: i32 = 10;
-/// A family stands this many units above its background at least. For Gaussian scores that is a false alarm in three million
-/// fits; the three tries of the scan's width and the tails of real records leave it well below one in a thousand.
+/// A family stands this many units above its background at least: for Gaussian scores one false alarm in three million fits.
+/// Real records have longer tails.
 pub const LEAST_SIGNIFICANCE: f64 = 5.0;
 /// Detuned carriers that make the background, in BPFO on either side of the carrier.
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
