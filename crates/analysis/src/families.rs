@@ -42,6 +42,8 @@ pub const LEAST_SIGNIFICANCE: f64 = 8.0;
 /// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
 /// the channel's noise.
 const LEAST_REST: f64 = 0.02;
+/// Scores closer than this are a tie, which the offsets decide.
+const TIE: f64 = 0.5;
 /// A family that explains less of the accelerations than this, once others are taken out, is too weak to be named.
 pub const LEAST_SHARE: f64 = 0.1;
 /// Detuned carriers that make the background, in BPFO on either side of the carrier.
@@ -185,9 +187,11 @@ pub fn identify(
     while !open.is_empty() {
         let trials: Vec<(usize, Trial)> =
             open.iter().filter_map(|&n| Some((n, left.try_comb(motion, combs[n].as_ref()?)))).collect();
+        // Where a comb that stands off its place explains more, the lines are not those of one that happens to stand.
+        let highest = trials.iter().map(|(_, trial)| trial.score).fold(0.0, f64::max);
         let best = trials
             .iter()
-            .filter(|(_, trial)| trial.stands())
+            .filter(|(_, trial)| trial.stands() && trial.score >= highest - TIE)
             .max_by(|a, b| a.1.merit().total_cmp(&b.1.merit()))
             .map(|(n, trial)| (*n, trial.offset_hz));
         for (n, trial) in &trials {
@@ -401,6 +405,9 @@ impl FamilyFinding {
             )
         } else if trial.stands() {
             "found".into()
+        } else if trial.offset_hz.abs() <= trial.resolution_hz && trial.explained * trial.left >= LEAST_SHARE
+        {
+            format!("not told apart{after}: a comb off its place explains the lines better")
         } else if trial.offset_hz.abs() <= trial.resolution_hz {
             format!(
                 "absent{after}: its comb explains {:.1} % of the accelerations, {:.0} % count",

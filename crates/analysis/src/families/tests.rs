@@ -66,7 +66,7 @@ fn seeded(
             let random = 2.0 * ((seed >> 40) as f64 / (1u64 << 24) as f64) - 1.0;
             let heard = |source: Source| -> f64 {
                 let one = |r: &RollerTrack| {
-                    let place = number as f64 * 1.1 + 1.7 * r.orbit[n];
+                    let place = number as f64 * 1.1 + 1.7 * r.orbit[n].rem_euclid(TAU);
                     let extra = TAU * detuned_hz * n as f64 * INTERVAL_S;
                     r.load_n[n] / 12e3
                         * place.cos()
