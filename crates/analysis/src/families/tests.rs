@@ -97,7 +97,7 @@ fn found(families: &[FamilyFinding]) -> Vec<&str> {
 fn example_each_family_is_told_from_its_neighbours() {
     let motion = motion(3000, 0.0);
     for (name, source) in CANDIDATES {
-        let families = judged(&motion, &channels(&motion, Some(source), 0.0, 10.0, 8.0));
+        let families = judged(&motion, &channels(&motion, Some(source), 0.0, 40.0, 8.0));
         assert_eq!(found(&families), [name], "{families:#?}");
         let family = families.iter().find(|f| f.found).unwrap();
         assert!(family.offset_resolutions.unwrap().abs() <= 0.5, "{family:?}");
