@@ -5,7 +5,7 @@ mod mesh;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use stribeck_scene::kinematics::{Crossing, Kinematics};
+use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_scene::scene::Scene;
@@ -102,7 +102,7 @@ pub(crate) fn write(path: &Path, status: Status, samples: usize) {
 
 fn crossings(scene: &Scene) -> Vec<Crossing> {
     let defect = scene.defect.as_ref().expect("the default has one");
-    Kinematics::of(scene).crossings(defect, scene.bearing.first_roller_deg, 40e-3)
+    Kinematics::of(scene).crossings(defect, &roller_angles_deg(scene), 40e-3)
 }
 
 fn write_trace(dir: &RunDir, scene: &Scene, samples: usize) {
