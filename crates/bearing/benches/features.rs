@@ -9,8 +9,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use motion::{CLOSING, machine};
-use stribeck_scene::scene::Scene;
 use stribeck_contact::Contacts;
+use stribeck_scene::scene::Scene;
 use stribeck_solver::{
     Dynamics, Force, Velocities,
     damping::{Frame, MassDamping},
@@ -86,7 +86,8 @@ impl Moving {
         let Parts { dynamics, mut contacts, others, .. } = machine.system.into_parts();
         contacts = contacts.filter(|_| variant.contact);
         let before = Velocities::default();
-        let mut moving = Self { variant, dynamics, contacts, load: others, elements, before, rounds: Vec::new() };
+        let mut moving =
+            Self { variant, dynamics, contacts, load: others, elements, before, rounds: Vec::new() };
         (0..CLOSING).for_each(|_| moving.step());
         moving
     }

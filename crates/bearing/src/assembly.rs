@@ -14,6 +14,7 @@ use stribeck_system::{Pair, Plan, System};
 
 use crate::{error::Error, grading};
 use stribeck_scene::{
+    geometry::Geometry,
     kinematics::{FacetCounts, Kinematics},
     run_info::MeshInfo,
     scene::{ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, RollerCopies, Scene},
@@ -121,7 +122,7 @@ impl Pairs {
 
 /// Angle of roller `i` (from 0) at the start [rad].
 pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
-    scene.bearing.first_roller_deg.to_radians() + TAU * i as f64 / scene.bearing.rollers as f64
+    Geometry::of(scene).roller_angle(i)
 }
 
 impl Assembly {
@@ -130,11 +131,10 @@ impl Assembly {
     /// # Errors
     /// When a dimension or a count cannot be meshed.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let b = &scene.bearing;
-        let size = 1e-3 * scene.mesh.size_mm;
+        let (b, g) = (&scene.bearing, Geometry::of(scene));
+        let size = g.element_size;
         let mut mesh = Mesh::new();
-        let outer_radius = 0.5e-3 * b.outer_race_diameter_mm;
-        let inner_radius = 0.5e-3 * b.inner_race_diameter_mm;
+        let (outer_radius, inner_radius) = (g.outer_race_radius, g.inner_race_radius);
         let around = |radius: f64| ((TAU * radius / size).round() as usize).max(8);
         let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
             Some(grading) => ring.graded_part(grading),
@@ -145,22 +145,18 @@ impl Assembly {
         let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius));
         let outer = Annulus {
             inner_radius: outer_radius,
-            outer_radius: outer_radius + 1e-3 * b.outer_ring_thickness_mm,
+            outer_radius: outer_radius + g.outer_ring_thickness,
             facets: outer_facets,
             layers: grading::layers(&scene.mesh, b.outer_ring_thickness_mm),
             start_angle: 0.0,
-            groove: scene.defect.as_ref().map(|d| Groove {
-                centre_angle: d.angle_deg.to_radians(),
-                length: 1e-3 * d.length_mm,
-                depth: 1e-3 * d.depth_mm,
-            }),
+            groove: g.defect.map(|d| Groove { centre_angle: d.angle, length: d.length, depth: d.depth }),
         };
         let outer = mesh.add("outer ring", &made(&outer, &outer_grading)?);
 
         let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
         let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
         let inner = Annulus {
-            inner_radius: inner_radius - 1e-3 * b.inner_ring_thickness_mm,
+            inner_radius: inner_radius - g.inner_ring_thickness,
             outer_radius: inner_radius,
             facets: inner_facets,
             layers: grading::layers(&scene.mesh, b.inner_ring_thickness_mm),
@@ -169,10 +165,10 @@ impl Assembly {
         };
         let inner = mesh.add("inner ring", &made(&inner, &inner_grading)?);
 
-        let adapter = adapter_part(scene, &mesh, surface(&outer, "outer"))?;
+        let adapter = adapter_part(&g, &mesh, surface(&outer, "outer"))?;
         let adapter = mesh.add("adapter", &adapter);
 
-        let roller_radius = 0.5e-3 * b.roller_diameter_mm;
+        let roller_radius = g.roller_radius;
         let roller_facets = scene.mesh.roller_facets;
         let facet_mm = PI * b.roller_diameter_mm / roller_facets as f64;
         let core = 1e-3 * grading::roller_core_mm(&scene.mesh, facet_mm);
@@ -195,11 +191,10 @@ impl Assembly {
             })
             .collect();
 
-        let cage = cage_part(scene, path, roller_radius)?.map(|part| mesh.add("cage", &part));
+        let cage = cage_part(&g, path)?.map(|part| mesh.add("cage", &part));
 
-        let m = &scene.material;
-        let steel = Elastic::new(1e9 * m.youngs_modulus_gpa, m.poissons_ratio, m.density_kg_m3)?;
-        let mut model = Model::new(mesh, steel, 1e-3 * b.thickness_mm)?;
+        let steel = Elastic::new(g.material.youngs_modulus, g.material.poissons_ratio, g.material.density)?;
+        let mut model = Model::new(mesh, steel, g.thickness)?;
         model.hourglass_scale = scene.solver.hourglass_scale;
         model.gravity = [0.0, -scene.operation.gravity_m_s2];
         if let Some(cage) = &cage {
@@ -214,7 +209,7 @@ impl Assembly {
         }
         let facets = FacetCounts {
             roller: scene.mesh.roller_facets,
-            outer: effective_outer_facets(scene, outer_facets, outer_radius),
+            outer: effective_outer_facets(&g, outer_facets),
             inner: inner_facets as f64,
         };
         Ok(Self { model, kinematics, facets, outer, inner, adapter, rollers, cage })
@@ -246,7 +241,7 @@ impl Assembly {
         let triangles = mesh.triangles.iter().map(|t| characteristic_length(&t.map(corner), nu));
         let shortest = quads.chain(triangles).fold(f64::INFINITY, f64::min);
         let undamped = shortest / self.model.materials[0].dilatational_speed();
-        damped_time_step(undamped, 1e-9 * scene.solver.stiffness_damping_ns)
+        damped_time_step(undamped, Geometry::of(scene).stiffness_damping)
     }
 
     /// Lays everything out for `threads` workers.
@@ -255,7 +250,7 @@ impl Assembly {
     /// When the solver or contact refuses the model.
     pub fn machine(&self, scene: &Scene, threads: usize) -> Result<Machine, Error> {
         let mut plan = Plan::from(self.model.clone());
-        plan.stiffness_damping = 1e-9 * scene.solver.stiffness_damping_ns;
+        plan.stiffness_damping = Geometry::of(scene).stiffness_damping;
         // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
         let spline = scene.contact.interpolation == ContactInterpolation::Spline;
         plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
@@ -299,13 +294,11 @@ impl Assembly {
 
     /// Lets surfaces touch, in the order of [`Pairs`].
     fn touch(&self, plan: &mut Plan, scene: &Scene) -> Result<Pairs, Error> {
-        let c = &scene.contact;
-        let size = 1e-3 * scene.mesh.size_mm;
-        let steel = self.model.materials[0];
-        let base = Law::penalty(c.penalty_scale * steel.youngs_modulus() / size)?;
+        let (c, g) = (&scene.contact, Geometry::of(scene));
+        let base = Law::penalty(g.penalty_stiffness)?;
         // A surface layer is half an element deep.
-        let base = base.with_damping(c.damping_ratio, 0.5 * steel.density() * size)?;
-        let rolling = base.with_friction(c.friction)?.with_onset(1e-6 * c.onset_um)?;
+        let base = base.with_damping(c.damping_ratio, 0.5 * g.material.density * g.element_size)?;
+        let rolling = base.with_friction(c.friction)?.with_onset(g.contact_onset)?;
         let seat = base.with_friction(c.seat_friction)?;
         let method = match c.method {
             ContactMethod::Collocated => Method::Collocated,
@@ -369,45 +362,46 @@ fn surface<'a>(placed: &'a Placed, name: &str) -> &'a stribeck_mesh::Surface {
 }
 
 /// The adapter. In a graded mesh its seat is the polygon of the outer ring, whose back surface is given.
-fn adapter_part(scene: &Scene, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Result<Part, Error> {
-    let (b, size) = (&scene.bearing, 1e-3 * scene.mesh.size_mm);
+fn adapter_part(g: &Geometry, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Result<Part, Error> {
+    let size = g.element_size;
     let mut adapter = SeatedBlock {
-        width: 1e-3 * scene.adapter.width_mm,
-        height: 1e-3 * scene.adapter.height_mm,
-        seat_radius: 0.5e-3 * b.outer_race_diameter_mm + 1e-3 * b.outer_ring_thickness_mm,
-        columns: ((1e-3 * scene.adapter.width_mm / size).round() as usize).max(2),
-        rows: adapter_rows(scene, size),
+        width: g.adapter_width,
+        height: g.adapter_height,
+        seat_radius: g.outer_race_radius + g.outer_ring_thickness,
+        columns: ((g.adapter_width / size).round() as usize).max(2),
+        rows: adapter_rows(g, size),
     };
-    let Some(grading) = &scene.mesh.grading else { return Ok(adapter.part()?) };
+    let Some(coarse) = g.coarse_size else { return Ok(adapter.part()?) };
     let seat = grading::seat(back, &mesh.x, &mesh.y, 0.5 * adapter.width, size);
     adapter.columns = seat.len() - 1;
-    adapter.rows = adapter_rows(scene, 1e-3 * grading.coarse_mm);
+    adapter.rows = adapter_rows(g, coarse);
     Ok(adapter.part_on(&seat)?)
 }
 
 /// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at the crown.
-fn adapter_rows(scene: &Scene, size: f64) -> usize {
-    ((1e-3 * scene.adapter.height_mm / (FLATTEST * size)) as usize).max(2)
+fn adapter_rows(g: &Geometry, size: f64) -> usize {
+    ((g.adapter_height / (FLATTEST * size)) as usize).max(2)
 }
 
 /// Facets a full turn would have at the spacing outside the defect.
-fn effective_outer_facets(scene: &Scene, facets: usize, radius: f64) -> f64 {
-    let Some(d) = &scene.defect else { return facets as f64 };
-    let sector = 1e-3 * d.length_mm / radius;
-    let floor = (1e-3 * d.length_mm / (TAU * radius / facets as f64)).round().max(2.0);
+fn effective_outer_facets(g: &Geometry, facets: usize) -> f64 {
+    let Some(d) = &g.defect else { return facets as f64 };
+    let radius = g.outer_race_radius;
+    let sector = d.length / radius;
+    let floor = (d.length / (TAU * radius / facets as f64)).round().max(2.0);
     // Two facets are walls and take no angle.
     (facets as f64 - floor - 2.0) * TAU / (TAU - sector)
 }
 
 /// All pieces of the cage as one body, or `None` without a cage. Surfaces in the order of the rollers: piece i lies
 /// between roller i and the next one counter-clockwise.
-fn cage_part(scene: &Scene, path: f64, roller_radius: f64) -> Result<Option<Part>, Error> {
-    let Some(cage) = &scene.cage else { return Ok(None) };
-    let outer = 0.5e-3 * cage.outer_diameter_mm;
-    let inner = outer - 1e-3 * cage.thickness_mm;
-    let reach = roller_radius + 1e-6 * cage.pocket_clearance_um;
+fn cage_part(g: &Geometry, path: f64) -> Result<Option<Part>, Error> {
+    let Some(cage) = &g.cage else { return Ok(None) };
+    let outer = cage.outer_radius;
+    let inner = outer - cage.thickness;
+    let reach = g.roller_radius + cage.pocket_clearance;
     let half_width = pocket_half_width(inner, outer, path, reach);
-    let pieces = scene.bearing.rollers;
+    let pieces = g.rollers;
     let gap = 2.0 * (half_width / outer).asin();
     let arc = (TAU / pieces as f64 - gap) * outer;
     let mut joined = Part::default();
@@ -415,10 +409,10 @@ fn cage_part(scene: &Scene, path: f64, roller_radius: f64) -> Result<Option<Part
         let piece = ArcBlock {
             inner_radius: inner,
             outer_radius: outer,
-            right_line_angle: roller_angle(scene, i),
-            left_line_angle: roller_angle(scene, i) + TAU / pieces as f64,
+            right_line_angle: g.roller_angle(i),
+            left_line_angle: g.roller_angle(i) + TAU / pieces as f64,
             half_width,
-            rows: ((cage.thickness_mm / CAGE_ELEMENT_MM).round() as usize).max(1),
+            rows: ((1e3 * cage.thickness / CAGE_ELEMENT_MM).round() as usize).max(1),
             columns: ((1e3 * arc / CAGE_ELEMENT_MM).round() as usize).max(1),
         };
         let piece = piece.part()?;

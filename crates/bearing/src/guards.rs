@@ -11,16 +11,17 @@
 //! | time without a roller that carries anything | `unsupported_warning_ms` | |
 //! | rollers and adapter out of their place | | [`OUT_OF_PLACE`] |
 //!
-//! The fields are those of `guards` in the scene. What can be said of any bodies in motion is said by
-//! [`System::look`](stribeck_system::System::look), in the scene's words; the last two rows are said here. A warning is given once, at the first sample above its limit. What has
-//! been seen is in [`GuardInfo`](stribeck_scene::run_info::GuardInfo), and so in checkpoints: a continued run warns as an unbroken
-//! one does.
+//! The fields are those of `guards` in the scene. [`System::look`] watches what can go wrong with any bodies in motion and
+//! says it in the scene's words ([`arm`]); before the first step, and for the last two rows, it is said here. A warning is
+//! given once, at the first sample above its limit. What has been seen is in checkpoints and in
+//! [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
 
 use stribeck_solver::Elastic;
 use stribeck_system::{Limits, Scale, System, Words};
 
 use crate::assembly::{Assembly, Machine};
 use stribeck_scene::{
+    geometry::Geometry,
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
 };
@@ -52,9 +53,9 @@ pub(crate) struct Guards {
 
 impl Guards {
     pub(crate) fn new(scene: &Scene, assembly: &Assembly, machine: &Machine) -> Self {
-        let b = &scene.bearing;
-        let radius = 0.5e-3 * b.roller_diameter_mm;
-        let depth = scene.defect.as_ref().map_or(0.0, |d| 1e-3 * d.depth_mm);
+        let g = Geometry::of(scene);
+        let radius = g.roller_radius;
+        let depth = g.defect.map_or(0.0, |d| d.depth);
         let slack = OUT_OF_PLACE * radius;
         let mesh = &assembly.model.mesh;
         let [outer, adapter] = [machine.outer, machine.adapter].map(|body| {
@@ -63,10 +64,7 @@ impl Guards {
         });
         Self {
             unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
-            annulus: [
-                0.5e-3 * b.inner_race_diameter_mm + radius - slack,
-                0.5e-3 * b.outer_race_diameter_mm - radius + depth + slack,
-            ],
+            annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
             seat: slack,
             adapter_height: adapter - outer,
         }
@@ -196,7 +194,7 @@ pub(crate) fn arm(scene: &Scene, system: &mut System) {
         penetration_warning_percent,
         penetration_stop_percent,
         area_stop_percent,
-        element_size: Some(1e-3 * scene.mesh.size_mm),
+        element_size: Some(Geometry::of(scene).element_size),
         elements_every: LOOK_EVERY,
     };
     system.words = Words {

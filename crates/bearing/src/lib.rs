@@ -6,6 +6,7 @@ pub mod error;
 mod frames;
 mod grading;
 mod guards;
+mod host;
 mod recorder;
 pub mod simulation;
 mod start;

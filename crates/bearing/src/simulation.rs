@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use stribeck_mesh::vtu;
 use stribeck_solver::damping::{Frame, MassDamping};
 
+pub use crate::host::{Host, Progress};
 use crate::{
     assembly::{Assembly, Machine},
     checkpoint::{Checkpoint, identity},
@@ -14,50 +15,12 @@ use crate::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    geometry::Geometry,
     mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},
     run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
 };
-
-/// What a library may not know by itself.
-pub struct Host<'a> {
-    /// Worker threads.
-    pub threads: usize,
-    /// Program version.
-    pub version: String,
-    /// Commit the program was built from.
-    pub commit: String,
-    /// Processor and operating system, in words.
-    pub machine: String,
-    /// Wall-clock time since some moment [s].
-    pub wall_s: &'a dyn Fn() -> f64,
-    /// Processor time of this process so far, all threads [s].
-    pub cpu_s: &'a dyn Fn() -> f64,
-}
-
-/// How far a run is.
-#[derive(Debug, Clone, Copy)]
-pub struct Progress {
-    /// What is going on: `mesh`, `preload`, `run`.
-    pub phase: &'static str,
-    /// Steps taken.
-    pub step: u64,
-    /// Steps planned.
-    pub steps: u64,
-    /// Simulated time [s].
-    pub time_s: f64,
-    /// Energy imbalance over the peak strain energy [-].
-    pub energy_error: f64,
-    /// Elements.
-    pub elements: usize,
-}
-
-impl Progress {
-    fn begin() -> Self {
-        Self { phase: "mesh", step: 0, steps: 0, time_s: 0.0, energy_error: 0.0, elements: 0 }
-    }
-}
 
 /// Runs a scene and leaves its results in `dir`.
 ///
@@ -87,14 +50,14 @@ pub fn simulate(
         Start::Sudden => None,
     };
     let critical = machine.system.critical_time_step();
-    let interval = 1e-6 * scene.output.interval_us;
+    let Geometry { interval, duration, .. } = Geometry::of(scene);
     let steps_per_sample = (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
     let dt = interval / steps_per_sample as f64;
     machine.system.set_time_step(dt, Some(critical))?;
     launch(&mut machine, &assembly.kinematics);
     damp(scene, &mut machine)?;
 
-    let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0) as usize;
+    let samples = (duration / interval).round().max(1.0) as usize;
     let mut info = RunInfo {
         version: host.version.clone(),
         commit: host.commit.clone(),
@@ -222,9 +185,9 @@ fn read_saved(dir: &RunDir, scene: &Scene) -> Result<Checkpoint, Error> {
 /// number of steps.
 fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<u64, Error> {
     let refused = |reason: String| Err(Error::Resume { path: dir.path().to_owned(), reason });
-    let interval = 1e-6 * scene.output.interval_us;
+    let Geometry { interval, duration, .. } = Geometry::of(scene);
     let per_sample = (info.interval_s / info.time_step_s).round();
-    let samples = ((1e-3 * scene.solver.duration_ms) / interval).round().max(1.0);
+    let samples = (duration / interval).round().max(1.0);
     let fits = info.interval_s == interval
         && (1.0..=MOST_STEPS).contains(&per_sample)
         && info.steps as f64 == info.samples as f64 * per_sample;

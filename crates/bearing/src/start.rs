@@ -6,7 +6,7 @@ use crate::{
     assembly::{Machine, roller_angle},
     error::Error,
 };
-use stribeck_scene::{kinematics::Kinematics, scene::Scene};
+use stribeck_scene::{geometry::Geometry, kinematics::Kinematics, scene::Scene};
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;
@@ -31,12 +31,6 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
     acceleration
 }
 
-/// Diametral clearance [mm].
-fn clearance_mm(scene: &Scene) -> f64 {
-    let b = &scene.bearing;
-    b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm
-}
-
 /// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came only near.
 pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<Option<String>, Error> {
     let mut undecided = vec![UndecidedMotion { body: machine.outer, along: None, rotation: true }];
@@ -52,7 +46,7 @@ pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> R
     };
     // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between them. Rollers in
     // a wide clearance feel its sides from farther away.
-    let wide = (1e-3 * clearance_mm(scene) / CLEARANCE).max(1.0);
+    let wide = (Geometry::of(scene).clearance / CLEARANCE).max(1.0);
     preload.softness.iter_mut().for_each(|softness| *softness *= wide);
     let settled = machine.system.settle(&preload)?;
     Ok(settled.unbalanced.map(|force| {

@@ -10,8 +10,8 @@ use crate::{
     error::Error,
     frames::Frames,
     guards::{self, Guards},
+    host::{Host, Progress},
     recorder::Recorder,
-    simulation::{Host, Progress},
 };
 use stribeck_scene::{
     run_dir::{RunDir, write_atomic},

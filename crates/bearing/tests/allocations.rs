@@ -1,13 +1,17 @@
 //! A run takes memory at its start, at searches and at samples, but not for its steps.
 
+mod common;
+
 use std::ops::ControlFlow;
 
-use stribeck_bearing::simulation::{Host, simulate};
+use common::host;
+use stribeck_bearing::simulation::simulate;
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::RunInfo,
     scene::{Scene, Start},
 };
+use stribeck_testing::Scratch;
 
 /// One allocation anywhere in a step would be twenty times this share of the steps; searches that find more than those
 /// before them, and grow a list, are far fewer.
@@ -21,22 +25,12 @@ fn run(time_step_factor: f64) -> (RunInfo, u64) {
     scene.solver.duration_ms = 0.3;
     scene.solver.start = Start::Sudden;
     scene.solver.time_step_factor = time_step_factor;
-    let folder =
-        std::env::temp_dir().join(format!("stribeck-memory-{}-{time_step_factor}", std::process::id()));
-    let dir = RunDir::create(&folder).expect("the folder is new");
-    let host = Host {
-        threads: 1,
-        version: "test".into(),
-        commit: "test".into(),
-        machine: "test".into(),
-        wall_s: &|| 0.0,
-        cpu_s: &|| 0.0,
-    };
-    let mut info = None;
+    let folder = Scratch::new("memory");
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    let (host, mut info) = (host(1), None);
     let taken = allocation_counter::measure(|| {
         info = simulate(&scene, &dir, &host, &mut |_| ControlFlow::Continue(())).ok();
     });
-    let _ = std::fs::remove_dir_all(&folder);
     (info.expect("the scene is sound"), taken.count_total)
 }
 

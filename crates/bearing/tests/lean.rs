@@ -1,17 +1,18 @@
 //! Graded meshes: a quarter of the elements, the same raceways, the same load.
 
+mod common;
+
 use std::ops::ControlFlow;
 
-use stribeck_bearing::{
-    assembly::Assembly,
-    simulation::{Host, simulate},
-};
+use common::host;
+use stribeck_bearing::{assembly::Assembly, simulation::simulate};
 use stribeck_mesh::Mesh;
 use stribeck_scene::{
     run_dir::{Run, RunDir},
     run_info::Status,
     scene::{GradingScene, Scene},
 };
+use stribeck_testing::Scratch;
 
 fn lean() -> Scene {
     Scene::parse(include_str!("../../../fixtures/scenes/lean.ron"), "lean.ron").expect("a sound scene")
@@ -119,8 +120,8 @@ fn refuses_with_field_and_remedy() {
     let refused =
         |text: &str| Scene::parse(text, "scene.ron").expect_err("an impossible grading").to_string();
     for (text, parts) in [
-        ("(mesh: (grading: (coarse_mm: 0.3)))", ["coarse_mm", "0.5 mm or more"]),
-        ("(mesh: (grading: (fine_layers: 0)))", ["fine_layers", "from 1"]),
+        ("(mesh: (grading: (coarse_mm: 0.3)))", ["coarse_mm", "at least 0.5 mm"]),
+        ("(mesh: (grading: (fine_layers: 0)))", ["fine_layers", "1 to 1000"]),
         ("(mesh: (grading: (corse_mm: 2.0)))", ["corse_mm", "coarse_mm"]),
     ] {
         let message = refused(text);
@@ -129,21 +130,12 @@ fn refuses_with_field_and_remedy() {
 }
 
 /// Vertical force on the outer raceway from each roller at the first sample [N].
-fn first_forces(scene: &Scene, folder: &str) -> Vec<f64> {
-    let folder = std::env::temp_dir().join(format!("stribeck-lean-{}-{folder}", std::process::id()));
-    let dir = RunDir::create(&folder).expect("the folder is new");
-    let host = Host {
-        threads: 1,
-        version: "test".into(),
-        commit: "test".into(),
-        machine: "test".into(),
-        wall_s: &|| 0.0,
-        cpu_s: &|| 0.0,
-    };
-    let info = simulate(scene, &dir, &host, &mut |_| ControlFlow::Continue(())).expect("a sound scene");
+fn first_forces(scene: &Scene) -> Vec<f64> {
+    let folder = Scratch::new("lean");
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    let info = simulate(scene, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("a sound scene");
     assert_eq!(info.status, Status::Complete);
-    let run = Run::read(&folder).expect("a finished run can be read");
-    let _ = std::fs::remove_dir_all(&folder);
+    let run = Run::read(folder.path()).expect("a finished run can be read");
     let force = |i: usize, c: &str| {
         run.trace.get(&format!("roller.{i}.outer_f{c}_n")).expect("a column of this name")[0]
     };
@@ -159,9 +151,9 @@ fn example_graded_bearing_carries_its_load_like_the_uniform_one() {
     let mut scene = Scene::default();
     scene.mesh.size_mm = 1.0;
     scene.solver.duration_ms = 0.02;
-    let uniform = first_forces(&scene, "uniform");
+    let uniform = first_forces(&scene);
     scene.mesh.grading = Some(GradingScene { coarse_mm: 3.0, fine_layers: 2 });
-    let graded = first_forces(&scene, "graded");
+    let graded = first_forces(&scene);
     let largest = uniform.iter().fold(0.0_f64, |a, &b| a.max(b));
     assert!(largest > 1e4, "the most loaded roller carries {largest} N");
     for (i, (a, b)) in uniform.iter().zip(&graded).enumerate() {

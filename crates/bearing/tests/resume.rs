@@ -1,12 +1,14 @@
 //! Runs that end early and go on: the same bytes as an unbroken run, and clear words when that is impossible.
 
+mod common;
+
 use std::{
     fs,
     ops::ControlFlow,
     path::{Path, PathBuf},
-    sync::atomic::{AtomicUsize, Ordering},
 };
 
+use common::{coarse, host};
 use proptest::prelude::*;
 use stribeck_bearing::{
     error::Error,
@@ -18,24 +20,12 @@ use stribeck_scene::{
     scene::{Scene, Start},
     trace::Trace,
 };
+use stribeck_testing::Scratch;
 
 /// Bytes before the content of a checkpoint: name, version, scene hash, length, checksum.
 const HEADER: usize = 20 + 4 + 16 + 8 + 4;
 
-/// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.
-fn coarse(duration_ms: f64) -> Scene {
-    let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
-    scene.mesh.size_mm = 2.0;
-    scene.mesh.roller_facets = 88;
-    // The contact is as stiff as a layer of these elements: a smaller share of E/h would swallow the defect.
-    scene.bearing.thickness_mm = 20.0;
-    scene.contact.penalty_scale = 1.0;
-    scene.contact.points_per_facet = 4;
-    scene.solver.duration_ms = duration_ms;
-    scene
-}
-
-/// The same, short and without a preload.
+/// The coarse bearing, short and without a preload.
 fn sudden() -> Scene {
     let mut scene = coarse(0.1);
     scene.solver.start = Start::Sudden;
@@ -43,13 +33,15 @@ fn sudden() -> Scene {
 }
 
 /// A folder of its own for every run, removed at the end.
-struct Folder(PathBuf);
+struct Folder(Scratch);
 
 impl Folder {
     fn new() -> Self {
-        static NEXT: AtomicUsize = AtomicUsize::new(0);
-        let n = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self(std::env::temp_dir().join(format!("stribeck-resume-{}-{n}", std::process::id())))
+        Self(Scratch::new("resume"))
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
     }
 
     fn file(&self, name: &str) -> PathBuf {
@@ -58,23 +50,6 @@ impl Folder {
 
     fn bytes(&self, name: &str) -> Vec<u8> {
         fs::read(self.file(name)).expect("readable")
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
-fn host(threads: usize) -> Host<'static> {
-    Host {
-        threads,
-        version: "test".into(),
-        commit: "test".into(),
-        machine: "test".into(),
-        wall_s: &|| 0.0,
-        cpu_s: &|| 0.0,
     }
 }
 
@@ -93,7 +68,7 @@ fn start(
     folder: &Folder,
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> RunInfo {
-    let dir = RunDir::create(&folder.0).expect("the folder is new");
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
     simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
 }
 
@@ -107,7 +82,7 @@ fn go_on(
 
 /// What it says when it refuses to go on.
 fn refusal(folder: &Folder) -> String {
-    go_on(&folder.0, 1, &mut |_| ControlFlow::Continue(())).expect_err("it cannot go on").to_string()
+    go_on(folder.path(), 1, &mut |_| ControlFlow::Continue(())).expect_err("it cannot go on").to_string()
 }
 
 /// A run that was broken off after two samples.
@@ -146,14 +121,14 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     assert_eq!((info.status, info.steps), (Status::Interrupted, steps_per_sample));
     let mut breaks = vec![info.samples];
     for (threads, samples) in [(2, 6), (1, 14), (2, 8)] {
-        let info = go_on(&pieces.0, threads, &mut until(samples)).expect("it goes on");
+        let info = go_on(pieces.path(), threads, &mut until(samples)).expect("it goes on");
         assert_eq!((info.status, info.threads), (Status::Interrupted, threads));
         breaks.push(info.samples);
     }
     assert_eq!(breaks, [1, 7, 21, 29]);
     let between = breaks.iter().filter(|&&n| !(n as u64 * steps_per_sample).is_multiple_of(64)).count();
     assert!(between >= 3, "{steps_per_sample} steps a sample");
-    let info = go_on(&pieces.0, 1, &mut until(0)).expect("it goes on");
+    let info = go_on(pieces.path(), 1, &mut until(0)).expect("it goes on");
     assert_same_files(&whole, &pieces, "in pieces");
     assert_eq!(info.resumed_at_s.len(), 4);
     assert_eq!((info.steps, info.status, info.stop_reason), (unbroken.steps, Status::Complete, None));
@@ -169,7 +144,7 @@ fn invariant_a_run_made_longer_writes_the_bytes_of_a_long_one() {
     assert_eq!((info.status, info.samples), (Status::Complete, 30));
     let unbroken = start(&coarse(0.5), 2, &long, &mut until(0));
     let longer = |ms: f64| {
-        let dir = RunDir::reopen(&short.0).expect("a run");
+        let dir = RunDir::reopen(short.path()).expect("a run");
         extend(&dir, ms, &host(2), &mut until(0))
     };
     let words = longer(0.2).expect_err("it is longer already").to_string();
@@ -196,7 +171,7 @@ fn invariant_a_damaged_run_json_does_not_block_a_checkpoint() {
             Some(bytes) => fs::write(folder.file("run.json"), bytes).expect("writable"),
             None => fs::remove_file(folder.file("run.json")).expect("it was there"),
         }
-        let info = go_on(&folder.0, 1, &mut until(0)).expect("it goes on");
+        let info = go_on(folder.path(), 1, &mut until(0)).expect("it goes on");
         assert!(whole.bytes("trace.npy") == folder.bytes("trace.npy"), "another trace");
         let [warning] = info.warnings.as_slice() else { panic!("{:?}", info.warnings) };
         assert!(warning.contains("run.json") && warning.contains("anew from the checkpoint"), "{warning}");
@@ -223,8 +198,8 @@ fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
     start(&scene, 2, &whole, &mut |progress| {
         seen += usize::from(progress.phase == "run");
         for (_, left) in killed.iter().filter(|(sample, _)| *sample == seen) {
-            fs::create_dir_all(&left.0).expect("writable");
-            copy(&whole.0, &left.0);
+            fs::create_dir_all(left.path()).expect("writable");
+            copy(whole.path(), left.path());
             copy(&whole.file("frames"), &left.file("frames"));
         }
         ControlFlow::Continue(())
@@ -234,7 +209,7 @@ fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
         for name in ["trace.npy", "energy.npy"] {
             fs::write(left.file(name), [left.bytes(name), vec![7; 5000]].concat()).expect("writable");
         }
-        let info = go_on(&left.0, 1, &mut until(0)).expect("it goes on");
+        let info = go_on(left.path(), 1, &mut until(0)).expect("it goes on");
         assert_eq!(info.resumed_at_s, [from * info.interval_s]);
         assert_same_files(&whole, left, &format!("from sample {from}"));
     }
@@ -253,7 +228,7 @@ fn refuses_a_checkpoint_cut_anywhere() {
     }
     assert!(trace == folder.bytes("trace.npy"), "a refused run lost samples");
     fs::write(folder.file("checkpoint"), &whole).expect("writable");
-    assert_eq!(go_on(&folder.0, 1, &mut until(0)).expect("whole again").status, Status::Complete);
+    assert_eq!(go_on(folder.path(), 1, &mut until(0)).expect("whole again").status, Status::Complete);
 }
 
 /// One wrong byte anywhere is noticed.
@@ -277,7 +252,7 @@ fn refuses_a_damaged_checkpoint() {
 fn refuses_a_forged_checkpoint() {
     let folder = broken_off();
     let whole = folder.bytes("checkpoint");
-    let dir = RunDir::open(&folder.0).expect("a run");
+    let dir = RunDir::open(folder.path()).expect("a run");
     let damage = (0..whole.len() - HEADER, proptest::collection::vec(any::<u8>(), 0..12), 0_usize..20);
     let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) };
     let mut runner = proptest::test_runner::TestRunner::new(config);
@@ -347,7 +322,7 @@ fn refuses_what_cannot_go_on_and_says_why() {
     says(with("trace.npy", &trace[..trace.len() - 8]), &["trace.npy", "holds 1 samples", "counts 2", "anew"]);
     says(with("trace.npy", &folder.bytes("energy.npy")), &["trace.npy", "other channels"]);
 
-    let held = RunDir::reopen(&folder.0).expect("free");
+    let held = RunDir::reopen(folder.path()).expect("free");
     says(refusal(&folder), &["another run", &std::process::id().to_string()]);
     drop(held);
 
@@ -355,7 +330,7 @@ fn refuses_what_cannot_go_on_and_says_why() {
     says(refusal(&folder), &["no checkpoint", "before its first step", "scene.ron"]);
     let nothing = Folder::new();
     says(refusal(&nothing), &["is not a run", "scene.ron"]);
-    assert!(!nothing.0.exists(), "a refused resume made a folder");
+    assert!(!nothing.path().exists(), "a refused resume made a folder");
 }
 
 /// Clocks that are set back, jump ahead or stand still change times in `run.json` and nothing else: checkpoints are still
@@ -373,7 +348,7 @@ fn survives_a_clock_that_jumps() {
             f64::from(calls.get()) + if calls.get() % 3 == 0 { jump } else { 0.0 }
         };
         let host = Host { wall_s: &clock, cpu_s: &clock, ..host(1) };
-        let dir = RunDir::create(&folder.0).expect("the folder is new");
+        let dir = RunDir::create(folder.path()).expect("the folder is new");
         let mut saved = Vec::new();
         let info = simulate(&coarse(1.25), &dir, &host, &mut |progress| {
             if progress.phase == "run" {
@@ -404,7 +379,8 @@ fn survives_a_checkpoint_that_cannot_be_written() {
     let [warning] = info.warnings.as_slice() else { panic!("{:?}", info.warnings) };
     assert!(warning.contains("no checkpoint at 0.000 ms") && warning.contains("went on"), "{warning}");
     assert!(
-        RunDir::open(&folder.0).and_then(|dir| dir.read_info()).expect("readable").warnings == info.warnings
+        RunDir::open(folder.path()).and_then(|dir| dir.read_info()).expect("readable").warnings
+            == info.warnings
     );
     assert!(refusal(&folder).contains("no checkpoint"));
 }

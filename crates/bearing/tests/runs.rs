@@ -1,74 +1,33 @@
 //! Whole runs of coarse bearings: the physics they must show and the promises a run makes.
 
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
+mod common;
 
-use std::{
-    ops::ControlFlow,
-    path::PathBuf,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use std::ops::ControlFlow;
 
-use stribeck_bearing::simulation::{Host, Progress, simulate};
+use common::{coarse, host};
+use stribeck_bearing::simulation::{Progress, simulate};
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
 };
-
-/// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.
-fn coarse(duration_ms: f64) -> Scene {
-    let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
-    scene.mesh.size_mm = 2.0;
-    scene.mesh.roller_facets = 88;
-    // The contact is as stiff as a layer of these elements: a smaller share of E/h would swallow the defect.
-    scene.bearing.thickness_mm = 20.0;
-    scene.contact.penalty_scale = 1.0;
-    scene.contact.points_per_facet = 4;
-    scene.solver.duration_ms = duration_ms;
-    scene
-}
-
-/// A folder of its own for every run, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new() -> Self {
-        static NEXT: AtomicUsize = AtomicUsize::new(0);
-        let n = NEXT.fetch_add(1, Ordering::Relaxed);
-        Self(std::env::temp_dir().join(format!("stribeck-runs-{}-{n}", std::process::id())))
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
+use stribeck_testing::{Scratch, ledger};
 
 fn run_watched(
     scene: &Scene,
     threads: usize,
-    folder: &Folder,
+    folder: &Scratch,
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> RunInfo {
-    let dir = RunDir::create(&folder.0).expect("the folder is new");
-    let host = Host {
-        threads,
-        version: "test".into(),
-        commit: "test".into(),
-        machine: "test".into(),
-        wall_s: &|| 0.0,
-        cpu_s: &|| 0.0,
-    };
-    simulate(scene, &dir, &host, watch).expect("the scene is sound")
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
 }
 
 fn run(scene: &Scene, threads: usize) -> (RunInfo, Run) {
-    let folder = Folder::new();
+    let folder = Scratch::new("runs");
     let info = run_watched(scene, threads, &folder, &mut |_| ControlFlow::Continue(()));
-    let read = Run::read(&folder.0).expect("a finished run can be read");
+    let read = Run::read(folder.path()).expect("a finished run can be read");
     (info, read)
 }
 
@@ -141,7 +100,7 @@ fn example_preloaded_start_does_not_ring() {
 }
 
 /// Bearings whose rollers lie loosely while the preload is sought: the rings of the paper's mesh are thin, or nothing but
-/// their weight moves the rollers that carry nothing. Those must not be thrown out.
+/// their weight moves the rollers that carry nothing. Those must stay in their clearance.
 #[test]
 fn example_thin_and_slow_bearings_find_their_equilibrium() {
     let lean = ("lean.ron", include_str!("../../../fixtures/scenes/lean.ron"));
@@ -241,14 +200,14 @@ fn survives_a_run_that_diverges() {
 /// An interrupted run keeps every sample up to the interruption.
 #[test]
 fn survives_an_interruption_with_its_samples() {
-    let folder = Folder::new();
+    let folder = Scratch::new("runs");
     let mut samples = 0;
     let info = run_watched(&coarse(2.0), 1, &folder, &mut |p| {
         samples += usize::from(p.time_s > 0.0);
         if samples == 10 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     assert_eq!(info.status, Status::Interrupted);
-    assert_eq!(Run::read(&folder.0).expect("readable").trace.len(), 10);
+    assert_eq!(Run::read(folder.path()).expect("readable").trace.len(), 10);
 }
 
 /// A coarse bearing's first 0.3 ms against our own blessed history (`fixtures/golden/coarse.csv`): a change of the

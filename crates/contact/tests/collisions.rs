@@ -1,12 +1,10 @@
 //! Bodies that hit each other: momentum, energy, the bar impact.
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use common::*;
 use stribeck_contact::{Contacts, Law, Method, Smoothing};
 use stribeck_solver::{Behaviour, Dynamics, Force, Motion};
+use stribeck_testing::{assert_close, ledger};
 
 /// Rounding of ten thousand sums of forces, relative to the momentum that is exchanged.
 const MOMENTUM_ROUNDING: f64 = 1e-11;

@@ -1,13 +1,11 @@
 //! Coulomb friction: sliding to a stop, sticking on a slope, from sliding to rolling; penalty and flight.
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use common::*;
 use stribeck_contact::{Contacts, Law, Method};
 use stribeck_mesh::Part;
 use stribeck_solver::{Behaviour, Dynamics, Force, Model, Motion};
+use stribeck_testing::{assert_close, ledger};
 
 /// Acceleration of gravity [m/s²].
 const G: f64 = 9.81;

@@ -4,13 +4,11 @@
 //! p(x) = p₀ √(1 − x²/b²) with p₀ = 2 w/(π b); for like bodies E* = E/(2(1 − ν²)).
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use common::*;
 use stribeck_contact::{Law, Method, Smoothing};
 use stribeck_mesh::Part;
 use stribeck_solver::{Force, Motion, force::NodalLoad, state::NodeForces};
+use stribeck_testing::{assert_close, ledger};
 
 /// Radius of the curved face [m]: strains are b/R = 0.6 %, small enough for linear elasticity to hold to as much.
 const RADIUS: f64 = 0.2;

@@ -12,6 +12,7 @@ use stribeck_solver::{
     snapshot::Snapshot,
     state::{Moment, NodeForces},
 };
+use stribeck_testing::Noise;
 
 /// Penalty stiffness of shapes of order one [Pa/m].
 const STIFFNESS: f64 = 1e6;
@@ -141,9 +142,9 @@ proptest! {
 
     #[test]
     fn invariant_forces_come_in_pairs(mut shapes in touching(), seed in 0..1000_u64, integrated in any::<bool>()) {
-        let mut noise = Noise(seed);
+        let mut noise = Noise::new(seed);
         for n in 0..shapes.x.len() {
-            (shapes.vx[n], shapes.vy[n]) = (noise.next(), noise.next());
+            (shapes.vx[n], shapes.vy[n]) = (noise.uniform(), noise.uniform());
         }
         let method = METHODS[usize::from(integrated)];
         let plain = Law::penalty(STIFFNESS).expect("a law");
@@ -194,8 +195,8 @@ proptest! {
         contacts.tangent(&shapes.x, &shapes.y, &mut |r| {
             pieces.push((r.nodes.to_vec(), r.direction.to_vec(), r.stiffness));
         });
-        let mut noise = Noise(seed);
-        let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.next(), noise.next()]).collect();
+        let mut noise = Noise::new(seed);
+        let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.uniform(), noise.uniform()]).collect();
         // Power iteration on bound⁻¹ K finds the worst displacement.
         for _ in 0..60 {
             let mut force = vec![[0.0; 2]; u.len()];

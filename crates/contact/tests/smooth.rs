@@ -11,6 +11,7 @@ use stribeck_solver::{
     Force,
     state::{Moment, NodeForces},
 };
+use stribeck_testing::{Noise, orders};
 
 /// Penalty stiffness of shapes of order one [Pa/m].
 const STIFFNESS: f64 = 1e6;
@@ -166,8 +167,8 @@ impl DiscInRing {
         };
         let surfaces =
             vec![make("disc", disc, smoothing[0], centre), make("ring", ring, smoothing[1], [0.0; 2])];
-        let mut noise = Noise(seed);
-        let mut random = |scale: f64| -> Vec<f64> { x.iter().map(|_| scale * noise.next()).collect() };
+        let mut noise = Noise::new(seed);
+        let mut random = |scale: f64| -> Vec<f64> { x.iter().map(|_| scale * noise.uniform()).collect() };
         let (dx, dy, vx, vy) = (random(3e-4), random(3e-4), random(1.0), random(1.0));
         let x = x.iter().zip(dx).map(|(a, b)| a + b).collect();
         let y = y.iter().zip(dy).map(|(a, b)| a + b).collect();
@@ -280,10 +281,10 @@ proptest! {
         let mut contacts = shapes.contacts(law);
         let force = shapes.forces(&mut contacts, &shapes.x, &shapes.y);
         prop_assume!(contacts.energy().stored > 0.0);
-        let mut noise = Noise(seed);
+        let mut noise = Noise::new(seed);
         let n = shapes.x.len();
-        let u: Vec<f64> = (0..n).map(|_| noise.next()).collect();
-        let w: Vec<f64> = (0..n).map(|_| noise.next()).collect();
+        let u: Vec<f64> = (0..n).map(|_| noise.uniform()).collect();
+        let w: Vec<f64> = (0..n).map(|_| noise.uniform()).collect();
         let mut energy = |h: f64| {
             let x: Vec<f64> = shapes.x.iter().zip(&u).map(|(a, b)| a + h * b).collect();
             let y: Vec<f64> = shapes.y.iter().zip(&w).map(|(a, b)| a + h * b).collect();
@@ -328,8 +329,8 @@ proptest! {
         contacts.tangent(&shapes.x, &shapes.y, &mut |r| {
             pieces.push((r.nodes.to_vec(), r.direction.to_vec(), r.stiffness));
         });
-        let mut noise = Noise(seed);
-        let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.next(), noise.next()]).collect();
+        let mut noise = Noise::new(seed);
+        let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.uniform(), noise.uniform()]).collect();
         for _ in 0..60 {
             let mut force = vec![[0.0; 2]; u.len()];
             let mut twice = 0.0;

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use common::*;
 use stribeck_mesh::{Annulus, Error, Groove, Part, find_strips};
+use stribeck_testing::assert_close;
 
 /// A ring of 200 mm bore and 10 mm thickness in cells of 0.5 mm.
 const RING: Annulus = Annulus {

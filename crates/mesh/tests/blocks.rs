@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 
 use common::*;
 use stribeck_mesh::{ArcBlock, Mesh, Part, Rectangle, SeatedBlock, find_strips};
+use stribeck_testing::assert_close;
 
 const RECTANGLE: Rectangle =
     Rectangle { x0: -0.01, y0: 0.02, width: 0.03, height: 0.01, columns: 60, rows: 20 };

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 use common::*;
 use proptest::prelude::*;
 use stribeck_mesh::{Disc, Part, find_strips};
+use stribeck_testing::assert_close;
 
 /// A disc of 18 mm diameter whose 112 facets are 0.505 mm long.
 const DISC: Disc = Disc { radius: 9e-3, facets: 112, size: 0.5e-3, rotation: 0.0 };

@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use common::*;
 use stribeck_mesh::{Annulus, Circle, Error, Grading, Groove, Part, find_strips};
+use stribeck_testing::assert_close;
 
 /// A ring of 200 mm bore and 10 mm thickness, fine cells of 0.5 mm; 1257 = 3 · 419.
 const RING: Annulus = Annulus {

@@ -6,6 +6,7 @@ use common::*;
 use proptest::prelude::*;
 use stribeck_mesh::smoothing::raise_critical_step;
 use stribeck_mesh::{Annulus, Mesh, Quality, Rectangle, characteristic_length};
+use stribeck_testing::assert_close;
 
 /// Critical time step of one element times c_p, from its stiffness and mass matrices.
 ///

@@ -111,7 +111,6 @@ pub mod energies;
 
 mod error;
 
-
 mod kernel;
 
 pub use dynamics::Dynamics;

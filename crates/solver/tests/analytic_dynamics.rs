@@ -1,14 +1,12 @@
 //! Motion against closed forms: waves, vibration, free fall, rotation; and the order of the time step.
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use std::f64::consts::{PI, TAU};
 
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
 use stribeck_solver::{Behaviour, Dynamics, Model, Motion, force::NodalLoad};
+use stribeck_testing::{assert_close, ledger, orders};
 
 #[test]
 fn analytic_speed_of_a_pressure_wave() {

@@ -1,12 +1,10 @@
 //! Static equilibrium against closed forms: cantilever, thick cylinder under pressure, spinning ring.
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use common::*;
 use stribeck_mesh::Annulus;
 use stribeck_solver::{Dynamics, Model, Motion, force::NodalLoad};
+use stribeck_testing::{assert_close, ledger, orders};
 
 const INNER: f64 = 0.05;
 const OUTER: f64 = 0.1;

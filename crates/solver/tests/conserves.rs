@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use common::*;
 use stribeck_mesh::Disc;
 use stribeck_solver::{Dynamics, Force, Model, Motion, force::NodalLoad};
+use stribeck_testing::Noise;
 
 /// A disc of 36 mm in cells of about 5 mm: 60 nodes, quadrilaterals and triangles.
 fn disc() -> Model {
@@ -20,10 +21,10 @@ fn disc() -> Model {
 
 /// Random velocities of up to `speed` [m/s] and a spin [rad/s] about the origin.
 fn stir(d: &mut Dynamics, speed: f64, spin: f64) {
-    let mut noise = Noise(11);
+    let mut noise = Noise::new(11);
     for n in massive(d) {
-        d.state.vx[n] = speed * noise.next() - spin * d.state.y[n];
-        d.state.vy[n] = speed * noise.next() + spin * d.state.x[n];
+        d.state.vx[n] = speed * noise.uniform() - spin * d.state.y[n];
+        d.state.vy[n] = speed * noise.uniform() + spin * d.state.x[n];
     }
 }
 

@@ -4,9 +4,6 @@
 //! stable up to Δt = 2/ω_max.
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use common::*;
 use stribeck_mesh::{Annulus, Part};
 use stribeck_solver::{
@@ -14,6 +11,7 @@ use stribeck_solver::{
     force::NodalLoad,
     state::{Moment, NodeForces},
 };
+use stribeck_testing::{Noise, assert_close, ledger};
 
 /// The bound stops when it is at most this far above the largest ω² (critical.rs).
 const BOUND: f64 = 2e-3;
@@ -46,8 +44,8 @@ fn largest_eigenvalue(d: &Dynamics, extra: &[f64]) -> f64 {
             matrix[i * n + j] = (k / (2.0 * PROBE) + spring) / (d.mass()[free[i / 2]] * d.mass()[s]).sqrt();
         }
     }
-    let mut noise = Noise(2);
-    let mut v: Vec<f64> = (0..n).map(|_| noise.next()).collect();
+    let mut noise = Noise::new(2);
+    let mut v: Vec<f64> = (0..n).map(|_| noise.uniform()).collect();
     let mut value = 0.0;
     for _ in 0..20_000 {
         let w: Vec<f64> =
@@ -139,10 +137,10 @@ fn excursion(part: &Part, dt: f64, steps: usize) -> f64 {
     let model = body(part);
     let mut d = lay_out(&model);
     d.set_time_step(dt).expect("a positive time step");
-    let mut noise = Noise(9);
+    let mut noise = Noise::new(9);
     for n in massive(&d) {
-        d.state.x[n] += 1e-9 * noise.next();
-        d.state.y[n] += 1e-9 * noise.next();
+        d.state.x[n] += 1e-9 * noise.uniform();
+        d.state.y[n] += 1e-9 * noise.uniform();
     }
     let mut largest = 0.0_f64;
     for _ in 0..steps {

@@ -10,6 +10,7 @@ use stribeck_solver::{
     Dynamics, Model, Motion,
     damping::{Frame, MassDamping},
 };
+use stribeck_testing::{Noise, assert_close};
 
 /// A disc of 20 mm about a place.
 fn disc_at(x: f64, y: f64) -> Model {
@@ -77,9 +78,9 @@ fn conserves_the_ledger_of_mass_damping() {
     // What vibrates becomes heat, at every step and at every frequency that the mesh has.
     let mut d = ready(&disc_at(0.0, 0.0), 0.9);
     damp(&mut d, 1e3, Frame::OwnMotion);
-    let mut noise = Noise(6);
+    let mut noise = Noise::new(6);
     for n in massive(&d) {
-        (d.state.vx[n], d.state.vy[n]) = (1e-3 * noise.next(), 1e-3 * noise.next());
+        (d.state.vx[n], d.state.vy[n]) = (1e-3 * noise.uniform(), 1e-3 * noise.uniform());
     }
     // Heat is counted in every fourth step: the first steps, while half of the energy goes from motion into strain, are
     // too short for that.

@@ -5,6 +5,7 @@ mod common;
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Groove, Mesh};
 use stribeck_solver::{Behaviour, Dynamics, Force, Model, Motion, force::NodalLoad};
+use stribeck_testing::Noise;
 
 /// A scene with every kind of tile: a plate and a ring of several tiles, congruent discs, a driven
 /// ring, a rigid block.
@@ -45,11 +46,11 @@ fn ready_to_run(threads: usize) -> (Dynamics, NodalLoad) {
     let mut d =
         Dynamics::new(&model, &vec![true; model.mesh.x.len()], threads).expect("a model that can run");
     d.set_time_step(1e-7).expect("a positive time step");
-    let mut noise = Noise(5);
+    let mut noise = Noise::new(5);
     for node in 0..model.mesh.x.len() {
         let n = slot(&d, node);
-        d.state.vx[n] = noise.next();
-        d.state.vy[n] = noise.next();
+        d.state.vx[n] = noise.uniform();
+        d.state.vy[n] = noise.uniform();
     }
     d.launch_rigid(0, [0.5, 0.0], 20.0);
     let corner = model.mesh.bodies.last().expect("bodies").nodes.start;

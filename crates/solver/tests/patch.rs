@@ -8,6 +8,7 @@ mod common;
 use common::*;
 use stribeck_mesh::{Annulus, Groove, Mesh, Part};
 use stribeck_solver::{Dynamics, Model, Motion};
+use stribeck_testing::{Noise, assert_close};
 
 const COLUMNS: usize = 7;
 const ROWS: usize = 6;
@@ -188,13 +189,13 @@ fn difference(a: &[[f64; 2]], b: &[[f64; 2]]) -> f64 {
 
 #[test]
 fn patch_every_path_gives_the_same_accelerations() {
-    let mut noise = Noise(7);
+    let mut noise = Noise::new(7);
     for (name, part) in
         [("squares", square_cells()), ("quads", distorted()), ("triangles", split(distorted()))]
     {
         // One per cent of a cell at every node: strains of some per cent, hourglass modes included.
         let field: Vec<[f64; 2]> =
-            part.x.iter().map(|_| [0.01 * CELL * noise.next(), 0.01 * CELL * noise.next()]).collect();
+            part.x.iter().map(|_| [0.01 * CELL * noise.uniform(), 0.01 * CELL * noise.uniform()]).collect();
         let alone = [(0.0, [0.0; 2])];
         let reference = &accelerations(&body(&part), &alone, &field)[0];
         let scale = largest(reference);
@@ -246,10 +247,10 @@ fn patch_tiles_of_one_body_agree_with_the_plain_sum() {
         let model = body(&part);
         let mut d = ready(&model, 0.5);
         assert!(d.layout().len() > model.mesh.x.len() + 60, "there are ghosts");
-        let mut noise = Noise(3);
+        let mut noise = Noise::new(3);
         for n in massive(&d) {
-            d.state.x[n] += 0.01 * CELL * noise.next();
-            d.state.y[n] += 0.01 * CELL * noise.next();
+            d.state.x[n] += 0.01 * CELL * noise.uniform();
+            d.state.y[n] += 0.01 * CELL * noise.uniform();
         }
         let (fx, fy) = forces(&d);
         d.step(&mut []);

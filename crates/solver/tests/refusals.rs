@@ -5,6 +5,7 @@ mod common;
 use common::*;
 use stribeck_mesh::{Mesh, Part};
 use stribeck_solver::{Behaviour, Dynamics, Elastic, Error, Model, Motion, force::NodalLoad};
+use stribeck_testing::assert_close;
 
 #[track_caller]
 fn says<T>(result: Result<T, Error>, words: &[&str]) {

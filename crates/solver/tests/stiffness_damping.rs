@@ -1,14 +1,12 @@
 //! Stiffness damping: rates of decay, the edge of stability, its heat, and what it leaves alone.
 
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
-
 use std::f64::consts::{PI, TAU};
 
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Mesh};
 use stribeck_solver::{Dynamics, Model, Motion, critical::damped_time_step};
+use stribeck_testing::{Noise, assert_close, ledger};
 
 /// Sets the damping [s] and `factor` of the critical time step under it.
 fn damp(d: &mut Dynamics, beta: f64, factor: f64) {
@@ -56,9 +54,9 @@ fn workshop() -> Model {
 
 /// Gives every node that may move a velocity up to `speed` [m/s].
 fn shake(d: &mut Dynamics, speed: f64) {
-    let mut noise = Noise(6);
+    let mut noise = Noise::new(6);
     for n in massive(d) {
-        (d.state.vx[n], d.state.vy[n]) = (speed * noise.next(), speed * noise.next());
+        (d.state.vx[n], d.state.vy[n]) = (speed * noise.uniform(), speed * noise.uniform());
     }
 }
 

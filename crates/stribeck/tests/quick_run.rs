@@ -1,7 +1,7 @@
 //! A real run of the coarse bearing through the report: what the events and the pictures are made of is simulated here.
 
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use stribeck_analysis::plan::{MeshFacts, Plan};
 use stribeck_analysis::report;
@@ -11,15 +11,7 @@ use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
-
-/// A folder that is removed at the end.
-struct Scratch(PathBuf);
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
-    }
-}
+use stribeck_testing::Scratch;
 
 /// Events may be this far from the centre over the edge: contacts have a width.
 const EVENT_MS: f64 = 0.5;
@@ -60,8 +52,8 @@ fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
 fn example_a_simulated_passage_gives_events_length_and_pictures() {
     let scene =
         Scene::parse(include_str!("../../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
-    let folder = Scratch(std::env::temp_dir().join(format!("stribeck-quick-{}", std::process::id())));
-    let dir = RunDir::create(&folder.0).expect("a free folder");
+    let folder = Scratch::new("quick");
+    let dir = RunDir::create(folder.path()).expect("a free folder");
     let host = Host {
         threads: 1,
         version: "test".into(),
@@ -74,8 +66,8 @@ fn example_a_simulated_passage_gives_events_length_and_pictures() {
     assert_eq!(info.status, Status::Complete);
     drop(dir);
     its_plan_holds(&scene, &info);
-    its_mesh_reads_back(&scene, &folder.0);
-    let summary = report::write(&folder.0).expect("a report");
+    its_mesh_reads_back(&scene, folder.path());
+    let summary = report::write(folder.path()).expect("a report");
 
     let [event] = &summary.events[..] else { panic!("{:?}", summary.events) };
     assert_eq!(event.roller, 1);
@@ -88,9 +80,9 @@ fn example_a_simulated_passage_gives_events_length_and_pictures() {
     assert!((length / truth - 1.0).abs() < LENGTH, "{length} mm instead of {truth} mm");
 
     // Frames from 0.2 to 5.6 ms, every 0.1 ms.
-    let frames = std::fs::read_dir(folder.0.join("frames")).expect("frames").count();
+    let frames = std::fs::read_dir(folder.join("frames")).expect("frames").count();
     assert_eq!(frames, 55);
-    let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("a page");
     for picture in ["stress", "crossing"] {
         assert!(
             page.contains(&format!("<figure id=\"{picture}\"")),
@@ -98,6 +90,6 @@ fn example_a_simulated_passage_gives_events_length_and_pictures() {
             summary.notes
         );
     }
-    let moving = std::fs::read(folder.0.join("figures/crossing.gif")).expect("an animation");
+    let moving = std::fs::read(folder.join("figures/crossing.gif")).expect("an animation");
     assert!(moving.starts_with(b"GIF89a"));
 }

@@ -4,10 +4,12 @@
 
 use std::{
     fs,
-    path::{Path, PathBuf},
+    path::Path,
     process::{Command, Output, Stdio},
     time::{Duration, Instant},
 };
+
+use stribeck_testing::Scratch;
 
 /// The coarse bearing, from rest: long enough to be killed in the middle, short enough for a test.
 const SCENE: [&str; 5] = [
@@ -23,28 +25,6 @@ const UNDER_WAY: u64 = 250_000;
 
 /// A killed run that has not come this far has hung.
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// A folder of its own for every test, removed at the end.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("stribeck-kill-{}-{name}", std::process::id()));
-        fs::remove_dir_all(&path).ok();
-        fs::create_dir_all(&path).expect("temporary folder");
-        Self(path)
-    }
-
-    fn run(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        fs::remove_dir_all(&self.0).ok();
-    }
-}
 
 fn simulate(out: &Path, threads: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
@@ -90,8 +70,8 @@ fn assert_same_files(whole: &Path, pieces: &Path) {
 
 #[test]
 fn survives_kills_and_full_disks_without_loss() {
-    let folder = Folder::new("nothing");
-    let [whole, killed] = ["whole", "killed"].map(|name| folder.run(name));
+    let folder = Scratch::create("nothing");
+    let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
     assert!(simulate(&whole, "1").status().expect("it starts").success());
     start_and_kill(&killed);
 
@@ -133,8 +113,8 @@ fn refuses_a_folder_that_cannot_be_written_at_once() {
 
 #[test]
 fn survives_an_interruption_and_goes_on() {
-    let folder = Folder::new("term");
-    let [whole, ended] = ["whole", "ended"].map(|name| folder.run(name));
+    let folder = Scratch::create("term");
+    let [whole, ended] = ["whole", "ended"].map(|name| folder.join(name));
     assert!(simulate(&whole, "1").status().expect("it starts").success());
     let child = simulate(&ended, "1").spawn().expect("it starts");
     wait_until_under_way(&ended);

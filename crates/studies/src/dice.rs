@@ -11,7 +11,7 @@ impl Dice {
     }
 
     /// 64 random bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -20,12 +20,12 @@ impl Dice {
 
     /// 0 … n − 1; 0 for n = 0.
     pub fn below(&mut self, n: usize) -> usize {
-        if n == 0 { 0 } else { (self.next() % n as u64) as usize }
+        if n == 0 { 0 } else { (self.bits() % n as u64) as usize }
     }
 
     /// 0 … 1.
     pub fn share(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+        (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// True once in `n`.
@@ -56,7 +56,7 @@ impl Dice {
         ];
         match self.below(4) {
             0 => ODD[self.below(ODD.len())],
-            1 => f64::from_bits(self.next()),
+            1 => f64::from_bits(self.bits()),
             2 => 10_f64.powf(40.0 * self.share() - 20.0),
             _ => 200.0 * self.share() - 20.0,
         }

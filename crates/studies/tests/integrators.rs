@@ -2,8 +2,6 @@
 
 #[path = "../../solver/tests/common/mod.rs"]
 mod common;
-#[path = "../../../fixtures/tests/ledger.rs"]
-mod ledger;
 
 use std::f64::consts::PI;
 
@@ -11,6 +9,7 @@ use common::*;
 use stribeck_solver::Motion;
 use stribeck_studies::integrators::{Scheme, Trajectory};
 use stribeck_studies::reference::{Choice, Precision, Reference, Rule};
+use stribeck_testing::{Noise, assert_close, ledger, orders};
 
 const SCHEMES: [Scheme; 3] =
     [Scheme::CentralDifference, Scheme::TchamwaWielgosz { phi: 1.03 }, Scheme::NohBathe { p: 0.54 }];
@@ -87,8 +86,8 @@ fn patch_the_plain_path_is_the_kernel() {
         let mut d = ready(&model, 0.9);
         let dt = d.time_step();
         let mut plain = Reference::new(&model, Choice::default()).expect("a model of elastic bodies");
-        let mut noise = Noise(5);
-        let v: Vec<f64> = plain.rest().iter().map(|_| noise.next()).collect();
+        let mut noise = Noise::new(5);
+        let v: Vec<f64> = plain.rest().iter().map(|_| noise.uniform()).collect();
         let mut t =
             Trajectory::start(plain.rest().to_vec(), v.clone(), &mut |x, v, a| plain.accelerate(x, v, a));
         for n in 0..model.mesh.x.len() {

@@ -7,7 +7,7 @@ use stribeck_solver::{Elastic, Motion};
 use stribeck_system::{Pair, Plan};
 
 /// Relative error of the contact time [-].
-pub fn error() -> Result<f64, Box<dyn std::error::Error>> {
+pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
     let (length, columns) = (0.1, 400);
     let bar = Rectangle { x0: 0.0, y0: 0.0, width: length, height: 0.001, columns, rows: 4 }.part()?;
     let steel = Elastic::new(208e9, 0.3, 7800.0)?;

@@ -8,7 +8,7 @@ use stribeck_solver::{Elastic, Motion};
 use stribeck_system::{Pair, Plan, Preload, UndecidedMotion};
 
 /// Relative error of the approach under the load that was found [-].
-pub fn error() -> Result<f64, Box<dyn std::error::Error>> {
+pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
     let (radius, approach, thickness) = (0.01, 15e-6, 0.02);
     let disc = Disc { radius, facets: 720, size: 4e-4, rotation: 0.0 }.part()?;
     let plate = Rectangle { x0: -2e-3, y0: 0.0, width: 4e-3, height: 1e-3, columns: 20, rows: 5 }.part()?;

@@ -6,7 +6,7 @@ use stribeck_solver::{Elastic, Motion};
 use stribeck_system::{Pair, Plan, Preload, UndecidedMotion};
 
 /// Relative error of the way to rest [-].
-pub fn error() -> Result<f64, Box<dyn std::error::Error>> {
+pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
     let (speed, friction, gravity) = (0.5, 0.3, 9.81);
     let block = Rectangle { x0: 0.0, y0: 0.0, width: 0.04, height: 0.02, columns: 8, rows: 4 }.part()?;
     let floor = Rectangle { x0: -0.01, y0: -0.01, width: 0.14, height: 0.01, columns: 28, rows: 1 }.part()?;

@@ -70,10 +70,11 @@ impl System {
     }
 
     /// Gives a body a velocity [m/s] and a spin about its centre of mass [rad/s], in place of those that it has. The
-    /// ledger counts from the next step.
+    /// ledger counts from the next step; the nodes of a rigid body take the velocity up in it.
     pub fn launch(&mut self, body: usize, velocity: [f64; 2], spin: f64) {
+        self.balance.reference = None;
         if let Some(at) = self.rigid_number(body) {
-            self.dynamics.launch_rigid(at, velocity, spin);
+            return self.dynamics.launch_rigid(at, velocity, spin);
         }
         let [cx, cy] = self.motion_of(body).centre;
         for node in self.nodes_of(body) {

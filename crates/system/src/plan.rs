@@ -30,7 +30,8 @@ pub struct Plan {
 /// Two surfaces that may touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// Name of the pair, also in messages: "*name* penetrate each other".
+    /// Name of the pair, also in messages: "*name* penetrate each other". Several pairs may share one, and have one
+    /// resultant then.
     pub name: String,
     /// Name of one surface; the resultant of the pair is the force on its body.
     pub first: String,
@@ -80,11 +81,14 @@ pub(crate) enum LoadedNodes {
     Nodes(Vec<(u32, [f64; 2])>),
 }
 
+/// Makes a law of the user, given the places of its nodes.
+type MakeForce = Box<dyn FnOnce(&[u32]) -> Box<dyn Force + Send>>;
+
 /// A law of the user and the nodes on which it may push.
 pub(crate) struct PlannedForce {
     pub(crate) name: String,
     pub(crate) nodes: Vec<u32>,
-    pub(crate) make: Box<dyn FnOnce(&[u32]) -> Box<dyn Force + Send>>,
+    pub(crate) make: MakeForce,
 }
 
 impl From<Model> for Plan {
@@ -173,13 +177,10 @@ impl Plan {
     /// those of one body together.
     ///
     /// # Errors
-    /// When there is no surface of one of the names, or the pair's own is taken.
+    /// When there is no surface of one of the names.
     pub fn contact(&mut self, pair: Pair) -> Result<(), Error> {
         self.find_surface(&pair.first)?;
         self.find_surface(&pair.second)?;
-        if self.pairs.iter().any(|other| other.name == pair.name) {
-            return Err(Error::TwiceNamed { name: pair.name });
-        }
         self.pairs.push(pair);
         Ok(())
     }

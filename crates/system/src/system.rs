@@ -3,6 +3,7 @@
 use stribeck_contact::{Contacts, Resultant};
 use stribeck_solver::{
     Behaviour, Dynamics, Force, Velocities, critical::damped_time_step, damping::MassDamping,
+    state::NodeForces,
 };
 
 use crate::{
@@ -83,6 +84,12 @@ impl System {
         let first = self.dynamics.critical_time_step(&[&self.forces], 0.0).time_step;
         let damped = damped_time_step(first, self.dynamics.stiffness_damping());
         self.dynamics.critical_time_step(&[&self.forces], 0.9 * damped).time_step
+    }
+
+    /// Critical time step [s] of elements and of what contact and the user's laws are as stiff as now: sharp, but good for
+    /// these positions alone. Damping and rigid bodies are left out; infinite when nothing is stiff.
+    pub fn present_critical_time_step(&self) -> f64 {
+        self.dynamics.present_critical_time_step(&[&self.forces]).time_step
     }
 
     /// Sets the time step to `factor` of the critical one; returns it [s].
@@ -198,14 +205,14 @@ impl System {
             return Err(Error::NoTimeStep);
         }
         d.velocities_into(&mut self.before);
-        let (time, elastic, gravity) = (d.state.time, d.elastic_energy(), d.gravity_work());
+        let (elastic, gravity) = (d.elastic_energy(), d.gravity_work());
         d.step(&mut [&mut self.forces]);
         self.check_announced()?;
         let d = &self.dynamics;
         let (contact, others) = (self.forces.of_contact(), self.forces.of_others());
         let gravity_work = gravity - *self.balance.gravity_work.get_or_insert(gravity);
         Ok(Ledger {
-            time,
+            time: d.state.time - d.time_step(),
             kinetic: d.kinetic_energy(&self.before),
             strain: elastic.strain,
             hourglass: elastic.hourglass,
@@ -273,13 +280,30 @@ impl System {
         self.forces.contacts.iter().flat_map(|contacts| contacts.resultants())
     }
 
-    /// What a contact pair did in the last step.
+    /// Force of all contact pairs on each node of the mesh at the present positions [N], in and out of equilibrium. Nothing
+    /// moves and contact remembers no more than before, but resultants are those of the present positions from here on.
+    pub fn contact_forces(&mut self) -> Vec<[f64; 2]> {
+        let mut force = NodeForces::zeros(self.dynamics.state.x.len());
+        if let Some(contacts) = &mut self.forces.contacts {
+            let memory = contacts.state();
+            contacts.accumulate(self.dynamics.moment(), &mut force);
+            contacts.restore(memory);
+        }
+        let nodes = 0..self.node_count() as u32;
+        nodes.map(|node| self.slot(node)).map(|n| [force.fx[n], force.fy[n]]).collect()
+    }
+
+    /// What the contact pairs of that name did in the last step together: the force on their first surfaces' bodies, and
+    /// the deepest penetration.
     ///
     /// # Errors
     /// When there is no pair of that name.
     pub fn resultant(&self, pair: &str) -> Result<Resultant, Error> {
-        let at = self.pairs.iter().position(|name| name == pair);
-        let found = at.and_then(|at| self.resultants().nth(at));
-        found.ok_or_else(|| unknown("contact pair", pair, self.pairs.iter().map(String::as_str)))
+        let of_that_name = self.pairs.iter().zip(self.resultants()).filter(|(name, _)| *name == pair);
+        let sum = of_that_name.map(|(_, resultant)| resultant).reduce(|a, b| Resultant {
+            force: [a.force[0] + b.force[0], a.force[1] + b.force[1]],
+            penetration: a.penetration.max(b.penetration),
+        });
+        sum.ok_or_else(|| unknown("contact pair", pair, self.pairs.iter().map(String::as_str)))
     }
 }

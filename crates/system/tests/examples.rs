@@ -31,7 +31,7 @@ fn analytic_disc_between_plates() {
     assert_small(hertz_disc::error(), 0.02);
 }
 
-/// Coulomb: v²/(2µg). The normal force swings about the weight, and with it friction; their mean is what counts.
+/// Coulomb 1785 (Persson 2000, §1): v²/(2µg). The normal force swings about the weight, and with it friction; their mean is what counts.
 #[test]
 fn analytic_block_slides_to_rest() {
     assert_small(sliding_block::error(), 0.005);

@@ -6,7 +6,7 @@ use stribeck_solver::{
     Elastic, Force, Motion,
     state::{Energy, Moment, NodeForces},
 };
-use stribeck_system::{Error, Pair, Plan, System, Watched, Workers};
+use stribeck_system::{Error, Pair, Plan, Preload, System, Watched, Workers};
 
 fn steel() -> Elastic {
     Elastic::new(208e9, 0.3, 7800.0).expect("steel is a possible material")
@@ -29,9 +29,9 @@ fn plan() -> Plan {
     plan
 }
 
-fn falling() -> System {
+fn falling(time_step_factor: f64) -> System {
     let mut system = plan().build(1).expect("a sound plan");
-    system.set_time_step_factor(0.8).expect("elements are stiff");
+    system.set_time_step_factor(time_step_factor).expect("elements are stiff");
     let upper = system.body("upper").expect("a body");
     system.launch(upper, [0.3, -0.5], 0.0);
     system
@@ -79,44 +79,50 @@ fn on_a_spring(at: usize, announced: usize) -> System {
     system
 }
 
+/// Through an impact with friction, under a load and gravity. A penalty law has a corner, which a step cuts: the error falls
+/// with the step, to below what the guards warn of.
 #[test]
 fn conserves_energy_through_contact_friction_loads_and_gravity() {
-    let mut system = falling();
-    // Contact is searched and damped within a step: what is left is the error of a step at its critical length's 0.8.
-    const TOLERANCE: f64 = 2e-3;
-    let mut touched = false;
-    let mut looks = 0;
-    let findings = system
-        .run(4000, 10, |system, ledger| {
-            looks += 1;
-            touched |= system.resultant("upper.bottom and lower.top").expect("a pair").force[1] > 0.0;
-            assert!(ledger.relative_error < TOLERANCE, "{ledger:?}");
-        })
-        .expect("a time step is set");
-    assert!(touched && looks == 400 && findings.iter().all(|f| !f.stops), "{findings:?}");
-    let ledger = system.last_ledger();
-    assert!(ledger.friction > 0.0 && ledger.external > 0.0, "{ledger:?}");
+    let errors = [0.8, 0.2].map(|factor| {
+        let mut system = falling(factor);
+        let (mut touched, mut looks) = (false, 0);
+        let findings = system
+            .run((1600.0 / factor) as u64, 10, |system, _| {
+                looks += 1;
+                touched |= system.resultant("upper.bottom and lower.top").expect("a pair").force[1] > 0.0;
+            })
+            .expect("a time step is set");
+        assert!(touched && findings.iter().all(|finding| !finding.stops), "{findings:?}");
+        assert_eq!(looks, (160.0 / factor) as u64);
+        let ledger = system.last_ledger();
+        assert!(ledger.friction > 0.0 && ledger.external > 0.0, "{ledger:?}");
+        system.balance().largest_error
+    });
+    assert!(errors[1] < 0.01 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }
 
 /// A load that is switched and reversed does the work that the bodies gain: the trapezoidal rule over each step is what
-/// leapfrog conserves.
+/// leapfrog conserves, for a linear model. At strains of σ/E = 3e-6 nonlinearity leaves as much; the rectangle rule would be
+/// off by some per cent.
 #[test]
 fn conserves_energy_under_loads_that_change() {
+    const TOLERANCE: f64 = 3e-6;
     let mut plan = Plan::new(0.007);
     plan.add("block", &block(0.0, 0.0), steel()).expect("a new name");
-    plan.load("block.right", [5e3, 0.0]).expect("a surface");
+    plan.load("block.right", [50.0, 0.0]).expect("a surface");
     let mut system = plan.build(1).expect("a sound plan");
     system.set_time_step_factor(0.8).expect("elements are stiff");
     for factor in [1.0, 0.0, -2.0, 0.5] {
         system.scale_load("block.right", factor).expect("a load");
-        let findings = system.run(50, 7, |_, ledger| assert!(ledger.relative_error < 1e-9, "{ledger:?}"));
+        let findings =
+            system.run(50, 7, |_, ledger| assert!(ledger.relative_error < TOLERANCE, "{ledger:?}"));
         assert_eq!(findings.expect("a time step is set"), []);
     }
 }
 
 #[test]
 fn invariant_a_system_goes_on_from_a_snapshot_to_the_same_bits() {
-    let mut whole = falling();
+    let mut whole = falling(0.8);
     whole.run(300, 10, |_, _| ()).expect("a time step is set");
     let saved = whole.snapshot();
     whole.run(300, 10, |_, _| ()).expect("a time step is set");
@@ -130,7 +136,7 @@ fn invariant_a_system_goes_on_from_a_snapshot_to_the_same_bits() {
 
 #[test]
 fn invariant_a_snapshot_of_another_system_changes_nothing() {
-    let mut system = falling();
+    let mut system = falling(0.8);
     system.run_until(1e-6).expect("a time step is set");
     let before = system.snapshot();
     let mut without_contact = Plan::new(0.007);
@@ -153,17 +159,19 @@ fn invariant_no_step_without_a_time_step() {
     assert!(system.set_time_step(0.0, None).is_err() && system.set_time_step(f64::NAN, None).is_err());
 }
 
+/// Strains are v/c = 2e-5 at most, and nonlinearity leaves no larger share of the energy out of balance.
 #[test]
 fn conserves_energy_with_a_law_of_the_user() {
+    const TOLERANCE: f64 = 2e-5;
     let mut system = on_a_spring(0, 45);
     let mut stored = 0.0_f64;
     system
         .run(3000, 10, |_, ledger| {
             stored = stored.max(ledger.further);
-            assert!(ledger.relative_error < 1e-9, "{ledger:?}");
+            assert!(ledger.relative_error < TOLERANCE, "{ledger:?}");
         })
         .expect("its node is announced");
-    assert!(stored > 0.0);
+    assert!(stored > 0.1 * system.balance().peak_energy, "the spring has held {stored} J");
 }
 
 /// A force on a node that nobody announced would be lost in the solver, in silence.
@@ -201,26 +209,34 @@ fn invariant_names_are_found_or_named() {
 /// Far above the critical step the energy grows without bound, and the guard says so with what to try.
 #[test]
 fn invariant_an_unstable_step_is_stopped() {
-    let mut system = falling();
+    let mut system = falling(0.8);
     let critical = system.critical_time_step();
     system.set_time_step(1.5 * critical, Some(critical)).expect("a positive one");
     let findings = system.run(2000, 10, |_, _| ()).expect("a time step is set");
-    let last = findings.last().expect("it diverges");
-    assert!(last.stops && last.message.contains("time step factor"), "{last}");
-    assert!(matches!(last.watched, Watched::Energy | Watched::Distortion | Watched::Penetration), "{last}");
+    let first = findings.iter().find(|finding| finding.stops).expect("it diverges");
+    assert_eq!(first.watched, Watched::Energy, "{first}");
+    assert!(first.message.contains("smaller time step factor"), "{first}");
+    assert!(system.steps() < 2000, "it went on");
 }
 
-/// Bodies that rest on each other stay at rest after the preload: no kinetic energy beyond that of the last digits.
+/// Bodies that rest on each other stay at rest after the preload.
 #[test]
 fn invariant_a_settled_system_stays_at_rest() {
+    // Contacts that change sides for ever, here at the edge of the lower block, may leave this share of the load unbalanced.
+    const TOLERANCE: f64 = 1e-4;
     let mut system = plan().build(1).expect("a sound plan");
-    system.settle(&Default::default()).expect("the load reaches the ground");
-    let force =
-        system.nodes("upper").expect("a body").iter().map(|&n| system.mass(n)).sum::<f64>() * 9.81 + 1e3;
+    let settled = system.settle(&Preload::default()).expect("the load reaches the ground");
+    assert!(settled.unbalanced.is_none_or(|force| force < TOLERANCE * 1e3), "{settled:?}");
+    let mass: f64 = system.nodes("upper").expect("a body").iter().map(|&n| system.mass(n)).sum();
     system.set_time_step_factor(0.8).expect("elements are stiff");
-    system.run(500, 10, |_, _| ()).expect("a time step is set");
-    let found = system.resultant("upper.bottom and lower.top").expect("a pair").force[1];
-    assert!((found / force - 1.0).abs() < 1e-5, "{found} N instead of {force} N");
-    let ledger = system.last_ledger();
-    assert!(ledger.kinetic < 1e-6 * ledger.strain, "{ledger:?}");
+    let (mut forces, mut looks) = (0.0, 0.0);
+    system
+        .run(500, 1, |system, ledger| {
+            forces += system.resultant("upper.bottom and lower.top").expect("a pair").force[1];
+            looks += 1.0;
+            assert!(ledger.kinetic < TOLERANCE * ledger.strain, "{ledger:?}");
+        })
+        .expect("a time step is set");
+    let (found, expected) = (forces / looks, 1e3 + 9.81 * mass);
+    assert!((found / expected - 1.0).abs() < TOLERANCE, "{found} N instead of {expected} N");
 }

@@ -155,7 +155,7 @@ impl Modules {
                 TokenTree::Ident(_) => {
                     let (path, len) = path_at(&tokens[at - 1..]);
                     if path.len() > 1
-                        && let Some(path) = self.from_root(place, &path)
+                        && let Some(path) = self.below_root(place, &path)
                     {
                         self.note(place, path);
                     }
@@ -185,7 +185,7 @@ impl Modules {
                     }
                     _ => whole.last().cloned().filter(|_| !glob),
                 };
-                let Some(target) = self.from_root(place, &whole) else { return };
+                let Some(target) = self.below_root(place, &whole) else { return };
                 if let (Some(name), Some(module)) = (name, self.0.get_mut(place)) {
                     module.imports.insert(name, target.clone());
                 }
@@ -195,7 +195,7 @@ impl Modules {
     }
 
     /// A path as written at `place`, from the crate's root on; `None` for other crates and local names.
-    fn from_root(&self, place: &Place, path: &[String]) -> Option<Place> {
+    fn below_root(&self, place: &Place, path: &[String]) -> Option<Place> {
         let first = path.first()?;
         let up = path.iter().take_while(|part| *part == "super").count();
         if first == "crate" {
@@ -282,7 +282,7 @@ fn ways(arrows: &BTreeMap<&str, BTreeSet<String>>, from: &str) -> BTreeMap<Strin
     while let Some(way) = open.pop_front() {
         for to in way.last().and_then(|last| arrows.get(last.as_str())).into_iter().flatten() {
             if !found.contains_key(to) {
-                let longer = [way.as_slice(), &[to.clone()]].concat();
+                let longer = [way.as_slice(), std::slice::from_ref(to)].concat();
                 found.insert(to.clone(), longer.clone());
                 open.push_back(longer);
             }
@@ -348,7 +348,8 @@ mod tests {
             "fn f() { assert!(crate::b::ok()); }",
             "mod inner { use super::super::b; }",
         ] {
-            let found = circles(&[root, ("a.rs", uses), ("b.rs", "use crate::c;"), ("c.rs", "use super::a::A;")]);
+            let found =
+                circles(&[root, ("a.rs", uses), ("b.rs", "use crate::c;"), ("c.rs", "use super::a::A;")]);
             assert_eq!(names(&found), [("x", vec!["a", "b", "c"])], "{uses}");
         }
     }

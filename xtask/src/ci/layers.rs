@@ -4,8 +4,12 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
+/// What tests share: every crate may have it as a dev-dependency, and none otherwise.
+const TESTING: &str = "testing";
+
 /// Every crate and what it depends on of ours. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 11] = [
+const LAYERS: [(&str, &[&str]); 12] = [
+    (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
     ("solver", &["mesh", "simd"]),
@@ -15,7 +19,7 @@ const LAYERS: [(&str, &[&str]); 11] = [
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("analysis", &["dsp", "scene"]),
-    ("studies", &["analysis", "contact", "mesh", "scene", "solver"]),
+    ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
     ("stribeck", &["analysis", "bearing", "scene"]),
 ];
 
@@ -58,6 +62,9 @@ fn compare(name: &str, manifest: &str, allowed: &[&str]) -> Vec<String> {
         let ours = line.strip_prefix("stribeck-").filter(|_| section.ends_with("dependencies]"));
         let Some(rest) = ours else { continue };
         let to = rest.split(['.', ' ', '=']).next().unwrap_or_default();
+        if to == TESTING && section == "[dev-dependencies]" {
+            continue;
+        }
         if !allowed.contains(&to) {
             complaints
                 .push(format!("`{name}` depends on `{to}` ({section}), against the direction of the layers"));
@@ -84,5 +91,14 @@ mod tests {
         assert!(complaints[0].contains("`contact`") && complaints[1].contains("`dsp`"));
         assert_eq!(compare("solver", "[dependencies]\nfaer.workspace = true\n", &["mesh"]).len(), 1);
         assert!(compare("solver", "[dependencies]\nstribeck-mesh.workspace = true\n", &["mesh"]).is_empty());
+    }
+
+    #[test]
+    fn example_what_tests_share_is_for_tests() {
+        let of = |section: &str| {
+            compare("mesh", &format!("[{section}]\nstribeck-testing.workspace = true\n"), &[])
+        };
+        assert!(of("dev-dependencies").is_empty());
+        assert_eq!(of("dependencies").len(), 1);
     }
 }

@@ -1,4 +1,4 @@
-//! `docs/VALIDATION.md` from the rows that tests have written (`fixtures/tests/ledger.rs`).
+//! `docs/VALIDATION.md` from the rows that tests have written (`crates/testing/src/ledger.rs`).
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -121,7 +121,7 @@ fn parse(line: &str) -> Option<Row> {
 fn render(rows: &[Row]) -> String {
     let mut text = String::from(
         "# Validation\n\nWhat the tests compare with closed forms and with other programs. Written by `cargo xtask ci` from the tests \
-         themselves (`fixtures/tests/ledger.rs`), which fail beyond the tolerance. Whole problems solved by other codes are in \
+         themselves (`crates/testing/src/ledger.rs`), which fail beyond the tolerance. Whole problems solved by other codes are in \
          [compare](results/compare.md), error against work in [work_precision](results/work_precision.md), extreme cases in \
          [stability](results/stability.md).\n",
     );

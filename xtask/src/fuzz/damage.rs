@@ -113,7 +113,7 @@ pub(crate) fn bytes(original: &[u8], dice: &mut Dice) -> Vec<u8> {
                 bytes.splice(at..at, copy);
             }
             3 => {
-                let value = dice.next().to_le_bytes();
+                let value = dice.bits().to_le_bytes();
                 bytes.splice(at..end.min(at + 8), value);
             }
             4 => {

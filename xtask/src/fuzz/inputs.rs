@@ -267,7 +267,7 @@ fn shape(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
     };
     // Counts that are large and allowed make large meshes, as they should; they are left out.
     let count = |dice: &mut Dice| match dice.below(12) {
-        0 => dice.next() as usize | 1 << 40,
+        0 => dice.bits() as usize | 1 << 40,
         1 => dice.below(3),
         2 => 1_usize << (20 + dice.below(43)),
         _ => dice.below(150),

@@ -1,6 +1,6 @@
 //! Bands of chords with few points each: a chord in each lane.
 //!
-//! Points the end of the other chord or near a corner is left over.
+//! Points near the end of the other chord or near a corner are left over.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};

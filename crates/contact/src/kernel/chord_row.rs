@@ -14,7 +14,7 @@ use super::{
 use crate::{foot::Push, plane::choose};
 
 impl Row<'_> {
-    /// Chords against chords: evaluates the points that certainly touch and pushes their forces, those that certainly do not
+    /// Chords against chords: evaluates the points that certainly touch and pushes their forces; those that certainly do not
     /// are inactive for a while. Feet follow one another, mostly on one chord or on two: each point takes the one below it.
     #[inline(always)]
     pub(crate) fn touch_chords<V: Simd, const MEMORY: bool>(

@@ -148,7 +148,9 @@ impl Evaluation<'_> {
                 primary,
                 at,
                 law: pass_law,
-                kernel: LawKernel::new(0.0, pass_law, 1.0, at.dt, deepest, now, *pace),
+                deepest,
+                now,
+                pace: *pace,
                 points,
                 stride: arrangement.stride(),
                 own: None,
@@ -230,7 +232,7 @@ impl Evaluation<'_> {
         facets.single.flush(push);
         others.flush(primary, push);
         let single = &facets.single.totals;
-        *pace = facets.single.kernel.pace.max(totals.pace.largest());
+        *pace = facets.single.pace.max(totals.pace.largest());
         *idle_until = first_active;
         Sum {
             force: facets.force,

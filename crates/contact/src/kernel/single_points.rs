@@ -24,8 +24,12 @@ pub(crate) struct SinglePoints<'a, S: Facet, P: Facet> {
     pub(crate) primary: &'a Surface,
     pub(crate) at: &'a Moment<'a>,
     pub(crate) law: &'a PassLaw,
-    /// The same, per area of a point.
-    pub(crate) kernel: LawKernel<f64>,
+    /// See [`Evaluation`](super::evaluate::Evaluation).
+    pub(crate) deepest: f64,
+    /// Steps since the search.
+    pub(crate) now: f64,
+    /// Fastest that a point of the pass opened or closed of late [m/s].
+    pub(crate) pace: f64,
     pub(crate) points: &'a Points,
     /// Distance of a facet's points in memory.
     pub(crate) stride: usize,
@@ -51,6 +55,8 @@ impl<S: Facet, P: Facet> SinglePoints<'_, S, P> {
         push: &mut Vec<Push>,
     ) {
         let Self { secondary, primary, at, law, points, .. } = *self;
+        // Weights are areas here, so the law has no thickness.
+        let mut kernel = LawKernel::new(0.0, law, 1.0, at.dt, self.deepest, self.now, self.pace);
         let facet =
             || MovingFacet::new(S::new(secondary, at.x, at.y, candidate.facet as usize), secondary, at);
         let own = self.own.get_or_insert_with(facet);
@@ -79,18 +85,18 @@ impl<S: Facet, P: Facet> SinglePoints<'_, S, P> {
                 slip,
                 damping,
             };
-            let Some(foot) = foot.filter(|foot| self.kernel.touches(foot.gap, 1.0) > 0.0) else {
+            let Some(foot) = foot.filter(|foot| kernel.touches(foot.gap, 1.0) > 0.0) else {
                 // Points off both ends of an open surface have no foot; they are looked at after the next search.
                 inactive_until[i] = NEVER;
                 if let Some(foot) = foot {
                     state.sliding = MovingFacet::new(facet, primary, at).sliding(own.velocity(&point), &foot);
-                    self.kernel.pace = self.kernel.pace.max(state.sliding.opening.abs());
-                    let distance = self.kernel.distance(foot.gap);
-                    inactive_until[i] = self.kernel.inactive_until(distance, state.sliding);
+                    kernel.pace = kernel.pace.max(state.sliding.opening.abs());
+                    let distance = kernel.distance(foot.gap);
+                    inactive_until[i] = kernel.inactive_until(distance, state.sliding);
                 }
                 if let Some(history) = history.as_mut().filter(|_| slip != 0.0 || damping != 0.0) {
                     outcome.touched = true;
-                    self.kernel.release(&state, &mut self.totals);
+                    kernel.release(&state, &mut self.totals);
                     (history.slip[i], history.damping[i]) = (0.0, 0.0);
                 }
                 continue;
@@ -109,14 +115,14 @@ impl<S: Facet, P: Facet> SinglePoints<'_, S, P> {
                 [law.law.stiffness * area * law.rounded(foot.gap)[0], 0.0]
             } else {
                 state.sliding = other.sliding(own.velocity(&point), &foot);
-                self.kernel.pace = self.kernel.pace.max(state.sliding.opening.abs());
+                kernel.pace = kernel.pace.max(state.sliding.opening.abs());
                 let acts = match history {
                     Some(history) => {
-                        let acts = self.kernel.act::<true>(&state, &mut self.totals);
+                        let acts = kernel.act::<true>(&state, &mut self.totals);
                         (history.slip[i], history.damping[i]) = (acts.slip, acts.damping);
                         acts
                     }
-                    None => self.kernel.act::<false>(&state, &mut self.totals),
+                    None => kernel.act::<false>(&state, &mut self.totals),
                 };
                 [acts.pressure, acts.shear]
             };
@@ -124,6 +130,7 @@ impl<S: Facet, P: Facet> SinglePoints<'_, S, P> {
             own.push_point(&point, f);
             other.push_foot(&foot, f, pressure, shear);
         }
+        self.pace = kernel.pace;
     }
 
     /// Hands over forces that wait.

@@ -188,28 +188,3 @@ pub(crate) fn preload(
         d.equilibrate(&mut [loads, contacts], &statics).expect("a load that reaches its support");
     }
 }
-
-/// Repeatable numbers between −1 and 1 (Knuth's linear congruential generator).
-pub(crate) struct Noise(pub(crate) u64);
-
-impl Noise {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
-/// Fails unless `ours` is within `tolerance` (relative) of `theirs`.
-#[track_caller]
-pub(crate) fn assert_close(ours: f64, theirs: f64, tolerance: f64, what: &str) {
-    let error = (ours - theirs).abs() / theirs.abs();
-    assert!(
-        error <= tolerance,
-        "{what}: {ours:e}, expected {theirs:e}, off by {error:.2e} > {tolerance:.1e}"
-    );
-}
-
-/// Observed order of convergence from errors on meshes that halve each time.
-pub(crate) fn orders(errors: &[f64]) -> Vec<f64> {
-    errors.windows(2).map(|w| (w[0] / w[1]).log2()).collect()
-}

@@ -74,8 +74,3 @@ pub(crate) fn relative_length(part: &Part, side: f64) -> f64 {
     let lengths = corners(part).map(|c| characteristic_length(&c, POISSON));
     lengths.fold(f64::INFINITY, f64::min) / square
 }
-
-pub(crate) fn assert_close(found: f64, expected: f64, tolerance: f64, what: &str) {
-    let error = (found - expected).abs() / expected.abs();
-    assert!(error <= tolerance, "{what}: {found:e} instead of {expected:e}, error {error:e}");
-}

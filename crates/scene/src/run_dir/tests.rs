@@ -1,23 +1,8 @@
+use stribeck_testing::Scratch;
+
 use super::*;
 use crate::run_info::{EnergyInfo, MeshInfo, Status};
 use crate::trace::{Trace, TraceWriter};
-
-/// A folder that is removed at the end.
-struct Scratch(PathBuf);
-
-impl Scratch {
-    fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("stribeck-run-{}-{name}", std::process::id()));
-        std::fs::remove_dir_all(&path).ok();
-        Self(path)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
-    }
-}
 
 fn info(status: Status) -> RunInfo {
     RunInfo {
@@ -66,8 +51,8 @@ fn write_run(path: &Path) {
 #[test]
 fn roundtrip_a_run_reads_back_equal() {
     let folder = Scratch::new("equal");
-    write_run(&folder.0);
-    let run = Run::read(&folder.0).expect("complete");
+    write_run(folder.path());
+    let run = Run::read(folder.path()).expect("complete");
     assert_eq!(run.scene, Scene::default());
     assert_eq!(run.info, info(Status::Complete));
     assert_eq!(run.trace.get("x"), Some(&[1.0][..]));
@@ -81,24 +66,24 @@ fn bytes(path: &Path) -> Vec<u8> {
 #[test]
 fn invariant_samples_are_never_written_over() {
     let folder = Scratch::new("earlier");
-    write_run(&folder.0);
-    let before = bytes(&folder.0);
-    let error = RunDir::create(&folder.0).expect_err("taken").to_string();
-    assert_eq!(bytes(&folder.0), before);
+    write_run(folder.path());
+    let before = bytes(folder.path());
+    let error = RunDir::create(folder.path()).expect_err("taken").to_string();
+    assert_eq!(bytes(folder.path()), before);
     for word in ["complete run of", "--out", "--overwrite", "earlier-2`"] {
         assert!(error.contains(word), "`{word}` is missing in: {error}");
     }
-    let second = RunDir::create_numbered(&folder.0).expect("free");
-    assert!(second.path().ends_with(format!("{}-2", folder.0.file_name().expect("a name").display())));
+    let second = RunDir::create_numbered(folder.path()).expect("free");
+    assert!(second.path().ends_with(format!("{}-2", folder.path().file_name().expect("a name").display())));
     // The second is not there yet, and yet the third gets another.
-    let third = RunDir::create_numbered(&folder.0).expect("free");
+    let third = RunDir::create_numbered(folder.path()).expect("free");
     assert_ne!(second.path(), third.path());
     let paths = [second.path().to_owned(), third.path().to_owned()];
     drop((second, third));
     assert!(paths.iter().all(|path| !path.exists()), "runs that never started left folders");
     // A run that has no samples is not worth a word.
-    TraceWriter::create(folder.0.join(TRACE), &["time_s"]).expect("writable");
-    let dir = RunDir::create(&folder.0).expect("free");
+    TraceWriter::create(folder.join(TRACE), &["time_s"]).expect("writable");
+    let dir = RunDir::create(folder.path()).expect("free");
     dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
     assert!(dir.has_started() && !dir.trace().exists());
 }
@@ -106,7 +91,7 @@ fn invariant_samples_are_never_written_over() {
 #[test]
 fn invariant_a_run_is_replaced_when_the_new_one_is_complete() {
     let folder = Scratch::new("replaced");
-    let [run, new] = ["x", "x.new"].map(|name| folder.0.join(name));
+    let [run, new] = ["x", "x.new"].map(|name| folder.join(name));
     write_run(&run);
     let mine = ["my notes.txt", "figures/mine.txt"].map(|name| run.join(name));
     std::fs::create_dir_all(run.join(FIGURES)).expect("writable");
@@ -133,22 +118,22 @@ fn invariant_a_run_is_replaced_when_the_new_one_is_complete() {
     assert!(!new.exists() && !run.join(".replaces").exists() && !run.join(ENERGY).exists());
     assert!(mine.iter().all(|file| file.exists()), "what the owner added is gone");
     assert!(!run.join(FIGURES).join("old.svg").exists());
-    assert_eq!(std::fs::read_dir(&folder.0).expect("readable").count(), 1);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1);
 }
 
 #[test]
 fn invariant_a_run_that_never_starts_takes_away_the_folders_above_it() {
     let folder = Scratch::new("above");
-    let dir = RunDir::create(folder.0.join("a/b")).expect("free");
+    let dir = RunDir::create(folder.join("a/b")).expect("free");
     let mut ended = false;
     dir.reservation().unless_started(|| ended = true);
-    assert!(ended && !folder.0.exists());
+    assert!(ended && !folder.path().exists());
 }
 
 #[test]
 fn invariant_many_at_once_get_a_folder_each() {
     let folder = Scratch::new("many");
-    let path = folder.0.join("runs/x");
+    let path = folder.join("runs/x");
     let paths = std::sync::Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for n in 0..16 {
@@ -175,50 +160,50 @@ fn invariant_many_at_once_get_a_folder_each() {
 #[test]
 fn refuses_two_runs_in_one_folder() {
     let folder = Scratch::new("shared");
-    let first = RunDir::create(&folder.0).expect("free");
-    let error = RunDir::create(&folder.0).expect_err("taken").to_string();
+    let first = RunDir::create(folder.path()).expect("free");
+    let error = RunDir::create(folder.path()).expect_err("taken").to_string();
     assert!(error.contains(&format!("process {}", std::process::id())), "{error}");
     drop(first);
-    assert!(RunDir::create(&folder.0).is_ok());
+    assert!(RunDir::create(folder.path()).is_ok());
 }
 
 #[test]
 fn survives_the_lock_of_a_dead_process() {
     let folder = Scratch::new("dead");
-    std::fs::create_dir_all(&folder.0).expect("temporary folder");
-    std::fs::write(folder.0.join(LOCK), "999999999\n").expect("writable");
-    assert!(RunDir::create(&folder.0).is_ok());
+    std::fs::create_dir_all(folder.path()).expect("temporary folder");
+    std::fs::write(folder.join(LOCK), "999999999\n").expect("writable");
+    assert!(RunDir::create(folder.path()).is_ok());
 }
 
 #[test]
 fn refuses_foreign_folders_and_leaves_them_alone() {
     let folder = Scratch::new("foreign");
-    std::fs::create_dir_all(&folder.0).expect("temporary folder");
-    std::fs::write(folder.0.join("thesis.tex"), "years of work").expect("writable");
-    let error = RunDir::create(&folder.0).expect_err("foreign").to_string();
+    std::fs::create_dir_all(folder.path()).expect("temporary folder");
+    std::fs::write(folder.join("thesis.tex"), "years of work").expect("writable");
+    let error = RunDir::create(folder.path()).expect_err("foreign").to_string();
     assert!(error.contains("thesis.tex") && error.contains("--out"), "{error}");
-    assert_eq!(std::fs::read_dir(&folder.0).expect("readable").count(), 1);
+    assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1);
 }
 
 #[test]
 fn example_a_run_that_never_starts_leaves_no_folder() {
     let folder = Scratch::new("never");
-    drop(RunDir::create(&folder.0).expect("free"));
-    assert!(!folder.0.exists());
+    drop(RunDir::create(folder.path()).expect("free"));
+    assert!(!folder.path().exists());
 }
 
 #[test]
 fn refuses_missing_and_broken_runs() {
     let folder = Scratch::new("broken");
-    let error = Run::read(&folder.0).expect_err("missing").to_string();
+    let error = Run::read(folder.path()).expect_err("missing").to_string();
     assert!(error.contains("`scene.ron` is missing"), "{error}");
-    write_run(&folder.0);
-    std::fs::write(folder.0.join(INFO), "{\"version\": 3").expect("writable");
-    let error = Run::read(&folder.0).expect_err("broken").to_string();
+    write_run(folder.path());
+    std::fs::write(folder.join(INFO), "{\"version\": 3").expect("writable");
+    let error = Run::read(folder.path()).expect_err("broken").to_string();
     assert!(error.contains("run.json") && error.contains("line 1"), "{error}");
-    let file = folder.0.join(SCENE);
+    let file = folder.join(SCENE);
     let error = RunDir::create(file.join("x")).expect_err("below a file").to_string();
     assert!(error.contains("--out"), "{error}");
     assert!(write_atomic(&file.join("x"), b"").is_err());
-    assert!(!folder.0.join("scene.ron.part").exists());
+    assert!(!folder.join("scene.ron.part").exists());
 }

@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn analytic_formats_are_told_from_their_first_line() {
+    fn example_formats_are_told_from_their_first_line() {
         for (text, words) in [
             ("{\"name\": \"x\"}", "JSON"),
             ("\n  {\n \"name\": 1}", "JSON"),
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_decimal_commas() {
+    fn example_decimal_commas() {
         for (text, length) in
             [("50,0)", Some(4)), ("-3,25, x", Some(5)), ("50, 0", None), ("50.000,5", Some(8))]
         {

@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn analytic_to_a_stranger_nothing_is_like() {
+    fn example_to_a_stranger_nothing_is_like() {
         assert_eq!(field("qqq", SIBLINGS, ALL), None);
     }
 }

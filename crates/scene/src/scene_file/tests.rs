@@ -4,6 +4,7 @@ mod blame;
 mod formats;
 
 use proptest::prelude::*;
+use stribeck_testing::Scratch;
 
 use super::{Place, Problem, SceneError};
 use crate::scene::{ContactMethod, DampingFrame, RollerCopies, Scene, Start};
@@ -294,21 +295,18 @@ fn refuses_overrides_and_points_at_the_command_line() {
 
 #[test]
 fn example_an_override_may_repair_a_file_or_break_it() {
-    let folder = std::env::temp_dir().join(format!("stribeck-scene-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let folder = Scratch::create("scene");
     let path = folder.join("x.ron");
     std::fs::write(&path, "(mesh: (size_mm: -1.0))").expect("writable");
     assert!(Scene::read(&path).is_err());
     assert_eq!(Scene::read_with(&path, &["mesh.size_mm=2.0"]).expect("repaired").mesh.size_mm, 2.0);
     let problem = only(Scene::read_with(&path, &["mesh=(size_mm: -2.0)"]));
     assert!(matches!(problem.place, Place::CommandLine { .. }), "{problem}");
-    std::fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]
 fn refuses_files_that_are_no_scene() {
-    let folder = std::env::temp_dir().join(format!("stribeck-files-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let folder = Scratch::create("files");
     let refuse = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
         std::fs::write(&path, bytes).expect("writable");
@@ -319,10 +317,9 @@ fn refuses_files_that_are_no_scene() {
     assert!(refuse("empty", b"").contains("the scene is empty"));
     assert!(refuse("cut", b"(bearing: (rollers: 2").contains("ends too early"));
     assert!(only(Scene::read(folder.join("missing.ron"))).to_string().contains("cannot read scene"));
-    assert!(only(Scene::read(&folder)).to_string().contains("is a folder"));
+    assert!(only(Scene::read(folder.path())).to_string().contains("is a folder"));
     std::fs::write(folder.join("bom.ron"), "\u{feff}()").expect("writable");
     assert!(Scene::read(folder.join("bom.ron")).is_ok());
-    std::fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]

@@ -1,41 +1,37 @@
 //! A trace on disk: what NumPy would read, what a killed run leaves, what is refused.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use proptest::prelude::*;
+use stribeck_testing::Scratch;
 
 use super::{Trace, TraceWriter, header};
 use crate::error::Error;
 
 /// A file of its own for each call, removed at the end.
-struct Scratch(PathBuf);
+struct File(Scratch);
 
-impl Scratch {
+impl File {
     fn new() -> Self {
-        static COUNT: AtomicUsize = AtomicUsize::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        Self(std::env::temp_dir().join(format!("stribeck-trace-{}-{number}.npy", std::process::id())))
+        Self(Scratch::create("trace"))
+    }
+
+    fn path(&self) -> PathBuf {
+        self.0.join("trace.npy")
     }
 
     fn write(&self, names: &[&str], rows: &[Vec<f64>]) -> Vec<u8> {
-        let mut writer = TraceWriter::create(&self.0, names).expect("writable");
+        let mut writer = TraceWriter::create(self.path(), names).expect("writable");
         for row in rows {
             writer.push(row).expect("writable");
         }
         writer.finish().expect("writable");
-        std::fs::read(&self.0).expect("readable")
+        std::fs::read(self.path()).expect("readable")
     }
 
     fn read(&self, bytes: &[u8]) -> Result<Trace, Error> {
-        std::fs::write(&self.0, bytes).expect("writable");
-        Trace::read(&self.0)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        std::fs::remove_file(&self.0).ok();
+        std::fs::write(self.path(), bytes).expect("writable");
+        Trace::read(self.path())
     }
 }
 
@@ -45,7 +41,7 @@ fn rows(count: usize) -> Vec<Vec<f64>> {
 
 #[test]
 fn example_the_file_is_a_structured_npy_array() {
-    let file = Scratch::new();
+    let file = File::new();
     let bytes = file.write(&["time_s", "ay_m_s2"], &rows(3));
     let data = bytes.len() - 3 * 16;
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
@@ -61,53 +57,54 @@ fn example_the_file_is_a_structured_npy_array() {
 
 #[test]
 fn invariant_equal_samples_make_equal_bytes() {
-    let (a, b) = (Scratch::new(), Scratch::new());
+    let (a, b) = (File::new(), File::new());
     assert_eq!(a.write(&["time_s", "x"], &rows(250)), b.write(&["time_s", "x"], &rows(250)));
 }
 
 #[test]
 fn survives_a_kill_but_for_a_hundred_rows() {
-    let file = Scratch::new();
-    let mut writer = TraceWriter::create(&file.0, &["time_s", "x"]).expect("writable");
+    let file = File::new();
+    let mut writer = TraceWriter::create(file.path(), &["time_s", "x"]).expect("writable");
     for row in rows(250) {
         writer.push(&row).expect("writable");
     }
     // What another process sees while the writer still runs.
-    let seen = Trace::read(&file.0).expect("readable");
+    let seen = Trace::read(file.path()).expect("readable");
     assert_eq!(seen.len(), 200);
-    let text = std::fs::read(&file.0).expect("readable");
+    let text = std::fs::read(file.path()).expect("readable");
     assert!(String::from_utf8_lossy(&text).contains("'shape': (200,)"));
     drop(writer);
-    assert_eq!(Trace::read(&file.0).expect("readable").len(), 250);
+    assert_eq!(Trace::read(file.path()).expect("readable").len(), 250);
 }
 
 #[test]
 fn roundtrip_a_continued_file_is_that_of_one_writer() {
-    let file = Scratch::new();
+    let file = File::new();
     let names = ["time_s", "x"];
     let whole = file.write(&names, &rows(7));
     for kept in 0..=7 {
         // Rows beyond those kept, and a torn one, as a killed run leaves them.
-        std::fs::write(&file.0, [whole.as_slice(), &[1; 9]].concat()).expect("writable");
-        let mut writer = TraceWriter::resume(&file.0, &names, kept).expect("it holds as many");
+        std::fs::write(file.path(), [whole.as_slice(), &[1; 9]].concat()).expect("writable");
+        let mut writer = TraceWriter::resume(file.path(), &names, kept).expect("it holds as many");
         assert_eq!(writer.rows(), kept);
         for row in &rows(7)[kept as usize..] {
             writer.push(row).expect("writable");
         }
         writer.sync().expect("writable");
-        assert!(std::fs::read(&file.0).expect("readable") == whole, "continued after {kept} rows");
+        assert!(std::fs::read(file.path()).expect("readable") == whole, "continued after {kept} rows");
     }
 }
 
 #[test]
 fn refuses_to_continue_a_foreign_file_and_leaves_it_alone() {
-    let file = Scratch::new();
+    let file = File::new();
     let whole = file.write(&["time_s", "x"], &rows(3));
     let refuse = |bytes: &[u8], names: &[&str], rows, words: &str| {
-        std::fs::write(&file.0, bytes).expect("writable");
-        let error = TraceWriter::resume(&file.0, names, rows).map(|_| ()).expect_err("foreign").to_string();
+        std::fs::write(file.path(), bytes).expect("writable");
+        let error =
+            TraceWriter::resume(file.path(), names, rows).map(|_| ()).expect_err("foreign").to_string();
         assert!(error.contains(words), "{error}");
-        assert!(std::fs::read(&file.0).expect("readable") == bytes, "changed although {error}");
+        assert!(std::fs::read(file.path()).expect("readable") == bytes, "changed although {error}");
     };
     refuse(&whole, &["time_s", "x"], 4, "holds 3 samples and the checkpoint counts 4");
     refuse(&whole, &["time_s", "y"], 3, "other channels");
@@ -119,7 +116,7 @@ fn refuses_to_continue_a_foreign_file_and_leaves_it_alone() {
 
 #[test]
 fn survives_a_file_cut_at_any_byte() {
-    let file = Scratch::new();
+    let file = File::new();
     let bytes = file.write(&["time_s", "x"], &rows(4));
     let data = bytes.len() - 4 * 16;
     for cut in 0..bytes.len() {
@@ -132,7 +129,7 @@ fn survives_a_file_cut_at_any_byte() {
 
 #[test]
 fn survives_a_file_damaged_at_any_byte() {
-    let file = Scratch::new();
+    let file = File::new();
     let bytes = file.write(&["time_s", "x"], &rows(2));
     for at in 0..bytes.len() {
         for value in [0, b'\'', b'(', 0xff] {
@@ -147,7 +144,7 @@ fn survives_a_file_damaged_at_any_byte() {
 
 #[test]
 fn refuses_foreign_files_with_a_reason() {
-    let file = Scratch::new();
+    let file = File::new();
     let npy = |text: &str| {
         let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
         bytes.extend((text.len() as u16).to_le_bytes());
@@ -177,18 +174,18 @@ fn refuses_foreign_files_with_a_reason() {
 
 #[test]
 fn refuses_wrong_rows_and_names() {
-    let file = Scratch::new();
-    let mut writer = TraceWriter::create(&file.0, &["time_s", "x"]).expect("writable");
+    let file = File::new();
+    let mut writer = TraceWriter::create(file.path(), &["time_s", "x"]).expect("writable");
     assert!(writer.push(&[1.0]).is_err());
     assert_eq!(writer.rows(), 0);
     for names in [&[][..], &["a", "a"], &[""], &["a'b"], &["µ"]] {
-        assert!(TraceWriter::create(&file.0, names).is_err(), "{names:?}");
+        assert!(TraceWriter::create(file.path(), names).is_err(), "{names:?}");
     }
 }
 
 #[test]
 fn example_many_channels_take_version_2() {
-    let file = Scratch::new();
+    let file = File::new();
     let names: Vec<String> = (0..4000).map(|i| format!("roller.{i}.outer_n")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let row: Vec<f64> = (0..4000).map(f64::from).collect();
@@ -214,7 +211,7 @@ proptest! {
         channels in 1_usize..5,
         bits in proptest::collection::vec(any::<u64>(), 0..800),
     ) {
-        let file = Scratch::new();
+        let file = File::new();
         let names: Vec<String> = (0..channels).map(|i| format!("channel {i}")).collect();
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let rows: Vec<Vec<f64>> =

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{dynamics::Dynamics, error::Error, force::Force};
 
-/// Mass-proportional stiffness [1/s²] along the track of an undecided motion while the iteration runs.
+/// Mass-proportional stiffness [1/s²] along the path of an undecided motion while the iteration runs.
 const TRACK_HOLD: f64 = 1e10;
 
 /// The same for a motion that is a rotation alone: a ring bends at lower frequencies than a disc.
@@ -226,7 +226,7 @@ fn holds(unknowns: &Unknowns, d: &Dynamics, statics: &Statics, residual: &Residu
     }
     for motion in &statics.undecided {
         let centre = motion.centre(d);
-        // Springs along the track hold translation and rotation without resisting anything across it. They
+        // Springs along the path hold translation and rotation without resisting anything across it. They
         // must be soft against the body's elasticity, or they would hide it from the iteration.
         for &slot in &motion.slots {
             let n = slot as usize;

@@ -6,6 +6,7 @@ use stribeck_solver::{
     Dynamics, Elastic, Force, Model,
     statics::{Equilibrium, Statics},
 };
+use stribeck_testing::Noise;
 
 /// Out-of-plane thickness of every model [m]; an odd one, so that a forgotten factor shows.
 pub(crate) const THICKNESS: f64 = 0.007;
@@ -31,11 +32,11 @@ pub(crate) fn on_sides(columns: usize, rows: usize) -> impl Iterator<Item = usiz
 
 /// Moves the inner nodes of a rectangle by up to `reach` [m] in each direction.
 pub(crate) fn distort(part: &mut Part, columns: usize, rows: usize, reach: f64) {
-    let mut noise = Noise(1);
+    let mut noise = Noise::new(1);
     let fixed: Vec<usize> = on_sides(columns, rows).collect();
     for n in (0..part.x.len()).filter(|n| !fixed.contains(n)) {
-        part.x[n] += reach * noise.next();
-        part.y[n] += reach * noise.next();
+        part.x[n] += reach * noise.uniform();
+        part.y[n] += reach * noise.uniform();
     }
 }
 
@@ -148,29 +149,4 @@ pub(crate) fn equilibrate(
         iterations: 40,
     };
     d.equilibrate(forces, &statics)
-}
-
-/// Repeatable numbers between −1 and 1 (Knuth's linear congruential generator).
-pub(crate) struct Noise(pub(crate) u64);
-
-impl Noise {
-    pub(crate) fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
-/// Fails unless `ours` is within `tolerance` (relative) of `theirs`.
-#[track_caller]
-pub(crate) fn assert_close(ours: f64, theirs: f64, tolerance: f64, what: &str) {
-    let error = (ours - theirs).abs() / theirs.abs();
-    assert!(
-        error <= tolerance,
-        "{what}: {ours:e}, expected {theirs:e}, off by {error:.2e} > {tolerance:.1e}"
-    );
-}
-
-/// Observed order of convergence from errors on meshes or steps that halve each time.
-pub(crate) fn orders(errors: &[f64]) -> Vec<f64> {
-    errors.windows(2).map(|w| (w[0] / w[1]).log2()).collect()
 }

@@ -3,28 +3,29 @@
 use anyhow::Result;
 use stribeck_contact::Method;
 use stribeck_mesh::Part;
+use stribeck_system::Plan;
 
 use super::limit::split;
 use super::stiffness::collide;
 use super::{Case, Chapter};
-use crate::rig::{Plan, rectangle, steel};
+use crate::rig::{THICKNESS, rectangle, steel, stir, stop_reason};
 
 /// Momentum of a stirred free body may drift by this over the sum of its nodes' momenta.
 const ROUNDING: f64 = 1e-10;
 
 /// A stirred free body of this shape keeps energy and momentum over 20 000 steps.
 fn stirred(done: &str, part: &Part) -> Result<Case> {
-    let mut plan = Plan::default();
-    plan.add(part);
-    let mut rig = plan.lay_out(&plan.model(steel())?)?;
-    rig.set_step(0.9)?;
-    rig.stir(0.01);
-    let before = rig.velocity(0);
-    let stop = rig.run(20_000, 20, |_, _| {});
-    let after = rig.velocity(0);
+    let mut plan = Plan::new(THICKNESS);
+    let body = plan.add("block", part, steel())?.body;
+    let mut system = plan.build(1)?;
+    system.set_time_step_factor(0.9)?;
+    stir(&mut system, 0.01);
+    let before = system.motion_of(body).velocity;
+    let stop = stop_reason(system.run(20_000, 20, |_, _| ())?);
+    let after = system.motion_of(body).velocity;
     let drift = (after[0] - before[0]).hypot(after[1] - before[1]) / 0.01;
-    let seen = format!("time step {:.3e} s, momentum kept to {drift:.0e}", rig.dynamics.time_step());
-    Ok(Case::of(done, rig.worst, stop, drift < ROUNDING, seen))
+    let seen = format!("time step {:.3e} s, momentum kept to {drift:.0e}", system.time_step());
+    Ok(Case::of(done, system.balance().largest_error, stop, drift < ROUNDING, seen))
 }
 
 /// Columns of a rectangle, one of them `narrow` times as wide as the others.

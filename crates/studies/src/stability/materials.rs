@@ -4,14 +4,11 @@ use std::f64::consts::TAU;
 
 use anyhow::Result;
 use stribeck_mesh::{Annulus, Part};
-use stribeck_solver::{
-    Elastic,
-    force::NodalLoad,
-    statics::{Equilibrator, Statics},
-};
+use stribeck_solver::Elastic;
+use stribeck_system::{Plan, Preload};
 
 use super::{Case, Chapter};
-use crate::rig::{Plan, THICKNESS, rectangle};
+use crate::rig::{THICKNESS, rectangle, stir, stop_reason};
 
 /// Inner and outer radius of the cylinder [m].
 const CYLINDER: [f64; 2] = [0.05, 0.1];
@@ -29,29 +26,19 @@ pub(crate) fn cylinder(material: Elastic, facets: usize, layers: usize) -> Resul
 /// The same for a mesh of that cylinder with `facets` on its bore.
 pub(crate) fn cylinder_of(part: &Part, material: Elastic, facets: usize) -> Result<f64> {
     let [a, b] = CYLINDER;
-    let mut plan = Plan::default();
-    let body = plan.add(part);
-    let bore = plan.nodes(body, "inner").nodes.clone();
-    let mut rig = plan.lay_out(&plan.model(material)?)?;
-    let d = &mut rig.dynamics;
-    let slots: Vec<usize> = bore.iter().map(|&n| d.layout().slot_of_node[n as usize] as usize).collect();
+    let mut plan = Plan::new(THICKNESS);
+    plan.add("cylinder", part, material)?;
+    let bore = plan.nodes("cylinder.inner")?;
     // The pressure on a chord is that on its arc's projection.
     let share = PRESSURE * THICKNESS * a * (TAU / facets as f64).sin();
-    let loads = slots.iter().map(|&s| {
-        let (x, y) = (d.state.x[s] / a, d.state.y[s] / a);
-        (s as u32, share * x, share * y)
-    });
-    let mut load = NodalLoad::new(loads.collect());
-    let statics = Statics {
-        bodies: vec![("cylinder".to_owned(), rig.bodies[0].clone())],
-        undecided: Vec::new(),
-        acceleration: Vec::new(),
-        longest_step: 1e-3,
-        tolerance: 1e-3,
-        iterations: 60,
-    };
-    Equilibrator::new(d).equilibrate(d, &mut [&mut load], &statics)?;
-    let radius = slots.iter().map(|&s| d.state.x[s].hypot(d.state.y[s])).sum::<f64>() / slots.len() as f64;
+    let mesh = &plan.model.mesh;
+    let push = |n: usize| [share * mesh.x[n] / a, share * mesh.y[n] / a];
+    let loads = bore.iter().map(|&n| (n, push(n as usize))).collect();
+    plan.load_nodes("pressure", loads)?;
+    let mut system = plan.build(1)?;
+    system.settle(&Preload { longest_step: 1e-3, ..Preload::default() })?;
+    let radii = bore.iter().map(|&n| system.position(n)).map(|[x, y]| x.hypot(y));
+    let radius = radii.sum::<f64>() / bore.len() as f64;
     let (e, nu) = (material.youngs_modulus(), material.poissons_ratio());
     let lame = PRESSURE * a * a / (e * (b * b - a * a)) * (1.0 + nu) * ((1.0 - 2.0 * nu) * a + b * b / a);
     Ok((radius - a) / lame)
@@ -66,15 +53,15 @@ pub(super) fn chapter() -> Result<Chapter> {
             Ok(r) => ((r - 1.0).abs() < 0.01, format!("bore of a thick cylinder moves {r:.4} × Lamé")),
             Err(e) => (true, format!("static start refused: {e}")),
         };
-        let mut plan = Plan::default();
-        plan.add(&rectangle([0.0; 2], [0.01, 0.008], [10, 8])?);
-        let mut rig = plan.lay_out(&plan.model(material)?)?;
-        rig.set_step(0.9)?;
-        rig.stir(0.01);
-        let stop = rig.run(50_000, 50, |_, _| {});
+        let mut plan = Plan::new(THICKNESS);
+        plan.add("block", &rectangle([0.0; 2], [0.01, 0.008], [10, 8])?, material)?;
+        let mut system = plan.build(1)?;
+        system.set_time_step_factor(0.9)?;
+        stir(&mut system, 0.01);
+        let stop = stop_reason(system.run(50_000, 50, |_, _| ())?);
         cases.push(Case::of(
             format!("ν = {nu}: 50 000 steps of a stirred block"),
-            rig.worst,
+            system.balance().largest_error,
             stop,
             right,
             seen,

@@ -4,9 +4,10 @@ use anyhow::Result;
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_contact::Method;
 use stribeck_solver::{Elastic, Motion};
+use stribeck_system::Plan;
 
 use super::{Case, Chapter};
-use crate::rig::{Plan, Rig, penalty, rectangle, steel};
+use crate::rig::{THICKNESS, pair, penalty, rectangle, steel, stop_reason, touching};
 
 /// Length of a bar [m] and its cells.
 const BAR: (f64, usize) = (0.02, 40);
@@ -49,35 +50,33 @@ pub(super) fn collide(
 ) -> Result<Collision> {
     let (length, cells) = (BAR.0 * unit, BAR.1);
     let size = length / cells as f64;
-    let mut plan = Plan::default();
+    let mut plan = Plan::new(THICKNESS);
     let block = |x: f64| rectangle([place + x, place], [length, 2.0 * size], [cells, 2]);
-    let a = plan.add(&block(-length)?);
-    let b = plan.add(&block(0.02 * size)?);
+    let a = plan.add("a", &block(-length)?, materials[0])?.body;
+    let b = plan.add("b", &block(0.02 * size)?, materials[1])?.body;
     let softer = if materials[0].youngs_modulus() < materials[1].youngs_modulus() {
         materials[0]
     } else {
         materials[1]
     };
-    plan.touch((a, "right"), (b, "left"), penalty(&softer, size, scale)?, method);
-    let mut model = plan.model(materials[0])?;
-    model.materials = materials.to_vec();
-    model.motion.fill(Motion::HeldY);
-    let mut rig = plan.lay_out(&model)?;
-    rig.set_step(0.9)?;
-    rig.launch(a, [speed, 0.0]);
-    let before = [rig.velocity(a)[0], rig.velocity(b)[0]];
-    let mass = [0, 1].map(|i| rig.dynamics.rigid_motion(&rig.bodies[i]).mass);
+    plan.contact(pair("a.right", "b.left", penalty(&softer, size, scale)?, method))?;
+    plan.constrain("a", Motion::HeldY)?;
+    plan.constrain("b", Motion::HeldY)?;
+    let mut system = plan.build(1)?;
+    system.set_time_step_factor(0.9)?;
+    system.launch(a, [speed, 0.0], 0.0);
+    let before = [a, b].map(|body| system.motion_of(body).velocity[0]);
+    let mass = [a, b].map(|body| system.motion_of(body).mass);
     // Until the slowest wave has gone to and fro and back, and a soft spring has swung.
     let slowest = materials.iter().map(Elastic::dilatational_speed).fold(f64::INFINITY, f64::min);
     let swing = 4.0 * length / slowest * (1.0 + (0.03 / scale).sqrt() * 2.0);
     let swing = swing * if materials[0].density() == materials[1].density() { 1.0 } else { 3.0 };
-    let steps = ((swing + 0.02 * size / speed) / rig.dynamics.time_step()) as u64;
-    let (mut touched, dt) = (0_u64, rig.dynamics.time_step());
-    let stop = rig.run(steps, 5, |rig: &Rig, _| {
-        touched += 5 * u64::from(rig.contacts.resultants().any(|r| r.force != [0.0; 2]));
-    });
-    let after = [rig.velocity(a)[0], rig.velocity(b)[0]];
-    Ok(Collision { energy: rig.worst, stop, before, after, mass, time: touched as f64 * dt, steps })
+    let steps = ((swing + 0.02 * size / speed) / system.time_step()) as u64;
+    let (mut touched, dt) = (0_u64, system.time_step());
+    let findings = system.run(steps, 5, |system, _| touched += 5 * u64::from(touching(system)))?;
+    let (energy, stop) = (system.balance().largest_error, stop_reason(findings));
+    let after = [a, b].map(|body| system.motion_of(body).velocity[0]);
+    Ok(Collision { energy, stop, before, after, mass, time: touched as f64 * dt, steps })
 }
 
 pub(super) fn chapter() -> Result<Chapter> {

@@ -3,11 +3,12 @@
 use anyhow::{Context, Result};
 use stribeck_contact::{Law, Method};
 use stribeck_mesh::{Disc, Part};
-use stribeck_solver::{Behaviour, Force, Motion, state::NodeForces};
+use stribeck_solver::{Behaviour, Motion, rigid::RigidState};
+use stribeck_system::{Plan, Preload, System};
 
 use super::{Curve, Point, Problem, timed};
 use crate::Host;
-use crate::rig::{Plan, Rig, THICKNESS, penalty, rectangle, steel};
+use crate::rig::{THICKNESS, pair, penalty, rectangle, steel, touching};
 
 const G: f64 = 9.81;
 
@@ -17,29 +18,28 @@ const POINTS: Method = Method::Integrated { points: 4 };
 fn bars(cells: usize, method: Method, scale: f64, factor: f64) -> Result<(f64, f64)> {
     let (length, speed) = (0.05, 1.0);
     let size = length / cells as f64;
-    let mut plan = Plan::default();
-    let block = |x: f64| rectangle([x, 0.0], [length, 2.0 * size], [cells, 2]);
-    let a = plan.add(&block(-length)?);
-    let b = plan.add(&block(1e-9)?);
-    plan.touch((a, "right"), (b, "left"), penalty(&steel(), size, scale)?, method);
-    let mut model = plan.model(steel())?;
-    model.motion.fill(Motion::HeldY);
-    let mut rig = plan.lay_out(&model)?;
-    rig.set_step(factor)?;
-    rig.launch(a, [speed, 0.0]);
-    rig.launch(b, [-speed, 0.0]);
-    let steps = (3.0 * length / steel().dilatational_speed() / rig.dynamics.time_step()) as u64;
+    let mut plan = Plan::new(THICKNESS);
+    for (name, x) in [("a", -length), ("b", 1e-9)] {
+        plan.add(name, &rectangle([x, 0.0], [length, 2.0 * size], [cells, 2])?, steel())?;
+        plan.constrain(name, Motion::HeldY)?;
+    }
+    plan.contact(pair("a.right", "b.left", penalty(&steel(), size, scale)?, method))?;
+    let elements = plan.model.mesh.elements() as f64;
+    let mut system = plan.build(1)?;
+    system.set_time_step_factor(factor)?;
+    system.launch(system.body("a")?, [speed, 0.0], 0.0);
+    system.launch(system.body("b")?, [-speed, 0.0], 0.0);
+    let steps = (3.0 * length / steel().dilatational_speed() / system.time_step()) as u64;
     let (mut first, mut last) = (None, 0);
     for n in 0..steps {
-        rig.step();
-        if rig.contacts.resultants().any(|r| r.force != [0.0; 2]) {
+        system.step()?;
+        if touching(&system) {
             first = first.or(Some(n));
             last = n;
         }
     }
-    let touched = (last - first.context("the bars did not meet")?) as f64 * rig.dynamics.time_step();
-    let work = steps as f64 * model.mesh.elements() as f64;
-    Ok((work, (touched * steel().dilatational_speed() / (2.0 * length) - 1.0).abs()))
+    let touched = (last - first.context("the bars did not meet")?) as f64 * system.time_step();
+    Ok((steps as f64 * elements, (touched * steel().dilatational_speed() / (2.0 * length) - 1.0).abs()))
 }
 
 pub(super) fn bar_impact(host: &dyn Host) -> Result<Problem> {
@@ -93,32 +93,27 @@ fn pressed(columns: usize, method: Method, scale: f64, uniform: bool) -> Result<
     let modulus = 0.5 * steel().plane_strain_modulus();
     let line_load = std::f64::consts::PI * modulus * half_width * half_width / (4.0 * radius);
     let cell = if uniform { 1.0 } else { 0.2 } * 2.0 * height / columns as f64;
-    let mut plan = Plan::default();
-    let lower = plan.add(&graded(columns, false, uniform)?);
-    let upper = plan.add(&graded(columns, true, uniform)?);
-    let law = Law::penalty(scale * modulus / cell)?;
-    plan.touch((upper, "bottom"), (lower, "top"), law, method);
-    let mut model = plan.model(steel())?;
-    let row = columns + 1;
-    model.motion[..row].fill(Motion::Held);
-    let first = model.mesh.bodies[upper].nodes.start;
-    for n in (first + columns / 2..model.mesh.x.len()).step_by(row) {
-        model.motion[n] = Motion::HeldX;
+    let mut plan = Plan::new(THICKNESS);
+    let lower = plan.add("lower", &graded(columns, false, uniform)?, steel())?.body;
+    plan.add("upper", &graded(columns, true, uniform)?, steel())?;
+    plan.contact(pair("upper.bottom", "lower.top", Law::penalty(scale * modulus / cell)?, method))?;
+    plan.constrain("lower.bottom", Motion::Held)?;
+    // The middle column of the upper block stays on the axis of symmetry.
+    for n in plan.nodes("upper")?.into_iter().skip(columns / 2).step_by(columns + 1) {
+        plan.model.motion[n as usize] = Motion::HeldX;
     }
-    let mut rig = plan.lay_out(&model)?;
-    let top: Vec<u32> = ((model.mesh.x.len() - row) as u32..model.mesh.x.len() as u32).collect();
-    rig.push(&top, [0.0, -line_load * THICKNESS]);
-    rig.settle(1e-5 * line_load * THICKNESS)?;
-    let n = rig.dynamics.state.x.len();
-    let mut force = NodeForces::zeros(n);
-    rig.contacts.accumulate(rig.dynamics.moment(), &mut force);
+    plan.load("upper.top", [0.0, -line_load * THICKNESS])?;
+    let elements = plan.model.mesh.elements() as f64;
+    let mut system = plan.build(1)?;
+    system.settle(&Preload::default())?;
+    let force = system.contact_forces();
     let (mut sum, mut moment) = (0.0, 0.0);
-    for &s in &rig.bodies[lower] {
-        let (f, x) = (force.fy[s as usize], rig.dynamics.state.x[s as usize]);
+    for n in system.nodes_of(lower) {
+        let (f, x) = (force[n as usize][1], system.position(n)[0]);
         sum += f;
         moment += f * x * x;
     }
-    Ok((model.mesh.elements() as f64, (2.0 * (moment / sum).sqrt() / half_width - 1.0).abs()))
+    Ok((elements, (2.0 * (moment / sum).sqrt() / half_width - 1.0).abs()))
 }
 
 pub(super) fn hertz(host: &dyn Host) -> Result<Problem> {
@@ -153,16 +148,26 @@ pub(super) fn hertz(host: &dyn Host) -> Result<Problem> {
 }
 
 /// A rigid body on a fixed floor.
-fn on_floor(part: &Part, surface: &str, law: Law, method: Method) -> Result<(Rig, usize)> {
-    let mut plan = Plan::default();
-    let body = plan.add(part);
-    let floor = plan.add(&rectangle([-0.013, -1e-3], [0.05, 1e-3], [50, 1])?);
-    plan.touch((body, surface), (floor, "top"), law, method);
-    let mut model = plan.model(steel())?;
-    model.behaviour[body] = Behaviour::Rigid;
-    model.motion[model.mesh.bodies[floor].nodes.clone()].fill(Motion::Held);
-    model.gravity = [0.0, -G];
-    Ok((plan.lay_out(&model)?, body))
+fn on_floor(part: &Part, surface: &str, law: Law, method: Method) -> Result<(System, usize)> {
+    let mut plan = Plan::new(THICKNESS);
+    let body = plan.add("body", part, steel())?.body;
+    plan.add("floor", &rectangle([-0.013, -1e-3], [0.05, 1e-3], [50, 1])?, steel())?;
+    plan.contact(pair(&format!("body.{surface}"), "floor.top", law, method))?;
+    plan.constrain("floor", Motion::Held)?;
+    plan.model.behaviour[body] = Behaviour::Rigid;
+    plan.model.gravity = [0.0, -G];
+    Ok((plan.build(1)?, body))
+}
+
+fn place(system: &System, body: usize) -> Result<RigidState> {
+    system.rigid(body).copied().context("the body is rigid")
+}
+
+fn take(system: &mut System, steps: u64) -> Result<()> {
+    for _ in 0..steps {
+        system.step()?;
+    }
+    Ok(())
 }
 
 /// A disc is set down sliding; error of the speed at which it rolls in the end.
@@ -170,17 +175,15 @@ fn roll(facets: usize, method: Method, friction: f64) -> Result<(f64, f64)> {
     let (radius, speed) = (0.02, 0.15);
     let law = Law::penalty(1e13)?.with_friction(friction)?.with_damping(0.3, 10.0)?;
     let part = Disc { radius, facets, size: 3e-3, rotation: 0.0 }.part()?.translated(0.0, radius);
-    let (mut rig, body) = on_floor(&part, "rim", law, method)?;
-    rig.dynamics.set_time_step(1e-6)?;
-    rig.dynamics.launch_rigid(0, [speed, 0.0], 0.0);
-    let place = |rig: &Rig| rig.dynamics.rigid[0].centre[0];
-    (0..35_000).for_each(|_| rig.step());
-    let (from, t) = (place(&rig), rig.dynamics.state.time);
-    (0..20_000).for_each(|_| rig.step());
-    let rolled = (place(&rig) - from) / (rig.dynamics.state.time - t);
+    let (mut system, body) = on_floor(&part, "rim", law, method)?;
+    system.set_time_step(1e-6, None)?;
+    system.launch(body, [speed, 0.0], 0.0);
+    take(&mut system, 35_000)?;
+    let (from, t) = (place(&system, body)?.centre[0], system.time());
+    take(&mut system, 20_000)?;
+    let rolled = (place(&system, body)?.centre[0] - from) / (system.time() - t);
     // A step costs its contact points; nothing else is evaluated for a rigid body.
     let points = if let Method::Integrated { points } = method { points } else { 1 };
-    let _ = body;
     Ok((55_000.0 * (facets * points) as f64, (rolled / (2.0 / 3.0 * speed) - 1.0).abs()))
 }
 
@@ -216,18 +219,17 @@ fn stop(stiffness: f64, dt: f64, method: Method) -> Result<(f64, f64)> {
     let (speed, friction) = (0.05, 0.2);
     let law = Law::penalty(stiffness)?.with_friction(friction)?.with_damping(0.3, 20.0)?;
     let part = rectangle([0.0; 2], [0.01, 5e-3], [10, 5])?;
-    let (mut rig, _) = on_floor(&part, "bottom", law, method)?;
-    rig.dynamics.set_time_step(dt)?;
+    let (mut system, body) = on_floor(&part, "bottom", law, method)?;
+    system.set_time_step(dt, None)?;
     // It rests on the floor first.
     let steps = (0.005 / dt) as u64;
-    (0..steps).for_each(|_| rig.step());
-    let velocity = rig.dynamics.rigid[0].velocity;
-    rig.dynamics.launch_rigid(0, [speed, velocity[1]], rig.dynamics.rigid[0].spin);
-    let from = rig.dynamics.rigid[0].centre[0];
+    take(&mut system, steps)?;
+    let rest = place(&system, body)?;
+    system.launch(body, [speed, rest.velocity[1]], rest.spin);
     let time = 1.3 * speed / (friction * G);
     let sliding = (time / dt) as u64;
-    (0..sliding).for_each(|_| rig.step());
-    let way = rig.dynamics.rigid[0].centre[0] - from;
+    take(&mut system, sliding)?;
+    let way = place(&system, body)?.centre[0] - rest.centre[0];
     Ok(((steps + sliding) as f64, (way * 2.0 * friction * G / (speed * speed) - 1.0).abs()))
 }
 

@@ -84,8 +84,7 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
 ";
     assert_eq!(problem.to_string(), expected);
     // The command line was written after the file.
-    let folder = std::env::temp_dir().join(format!("stribeck-blame-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let folder = Scratch::create("blame");
     let path = folder.join("x.ron");
     std::fs::write(&path, Scene::default().to_ron()).expect("writable");
     for set in ["solver.duration_ms=0.0001", "output.interval_us=50000", "output=(interval_us: 50000)"] {
@@ -94,11 +93,10 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
         assert_eq!(problem.field, field, "{problem}");
         assert!(matches!(problem.place, Place::CommandLine { .. }), "{problem}");
     }
-    std::fs::remove_dir_all(&folder).expect("removable");
 }
 
 #[test]
-fn analytic_another_field_is_proposed_where_the_blamed_one_cannot_help() {
+fn example_another_field_is_proposed_where_the_blamed_one_cannot_help() {
     // Half the bearing with rollers of the same size: the number of rollers must change, no diameter can.
     let problem = only(parse(
         "(bearing: (outer_race_diameter_mm: 120, inner_race_diameter_mm: 83.96), cage: None, adapter: (width_mm: 90))",
@@ -109,7 +107,7 @@ fn analytic_another_field_is_proposed_where_the_blamed_one_cannot_help() {
 }
 
 #[test]
-fn analytic_a_second_sensor_of_one_name_gets_a_free_one() {
+fn example_a_second_sensor_of_one_name_gets_a_free_one() {
     let sensor = |name: &str| format!("(name: \"{name}\", angle_deg: 0)");
     let text = format!("(output: (sensors: [{}, {}, {}]))", sensor("a"), sensor("a_2"), sensor("a"));
     let problem = only(parse(&text));

@@ -48,7 +48,7 @@ fn issue_a_decimal_comma_is_recognised() {
 }
 
 #[test]
-fn analytic_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is() {
+fn example_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is() {
     for (text, allowed, proposed) in [
         ("(bearing: (rollers: 24.5))", "a whole number, 3 to 400", "rollers: 25"),
         ("(bearing: (rollers: -3))", "a whole number, 3 to 400", "rollers: 24"),
@@ -90,8 +90,7 @@ fn issue_allowed_fields_are_listed_once() {
 
 #[test]
 fn issue_a_file_that_cannot_be_read_is_not_answered_by_check_the_path() {
-    let folder = std::env::temp_dir().join(format!("stribeck-unreadable-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).expect("temporary folder");
+    let folder = Scratch::create("unreadable");
     let write = |name: &str, bytes: &[u8]| std::fs::write(folder.join(name), bytes).expect("writable");
     let refuse = |name: &str| only(Scene::read(folder.join(name))).to_string();
     write("quick.ron", b"()");
@@ -110,5 +109,4 @@ fn issue_a_file_that_cannot_be_read_is_not_answered_by_check_the_path() {
         let shown = refuse(name);
         assert!(shown.contains(message) && shown.contains(advice), "{name}\n{shown}");
     }
-    std::fs::remove_dir_all(&folder).expect("removable");
 }

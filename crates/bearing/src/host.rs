@@ -1,0 +1,40 @@
+//! What a run is told by the program around it, and what it tells back.
+
+/// What a library may not know by itself.
+pub struct Host<'a> {
+    /// Worker threads.
+    pub threads: usize,
+    /// Program version.
+    pub version: String,
+    /// Commit the program was built from.
+    pub commit: String,
+    /// Processor and operating system, in words.
+    pub machine: String,
+    /// Wall-clock time since some moment [s].
+    pub wall_s: &'a dyn Fn() -> f64,
+    /// Processor time of this process so far, all threads [s].
+    pub cpu_s: &'a dyn Fn() -> f64,
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress {
+    /// What is going on: `mesh`, `preload`, `run`.
+    pub phase: &'static str,
+    /// Steps taken.
+    pub step: u64,
+    /// Steps planned.
+    pub steps: u64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// Energy imbalance over the peak strain energy [-].
+    pub energy_error: f64,
+    /// Elements.
+    pub elements: usize,
+}
+
+impl Progress {
+    pub(crate) fn begin() -> Self {
+        Self { phase: "mesh", step: 0, steps: 0, time_s: 0.0, energy_error: 0.0, elements: 0 }
+    }
+}

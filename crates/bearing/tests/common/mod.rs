@@ -1,0 +1,30 @@
+//! Scenes and hosts that several test files share.
+#![allow(dead_code, reason = "each test file uses its own part of it")]
+
+use stribeck_bearing::simulation::Host;
+use stribeck_scene::scene::Scene;
+
+/// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.
+pub(crate) fn coarse(duration_ms: f64) -> Scene {
+    let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
+    scene.mesh.size_mm = 2.0;
+    scene.mesh.roller_facets = 88;
+    // The contact is as stiff as a layer of these elements: a smaller share of E/h would swallow the defect.
+    scene.bearing.thickness_mm = 20.0;
+    scene.contact.penalty_scale = 1.0;
+    scene.contact.points_per_facet = 4;
+    scene.solver.duration_ms = duration_ms;
+    scene
+}
+
+/// A program around the run whose clocks stand still.
+pub(crate) fn host(threads: usize) -> Host<'static> {
+    Host {
+        threads,
+        version: "test".into(),
+        commit: "test".into(),
+        machine: "test".into(),
+        wall_s: &|| 0.0,
+        cpu_s: &|| 0.0,
+    }
+}
