@@ -217,7 +217,7 @@ fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Opti
             match (comb.and_then(|c| c.tooth(at)), family) {
                 (_, Some(family)) => format!(
                     "the highest peak near it, {at:.0} Hz, belongs to the family of {}",
-                    family.name.replace('_', " ")
+                    family.spoken()
                 ),
                 (Some(multiple), None) => {
                     format!("the highest peak near it, {at:.0} Hz, is BPFO ×{multiple}")

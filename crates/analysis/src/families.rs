@@ -8,48 +8,31 @@
 //! Σ_j Q_j(t) [c₀ + Σ_q a_q cos 2qθ_j + b_q sin 2qθ_j] exp iΨ_j(t)          q = 1 … 3
 //! ```
 //!
-//! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart about the carrier, the mean
-//! rate of Ψ under load. All of Q, θ and Ψ are recorded, so only the complex weights are fitted, for each sensor and
-//! component and for the sums of the contact forces.
+//! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and Ψ are
+//! recorded, so only the seven complex weights are fitted, for each acceleration and for the force on each loaded roller.
 //!
-//! **The test.** In a band about the carrier, the fit explains the share R² of a channel. The score is the mean of
-//! −ln(1 − R² + 0.02) over the accelerations plus that over the forces. It is scanned over offsets of the carrier up to
-//! [`SCAN`] BPFO, and over detuned carriers 5 to 20 BPFO away, where the same comb meets what else the record
-//! holds: their median is the background and their scatter (1.4826 times the median deviation) the unit. A family is found when its score
-//! stands [`LEAST_SIGNIFICANCE`] units above the background, at a maximum within one resolution of the prediction. The family with the highest score is taken first and subtracted; the others must
-//! be found again in what is left, so that one line is not claimed twice (THEORY §7.7).
+//! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is the mean of
+//! −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within one resolution (one over the length
+//! of the record) of the recorded motion. Whatever else may explain the same channels is a *rival*: the same comb where it
+//! does not belong, 5 to 20 BPFO away, and the combs of the other families. A family is **found** when its score leads
+//! every rival by [`LEAST_LEAD`], and is highest where it belongs. Families that lead all detuned combs but not each other
+//! are **not told apart**. One that was found stays in the fit while the others are tried on what it leaves; there a comb
+//! must lead its own copies next to its place, too, because what a fit misses lies about the lines that it fits. Where the
+//! lead comes from, and how often noise reaches it: THEORY §7.7.
 
 mod comb;
 mod lines;
-
-use std::f64::consts::TAU;
+mod trial;
 
 use serde::{Deserialize, Serialize};
 
-use self::comb::{Comb, Complex, times, unit};
+use self::comb::Comb;
+use self::trial::{Channels, Trial};
 use crate::Error;
 
-/// Offsets of a carrier that are tried, in BPFO on either side: a comb that stands one spacing off fits well there, too, and
-/// must fit best where it belongs.
-pub const SCAN: f64 = 1.5;
-/// Steps of the scan in a resolution, within [`CLOSE`] resolutions and beyond.
-const STEPS: [f64; 2] = [10.0, 2.0];
-/// Half width of the part that is scanned in small steps, in resolutions.
-const CLOSE: f64 = 1.5;
-/// A family stands this many units above its background at least. Scores have longer tails than Gaussian ones: noise
-/// has reached 5.3 in 30 ms, the tone of the default scene stands at 17.
-pub const LEAST_SIGNIFICANCE: f64 = 8.0;
-/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
-/// the channel's noise.
-const LEAST_REST: f64 = 0.02;
-/// Scores closer than this are a tie, which the offsets decide.
-const TIE: f64 = 0.5;
-/// A family that explains less of the accelerations than this, once others are taken out, is too weak to be named.
-pub const LEAST_SHARE: f64 = 0.1;
-/// Detuned carriers that make the background, in BPFO on either side of the carrier.
-const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
-/// Two of them in a BPFO.
-const DETUNED_STEP: f64 = 0.5;
+/// The least lead of a score that counts: what a fit leaves of the channels is then 26 % less than what any rival leaves.
+/// On records that were not used to choose it, wrong combs lead by it in about one case of a hundred (docs/results/families.md).
+pub const LEAST_LEAD: f64 = 0.3;
 /// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
 /// Sidebands that are listed on either side of the carrier.
@@ -92,14 +75,14 @@ pub struct Motion {
     pub rollers: Vec<RollerTrack>,
 }
 
-/// One signal in which combs are sought.
+/// An acceleration in which combs are sought.
 #[derive(Debug, Clone)]
 pub struct Channel {
-    /// Sensor, or what carries the force.
+    /// Sensor.
     pub sensor: String,
-    /// Component, `ax` or `ay`; `fx` or `fy` of a force.
+    /// Component, `ax` or `ay`.
     pub component: String,
-    /// Samples [g or N].
+    /// Samples [g].
     pub values: Vec<f64>,
 }
 
@@ -117,28 +100,32 @@ pub struct Candidate {
 pub struct FamilyFinding {
     /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
     pub name: String,
-    /// Carrier by the fit [Hz]; `None` unless the family is found.
+    /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
     pub carrier_hz: Option<f64>,
-    /// Carrier by the recorded motion: the mean rate of the facets at the contacts, weighted by their load [Hz].
+    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at loaded contacts.
     pub predicted_hz: f64,
-    /// Carrier by the fit less the predicted one, in resolutions of the record; that of the best fit when the family is not
-    /// found, `None` when nothing was fitted.
+    /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is absent, that of the best
+    /// fit within 1.5 BPFO; `None` when it is not judged.
     pub offset_resolutions: Option<f64>,
     /// How far the single channels scatter about that offset (standard deviation), in resolutions.
     pub offset_scatter_resolutions: Option<f64>,
-    /// Verdict.
+    /// True when the record holds this family and no other explains its lines as well.
     pub found: bool,
-    /// How far the score stands above that of detuned combs, in units of their scatter.
-    pub significance: Option<f64>,
-    /// Share of the accelerations in the band that the comb explains, mean over sensors and components.
+    /// Families that explain the same lines as well: at least one of them and this one is there, and the record does not
+    /// tell which.
+    pub not_told_apart_from: Vec<String>,
+    /// How far the score leads that of the best rival; negative when a rival explains more.
+    pub lead: Option<f64>,
+    /// Share of the accelerations in the band that the comb explains, mean over sensors and components; of what is left of
+    /// them once families that were found earlier are in the fit.
     pub explained: Option<f64>,
-    /// The same of the contact forces.
+    /// The same of the forces on the loaded rollers.
     pub explained_forces: Option<f64>,
-    /// Largest peak amplitude of its lines [g]; `None` unless it is found.
+    /// Largest peak amplitude of its lines [g]; `None` when there is no carrier or no line stands out.
     pub level_g: Option<f64>,
     /// The verdict in words.
     pub verdict: String,
-    /// Carrier and sidebands at every sensor and component; empty unless it is found.
+    /// Carrier and sidebands at every sensor and component; empty without a carrier.
     pub lines: Vec<FamilyLine>,
 }
 
@@ -159,7 +146,7 @@ pub struct FamilyLine {
     pub component: String,
 }
 
-/// Judges every candidate by the accelerations and the contact forces of one record, all channels as long as the tracks.
+/// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers.
 ///
 /// # Errors
 /// [`Error::Signal`] when the spectrum of a finite channel is refused.
@@ -167,44 +154,179 @@ pub fn identify(
     motion: &Motion,
     candidates: &[Candidate],
     accelerations: &[Channel],
-    forces: &[Channel],
 ) -> Result<Vec<FamilyFinding>, Error> {
-    let combs: Vec<Option<Comb>> = candidates.iter().map(|c| Comb::of(motion, c.source)).collect();
-    let mut findings: Vec<FamilyFinding> =
-        candidates.iter().zip(&combs).map(|(c, comb)| FamilyFinding::untested(c, comb.as_ref())).collect();
-    if accelerations.is_empty() || motion.periods() < LEAST_PERIODS {
-        for finding in &mut findings {
-            finding.verdict = format!(
-                "not judged: the record holds {:.1} periods of BPFO, a comb needs {LEAST_PERIODS}",
-                motion.periods()
-            );
-        }
-        return Ok(findings);
+    let mut cases: Vec<Case> = candidates.iter().map(|candidate| Case::of(motion, candidate)).collect();
+    if !accelerations.is_empty() && motion.periods() >= LEAST_PERIODS {
+        judge(motion, accelerations, &mut cases);
     }
-    let mut left = Signals::of(accelerations, forces);
-    let mut open: Vec<usize> = (0..candidates.len()).filter(|&n| combs[n].is_some()).collect();
-    let mut taken: Option<String> = None;
-    while !open.is_empty() {
-        let trials: Vec<(usize, Trial)> =
-            open.iter().filter_map(|&n| Some((n, left.try_comb(motion, combs[n].as_ref()?)))).collect();
-        // Where a comb that stands off its place explains more, the lines are not those of one that happens to stand.
-        let highest = trials.iter().map(|(_, trial)| trial.score).fold(0.0, f64::max);
-        let best = trials
+    (0..cases.len()).map(|n| finding(motion, accelerations, &cases, n)).collect()
+}
+
+/// A candidate on trial.
+struct Case<'a> {
+    name: &'a str,
+    /// `None` when nothing of it can be heard.
+    comb: Option<Comb>,
+    /// The last trial and how far it leads.
+    trial: Option<(Trial, f64)>,
+    verdict: Verdict,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Verdict {
+    Open,
+    Found,
+    /// Another case explains the same lines.
+    Confused(Vec<usize>),
+}
+
+impl<'a> Case<'a> {
+    fn of(motion: &Motion, candidate: &'a Candidate) -> Self {
+        let comb = Comb::of(motion, candidate.source);
+        Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
+    }
+
+    /// Its name in running text.
+    fn spoken(&self) -> String {
+        self.name.replace('_', " ")
+    }
+}
+
+/// Tries all cases, accepts the best that stands, and tries the others on what it leaves, until none stands.
+fn judge(motion: &Motion, accelerations: &[Channel], cases: &mut [Case<'_>]) {
+    let Some(channels) = Channels::of(motion, accelerations, cases.iter().filter_map(|c| c.comb.as_ref()))
+    else {
+        return;
+    };
+    // The case that was accepted last, and those that explained as much before it was.
+    let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
+    loop {
+        let in_fit: Vec<(&Comb, f64)> = cases
             .iter()
-            .filter(|(_, trial)| trial.stands() && trial.score >= highest - TIE)
-            .max_by(|a, b| a.1.merit().total_cmp(&b.1.merit()))
-            .map(|(n, trial)| (*n, trial.offset_hz));
-        for (n, trial) in &trials {
-            findings[*n].judge(trial, motion, taken.as_deref());
+            .filter(|c| c.verdict != Verdict::Open)
+            .filter_map(|c| Some((c.comb.as_ref()?, c.trial.as_ref()?.0.offset_hz)))
+            .collect();
+        let mut trials: Vec<(usize, Trial)> = Vec::new();
+        for (n, case) in cases.iter().enumerate().filter(|(_, c)| c.verdict == Verdict::Open) {
+            trials.extend(case.comb.as_ref().map(|comb| (n, channels.try_comb(motion, comb, &in_fit))));
         }
-        let Some((n, offset_hz)) = best else { break };
-        let Some(comb) = combs[n].as_ref() else { break };
-        left.subtract(motion, comb, offset_hz);
-        findings[n].accept(motion, accelerations)?;
-        taken = Some(findings[n].name.clone());
-        open.retain(|&other| other != n);
+        if let Some((accepted, ties)) = last.take() {
+            for (n, alone) in ties {
+                // What adds nothing to the accepted comb, and explains as much without it, may be the one that is there.
+                if trials.iter().any(|(other, trial)| *other == n && !trial.stands()) {
+                    trials.retain(|(other, _)| *other != n);
+                    confuse(cases, accepted, n, alone);
+                }
+            }
+        }
+        for (n, trial) in &trials {
+            cases[*n].trial = Some((trial.clone(), trial.lead()));
+        }
+        let standing = trials.iter().filter(|(_, trial)| trial.stands());
+        let Some((n, best)) = standing.max_by(|a, b| a.1.score.total_cmp(&b.1.score)).cloned() else { break };
+        let others: Vec<(usize, Trial)> = trials.into_iter().filter(|(other, _)| *other != n).collect();
+        let lead = others.iter().map(|(_, trial)| best.score - trial.score).fold(best.lead(), f64::min);
+        let ties = others.into_iter().filter(|(_, trial)| best.score - trial.score < LEAST_LEAD).collect();
+        cases[n].verdict = Verdict::Found;
+        cases[n].trial = Some((best, lead));
+        last = Some((n, ties));
     }
-    Ok(findings)
+}
+
+/// Takes down that case `n`, which as `alone` explains as much as the accepted one, is not told apart from it.
+fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
+    let lead = alone.score - cases[accepted].trial.as_ref().map_or(0.0, |(trial, _)| trial.score);
+    cases[n].trial = Some((alone, lead));
+    for (one, other) in [(accepted, n), (n, accepted)] {
+        match &mut cases[one].verdict {
+            Verdict::Confused(others) => others.push(other),
+            verdict => *verdict = Verdict::Confused(vec![other]),
+        }
+    }
+}
+
+/// What is said of case `n`.
+fn finding(
+    motion: &Motion,
+    accelerations: &[Channel],
+    cases: &[Case<'_>],
+    n: usize,
+) -> Result<FamilyFinding, Error> {
+    let case = &cases[n];
+    let predicted_hz = case.comb.as_ref().map_or(0.0, |comb| comb.line_hz);
+    let mut finding = FamilyFinding {
+        name: case.name.to_owned(),
+        carrier_hz: None,
+        predicted_hz,
+        offset_resolutions: None,
+        offset_scatter_resolutions: None,
+        found: case.verdict == Verdict::Found,
+        not_told_apart_from: Vec::new(),
+        lead: None,
+        explained: None,
+        explained_forces: None,
+        level_g: None,
+        verdict: not_judged(motion, case),
+        lines: Vec::new(),
+    };
+    let Some((trial, lead)) = &case.trial else { return Ok(finding) };
+    let resolution_hz = motion.resolution_hz();
+    let there = case.verdict != Verdict::Open;
+    let offset_hz = if there { trial.offset_hz } else { trial.highest_hz };
+    finding.offset_resolutions = Some(offset_hz / resolution_hz);
+    finding.offset_scatter_resolutions = Some(trial.scatter_hz / resolution_hz);
+    finding.lead = Some(*lead);
+    finding.explained = Some(trial.explained);
+    finding.explained_forces = Some(trial.explained_forces);
+    if there {
+        let carrier_hz = predicted_hz + offset_hz;
+        finding.carrier_hz = Some(carrier_hz);
+        finding.lines = lines::read(accelerations, 1.0 / motion.interval_s, carrier_hz, motion.bpfo_hz)?;
+        finding.level_g = finding.lines.iter().filter_map(|l| l.level_g).max_by(f64::total_cmp);
+    }
+    finding.verdict = match &case.verdict {
+        Verdict::Found => format!(
+            "found: its comb explains {:.0} % of the accelerations and {:.0} % of the roller forces about it",
+            100.0 * trial.explained,
+            100.0 * trial.explained_forces
+        ),
+        Verdict::Confused(others) => {
+            let names: Vec<String> = others.iter().map(|&other| cases[other].spoken()).collect();
+            finding.not_told_apart_from = others.iter().map(|&other| cases[other].name.to_owned()).collect();
+            format!(
+                "not told apart from {}: a comb is there, and this record does not say whose",
+                names.join(" and ")
+            )
+        }
+        Verdict::Open => {
+            let found: Vec<String> =
+                cases.iter().filter(|c| c.verdict != Verdict::Open).map(Case::spoken).collect();
+            let beside =
+                if found.is_empty() { String::new() } else { format!(" beside {}", found.join(" and ")) };
+            format!(
+                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}, no more than a comb \
+                 of any other place",
+                100.0 * trial.explained,
+                100.0 * trial.explained_forces
+            )
+        }
+    };
+    Ok(finding)
+}
+
+/// Why a case has no verdict.
+fn not_judged(motion: &Motion, case: &Case<'_>) -> String {
+    if motion.periods() < LEAST_PERIODS {
+        return format!(
+            "not judged: the record holds {:.1} periods of BPFO, a comb needs {LEAST_PERIODS}",
+            motion.periods()
+        );
+    }
+    let why = match case.comb {
+        None => "no roller is loaded on record, or the sampling is too slow for its lines",
+        Some(_) => "no sensor is on record",
+    };
+    format!("not judged: {why}")
 }
 
 impl Motion {
@@ -236,224 +358,20 @@ impl Source {
     }
 }
 
-/// A comb tried on what is left of the signals.
-struct Trial {
-    /// Offset of the best fit [Hz].
-    offset_hz: f64,
-    resolution_hz: f64,
-    /// Standard deviation of the single channels' best offsets [Hz].
-    scatter_hz: f64,
-    score: f64,
-    significance: f64,
-    explained: f64,
-    explained_forces: Option<f64>,
-    /// Share of the accelerations in the band that earlier families have left, mean over the channels.
-    left: f64,
-}
-
-impl Trial {
-    /// A maximum within one resolution that stands above the background and is worth a name.
-    fn stands(&self) -> bool {
-        self.significance >= LEAST_SIGNIFICANCE
-            && self.offset_hz.abs() <= self.resolution_hz
-            && self.explained * self.left >= LEAST_SHARE
-    }
-
-    /// What decides between families that both stand: the score, less half the square of the offset in resolutions. The
-    /// motion is recorded, so an offset needs an excuse.
-    fn merit(&self) -> f64 {
-        self.score - 0.5 * (self.offset_hz / self.resolution_hz).powi(2)
-    }
-}
-
-/// Channels with their mean taken out; forces behind accelerations.
-struct Signals {
-    values: Vec<Vec<f64>>,
-    /// As they were before anything was subtracted.
-    whole: Vec<Vec<f64>>,
-    accelerations: usize,
-}
-
-impl Signals {
-    fn of(accelerations: &[Channel], forces: &[Channel]) -> Self {
-        let centred = |channel: &Channel| {
-            let mean = channel.values.iter().sum::<f64>() / channel.values.len().max(1) as f64;
-            channel.values.iter().map(|v| v - mean).collect()
-        };
-        let values: Vec<Vec<f64>> = accelerations.iter().chain(forces).map(centred).collect();
-        Self { whole: values.clone(), values, accelerations: accelerations.len() }
-    }
-
-    /// Power of the accelerations in a comb's band over what it was at first, mean over the channels.
-    fn left(&self, motion: &Motion, comb: &Comb) -> f64 {
-        let ratio = |(now, then): (&Vec<f64>, &Vec<f64>)| {
-            let then = comb.power(then, motion.interval_s);
-            if then > 0.0 { comb.power(now, motion.interval_s) / then } else { 0.0 }
-        };
-        let pairs = self.values.iter().zip(&self.whole).take(self.accelerations);
-        pairs.map(ratio).sum::<f64>() / self.accelerations.max(1) as f64
-    }
-
-    fn try_comb(&self, motion: &Motion, comb: &Comb) -> Trial {
-        let resolution_hz = motion.resolution_hz();
-        let shares = |offset: f64| -> Vec<f64> {
-            self.values.iter().map(|v| comb.explained(v, motion.interval_s, offset)).collect()
-        };
-        let near: Vec<(f64, Vec<f64>)> =
-            scan(motion).into_iter().map(|offset| (offset, shares(offset))).collect();
-        let limit_hz = 0.5 / motion.interval_s;
-        let inside = |offset: &f64| {
-            let carrier = comb.carrier_hz + offset;
-            carrier > comb.half_band_hz && carrier < limit_hz - comb.half_band_hz
-        };
-        let mut far: Vec<f64> = DETUNED
-            .flat_map(|n| [-n, n])
-            .map(|n| f64::from(n) * DETUNED_STEP * motion.bpfo_hz)
-            .filter(inside)
-            .map(|offset| self.score(&shares(offset)))
-            .collect();
-        let background = median(&mut far);
-        let mut deviations: Vec<f64> = far.iter().map(|s| (s - background).abs()).collect();
-        let unit = (1.4826 * median(&mut deviations)).max(f64::EPSILON);
-        let scored: Vec<f64> = near.iter().map(|(_, shares)| self.score(shares)).collect();
-        let best = (0..near.len()).max_by(|&a, &b| scored[a].total_cmp(&scored[b])).unwrap_or(0);
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len().max(1) as f64;
-        let (accelerations, forces) = near[best].1.split_at(self.accelerations);
-        let single = (0..self.values.len()).map(|channel| {
-            let highest = near.iter().max_by(|a, b| a.1[channel].total_cmp(&b.1[channel]));
-            highest.map_or(0.0, |(offset, _)| offset - near[best].0)
-        });
-        let squares: f64 = single.map(|off| off * off).sum();
-        Trial {
-            offset_hz: near[best].0,
-            resolution_hz,
-            scatter_hz: (squares / self.values.len() as f64).sqrt(),
-            score: scored[best],
-            // Without a background there is nothing to stand above.
-            significance: if far.is_empty() { 0.0 } else { (scored[best] - background) / unit },
-            explained: mean(accelerations),
-            left: self.left(motion, comb),
-            explained_forces: (!forces.is_empty()).then(|| mean(forces)),
-        }
-    }
-
-    /// Mean of −ln(1 − R² + [`LEAST_REST`]) over the accelerations plus that over the forces.
-    fn score(&self, shares: &[f64]) -> f64 {
-        let (accelerations, forces) = shares.split_at(self.accelerations);
-        let mean = |part: &[f64]| {
-            part.iter().map(|r2| -(1.0 - r2 + LEAST_REST).ln()).sum::<f64>() / part.len().max(1) as f64
-        };
-        mean(accelerations) + mean(forces)
-    }
-
-    /// Takes the fitted comb out of every channel.
-    fn subtract(&mut self, motion: &Motion, comb: &Comb, offset_hz: f64) {
-        for values in &mut self.values {
-            let weights = comb.weights(values, motion.interval_s, offset_hz);
-            let mut turn: Complex = (1.0, 0.0);
-            let step = unit(TAU * (comb.carrier_hz + offset_hz) * motion.interval_s);
-            for (n, value) in values.iter_mut().enumerate() {
-                let sum = comb.sum(&weights, n);
-                // A real signal is the comb and its mirror image.
-                *value -= 2.0 * times(sum, turn).0;
-                turn = times(turn, step);
-            }
-        }
-    }
-}
-
 impl FamilyFinding {
-    /// Whether a family that was found has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz` included.
+    /// Whether a family that is there has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz` included.
     pub fn claims(&self, hz: f64, bpfo_hz: Option<f64>, reach_hz: f64) -> bool {
         let Some(carrier_hz) = self.carrier_hz else { return false };
         let off = hz - carrier_hz;
         (-SIDEBANDS..=SIDEBANDS).any(|m| (off - f64::from(m) * bpfo_hz.unwrap_or(0.0)).abs() <= reach_hz)
     }
 
-    fn untested(candidate: &Candidate, comb: Option<&Comb>) -> Self {
-        Self {
-            name: candidate.name.clone(),
-            carrier_hz: None,
-            predicted_hz: comb.map_or(0.0, |c| c.carrier_hz),
-            offset_resolutions: None,
-            offset_scatter_resolutions: None,
-            found: false,
-            significance: None,
-            explained: None,
-            explained_forces: None,
-            level_g: None,
-            verdict: "not judged: no roller is loaded on record, or the sampling is too slow for its lines"
-                .into(),
-            lines: Vec::new(),
-        }
+    /// Its name in running text, with those that are not told apart from it.
+    pub fn spoken(&self) -> String {
+        let names: Vec<String> =
+            [&self.name].into_iter().chain(&self.not_told_apart_from).map(|n| n.replace('_', " ")).collect();
+        names.join(" or ")
     }
-
-    /// Writes down what a trial says; `taken` has been subtracted before it.
-    fn judge(&mut self, trial: &Trial, motion: &Motion, taken: Option<&str>) {
-        let offset = trial.offset_hz / motion.resolution_hz();
-        self.offset_resolutions = Some(offset);
-        self.offset_scatter_resolutions = Some(trial.scatter_hz / motion.resolution_hz());
-        self.significance = Some(trial.significance);
-        self.explained = Some(trial.explained);
-        self.explained_forces = trial.explained_forces;
-        let after =
-            taken.map_or(String::new(), |name| format!(" once {} are taken out", name.replace('_', " ")));
-        self.verdict = if trial.significance < LEAST_SIGNIFICANCE {
-            format!(
-                "absent{after}: its comb explains the record {:.1} units better than a detuned one, {LEAST_SIGNIFICANCE:.0} count",
-                trial.significance
-            )
-        } else if trial.stands() {
-            "found".into()
-        } else if trial.offset_hz.abs() <= trial.resolution_hz && trial.explained * trial.left >= LEAST_SHARE
-        {
-            format!("not told apart{after}: a comb off its place explains the lines better")
-        } else if trial.offset_hz.abs() <= trial.resolution_hz {
-            format!(
-                "absent{after}: its comb explains {:.1} % of the accelerations, {:.0} % count",
-                100.0 * trial.explained * trial.left,
-                100.0 * LEAST_SHARE
-            )
-        } else {
-            format!(
-                "absent{after}: the lines near it fit best {offset:+.1} resolutions away, and one is allowed"
-            )
-            .replace('-', "−")
-        };
-    }
-
-    fn accept(&mut self, motion: &Motion, accelerations: &[Channel]) -> Result<(), Error> {
-        self.found = true;
-        let carrier_hz = self.predicted_hz + self.offset_resolutions.unwrap_or(0.0) * motion.resolution_hz();
-        self.carrier_hz = Some(carrier_hz);
-        self.lines = lines::read(accelerations, 1.0 / motion.interval_s, carrier_hz, motion.bpfo_hz)?;
-        self.level_g = self.lines.iter().filter_map(|l| l.level_g).max_by(f64::total_cmp);
-        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-        self.verdict = format!(
-            "found: the comb explains {} of the accelerations{} about it",
-            self.explained.map_or_else(String::new, percent),
-            self.explained_forces
-                .map_or_else(String::new, |f| format!(" and {} of the contact forces", percent(f)))
-        );
-        Ok(())
-    }
-}
-
-/// Offsets of the scan [Hz], ascending.
-fn scan(motion: &Motion) -> Vec<f64> {
-    let resolution_hz = motion.resolution_hz();
-    let [small, large] = STEPS.map(|steps| resolution_hz / steps);
-    let close = (CLOSE * STEPS[0]).round() as i32;
-    let wide = (SCAN * motion.bpfo_hz / large).ceil() as i32;
-    let beyond = |n: &i32| f64::from(n.abs()) * large > CLOSE * resolution_hz + 0.5 * small;
-    let far = (-wide..=wide).filter(beyond).map(|n| f64::from(n) * large);
-    let mut offsets: Vec<f64> = (-close..=close).map(|n| f64::from(n) * small).chain(far).collect();
-    offsets.sort_unstable_by(f64::total_cmp);
-    offsets
-}
-
-fn median(values: &mut [f64]) -> f64 {
-    crate::events::median(values)
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use self::passages::{crossing_forces, level_finding, picked_events, start_up_end
 use crate::Error;
 use crate::artefacts;
 use crate::enveloping;
-use crate::families::{self, Channel, FamilyFinding, Motion, RollerTrack};
+use crate::families::{self, Channel, Motion, RollerTrack};
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
 use crate::load::{self, Distribution};
@@ -20,6 +20,7 @@ use crate::prediction::{Prediction, StaticCurve};
 use crate::reading::CursorReading;
 use crate::record::{Record, Roller};
 use crate::ring;
+use crate::rolling;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones::{self, Tone};
 
@@ -59,6 +60,8 @@ pub struct Findings {
     pub envelope: Option<Spectrum>,
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
+    /// What the families of facet lines were judged by: recorded motion and accelerations [g].
+    pub heard: (Motion, Vec<Channel>),
 }
 
 /// a_y of one sensor [g] and its spectra [g²/Hz].
@@ -130,7 +133,9 @@ impl Findings {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
-        let families = families(run, &record, &prediction, &motion, &sensors)?;
+        let (tracks, channels) = heard(&record, &prediction, &motion, &sensors);
+        let candidates = prediction.candidates(&run.scene, &run.info.mesh);
+        let families = families::identify(&tracks, &candidates, &channels)?;
         let filter = filter(&record, &prediction, &sensors, &measured, &mut notes)?;
         if let Some(filter) = &filter {
             filter_sensors(filter, &record, &mut sensors)?;
@@ -152,6 +157,9 @@ impl Findings {
         load.static_max_roller_n = static_curve.as_ref().map(|c| c.largest_sound_n);
         load.static_max_roller_defect_n = static_curve.as_ref().map(|c| c.largest_n);
         load.static_loaded_rollers = static_curve.as_ref().map(|c| c.loaded_rollers);
+        let least = |curve| rolling::least_support_n(&run.scene, curve, load.expected_n);
+        load.least_rolling_n = static_curve.as_ref().and_then(least);
+        notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let span = time.last().copied().unwrap_or(0.0);
         let artefacts = match sensors.first().zip(spectrum) {
             Some((sensor, density)) => {
@@ -205,6 +213,7 @@ impl Findings {
             distribution: load::distribution(&record),
             envelope,
             static_curve,
+            heard: (tracks, channels),
             prediction,
         })
     }
@@ -273,45 +282,29 @@ fn sensor_signals(
     Ok(signals)
 }
 
-/// Which polygon makes the lines: combs fitted to the recorded motion, over all sensors and the contact forces.
-fn families(
-    run: &Run,
+/// Motion and accelerations of a record, as its families of facet lines are judged by them.
+fn heard(
     record: &Record<'_>,
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
-) -> Result<Vec<FamilyFinding>, Error> {
-    let rollers = record.rollers();
+) -> (Motion, Vec<Channel>) {
     let track =
         |r: &Roller<'_>| RollerTrack { orbit: r.orbit(), spin: r.spin.to_vec(), load_n: r.outer_normal() };
     let tracks = Motion {
         interval_s: record.interval_s(),
         shaft_rad_s: prediction.kinematics.shaft_rad_s,
         bpfo_hz: motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz),
-        rollers: rollers.iter().map(track).collect(),
+        rollers: record.rollers().iter().map(track).collect(),
     };
-    let channel = |sensor: &str, component: &str, values: Vec<f64>| Channel {
-        sensor: sensor.to_owned(),
-        component: component.to_owned(),
-        values,
-    };
-    let mut accelerations = Vec::new();
-    for sensor in sensors.iter().filter(|s| !s.raw_g.is_empty()) {
-        accelerations.push(channel(&sensor.name, "ay", sensor.raw_g.clone()));
-        if !sensor.across_g.is_empty() {
-            accelerations.push(channel(&sensor.name, "ax", sensor.across_g.clone()));
-        }
-    }
-    let sum = |of: fn(&Roller<'_>, usize) -> f64| -> Vec<f64> {
-        (0..record.len()).map(|n| rollers.iter().map(|r| of(r, n)).sum()).collect()
-    };
-    let forces = vec![
-        channel("outer raceway", "fx", sum(|r, n| r.outer_fx[n])),
-        channel("outer raceway", "fy", sum(|r, n| r.outer_fy[n])),
-        channel("inner raceway", "fx", sum(|r, n| r.inner_fx[n])),
-        channel("inner raceway", "fy", sum(|r, n| r.inner_fy[n])),
-    ];
-    families::identify(&tracks, &prediction.candidates(&run.scene, &run.info.mesh), &accelerations, &forces)
+    let channels = sensors.iter().flat_map(|sensor| {
+        [("ay", &sensor.raw_g), ("ax", &sensor.across_g)].map(|(component, values)| Channel {
+            sensor: sensor.name.clone(),
+            component: component.to_owned(),
+            values: values.clone(),
+        })
+    });
+    (tracks, channels.filter(|channel| !channel.values.is_empty()).collect())
 }
 
 /// Every line at every sensor.

@@ -20,7 +20,7 @@
 //! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
-//! | Who carries how much, how fast does what turn? | [`load`], [`kinematics`], [`stress`] |
+//! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | What does all of it come to? | [`findings`], [`summary`], [`paper`], [`report`], [`plot`] |
 //!
 //! # A measured gearbox
@@ -65,6 +65,7 @@ pub mod noise;
 pub mod plan;
 pub mod reading;
 pub mod ring;
+pub mod rolling;
 pub mod signal;
 pub mod spall;
 pub mod tones;

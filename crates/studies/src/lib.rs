@@ -11,6 +11,7 @@
 pub mod integrators;
 pub mod reference;
 
+mod families;
 mod host;
 mod impulse;
 mod kills;
@@ -47,6 +48,8 @@ pub enum Study {
     WorkPrecision(work_precision::Options),
     /// Where contact noise comes from and what each cure takes away
     Noise(noise::Options),
+    /// Whether the family of lines of any facet count is named rightly, and false ones are not
+    Families(families::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -64,6 +67,7 @@ impl Study {
             Self::Stability(options) => stability::run(options, host),
             Self::WorkPrecision(options) => work_precision::run(options, host),
             Self::Noise(options) => noise::run(options, host),
+            Self::Families(options) => families::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }

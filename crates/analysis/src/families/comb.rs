@@ -1,4 +1,4 @@
-//! The comb of one family at baseband: what it is made of, and how much of a signal it explains.
+//! The comb of one family at baseband: what it is made of, and where its carrier stands.
 
 use std::f64::consts::TAU;
 
@@ -15,18 +15,16 @@ const HALF_BAND: f64 = 8.0;
 const OVERLAP: usize = 4;
 /// Columns shorter than this part of the longest, after what they share with the others is taken off, carry nothing new.
 const INDEPENDENT: f64 = 1e-6;
+/// Steps in a resolution in which the carrier is sought.
+const CARRIER_STEPS: f64 = 20.0;
 
-/// Columns of a family, turned back by the carrier.
+/// Columns of a family, turned back by the mean rate of its facets.
 pub(super) struct Comb {
-    /// Mean rate of the facets, weighted by load [Hz].
-    pub(super) carrier_hz: f64,
-    /// Half width of the band in which signals are looked at [Hz].
-    pub(super) half_band_hz: f64,
+    /// Mean rate of the facets at loaded contacts [Hz].
+    pub(super) rate_hz: f64,
+    /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the mean rate.
+    pub(super) line_hz: f64,
     columns: Vec<Vec<Complex>>,
-    filter: LowPass,
-    /// Orthonormal columns of the band signals, and the columns that they are made of.
-    basis: Vec<Vec<Complex>>,
-    band: Vec<Vec<Complex>>,
 }
 
 impl Comb {
@@ -35,18 +33,16 @@ impl Comb {
     pub(super) fn of(motion: &Motion, source: Source) -> Option<Self> {
         let samples = motion.samples();
         let dt = motion.interval_s;
-        let half_band_hz = HALF_BAND * motion.bpfo_hz;
-        let filter = LowPass::new(half_band_hz, dt, samples)?;
         let phases: Vec<Vec<f64>> = motion
             .rollers
             .iter()
             .map(|roller| (0..samples).map(|n| source.phase(motion, roller, n)).collect())
             .collect();
-        let carrier_hz = carrier(motion, &phases)?;
-        if carrier_hz - half_band_hz <= 0.0 || carrier_hz + half_band_hz >= 0.5 / dt {
+        let rate_hz = mean_rate_hz(motion, &phases)?;
+        if !Band::new(motion, rate_hz).fits(motion) {
             return None;
         }
-        let width = (1.0 / (carrier_hz * dt)).round().max(1.0) as usize;
+        let width = (1.0 / (rate_hz * dt)).round().max(1.0) as usize;
         let loads: Vec<Vec<f64>> = motion.rollers.iter().map(|r| smoothed(&r.load_n, width)).collect();
         let largest = loads.iter().flatten().copied().fold(0.0, f64::max);
         if largest <= 0.0 {
@@ -55,12 +51,9 @@ impl Comb {
         let count = 1 + 2 * ORDERS as usize;
         let mut columns = vec![vec![(0.0, 0.0); samples]; count];
         for ((roller, phase), load) in motion.rollers.iter().zip(&phases).zip(&loads) {
-            for n in 0..samples {
+            for n in (0..samples).filter(|&n| load[n] > 0.0) {
                 let weight = load[n] / largest;
-                if weight <= 0.0 {
-                    continue;
-                }
-                let turned = unit(phase[n] - TAU * carrier_hz * dt * n as f64);
+                let turned = unit(phase[n] - TAU * rate_hz * dt * n as f64);
                 let mut add = |column: usize, by: f64| {
                     let sum = &mut columns[column][n];
                     *sum = (sum.0 + by * turned.0, sum.1 + by * turned.1);
@@ -73,59 +66,81 @@ impl Comb {
                 }
             }
         }
-        let band: Vec<Vec<Complex>> = columns.iter().map(|c| filter.apply(|n| c[n])).collect();
-        let basis = orthonormal(&band);
-        Some(Self { carrier_hz, half_band_hz, columns, filter, basis, band })
-    }
-
-    /// Share R² of `signal` in the band about the carrier and `offset_hz` that the columns explain, 0 to 1.
-    pub(super) fn explained(&self, signal: &[f64], interval_s: f64, offset_hz: f64) -> f64 {
-        let seen = self.to_band(signal, interval_s, offset_hz);
-        let total = dot(&seen, &seen).0;
-        if total <= 0.0 {
-            return 0.0;
-        }
-        let explained: f64 = self.basis.iter().map(|q| dot(q, &seen)).map(|c| c.0 * c.0 + c.1 * c.1).sum();
-        (explained / total).min(1.0)
-    }
-
-    /// Power of a signal in the band about the carrier, in any unit.
-    pub(super) fn power(&self, signal: &[f64], interval_s: f64) -> f64 {
-        let seen = self.to_band(signal, interval_s, 0.0);
-        dot(&seen, &seen).0
-    }
-
-    /// Weights of the columns that explain `signal` best.
-    pub(super) fn weights(&self, signal: &[f64], interval_s: f64, offset_hz: f64) -> Vec<Complex> {
-        let seen = self.to_band(signal, interval_s, offset_hz);
-        least_squares(&self.band, &seen)
-    }
-
-    /// Weighted sum of the columns at sample `n`.
-    pub(super) fn sum(&self, weights: &[Complex], n: usize) -> Complex {
-        weights.iter().zip(&self.columns).fold((0.0, 0.0), |sum, (w, c)| {
-            let term = times(*w, c[n]);
-            (sum.0 + term.0, sum.1 + term.1)
-        })
-    }
-
-    fn to_band(&self, signal: &[f64], interval_s: f64, offset_hz: f64) -> Vec<Complex> {
-        let step = unit(-TAU * (self.carrier_hz + offset_hz) * interval_s);
-        let mut turn: Complex = (1.0, 0.0);
-        let mixed: Vec<Complex> = signal
-            .iter()
-            .map(|v| {
-                let mixed = (v * turn.0, v * turn.1);
-                turn = times(turn, step);
-                mixed
-            })
-            .collect();
-        self.filter.apply(|n| mixed[n])
+        let line_hz = rate_hz + strongest_hz(&columns[0], motion);
+        Some(Self { rate_hz, line_hz, columns })
     }
 }
 
+/// A band of [`HALF_BAND`] BPFO on either side of a frequency, at baseband.
+pub(super) struct Band {
+    centre_hz: f64,
+    half_hz: f64,
+    interval_s: f64,
+    filter: LowPass,
+}
+
+impl Band {
+    pub(super) fn new(motion: &Motion, centre_hz: f64) -> Self {
+        let half_hz = HALF_BAND * motion.bpfo_hz;
+        let filter = LowPass::new(half_hz, motion.interval_s, motion.samples());
+        Self { centre_hz, half_hz, interval_s: motion.interval_s, filter }
+    }
+
+    /// Whether it lies between zero and half the sampling rate, and the record outlasts its filter by more than a comb's
+    /// columns.
+    pub(super) fn fits(&self, motion: &Motion) -> bool {
+        let columns = 1 + 2 * ORDERS as usize;
+        self.centre_hz > self.half_hz
+            && self.centre_hz + self.half_hz < 0.5 / self.interval_s
+            && self.filter.taps.len() >= OVERLAP
+            && motion.samples() > self.filter.taps.len() * (1 + columns)
+    }
+
+    /// A signal in the band.
+    pub(super) fn signal(&self, values: &[f64]) -> Vec<Complex> {
+        let mixed =
+            turning(-self.centre_hz, self.interval_s).zip(values).map(|(turn, v)| (v * turn.0, v * turn.1));
+        self.filter.apply(&mixed.collect::<Vec<_>>())
+    }
+
+    /// Columns of a comb that is detuned by `offset_hz`, in the band.
+    pub(super) fn columns(&self, comb: &Comb, offset_hz: f64) -> Vec<Vec<Complex>> {
+        let shift_hz = comb.rate_hz + offset_hz - self.centre_hz;
+        let turned = |column: &Vec<Complex>| {
+            let turned =
+                turning(shift_hz, self.interval_s).zip(column).map(|(turn, value)| times(turn, *value));
+            self.filter.apply(&turned.collect::<Vec<_>>())
+        };
+        comb.columns.iter().map(turned).collect()
+    }
+}
+
+/// exp 2πi f t, sample by sample.
+fn turning(hz: f64, interval_s: f64) -> impl Iterator<Item = Complex> {
+    let step = unit(TAU * hz * interval_s);
+    std::iter::successors(Some((1.0, 0.0)), move |turn| Some(times(*turn, step)))
+}
+
+/// Where the spectrum of a column is highest within half a BPFO [Hz], with a Hann window.
+fn strongest_hz(column: &[Complex], motion: &Motion) -> f64 {
+    let step_hz = motion.resolution_hz() / CARRIER_STEPS;
+    let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
+    let window = |n: usize| (std::f64::consts::PI * (n as f64 + 0.5) / column.len() as f64).sin().powi(2);
+    let windowed: Vec<Complex> =
+        column.iter().enumerate().map(|(n, v)| (window(n) * v.0, window(n) * v.1)).collect();
+    let power = |hz: f64| {
+        let sum = turning(-hz, motion.interval_s).zip(&windowed).fold((0.0, 0.0), |sum, (turn, value)| {
+            let term = times(turn, *value);
+            (sum.0 + term.0, sum.1 + term.1)
+        });
+        sum.0 * sum.0 + sum.1 * sum.1
+    };
+    let highest = (-reach..=reach).map(|n| f64::from(n) * step_hz).map(|hz| (hz, power(hz)));
+    highest.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(hz, _)| hz)
+}
+
 /// Load-weighted mean rate of the phases [Hz]; `None` when nothing is loaded or nothing turns.
-fn carrier(motion: &Motion, phases: &[Vec<f64>]) -> Option<f64> {
+fn mean_rate_hz(motion: &Motion, phases: &[Vec<f64>]) -> Option<f64> {
     let (mut turned, mut weight) = (0.0, 0.0);
     for (roller, phase) in motion.rollers.iter().zip(phases) {
         for n in 1..phase.len() {
@@ -137,8 +152,8 @@ fn carrier(motion: &Motion, phases: &[Vec<f64>]) -> Option<f64> {
     (weight > 0.0).then(|| turned / weight / TAU).filter(|hz| *hz > 0.0)
 }
 
-/// Running mean over `width` samples, cut at zero: the load without its tone.
-fn smoothed(load: &[f64], width: usize) -> Vec<f64> {
+/// Running mean of a load over `width` samples, cut at zero: the load without its tone.
+pub(super) fn smoothed(load: &[f64], width: usize) -> Vec<f64> {
     let half = width / 2;
     let mut sums = vec![0.0];
     for value in load {
@@ -156,43 +171,33 @@ fn smoothed(load: &[f64], width: usize) -> Vec<f64> {
 struct LowPass {
     taps: Vec<f64>,
     step: usize,
-    samples: usize,
 }
 
 impl LowPass {
-    fn new(half_band_hz: f64, interval_s: f64, samples: usize) -> Option<Self> {
-        let length = (1.0 / (half_band_hz * interval_s)).round() as usize;
-        if length < OVERLAP || length + OVERLAP * 2 * (1 + 2 * ORDERS as usize) > samples {
-            return None;
-        }
-        let taps: Vec<f64> = (1..=length)
-            .map(|n| (std::f64::consts::PI * n as f64 / (length + 1) as f64).sin().powi(2))
-            .collect();
+    fn new(half_band_hz: f64, interval_s: f64, samples: usize) -> Self {
+        let length = ((1.0 / (half_band_hz * interval_s)).round() as usize).clamp(1, samples.max(1));
+        let tap = |n: usize| (std::f64::consts::PI * n as f64 / (length + 1) as f64).sin().powi(2);
+        let taps: Vec<f64> = (1..=length).map(tap).collect();
         let sum: f64 = taps.iter().sum();
-        Some(Self { taps: taps.iter().map(|t| t / sum).collect(), step: (length / OVERLAP).max(1), samples })
+        Self { taps: taps.iter().map(|t| t / sum).collect(), step: (length / OVERLAP).max(1) }
     }
 
-    fn apply(&self, at: impl Fn(usize) -> Complex) -> Vec<Complex> {
-        (0..=self.samples - self.taps.len())
-            .step_by(self.step)
-            .map(|from| {
-                self.taps.iter().enumerate().fold((0.0, 0.0), |sum, (n, tap)| {
-                    let value = at(from + n);
-                    (sum.0 + tap * value.0, sum.1 + tap * value.1)
-                })
-            })
-            .collect()
+    fn apply(&self, values: &[Complex]) -> Vec<Complex> {
+        let average = |part: &[Complex]| {
+            let pairs = self.taps.iter().zip(part);
+            pairs.fold((0.0, 0.0), |sum, (tap, value)| (sum.0 + tap * value.0, sum.1 + tap * value.1))
+        };
+        values.windows(self.taps.len()).step_by(self.step).map(average).collect()
     }
 }
 
-/// Gram–Schmidt, twice for rounding; what depends on earlier columns is left out.
-fn orthonormal(columns: &[Vec<Complex>]) -> Vec<Vec<Complex>> {
+/// Adds what `columns` hold beyond `basis` to it, orthonormal: Gram–Schmidt, twice for rounding.
+pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex>]) {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
-    let mut basis: Vec<Vec<Complex>> = Vec::new();
     for column in columns {
         let mut rest = column.clone();
         for _ in 0..2 {
-            for q in &basis {
+            for q in basis.iter() {
                 let share = dot(q, &rest);
                 for (r, q) in rest.iter_mut().zip(q) {
                     let part = times(share, *q);
@@ -206,58 +211,21 @@ fn orthonormal(columns: &[Vec<Complex>]) -> Vec<Vec<Complex>> {
             basis.push(rest.iter().map(|r| (r.0 * scale, r.1 * scale)).collect());
         }
     }
-    basis
-}
-
-/// Weights of `columns` whose sum is nearest to `wanted`, by the normal equations; a column that adds nothing weighs nothing.
-fn least_squares(columns: &[Vec<Complex>], wanted: &[Complex]) -> Vec<Complex> {
-    let count = columns.len();
-    let mut rows: Vec<Vec<Complex>> = columns
-        .iter()
-        .map(|row| columns.iter().map(|column| dot(row, column)).chain([dot(row, wanted)]).collect())
-        .collect();
-    let largest = (0..count).map(|n| rows[n][n].0).fold(0.0, f64::max);
-    let mut weights = vec![(0.0, 0.0); count];
-    let mut used = vec![false; count];
-    // The matrix is Hermitian and not negative, so its diagonal serves as pivots.
-    for n in 0..count {
-        if rows[n][n].0 <= INDEPENDENT * INDEPENDENT * largest {
-            continue;
-        }
-        used[n] = true;
-        let pivot = 1.0 / rows[n][n].0;
-        let own: Vec<Complex> = rows[n].iter().map(|v| (v.0 * pivot, v.1 * pivot)).collect();
-        for (m, row) in rows.iter_mut().enumerate() {
-            if m == n {
-                row.clone_from(&own);
-            } else {
-                let by = row[n];
-                for (value, own) in row.iter_mut().zip(&own) {
-                    let part = times(by, *own);
-                    *value = (value.0 - part.0, value.1 - part.1);
-                }
-            }
-        }
-    }
-    for n in (0..count).filter(|&n| used[n]) {
-        weights[n] = rows[n][count];
-    }
-    weights
 }
 
 /// Σ ā b.
-fn dot(a: &[Complex], b: &[Complex]) -> Complex {
+pub(super) fn dot(a: &[Complex], b: &[Complex]) -> Complex {
     a.iter()
         .zip(b)
         .fold((0.0, 0.0), |sum, (a, b)| (sum.0 + a.0 * b.0 + a.1 * b.1, sum.1 + a.0 * b.1 - a.1 * b.0))
 }
 
-pub(super) fn times(a: Complex, b: Complex) -> Complex {
+fn times(a: Complex, b: Complex) -> Complex {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
 /// e^{iφ}.
-pub(super) fn unit(phase: f64) -> Complex {
+fn unit(phase: f64) -> Complex {
     let (sin, cos) = phase.sin_cos();
     (cos, sin)
 }

@@ -4,6 +4,8 @@ use maud::{Markup, html};
 use stribeck_scene::run_dir::Run;
 
 use crate::artefacts::Family;
+use crate::families::FamilyFinding;
+use crate::rolling;
 use crate::summary::Summary;
 
 /// The first paragraphs of the page.
@@ -14,6 +16,9 @@ pub(super) fn paragraphs(run: &Run, summary: &Summary) -> Markup {
             p { strong { "The mesh. " } (mesh(summary)) }
             p { strong { "The physics. " } (physics(summary)) }
             p { strong { "How far to trust it. " } (trust(summary)) }
+            @for warning in rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, &summary.kinematics) {
+                p { strong { "Warning. " } (super::sentence(&warning)) }
+            }
         }
     }
 }
@@ -68,35 +73,42 @@ fn defect(run: &Run, summary: &Summary) -> String {
 }
 
 fn mesh(summary: &Summary) -> String {
-    let found: Vec<String> = summary
-        .families
+    let families = &summary.families;
+    if families.iter().all(|f| f.lead.is_none()) {
+        return "This record is too short to tell a family of facet lines from anything else.".into();
+    }
+    let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
+    let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
+    let place = |f: &FamilyFinding| {
+        let level = f.level_g.map_or(String::new(), |g| format!(", up to {g:.0} g"));
+        let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
+        format!(
+            "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands every {spacing_hz:.1} Hz{level}",
+            f.carrier_hz.unwrap_or(f.predicted_hz)
+        )
+        .replace('-', "−")
+    };
+    let mut said: Vec<String> = families
         .iter()
         .filter(|f| f.found)
-        .map(|f| {
-            format!(
-                "{} at {:.0} Hz with sidebands {:.1} Hz apart, up to {}, {:+.1} resolutions from its place by the recorded motion",
-                f.name.replace('_', " "),
-                f.carrier_hz.unwrap_or(f.predicted_hz),
-                summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz),
-                f.level_g.map_or("no line of its own".into(), |g| format!("{g:.0} g")),
-                f.offset_resolutions.unwrap_or(0.0)
-            )
-            .replace('-', "−")
-        })
+        .map(|f| format!("The {} make {}.", f.spoken(), place(f)))
         .collect();
-    if summary.families.iter().any(|f| f.significance.is_some()) {
-        if found.is_empty() {
-            "No family of facet lines is found, neither in the accelerations nor in the contact forces."
-                .into()
-        } else {
-            format!(
-                "These lines are artefacts: {}. Fewer or more facets would move them; no bearing has them.",
-                found.join("; ")
-            )
-        }
-    } else {
-        "This record is too short to tell a family of facet lines from anything else.".into()
+    if let Some(first) = families.iter().find(|f| !f.not_told_apart_from.is_empty()) {
+        said.push(format!("The {} make {}; this record does not tell which.", first.spoken(), place(first)));
     }
+    if said.is_empty() {
+        return "No family of facet lines is there, neither in the accelerations nor in the roller forces."
+            .into();
+    }
+    let absent: Vec<String> =
+        families.iter().filter(|f| f.carrier_hz.is_none()).map(FamilyFinding::spoken).collect();
+    if !absent.is_empty() {
+        said.push(format!("No lines of the {} are found.", absent.join(" or the ")));
+    }
+    format!(
+        "{} Facet lines are artefacts: a real bearing has none, and another mesh moves them.",
+        said.join(" ")
+    )
 }
 
 fn physics(summary: &Summary) -> String {

@@ -80,10 +80,11 @@ pub(super) fn families(summary: &Summary) -> Markup {
             }
         }
         p class="hint" {
-            "Each family is a carrier with sidebands at multiples of BPFO, fitted with the recorded motion of the rollers to all sensors, \
-             both components and the contact forces, and set against detuned combs (THEORY §7.7)."
+            "Each family is a carrier with sidebands at multiples of BPFO. Its comb is fitted with the recorded motion of the rollers to \
+             both components of every sensor and to the force on every loaded roller, and must explain them clearly better than combs \
+             that are off their place and than the other families (THEORY §7.7)."
         }
-        @if summary.families.iter().any(|f| f.found) {
+        @if summary.families.iter().any(|f| f.carrier_hz.is_some()) {
             details {
                 summary { "Lines of the families" }
                 table class="close" {

@@ -36,10 +36,10 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
 
 /// Which families were found, in one sentence.
 fn found(findings: &Findings) -> String {
-    let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", spoken(&f.name), f.carrier_hz?));
+    let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", f.spoken(), f.carrier_hz?));
     let all: Vec<String> = findings.summary.families.iter().filter_map(name).collect();
     if all.is_empty() {
-        "No family of facet lines was found.".into()
+        "No family of facet lines is there.".into()
     } else {
         format!("Mesh: {}, with sidebands at multiples of BPFO.", all.join(", "))
     }
@@ -239,7 +239,7 @@ fn line_marks(findings: &Findings) -> Vec<Mark> {
         };
         for m in -SIDEBANDS..=SIDEBANDS {
             let label = match m {
-                0 => format!("{} {carrier:.0} Hz", spoken(&family.name)),
+                0 => format!("{} {carrier:.0} Hz", family.spoken()),
                 _ => format!("{m:+}").replace('-', "−"),
             };
             marks.push(mark(carrier + f64::from(m) * bpfo, &label, colour, false));
