@@ -121,6 +121,8 @@ pub fn quantile(sorted: &[f64], part: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_scene::dice::Dice;
+
     use super::*;
 
     /// A table of the 97.5 % point of Student's t prints three decimals.
@@ -186,5 +188,34 @@ mod tests {
         let half = Share::of(5, 10).expect("ten");
         assert!((half.low + half.high - 1.0).abs() < 1e-12 && half.share == 0.5);
         assert_eq!(Share::of(0, 0), None);
+    }
+
+    /// How often the interval of ten starts holds the mean. For a normal scatter in 95 % (Student, The probable error of a
+    /// mean, Biometrika 6 (1908) 1–25); for a lognormal one that scatters by 40 %, computed apart from this program with
+    /// NumPy 2 and 400 000 samples, in 93.36 %.
+    #[test]
+    fn peer_coverage_of_the_interval_of_ten_starts() {
+        const SAMPLES: usize = 20_000;
+        // Four standard errors of a share of 93 % in so many samples, and four of the peer's.
+        const FOUR_ERRORS: f64 = 0.0072 + 0.0016;
+        let mut dice = Dice::new(3);
+        let mut normal = || {
+            // Box and Muller.
+            let (u, v) = (1.0 - dice.share(), dice.share());
+            (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+        };
+        let mut covered = |of: &dyn Fn(f64) -> f64, mean: f64| {
+            let holds = (0..SAMPLES).filter(|_| {
+                let values: Vec<f64> = (0..10).map(|_| of(normal())).collect();
+                let s = Statistic::of(&values, 10).expect("ten");
+                s.low.is_some_and(|low| low <= mean) && s.high.is_some_and(|high| mean <= high)
+            });
+            holds.count() as f64 / SAMPLES as f64
+        };
+        let plain = covered(&|z| 5.0 + z, 5.0);
+        assert!((plain - 0.95).abs() < FOUR_ERRORS, "{plain}");
+        let width = (1.0_f64 + 0.4 * 0.4).ln().sqrt();
+        let skewed = covered(&|z| (width * z - 0.5 * width * width).exp(), 1.0);
+        assert!((skewed - 0.9336).abs() < FOUR_ERRORS, "{skewed}");
     }
 }

@@ -246,6 +246,13 @@ mod tests {
         // Johnson, Contact Mechanics (1985), §4.1: 9.89 mm in the outer raceway.
         assert!((g.outer_contact_radius() - 9.890e-3).abs() < 1e-6, "{}", g.outer_contact_radius());
         assert!((g.inner_contact_radius() - 8.110e-3).abs() < 1e-6, "{}", g.inner_contact_radius());
+        let mut moved = scene.clone();
+        moved.cage.iter_mut().for_each(|cage| cage.roller_offsets_um = vec![91.0; 24]);
+        moved.mesh.roller_phase_deg = 90.0;
+        let m = Geometry::of(&moved);
+        // 91 µm on a path of 91 mm are a milliradian.
+        assert!((m.roller_angle(5) - g.roller_angle(5) - 1e-3).abs() < 1e-12);
+        assert_eq!((m.pocket_angle(5), m.roller_phase), (g.pocket_angle(5), 0.25 * TAU));
         let bare = Scene { cage: None, defect: None, ..scene };
         assert!(Geometry::of(&bare).cage.is_none() && Geometry::of(&bare).defect.is_none());
     }

@@ -296,6 +296,22 @@ mod tests {
         assert!(inside[0].entry_s < 0.0 && inside[0].roller == 1);
     }
 
+    /// Source: rolling without slip; a roller ahead by s arrives earlier by s over the speed of its centre.
+    #[test]
+    fn analytic_a_roller_out_of_the_middle_of_its_pocket_arrives_as_much_later() {
+        let mut scene = Scene::default();
+        let offsets: Vec<f64> = (0..24).map(|i| 80.0 - 7.0 * f64::from(i)).collect();
+        let crossings = |scene: &Scene| {
+            paper().crossings(scene.defect.as_ref().expect("one"), &roller_angles_deg(scene), 30e-3)
+        };
+        let centred = crossings(&scene);
+        scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.clone_from(&offsets));
+        for (a, b) in centred.iter().zip(crossings(&scene)) {
+            let speed = TAU * paper().cage_hz * 91e-3;
+            assert_close(b.exit_s - a.exit_s, 1e-6 * offsets[a.roller - 1] / speed, 1e-9);
+        }
+    }
+
     #[test]
     fn example_a_standing_shaft_has_no_events() {
         let scene = Scene::default();

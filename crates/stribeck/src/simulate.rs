@@ -48,7 +48,7 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = starts)]
     starts: Option<usize>,
     /// Starts that run side by side, each with its share of the threads [default: as many as threads]
-    #[arg(long, value_name = "M", value_parser = threads)]
+    #[arg(long, value_name = "M", value_parser = jobs)]
     jobs: Option<usize>,
     /// What the starts are drawn from: equal seeds draw the same [default: 1]
     #[arg(long, value_name = "S")]
@@ -60,6 +60,14 @@ fn threads(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
     number.ok_or_else(|| {
         "the number of worker threads is a whole number from 1 to 1024; leave it out for all cores".to_owned()
+    })
+}
+
+/// A number of starts side by side.
+fn jobs(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
+    number.ok_or_else(|| {
+        "the number of starts side by side is a whole number from 1 to 1024; leave it out for as many as there are threads".to_owned()
     })
 }
 

@@ -16,7 +16,7 @@ use stribeck_scene::scene::Scene;
 
 use super::board::Board;
 use super::{Options, check_overrides, reserve, take_place};
-use crate::host;
+use crate::host::{self, SharedClock};
 use crate::interrupt::{self, Interrupt};
 use crate::place::{Place, shown};
 
@@ -40,6 +40,7 @@ struct Shop<'a> {
     /// The disk refused something: what comes next would be refused as well.
     disk_refuses: AtomicBool,
     threads: usize,
+    clock: SharedClock,
     board: Board,
     interrupt: &'a Interrupt,
 }
@@ -87,6 +88,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         next: AtomicUsize::new(0),
         disk_refuses: AtomicBool::new(false),
         threads: (threads / jobs).max(1),
+        clock: SharedClock::default(),
         board: Board::new(due.len()),
         interrupt: &interrupt,
     };
@@ -205,7 +207,7 @@ impl Shop<'_> {
                 self.board.show(due.number, progress);
                 self.interrupt.flow()
             };
-            let done = host::with(self.threads, |host| match due.state {
+            let done = self.clock.with(self.threads, due.number, |host| match due.state {
                 State::Begun => {
                     let dir = RunDir::reopen(self.dir.start_folder(due.number))?;
                     simulation::extend(&dir, due.scene.solver.duration_ms, host, &mut watch)

@@ -50,6 +50,9 @@ pub(super) fn mean(s: &Statistic, factor: f64, decimals: usize) -> String {
 
 /// The numbers that an engineer asks for first.
 pub(super) fn main(summary: &EnsembleSummary) -> Markup {
+    if summary.count(Ended::Complete) == 0 {
+        return html! {};
+    }
     let sensor = summary.ensemble.text("levels.sensor").unwrap_or("none");
     let peak = PHASES
         .map(|(field, words)| Row::new(format!("Peak, {words} [g]"), format!("levels.{field}_g"), 1.0, 0));
