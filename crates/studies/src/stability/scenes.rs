@@ -9,7 +9,7 @@ use crate::{Finished, Flags, Host, Runner, Variant};
 
 /// Coarse bearing of every case, and how long it runs.
 const SCENE: &str = "fixtures/scenes/quick.ron";
-const DURATION: &str = "solver.duration_ms=0.4";
+const BASE: &[&str] = &["solver.duration_ms=0.4"];
 
 /// A case in which the rollers carry less or more than this share of what they must, without a word, is wrong.
 const SUPPORT: [f64; 2] = [0.7, 1.3];
@@ -84,7 +84,7 @@ const ROWS: &[Row] = &[
 ];
 
 pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> anyhow::Result<Chapter> {
-    let cases = run_rows(runner, flags, host, SCENE, DURATION, ROWS, judge)?;
+    let cases = run_rows(runner, flags, host, (SCENE, BASE), ROWS, judge)?;
     Ok(Chapter {
         title: "Whole bearings",
         words: "The quick scene (2 mm elements, 24 rollers) for 0.4 ms with one thing changed. *Carried* is the vertical force of \
@@ -99,8 +99,7 @@ pub(super) fn run_rows(
     runner: &Runner<'_>,
     flags: &Flags,
     host: &dyn Host,
-    scene: &'static str,
-    duration: &str,
+    (scene, base): (&'static str, &[&str]),
     rows: &[Row],
     judge: fn(&str, &Finished) -> Case,
 ) -> anyhow::Result<Vec<Case>> {
@@ -109,7 +108,7 @@ pub(super) fn run_rows(
         if !flags.wants(name) {
             continue;
         }
-        let variant = set.iter().fold(Variant::new(*name, scene, &[duration]), |variant, s| variant.with(*s));
+        let variant = set.iter().fold(Variant::new(*name, scene, base), |variant, s| variant.with(*s));
         if let Err(error) = Scene::read_with(host.root().join(scene), &variant.set) {
             let first = error.problems().first().map_or(String::new(), |p| {
                 format!("{} (allowed: {})", p.message, p.allowed).replace(" (allowed: )", "")
