@@ -4,10 +4,11 @@
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics};
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::{DefectScene, Scene};
+use stribeck_scene::scene::{DefectScene, RollerCopies, Scene};
 use stribeck_scene::static_load::{RigidRings, roller_angles_deg};
 
 use crate::Error;
+use crate::families::{Candidate, Source};
 
 /// Steps of the cage over one roller spacing in the static distribution.
 const CAGE_STEPS: usize = 30;
@@ -81,6 +82,21 @@ impl Prediction {
             passages: scene.defect.as_ref().map(passages).unwrap_or_default(),
             kinematics,
         }
+    }
+
+    /// The combs that facets can make: rollers, nodes of the outer and of the inner raceway.
+    pub fn candidates(&self, scene: &Scene, mesh: &MeshInfo) -> Vec<Candidate> {
+        let vertices = mesh.roller_facets as f64;
+        let sources = [
+            match scene.mesh.roller_copies {
+                RollerCopies::Rotated => Source::RotatedVertices(vertices),
+                RollerCopies::Translated => Source::TranslatedVertices(vertices),
+            },
+            Source::OuterNodes(outer_facets(scene, mesh.outer_facets)),
+            Source::InnerNodes(mesh.inner_facets as f64),
+        ];
+        let named = |((name, _), source): (&(String, f64), Source)| Candidate { name: name.clone(), source };
+        self.facet_lines.iter().zip(sources).map(named).collect()
     }
 
     /// Longest of the facet periods [s]: a median over it removes every facet line. Zero without facets or motion.

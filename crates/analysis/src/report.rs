@@ -1,7 +1,7 @@
 //! From a run directory to `report.html`, `summary.json` and figures. Nothing here simulates: the same
 //! directory gives the same bytes.
 
-mod comparison;
+mod answer;
 mod figures;
 mod pictures;
 mod sections;
@@ -104,54 +104,55 @@ fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Resul
                 h1 { (summary.scene) }
                 p class="lead" { (lead(run, summary)) }
                 (banner(run))
-                (contents())
-                (opening(summary, findings))
-                h2 #numbers { "Every number of the paper" }
-                (sections::paper(summary))
-                (section("paper", "The paper's figures", index(&figures.paper), &figures.paper, tables::events(summary), "")?)
-                h2 #artefacts { "Which lines are physics, which are mesh" }
-                (sections::artefacts(summary))
-                (sections::readings(summary))
-                (tables::notch(summary))
-                (section("spectra", "More spectra", html! {}, &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
-                (section("sensors", "Other sensors", html! {}, &figures.acceleration, tables::levels(summary), "One sensor was recorded, and it is above.")?)
-                (section("bearing", "Load, slip and cage", html! {}, &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
-                h3 { "Length of the defect, from the events" }
-                (sections::spall(run, summary))
-                (section("stress", "Stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
+                (answer::paragraphs(run, summary))
+                (contents(findings.of_paper))
+                (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
+                (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
+                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
+                (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
+                (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
                 (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
-                h2 #kinematics { "Kinematics" }
-                (tables::kinematics(summary))
-                h2 #lines { "Facet lines at every sensor" }
-                (tables::tones(summary))
+                h2 #artefacts { "All lines of the leading sensor" }
+                (sections::artefacts(summary))
+                (tables::notch(summary))
+                @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
             }
         }
     })
 }
 
-fn contents() -> Markup {
+fn contents(of_paper: bool) -> Markup {
     let entries = [
         ("summary", "Summary"),
-        ("numbers", "The paper's numbers"),
-        ("paper", "The paper's figures"),
-        ("artefacts", "Physics or mesh"),
-        ("spectra", "More spectra"),
-        ("sensors", "Other sensors"),
-        ("bearing", "Load, slip and cage"),
-        ("stress", "Stress"),
+        ("acceleration", "Acceleration"),
+        ("spectra", "Spectrum"),
+        ("forces", "Forces"),
+        ("bearing", "Load and slip"),
+        ("stress", "Mesh and stress"),
         ("energy", "Energy"),
-        ("kinematics", "Kinematics"),
-        ("lines", "Facet lines"),
+        ("artefacts", "All lines"),
+        ("numbers", "Appendix: the paper"),
         ("notes", "Notes"),
         ("provenance", "Provenance"),
     ];
-    html! { nav aria-label="Contents" { @for (id, name) in entries { a href={ "#" (id) } { (name) } } } }
+    let shown = entries.into_iter().filter(|(id, _)| of_paper || *id != "numbers");
+    html! { nav aria-label="Contents" { @for (id, name) in shown { a href={ "#" (id) } { (name) } } } }
 }
 
-/// Titles of the figures of a section, as links.
-fn index(items: &[Item]) -> Markup {
-    html! { p class="index" { @for item in items { a href={ "#" (item.id()) } { (item.title().split(':').next().unwrap_or_default()) } " " } } }
+/// The paper's numbers and the figures that only it needs, for a scene of its dimensions.
+fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
+    let drawn = figures.paper.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        h2 #numbers { "Appendix: the paper beside this run" }
+        p class="hint" {
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage \
+             pockets, damping nor the place of its sensor, so its levels are no test of this model."
+        }
+        (sections::paper(summary))
+        @for figure in drawn { (figure) }
+        (sections::readings(summary))
+    })
 }
 
 /// The sentence under the title.
@@ -186,23 +187,6 @@ fn banner(run: &Run) -> Markup {
     }
 }
 
-fn opening(summary: &Summary, findings: &Findings) -> Markup {
-    html! {
-        h2 #summary { "Summary" }
-        (comparison::table(summary, findings))
-        p class="hint" {
-            "Paper: Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its thickness, cage, \
-             damping and sensor place are not published, so levels agree when they are within a factor of two. A dash means \
-             that the record cannot tell; the reason is in the "
-            a href="#notes" { "notes" } "."
-        }
-        p class="hint" {
-            "Figures: drag to zoom, double-click to reset; the wheel zooms at the cursor with Ctrl or Shift, or after a click \
-             into the figure. Click a name in a legend to hide its curve."
-        }
-    }
-}
-
 /// A heading, what stands before the figures, the figures (`otherwise` when there are none) and what stands after them.
 fn section(
     id: &str,
@@ -225,6 +209,10 @@ fn section(
 fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
     html! {
         h2 #notes { "Notes" }
+        p class="hint" {
+            "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a name in a legend hides its \
+             curve."
+        }
         @if summary.notes.is_empty() && run.info.warnings.is_empty() { p { "None." } }
         ul class="notes" {
             @for note in &summary.notes { li { (sentence(note)) } }

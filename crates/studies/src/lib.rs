@@ -12,6 +12,7 @@ pub mod dice;
 pub mod integrators;
 pub mod reference;
 
+mod families;
 mod host;
 mod impulse;
 mod kills;
@@ -52,6 +53,8 @@ pub enum Study {
     WorkPrecision,
     /// Where contact noise comes from and what each cure takes away
     Noise(noise::Options),
+    /// Whether the family of lines of any facet count is named rightly, and false ones are not
+    Families(families::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -70,6 +73,7 @@ impl Study {
             Self::RunTime(options) => run_time::run(options, host),
             Self::WorkPrecision => work_precision::run(host),
             Self::Noise(options) => noise::run(options, host),
+            Self::Families(options) => families::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }
