@@ -50,6 +50,9 @@
     return one.length ? uPlot.join(one) : [[], []];
   };
 
+  // Shaded grounds have two edges, one after the other.
+  const pairsOf = (list) => list.flatMap((first, i) => (i % 2 ? [] : [[first, list[i + 1]]]));
+
   const theme = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
   // Lowest free row for each label, from left to right.
@@ -212,12 +215,14 @@
         ...spec.series.map((s) => ({
           label: s.name,
           stroke: () => theme(s.colour),
-          width: 1.2,
+          width: s.edge ? 0 : 1.2,
           paths: s.points ? () => null : undefined,
           points: s.points ? { show: true, size: 6, fill: () => theme(s.colour) } : { show: false },
           value: readout(spec.y, 4),
         })),
       ],
+      bands: pairsOf(spec.series.flatMap((s, i) => (s.edge ? [i + 1] : []))).map((pair) => (
+        { series: pair, fill: () => theme(spec.series[pair[0] - 1].colour) + "40" })),
       plugins: [decorate(spec, rowLimit), wheelZoom(place, spec.sync)],
     }, data, place);
     if (spec.x.range) chart.setScale("x", { min: from, max: to });

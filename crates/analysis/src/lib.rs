@@ -73,8 +73,10 @@ pub mod tones;
 pub mod artefacts;
 pub mod stress;
 
+pub mod ensemble;
 pub mod findings;
 pub mod paper;
+pub mod statistic;
 
 pub mod plot;
 pub mod report;

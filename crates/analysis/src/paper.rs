@@ -66,6 +66,8 @@ fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str,
         quantity: quantity.into(),
         paper: text(paper),
         ours: ours.map_or("this record cannot tell".into(), text),
+        value: ours,
+        unit: unit.into(),
         difference: ours.map_or("–".into(), |ours| difference(paper, ours)),
         why: why.into(),
     }
@@ -78,6 +80,8 @@ fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str
         quantity: quantity.into(),
         paper: paper.into(),
         ours,
+        value: None,
+        unit: String::new(),
         difference: difference.into(),
         why: why.into(),
     }

@@ -2,6 +2,7 @@
 //! directory gives the same bytes.
 
 mod answer;
+mod ensemble;
 mod figures;
 mod pictures;
 mod sections;
@@ -14,8 +15,12 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::Serialize;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::Scene;
+
+pub use ensemble::write_ensemble;
 
 use crate::findings::Findings;
 use crate::plot;
@@ -44,7 +49,8 @@ pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
     let figures = Figures::of(&run, &findings, pictures);
-    write_figures(&figures, &run_dir.join("figures"))?;
+    let all: Vec<&Item> = figures.all().collect();
+    write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.
     let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
     let page = page(&run, &findings, &figures, &scene)?.into_string();
@@ -53,9 +59,9 @@ pub fn write(run_dir: &Path) -> Result<Summary, Error> {
 }
 
 /// Writes every figure, on all cores.
-fn write_figures(figures: &Figures, folder: &Path) -> Result<(), Error> {
+fn write_figures(figures: &[&Item], folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
-    let figures = Mutex::new(figures.all());
+    let figures = Mutex::new(figures.iter());
     let next = || figures.lock().unwrap_or_else(PoisonError::into_inner).next();
     let write_some = || std::iter::from_fn(next).try_for_each(|figure| write_figure(figure, folder));
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -80,29 +86,20 @@ fn write_figure(figure: &Item, folder: &Path) -> Result<(), Error> {
 }
 
 /// `summary.json` with a final line end.
-fn json(summary: &Summary) -> Result<String, Error> {
+fn json(summary: &impl Serialize) -> Result<String, Error> {
     let text = serde_json::to_string_pretty(summary).map_err(Error::Summary)?;
     Ok(text + "\n")
 }
 
 fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Result<Markup, Error> {
     let summary = &findings.summary;
-    let title = format!("{} – Stribeck", summary.scene);
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                // An empty picture keeps browsers from asking a server for an icon.
-                link rel="icon" href="data:,";
-                title { (title) }
-                (plot::script())
-                style { (PreEscaped(include_str!("../assets/report.css"))) }
-            }
+            (head(&summary.scene))
             body {
                 h1 { (summary.scene) }
-                p class="lead" { (lead(run, summary)) }
+                p class="lead" { (lead(&run.scene, summary.run.simulated_ms)) }
                 (banner(run))
                 (answer::paragraphs(run, summary))
                 (contents(findings.of_paper))
@@ -120,6 +117,21 @@ fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Resul
             }
         }
     })
+}
+
+/// What a page needs before its first word.
+fn head(name: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            // An empty picture keeps browsers from asking a server for an icon.
+            link rel="icon" href="data:,";
+            title { (name) " – Stribeck" }
+            (plot::script())
+            style { (PreEscaped(include_str!("../assets/report.css"))) }
+        }
+    }
 }
 
 fn contents(of_paper: bool) -> Markup {
@@ -156,8 +168,7 @@ fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
 }
 
 /// The sentence under the title.
-fn lead(run: &Run, summary: &Summary) -> String {
-    let scene = &run.scene;
+fn lead(scene: &Scene, simulated_ms: f64) -> String {
     let defect = scene.defect.as_ref().map_or("a sound outer raceway".to_owned(), |d| {
         format!("a spall of {} × {} mm on the outer raceway", d.length_mm, d.depth_mm)
     });
@@ -166,7 +177,7 @@ fn lead(run: &Run, summary: &Summary) -> String {
         scene.bearing.rollers,
         1e-3 * scene.operation.load_n,
         scene.operation.speed_rpm,
-        summary.run.simulated_ms
+        simulated_ms
     )
 }
 

@@ -66,6 +66,10 @@ pub struct PaperRow {
     pub paper: String,
     /// Of this run; words when there is no number.
     pub ours: String,
+    /// The same as a number, where it is one.
+    pub value: Option<f64>,
+    /// Unit of that number.
+    pub unit: String,
     /// Ours against the paper's.
     pub difference: String,
     /// Why, or what to make of it.
@@ -252,6 +256,18 @@ pub struct SpectrumFinding {
     pub grid_hz: f64,
     /// True when the grid is finer than the resolution.
     pub zero_padded: bool,
+}
+
+impl Event {
+    /// Unloading after the centre would stand over the leading edge without slip [ms].
+    pub fn entry_off_ms(&self) -> Option<f64> {
+        Some(self.entry_ms? - self.expected_entry_ms)
+    }
+
+    /// Re-stressing after the centre would stand over the trailing edge without slip [ms].
+    pub fn exit_off_ms(&self) -> Option<f64> {
+        Some(self.exit_ms? - self.expected_exit_ms)
+    }
 }
 
 impl RunCost {

@@ -6,9 +6,9 @@ use stribeck_analysis::families::{Candidate, FamilyFinding, Source, identify};
 use stribeck_analysis::findings::Findings;
 use stribeck_scene::run_dir::Run;
 
-use crate::dice::Dice;
 use crate::table::number;
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet, Variant};
+use stribeck_scene::dice::Dice;
 
 /// What is run: chords, copies turned with the pattern.
 const SCENE: &str = "fixtures/scenes/lean.ron";

@@ -8,7 +8,6 @@
 //! that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints nothing and reads no
 //! clock: what it needs of the program that runs it is its [`Host`].
 
-pub mod dice;
 pub mod integrators;
 pub mod reference;
 

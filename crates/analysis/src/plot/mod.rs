@@ -106,6 +106,8 @@ pub enum Style {
     Line,
     /// Separate dots.
     Points,
+    /// One edge of a shaded ground; the next series of this style, at the same positions, is the other.
+    Edge,
 }
 
 /// Colours that stay apart for every kind of colour vision, in light and in dark.
@@ -268,6 +270,12 @@ impl Series {
     /// The same series as separate dots.
     pub fn as_points(mut self) -> Self {
         self.style = Style::Points;
+        self
+    }
+
+    /// The same series as an edge of a shaded ground.
+    pub fn as_edge(mut self) -> Self {
+        self.style = Style::Edge;
         self
     }
 

@@ -22,6 +22,8 @@ const CHARACTER: f64 = 6.3 * FINE as f64;
 const LEFT: u32 = 92 * FINE;
 /// Space right of the chart [units].
 const RIGHT: u32 = 26 * FINE;
+/// Strength of a shaded ground between two series.
+const SHADE: f64 = 0.25;
 /// Space below the chart [units].
 const BELOW: u32 = 56 * FINE;
 
@@ -142,11 +144,20 @@ impl Figure {
         chart: &mut Chart<'_, '_>,
         x: (f64, f64),
     ) -> Result<(), Box<dyn std::error::Error>> {
-        for series in &self.series {
+        let edges: Vec<_> = self.series.iter().filter(|s| s.style == Style::Edge).collect();
+        for edges in edges.chunks_exact(2) {
+            let [one, other] = [0, 1].map(|n| decimate::runs(edges[n], x.0, x.1, POINTS));
+            for (there, back) in one.into_iter().zip(other) {
+                let ring: Vec<(f64, f64)> = there.into_iter().chain(back.into_iter().rev()).collect();
+                let paint = edges[0].colour.rgb().mix(SHADE).filled();
+                chart.draw_series(std::iter::once(Polygon::new(ring, paint)))?;
+            }
+        }
+        for series in self.series.iter().filter(|s| s.style != Style::Edge) {
             let colour = series.colour.rgb();
             for run in decimate::runs(series, x.0, x.1, POINTS) {
                 match series.style {
-                    Style::Line => {
+                    Style::Line | Style::Edge => {
                         chart.draw_series(LineSeries::new(run, colour.stroke_width(FINE)))?;
                     }
                     Style::Points => {

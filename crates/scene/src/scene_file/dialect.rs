@@ -26,7 +26,8 @@ impl Scene {
     /// Two files with the same fields have the same hash, whatever their comments and omitted defaults. A field that came
     /// after the first scenes counts where it is used: their hashes stay, and so do their runs and checkpoints.
     pub fn hash(&self) -> String {
-        const LATER: [&str; 1] = ["stiffness_damping_ns: 0.0,"];
+        const LATER: [&str; 3] =
+            ["stiffness_damping_ns: 0.0,", "roller_phase_deg: 0.0,", "roller_offsets_um: [],"];
         const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
         const PRIME: u64 = 0x0000_0100_0000_01b3;
         let fold = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(PRIME);

@@ -14,6 +14,8 @@ impl Schema {
         let mut scene = Scene::default();
         // Absent by default, but its fields must be known.
         scene.mesh.grading = Some(GradingScene::default());
+        // Empty by default, but an item must have a kind.
+        scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }
