@@ -26,6 +26,7 @@
     const largest = splits.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
     const [factor, prefix] = axis.prefixed ? prefixOf(largest) : [1, ""];
     const unit = axis.prefixed && axis.unit ? " " + prefix + axis.unit : "";
+    if (axis.decades) return splits.map((v) => String(Number(Math.pow(10, v).toPrecision(2))));
     return splits.map((v) => minus((v / factor).toFixed(places(step / factor))) + unit);
   };
 
@@ -33,6 +34,7 @@
   const readout = (axis, digits) => (u, v) => {
     if (v == null) return "–";
     const [factor, prefix] = axis.prefixed ? prefixOf(v) : [1, ""];
+    if (axis.decades) v = Math.pow(10, v);
     return minus(String(Number((v / factor).toPrecision(digits)))) + " " + prefix + axis.unit;
   };
 

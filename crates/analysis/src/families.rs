@@ -9,10 +9,12 @@
 //! ```
 //!
 //! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and Ψ are
-//! recorded, so only the seven complex weights are fitted, for each acceleration and for the force on each loaded roller.
+//! recorded, so only the seven complex weights are fitted: to each acceleration by itself, and to the forces on the fullest
+//! rollers all at once. A roller's force has its own term of the sum alone, and all rollers have one set of weights, because
+//! what facets do at a place does not depend on the roller that is there.
 //!
 //! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is the mean of
-//! −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within one resolution (one over the length
+//! −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within half a resolution (one over the length
 //! of the record) of the recorded motion. Whatever else may explain the same channels is a *rival*: the same comb where it
 //! does not belong, 5 to 20 BPFO away, and the combs of the other families. A family is **found** when its score leads
 //! every rival by [`LEAST_LEAD`], and is highest where it belongs. Families that lead all detuned combs but not each other
@@ -155,9 +157,15 @@ pub fn identify(
     candidates: &[Candidate],
     accelerations: &[Channel],
 ) -> Result<Vec<FamilyFinding>, Error> {
-    let mut cases: Vec<Case> = candidates.iter().map(|candidate| Case::of(motion, candidate)).collect();
-    if !accelerations.is_empty() && motion.periods() >= LEAST_PERIODS {
-        judge(motion, accelerations, &mut cases);
+    let listened = trial::listened(motion);
+    let case = |candidate| Case::of(motion, candidate, &listened);
+    let mut cases: Vec<Case> = candidates.iter().map(case).collect();
+    let slowest_hz = cases.iter().filter_map(|c| Some(c.comb.as_ref()?.rate_hz)).reduce(f64::min);
+    if let Some(slowest_hz) = slowest_hz
+        && !accelerations.is_empty()
+        && motion.periods() >= LEAST_PERIODS
+    {
+        judge(motion, &Channels::of(motion, accelerations, &listened, slowest_hz), &mut cases);
     }
     (0..cases.len()).map(|n| finding(motion, accelerations, &cases, n)).collect()
 }
@@ -181,8 +189,8 @@ enum Verdict {
 }
 
 impl<'a> Case<'a> {
-    fn of(motion: &Motion, candidate: &'a Candidate) -> Self {
-        let comb = Comb::of(motion, candidate.source);
+    fn of(motion: &Motion, candidate: &'a Candidate, listened: &[usize]) -> Self {
+        let comb = Comb::of(motion, candidate.source, listened);
         Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
     }
 
@@ -193,11 +201,7 @@ impl<'a> Case<'a> {
 }
 
 /// Tries all cases, accepts the best that stands, and tries the others on what it leaves, until none stands.
-fn judge(motion: &Motion, accelerations: &[Channel], cases: &mut [Case<'_>]) {
-    let Some(channels) = Channels::of(motion, accelerations, cases.iter().filter_map(|c| c.comb.as_ref()))
-    else {
-        return;
-    };
+fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
     // The case that was accepted last, and those that explained as much before it was.
     let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
     loop {

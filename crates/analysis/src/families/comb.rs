@@ -1,36 +1,51 @@
 //! The comb of one family at baseband: what it is made of, and where its carrier stands.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-use super::{Motion, Source};
+use super::{Motion, SIDEBANDS, Source};
 
 /// Real and imaginary part.
 pub(super) type Complex = (f64, f64);
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
 const ORDERS: i32 = 3;
+/// Columns of a comb.
+const COLUMNS: usize = 1 + 2 * ORDERS as usize;
 /// Half width of the band at −6 dB, in BPFO.
 const HALF_BAND: f64 = 8.0;
-/// Samples of the band signal in the length of the low-pass filter.
+/// Samples of the band signal in the length of the low-pass filter, and of the baseband that it is made from.
 const OVERLAP: usize = 4;
+const FINE: usize = 8 * OVERLAP;
 /// Columns shorter than this part of the longest, after what they share with the others is taken off, carry nothing new.
 const INDEPENDENT: f64 = 1e-6;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
 
-/// Columns of a family, turned back by the mean rate of its facets.
+/// A family at baseband, turned back by the mean rate of its facets.
 pub(super) struct Comb {
     /// Mean rate of the facets at loaded contacts [Hz].
     pub(super) rate_hz: f64,
     /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the mean rate.
     pub(super) line_hz: f64,
-    columns: Vec<Vec<Complex>>,
+    /// The baseband itself.
+    pub(super) baseband: Baseband,
+    /// Sums over all rollers, one a column: what accelerations are made of.
+    sums: Vec<Vec<Complex>>,
+    /// The share of every roller that is listened to, one a column and roller: what the force on it is made of.
+    own: Vec<Vec<Vec<Complex>>>,
+}
+
+/// Columns of one or more combs in a band: for accelerations, and for the forces on all rollers, one behind the other.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Columns {
+    pub(super) sums: Vec<Vec<Complex>>,
+    pub(super) own: Vec<Vec<Complex>>,
 }
 
 impl Comb {
     /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below half the
-    /// sampling rate.
-    pub(super) fn of(motion: &Motion, source: Source) -> Option<Self> {
+    /// sampling rate. `listened` are the rollers whose forces are looked at.
+    pub(super) fn of(motion: &Motion, source: Source, listened: &[usize]) -> Option<Self> {
         let samples = motion.samples();
         let dt = motion.interval_s;
         let phases: Vec<Vec<f64>> = motion
@@ -39,7 +54,8 @@ impl Comb {
             .map(|roller| (0..samples).map(|n| source.phase(motion, roller, n)).collect())
             .collect();
         let rate_hz = mean_rate_hz(motion, &phases)?;
-        if !Band::new(motion, rate_hz).fits(motion) {
+        let baseband = Baseband::new(motion, rate_hz);
+        if !baseband.fits(motion, rate_hz) {
             return None;
         }
         let width = (1.0 / (rate_hz * dt)).round().max(1.0) as usize;
@@ -48,70 +64,136 @@ impl Comb {
         if largest <= 0.0 {
             return None;
         }
-        let count = 1 + 2 * ORDERS as usize;
-        let mut columns = vec![vec![(0.0, 0.0); samples]; count];
-        for ((roller, phase), load) in motion.rollers.iter().zip(&phases).zip(&loads) {
-            for n in (0..samples).filter(|&n| load[n] > 0.0) {
+        let length = baseband.length(samples);
+        let mut sums = vec![vec![(0.0, 0.0); length]; COLUMNS];
+        let mut own = vec![vec![Vec::new(); listened.len()]; COLUMNS];
+        for (number, ((roller, phase), load)) in motion.rollers.iter().zip(&phases).zip(&loads).enumerate() {
+            let sound = |n: usize| {
                 let weight = load[n] / largest;
-                let turned = unit(phase[n] - TAU * rate_hz * dt * n as f64);
-                let mut add = |column: usize, by: f64| {
-                    let sum = &mut columns[column][n];
-                    *sum = (sum.0 + by * turned.0, sum.1 + by * turned.1);
-                };
-                add(0, weight);
-                for q in 1..=ORDERS {
-                    let (sin, cos) = (2.0 * f64::from(q) * roller.orbit[n]).sin_cos();
-                    add(2 * q as usize - 1, weight * cos);
-                    add(2 * q as usize, weight * sin);
+                let turned = unit(phase[n]);
+                (weight * turned.0, weight * turned.1)
+            };
+            let sound = baseband.of_samples(sound, samples);
+            for column in 0..COLUMNS {
+                let part: Vec<Complex> = sound
+                    .iter()
+                    .enumerate()
+                    .map(|(n, value)| {
+                        let by = of_place(column, roller.orbit[baseband.sample(n)]);
+                        (by * value.0, by * value.1)
+                    })
+                    .collect();
+                add(&mut sums[column], &part);
+                if let Some(at) = listened.iter().position(|&heard| heard == number) {
+                    own[column][at] = part;
                 }
             }
         }
-        let line_hz = rate_hz + strongest_hz(&columns[0], motion);
-        Some(Self { rate_hz, line_hz, columns })
+        let mut comb = Self { rate_hz, line_hz: rate_hz, baseband, sums, own };
+        comb.line_hz += comb.nearest_line_hz(motion);
+        Some(comb)
+    }
+
+    /// Its columns in the band about `centre_hz`, when it is detuned by `offset_hz`.
+    pub(super) fn columns(&self, offset_hz: f64, centre_hz: f64) -> Columns {
+        let band = |values: &Vec<Complex>| self.baseband.band(values, self.rate_hz + offset_hz - centre_hz);
+        Columns {
+            sums: self.sums.iter().map(band).collect(),
+            own: self.own.iter().map(|rollers| rollers.iter().flat_map(band).collect()).collect(),
+        }
+    }
+
+    /// Where lines BPFO apart explain the sums best, within half a BPFO of the mean rate [Hz from it].
+    fn nearest_line_hz(&self, motion: &Motion) -> f64 {
+        let columns = self.columns(0.0, self.rate_hz).sums;
+        let step_hz = motion.resolution_hz() / CARRIER_STEPS;
+        let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
+        let steady = vec![(1.0, 0.0); self.baseband.length(motion.samples())];
+        let explained = |hz: f64| -> f64 {
+            let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
+                .map(|m| self.baseband.band(&steady, hz + f64::from(m) * motion.bpfo_hz))
+                .collect();
+            let mut basis = Vec::new();
+            extend_basis(&mut basis, &lines);
+            columns.iter().map(|column| power(&basis, column)).sum()
+        };
+        let all = (-reach..=reach).map(|n| f64::from(n) * step_hz).map(|hz| (hz, explained(hz)));
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(hz, _)| hz)
     }
 }
 
-/// A band of [`HALF_BAND`] BPFO on either side of a frequency, at baseband.
-pub(super) struct Band {
+/// Weight of a column at a place: 1, cos 2θ, sin 2θ, cos 4θ and so on.
+fn of_place(column: usize, place: f64) -> f64 {
+    let angle = 2.0 * column.div_ceil(2) as f64 * place;
+    if column % 2 == 1 {
+        angle.cos()
+    } else if column == 0 {
+        1.0
+    } else {
+        angle.sin()
+    }
+}
+
+/// Signals turned back by a frequency and thinned out, and the low-pass filter that takes a band of [`HALF_BAND`] BPFO on
+/// either side out of them.
+pub(super) struct Baseband {
     centre_hz: f64,
     half_hz: f64,
+    /// Samples of the record in one of these.
+    thin: usize,
+    /// Time between two of these [s].
     interval_s: f64,
     filter: LowPass,
 }
 
-impl Band {
-    pub(super) fn new(motion: &Motion, centre_hz: f64) -> Self {
+impl Baseband {
+    fn new(motion: &Motion, centre_hz: f64) -> Self {
         let half_hz = HALF_BAND * motion.bpfo_hz;
-        let filter = LowPass::new(half_hz, motion.interval_s, motion.samples());
-        Self { centre_hz, half_hz, interval_s: motion.interval_s, filter }
+        let thin = ((1.0 / (half_hz * motion.interval_s)) as usize / FINE).max(1);
+        let interval_s = thin as f64 * motion.interval_s;
+        let filter = LowPass::new(half_hz, interval_s, motion.samples() / thin);
+        Self { centre_hz, half_hz, thin, interval_s, filter }
     }
 
-    /// Whether it lies between zero and half the sampling rate, and the record outlasts its filter by more than a comb's
-    /// columns.
-    pub(super) fn fits(&self, motion: &Motion) -> bool {
-        let columns = 1 + 2 * ORDERS as usize;
-        self.centre_hz > self.half_hz
-            && self.centre_hz + self.half_hz < 0.5 / self.interval_s
+    /// Whether the band about `centre_hz` lies between zero and half the sampling rate, and the record outlasts the filter
+    /// by more than a comb's columns.
+    pub(super) fn fits(&self, motion: &Motion, centre_hz: f64) -> bool {
+        centre_hz > self.half_hz
+            && centre_hz + self.half_hz < 0.5 / motion.interval_s
             && self.filter.taps.len() >= OVERLAP
-            && motion.samples() > self.filter.taps.len() * (1 + columns)
+            && self.length(motion.samples()) > self.filter.taps.len() * (1 + COLUMNS)
     }
 
-    /// A signal in the band.
-    pub(super) fn signal(&self, values: &[f64]) -> Vec<Complex> {
-        let mixed =
-            turning(-self.centre_hz, self.interval_s).zip(values).map(|(turn, v)| (v * turn.0, v * turn.1));
-        self.filter.apply(&mixed.collect::<Vec<_>>())
+    fn length(&self, samples: usize) -> usize {
+        samples / self.thin
     }
 
-    /// Columns of a comb that is detuned by `offset_hz`, in the band.
-    pub(super) fn columns(&self, comb: &Comb, offset_hz: f64) -> Vec<Vec<Complex>> {
-        let shift_hz = comb.rate_hz + offset_hz - self.centre_hz;
-        let turned = |column: &Vec<Complex>| {
-            let turned =
-                turning(shift_hz, self.interval_s).zip(column).map(|(turn, value)| times(turn, *value));
-            self.filter.apply(&turned.collect::<Vec<_>>())
+    /// The sample of the record in the middle of number `n`.
+    fn sample(&self, n: usize) -> usize {
+        n * self.thin + self.thin / 2
+    }
+
+    /// The mean of `at` over every few samples, turned back.
+    fn of_samples(&self, at: impl Fn(usize) -> Complex, samples: usize) -> Vec<Complex> {
+        let step_s = self.interval_s / self.thin as f64;
+        let turned = turning(-self.centre_hz, step_s).zip(0..samples).map(|(turn, n)| times(turn, at(n)));
+        let turned: Vec<Complex> = turned.collect();
+        let mean = |part: &[Complex]| {
+            let sum = part.iter().fold((0.0, 0.0), |sum, v| (sum.0 + v.0, sum.1 + v.1));
+            (sum.0 / self.thin as f64, sum.1 / self.thin as f64)
         };
-        comb.columns.iter().map(turned).collect()
+        turned.chunks_exact(self.thin).map(mean).collect()
+    }
+
+    /// A recorded signal.
+    pub(super) fn of_signal(&self, values: &[f64]) -> Vec<Complex> {
+        self.of_samples(|n| (values[n], 0.0), values.len())
+    }
+
+    /// What lies in the band once `values` are shifted up by `shift_hz`.
+    pub(super) fn band(&self, values: &[Complex], shift_hz: f64) -> Vec<Complex> {
+        let shifted = turning(shift_hz, self.interval_s).zip(values).map(|(turn, value)| times(turn, *value));
+        self.filter.apply(&shifted.collect::<Vec<_>>())
     }
 }
 
@@ -121,22 +203,11 @@ fn turning(hz: f64, interval_s: f64) -> impl Iterator<Item = Complex> {
     std::iter::successors(Some((1.0, 0.0)), move |turn| Some(times(*turn, step)))
 }
 
-/// Where the spectrum of a column is highest within half a BPFO [Hz], with a Hann window.
-fn strongest_hz(column: &[Complex], motion: &Motion) -> f64 {
-    let step_hz = motion.resolution_hz() / CARRIER_STEPS;
-    let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
-    let window = |n: usize| (std::f64::consts::PI * (n as f64 + 0.5) / column.len() as f64).sin().powi(2);
-    let windowed: Vec<Complex> =
-        column.iter().enumerate().map(|(n, v)| (window(n) * v.0, window(n) * v.1)).collect();
-    let power = |hz: f64| {
-        let sum = turning(-hz, motion.interval_s).zip(&windowed).fold((0.0, 0.0), |sum, (turn, value)| {
-            let term = times(turn, *value);
-            (sum.0 + term.0, sum.1 + term.1)
-        });
-        sum.0 * sum.0 + sum.1 * sum.1
-    };
-    let highest = (-reach..=reach).map(|n| f64::from(n) * step_hz).map(|hz| (hz, power(hz)));
-    highest.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(hz, _)| hz)
+/// Adds `part` to `sum`.
+fn add(sum: &mut [Complex], part: &[Complex]) {
+    for (sum, part) in sum.iter_mut().zip(part) {
+        *sum = (sum.0 + part.0, sum.1 + part.1);
+    }
 }
 
 /// Load-weighted mean rate of the phases [Hz]; `None` when nothing is loaded or nothing turns.
@@ -176,8 +247,8 @@ struct LowPass {
 impl LowPass {
     fn new(half_band_hz: f64, interval_s: f64, samples: usize) -> Self {
         let length = ((1.0 / (half_band_hz * interval_s)).round() as usize).clamp(1, samples.max(1));
-        let tap = |n: usize| (std::f64::consts::PI * n as f64 / (length + 1) as f64).sin().powi(2);
-        let taps: Vec<f64> = (1..=length).map(tap).collect();
+        let taps: Vec<f64> =
+            (1..=length).map(|n| (PI * n as f64 / (length + 1) as f64).sin().powi(2)).collect();
         let sum: f64 = taps.iter().sum();
         Self { taps: taps.iter().map(|t| t / sum).collect(), step: (length / OVERLAP).max(1) }
     }
@@ -189,6 +260,11 @@ impl LowPass {
         };
         values.windows(self.taps.len()).step_by(self.step).map(average).collect()
     }
+}
+
+/// Power of a signal in the span of orthonormal columns.
+pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
+    basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
 }
 
 /// Adds what `columns` hold beyond `basis` to it, orthonormal: Gram–Schmidt, twice for rounding.

@@ -170,7 +170,7 @@ fn example_the_carrier_is_a_line_of_the_comb() {
     // not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a facet out of step.
     let motion = silent(SAMPLES, 0.0);
     let bpfo_hz = motion.bpfo_hz;
-    let line_hz = |source: Source| Comb::of(&motion, source).unwrap().line_hz;
+    let line_hz = |source: Source| Comb::of(&motion, source, &[]).unwrap().line_hz;
     let resolution_hz = motion.resolution_hz();
     for (source, expected_hz) in [
         (Source::RotatedVertices(112.0), 112.0 * SPIN_HZ),
@@ -199,8 +199,9 @@ fn example_ten_records_of_noise_hold_no_family() {
 
 #[test]
 fn example_a_comb_in_the_wrong_place_has_no_name() {
-    // 135 Hz above the vertices, 90 Hz and more from the others: neither a family's place nor that of its sidebands.
-    let sound = Sound { detuned_hz: 135.0, ..Sound::of(CANDIDATES[0].1) };
+    // Laid over each other, the three combs have lines at −14, 0 and 24 Hz from a multiple of BPFO. These are at 50 Hz, 26 Hz
+    // or 0.8 resolutions from the nearest.
+    let sound = Sound { detuned_hz: 64.0, ..Sound::of(CANDIDATES[0].1) };
     let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[sound], 1.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");
     assert!(families.iter().all(|f| f.carrier_hz.is_none()), "{families:#?}");

@@ -1,16 +1,17 @@
 //! How well a comb explains the channels of a record, where it belongs and elsewhere.
 
-use super::comb::{Band, Comb, Complex, dot, extend_basis, smoothed};
+use super::comb::{Columns, Comb, Complex, dot, extend_basis, power, smoothed};
 use super::{Channel, LEAST_LEAD, Motion};
 
 /// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
 /// the channel's noise.
 const LEAST_REST: f64 = 0.02;
-/// How far a carrier may stand from the recorded motion, in resolutions.
-const AT_HOME: f64 = 1.0;
+/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths, and the lines of
+/// three families lie less than a resolution apart when their combs are laid over each other.
+const AT_HOME: f64 = 0.5;
 /// Half width of the part of the scan that is taken in small steps, and the steps of it, in resolutions.
-const CLOSE: f64 = 1.5;
-const CLOSE_STEP: f64 = 0.1;
+const CLOSE: f64 = 1.0;
+const CLOSE_STEP: f64 = 0.05;
 /// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines but the outermost.
 const SCAN: f64 = 1.5;
 /// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies there.
@@ -19,31 +20,39 @@ const BESIDE: f64 = 5.0;
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
-/// Rollers that carry at least this part of the fullest one's mean load are listened to.
+/// Rollers that carry at least this part of the fullest one's mean load are listened to, the fullest of them.
 const LOADED: f64 = 0.25;
+const LISTENED: usize = 8;
 /// A contact sounds while it carries at least this part of the largest load.
 const PRESSED: f64 = 0.1;
 
-/// Every signal in which combs are sought, accelerations first, then forces on rollers.
+/// Every signal in which combs are sought.
 pub(super) struct Channels {
-    values: Vec<Vec<f64>>,
-    accelerations: usize,
+    accelerations: Vec<Vec<f64>>,
+    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the roller.
+    forces: Vec<Vec<f64>>,
+}
+
+/// The channels in a band: one signal an acceleration, and the forces one behind the other.
+struct Signals {
+    accelerations: Vec<Vec<Complex>>,
+    forces: Vec<Complex>,
 }
 
 /// A comb tried on the channels.
 #[derive(Debug, Clone)]
 pub(super) struct Trial {
-    /// Offset of the best fit within a resolution [Hz].
+    /// Offset of the best fit at home [Hz].
     pub(super) offset_hz: f64,
     /// Offset of the best fit of the whole scan [Hz].
     pub(super) highest_hz: f64,
     /// Standard deviation of the single channels' best offsets [Hz].
     pub(super) scatter_hz: f64,
-    /// Score of the best fit within a resolution.
+    /// Score of the best fit at home.
     pub(super) score: f64,
     /// Highest score of a comb that is off its place.
     pub(super) rival: f64,
-    /// Whether the scan has its maximum within a resolution.
+    /// Whether the scan has its maximum at home.
     pub(super) at_home: bool,
     /// Share explained of the accelerations.
     pub(super) explained: f64,
@@ -63,120 +72,151 @@ impl Trial {
     }
 }
 
+/// Numbers of the rollers whose forces are looked at, from 0, ascending.
+pub(super) fn listened(motion: &Motion) -> Vec<usize> {
+    let mean = |n: usize| mean(&motion.rollers[n].load_n);
+    let mut rollers: Vec<usize> = (0..motion.rollers.len()).collect();
+    rollers.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)));
+    let fullest = rollers.first().map_or(0.0, |&n| mean(n));
+    rollers.retain(|&n| fullest > 0.0 && mean(n) >= LOADED * fullest);
+    rollers.truncate(LISTENED);
+    rollers.sort_unstable();
+    rollers
+}
+
 impl Channels {
-    /// The accelerations less their mean, and what the forces on loaded rollers do besides their running mean over two
-    /// periods of the slowest comb. `None` without combs.
-    pub(super) fn of<'a>(
+    /// The accelerations less their mean, and what the forces on the rollers `listened` do besides their running mean over
+    /// two periods of `slowest_hz`.
+    pub(super) fn of(
         motion: &Motion,
         accelerations: &[Channel],
-        combs: impl Iterator<Item = &'a Comb>,
-    ) -> Option<Self> {
-        let slowest_hz = combs.map(|c| c.rate_hz).reduce(f64::min)?;
+        listened: &[usize],
+        slowest_hz: f64,
+    ) -> Self {
         let centred = |channel: &Channel| {
-            let mean = channel.values.iter().sum::<f64>() / channel.values.len().max(1) as f64;
+            let mean = mean(&channel.values);
             channel.values.iter().map(|v| v - mean).collect()
         };
-        let mut values: Vec<Vec<f64>> = accelerations.iter().map(centred).collect();
-        let mean = |load: &[f64]| load.iter().sum::<f64>() / load.len().max(1) as f64;
-        let fullest = motion.rollers.iter().map(|r| mean(&r.load_n)).fold(0.0, f64::max);
         let width = (2.0 / (slowest_hz * motion.interval_s)).round() as usize;
-        for roller in motion.rollers.iter().filter(|r| mean(&r.load_n) >= LOADED * fullest) {
-            let slow = smoothed(&roller.load_n, width);
+        let ripple = |&n: &usize| {
+            let load = &motion.rollers[n].load_n;
+            let slow = smoothed(load, width);
             let least = PRESSED * slow.iter().copied().fold(0.0, f64::max);
-            let pairs = roller.load_n.iter().zip(&slow);
-            values.push(pairs.map(|(load, slow)| if *slow > least { load - slow } else { 0.0 }).collect());
+            load.iter().zip(&slow).map(|(l, s)| if *s > least { l - s } else { 0.0 }).collect()
+        };
+        Self {
+            accelerations: accelerations.iter().map(centred).collect(),
+            forces: listened.iter().map(ripple).collect(),
         }
-        Some(Self { values, accelerations: accelerations.len() })
     }
 
     /// Tries a comb beside those that are in the fit with their offsets [Hz].
     pub(super) fn try_comb(&self, motion: &Motion, comb: &Comb, in_fit: &[(&Comb, f64)]) -> Trial {
         let resolution_hz = motion.resolution_hz();
-        let band = Band::new(motion, comb.rate_hz);
-        let signals = self.in_band(&band);
-        let fit = basis_of(&band, in_fit);
-        let shares = |offset_hz: f64| shares(&signals, &fit, &band.columns(comb, offset_hz));
+        let base = self.at_baseband(comb);
+        let fit = |centre_hz: f64| {
+            let mut fit = Columns::default();
+            for (comb, offset_hz) in in_fit {
+                extend(&mut fit, &comb.columns(*offset_hz, centre_hz));
+            }
+            fit
+        };
+        let (signals, home) = (base.in_band(comb, 0.0), fit(comb.rate_hz));
         let scan: Vec<(f64, Vec<f64>)> = offsets(motion, !in_fit.is_empty())
             .into_iter()
-            .map(|offset_hz| (offset_hz, shares(offset_hz)))
+            .map(|offset_hz| (offset_hz, signals.shares(&home, &comb.columns(offset_hz, comb.rate_hz))))
             .collect();
-        let at_home = |offset_hz: f64| offset_hz.abs() <= (AT_HOME + 1e-9) * resolution_hz;
-        let score = |n: usize| self.score(&scan[n].1);
-        let best_of = |all: &dyn Fn(f64) -> bool, score: &dyn Fn(usize) -> f64| {
-            let allowed = (0..scan.len()).filter(|&n| all(scan[n].0));
+        let within =
+            |hz: f64| move |n: &usize, scan: &[(f64, Vec<f64>)]| scan[*n].0.abs() <= hz * (1.0 + 1e-9);
+        let best_of = |reach_hz: f64, score: &dyn Fn(usize) -> f64| {
+            let allowed = (0..scan.len()).filter(|n| within(reach_hz)(n, &scan));
             allowed.max_by(|&a, &b| score(a).total_cmp(&score(b))).unwrap_or(0)
         };
-        let best = best_of(&at_home, &score);
-        let highest = best_of(&|offset_hz| offset_hz.abs() <= SCAN * motion.bpfo_hz, &score);
-        let beside = |offset_hz: f64| !in_fit.is_empty() && offset_hz.abs() > (CLOSE + 1e-9) * resolution_hz;
-        let near = (0..scan.len()).filter(|&n| beside(scan[n].0)).map(score);
-        let rival = near.chain(self.detuned(motion, comb, in_fit)).fold(0.0, f64::max);
-        let close = |offset_hz: f64| offset_hz.abs() <= (CLOSE + 1e-9) * resolution_hz;
-        let squares = (0..self.values.len()).map(|channel| {
-            let single = best_of(&close, &|n| scan[n].1[channel]);
+        let whole = |n: usize| score(&scan[n].1);
+        let best = best_of(AT_HOME * resolution_hz, &whole);
+        let highest = best_of(SCAN * motion.bpfo_hz, &whole);
+        let beside = (0..scan.len())
+            .filter(|n| !in_fit.is_empty() && !within(CLOSE * resolution_hz)(n, &scan))
+            .map(whole);
+        let detuned = DETUNED
+            .flat_map(|n| [-n, n])
+            .map(|n| f64::from(n) * DETUNED_STEP * motion.bpfo_hz)
+            .filter(|offset_hz| comb.baseband.fits(motion, comb.rate_hz + offset_hz))
+            .map(|offset_hz| {
+                let centre_hz = comb.rate_hz + offset_hz;
+                let columns = comb.columns(offset_hz, centre_hz);
+                score(&base.in_band(comb, offset_hz).shares(&fit(centre_hz), &columns))
+            });
+        let rival = beside.chain(detuned).fold(0.0, f64::max);
+        let channels = scan[best].1.len();
+        let squares = (0..channels).map(|channel| {
+            let single = best_of(CLOSE * resolution_hz, &|n| scan[n].1[channel]);
             (scan[single].0 - scan[best].0).powi(2)
         });
-        let (accelerations, forces) = scan[best].1.split_at(self.accelerations);
+        let (forces, accelerations) = scan[best].1.split_last().unwrap_or((&0.0, &[]));
         Trial {
             offset_hz: scan[best].0,
             highest_hz: scan[highest].0,
-            scatter_hz: (squares.sum::<f64>() / self.values.len() as f64).sqrt(),
-            score: score(best),
+            scatter_hz: (squares.sum::<f64>() / channels as f64).sqrt(),
+            score: whole(best),
             rival,
-            at_home: at_home(scan[highest].0),
+            at_home: within(AT_HOME * resolution_hz)(&highest, &scan),
             explained: mean(accelerations),
-            explained_forces: mean(forces),
+            explained_forces: *forces,
         }
     }
 
-    /// Scores of the comb where it does not belong.
-    fn detuned(&self, motion: &Motion, comb: &Comb, in_fit: &[(&Comb, f64)]) -> Vec<f64> {
-        let offsets = DETUNED.flat_map(|n| [-n, n]).map(|n| f64::from(n) * DETUNED_STEP * motion.bpfo_hz);
-        let bands = offsets.map(|offset_hz| (offset_hz, Band::new(motion, comb.rate_hz + offset_hz)));
-        bands
-            .filter(|(_, band)| band.fits(motion))
-            .map(|(offset_hz, band)| {
-                let columns = band.columns(comb, offset_hz);
-                self.score(&shares(&self.in_band(&band), &basis_of(&band, in_fit), &columns))
-            })
-            .collect()
-    }
-
-    fn in_band(&self, band: &Band) -> Vec<Vec<Complex>> {
-        self.values.iter().map(|values| band.signal(values)).collect()
-    }
-
-    /// Mean of −ln(1 − R² + [`LEAST_REST`]) over the accelerations plus that over the forces.
-    fn score(&self, shares: &[f64]) -> f64 {
-        let scores: Vec<f64> = shares.iter().map(|r2| -(1.0 - r2 + LEAST_REST).ln()).collect();
-        let (accelerations, forces) = scores.split_at(self.accelerations);
-        mean(accelerations) + mean(forces)
+    /// At the baseband of a comb.
+    fn at_baseband(&self, comb: &Comb) -> Base {
+        let of = |values: &Vec<f64>| comb.baseband.of_signal(values);
+        Base {
+            accelerations: self.accelerations.iter().map(of).collect(),
+            forces: self.forces.iter().map(of).collect(),
+        }
     }
 }
 
-/// Orthonormal columns of combs in the fit.
-fn basis_of(band: &Band, in_fit: &[(&Comb, f64)]) -> Vec<Vec<Complex>> {
-    let mut basis = Vec::new();
-    for (comb, offset_hz) in in_fit {
-        extend_basis(&mut basis, &band.columns(comb, *offset_hz));
-    }
-    basis
+/// The channels at the baseband of a comb.
+struct Base {
+    accelerations: Vec<Vec<Complex>>,
+    forces: Vec<Vec<Complex>>,
 }
 
-/// Share of each signal that `columns` explain, of what `fit` leaves of it, 0 to 1.
-fn shares(signals: &[Vec<Complex>], fit: &[Vec<Complex>], columns: &[Vec<Complex>]) -> Vec<f64> {
-    let mut basis = fit.to_vec();
-    extend_basis(&mut basis, columns);
-    let power = |part: &[Vec<Complex>], signal: &[Complex]| -> f64 {
-        part.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
-    };
-    signals
-        .iter()
-        .map(|signal| {
+impl Base {
+    /// In the band `offset_hz` off the comb's own.
+    fn in_band(&self, comb: &Comb, offset_hz: f64) -> Signals {
+        let band = |values: &Vec<Complex>| comb.baseband.band(values, -offset_hz);
+        Signals {
+            accelerations: self.accelerations.iter().map(band).collect(),
+            forces: self.forces.iter().flat_map(band).collect(),
+        }
+    }
+}
+
+impl Signals {
+    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit` leaves, 0 to 1.
+    fn shares(&self, fit: &Columns, columns: &Columns) -> Vec<f64> {
+        let mut basis = fit.clone();
+        extend(&mut basis, columns);
+        let share = |signal: &[Complex], fit: &[Vec<Complex>], basis: &[Vec<Complex>]| {
             let left = dot(signal, signal).0 - power(fit, signal);
-            if left > 0.0 { (power(&basis[fit.len()..], signal) / left).min(1.0) } else { 0.0 }
-        })
-        .collect()
+            if left > 0.0 { (power(&basis[fit.len()..], signal) / left).clamp(0.0, 1.0) } else { 0.0 }
+        };
+        let accelerations = self.accelerations.iter().map(|signal| share(signal, &fit.sums, &basis.sums));
+        accelerations.chain([share(&self.forces, &fit.own, &basis.own)]).collect()
+    }
+}
+
+fn extend(basis: &mut Columns, columns: &Columns) {
+    extend_basis(&mut basis.sums, &columns.sums);
+    extend_basis(&mut basis.own, &columns.own);
+}
+
+/// Mean of −ln(1 − R² + [`LEAST_REST`]) over the accelerations plus that of the forces, which are the last.
+fn score(shares: &[f64]) -> f64 {
+    let scores: Vec<f64> = shares.iter().map(|r2| -(1.0 - r2 + LEAST_REST).ln()).collect();
+    let (forces, accelerations) = scores.split_last().unwrap_or((&0.0, &[]));
+    mean(accelerations) + forces
 }
 
 /// Offsets of the scan [Hz], ascending; `beside` combs in the fit they reach farther.

@@ -26,6 +26,7 @@ struct SentAxis<'a> {
     label: &'a str,
     unit: &'a str,
     prefixed: bool,
+    decades: bool,
     range: Option<(f64, f64)>,
 }
 
@@ -118,7 +119,13 @@ impl Figure {
 
 impl<'a> SentAxis<'a> {
     fn of(axis: &'a Axis) -> Self {
-        Self { label: &axis.label, unit: &axis.unit, prefixed: axis.prefixed, range: axis.range }
+        Self {
+            label: &axis.label,
+            unit: &axis.unit,
+            prefixed: axis.prefixed,
+            decades: axis.decades,
+            range: axis.range,
+        }
     }
 }
 

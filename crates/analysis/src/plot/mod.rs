@@ -64,6 +64,8 @@ pub struct Axis {
     pub unit: String,
     /// True when ticks may carry an SI prefix (`5 ms`, `10 kHz`).
     pub prefixed: bool,
+    /// True when values are decimal logarithms: ticks are powers of ten.
+    pub decades: bool,
     /// Range [unit]; `None` follows the data.
     pub range: Option<(f64, f64)>,
 }
@@ -234,12 +236,17 @@ impl Figure {
 impl Axis {
     /// An axis in a coherent SI unit, whose ticks carry a prefix.
     pub fn si(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), prefixed: true, range: None }
+        Self { label: label.into(), unit: unit.into(), prefixed: true, decades: false, range: None }
     }
 
     /// An axis whose unit takes no prefix (g, dB, °).
     pub fn plain(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), prefixed: false, range: None }
+        Self { label: label.into(), unit: unit.into(), prefixed: false, decades: false, range: None }
+    }
+
+    /// A logarithmic axis: the figure holds decimal logarithms, its ticks say the numbers.
+    pub fn decades(label: &str, unit: &str) -> Self {
+        Self { decades: true, ..Self::plain(label, unit) }
     }
 
     /// The same axis over a fixed range.
