@@ -199,7 +199,8 @@ mod tests {
         let found = phases(&time, &[]);
         assert!(found[..200].iter().all(|p| *p == Phase::StartUp));
         assert!(found[200..].iter().all(|p| *p == Phase::Gap));
-        assert_eq!(gap_spans(&time, &found, 0.0), [200..1000]);
+        let gap = gap_spans(&time, &found, 0.0);
+        assert!(gap.len() == 1 && gap[0] == (200..1000), "{gap:?}");
         assert_eq!(phases(&[], &visits()), []);
     }
 

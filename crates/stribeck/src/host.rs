@@ -56,9 +56,13 @@ impl SharedClock {
             change(&mut shares.going, number);
             shares.going.get(&number).copied().unwrap_or(0.0)
         };
-        deal(|going, number| drop(going.insert(number, 0.0)));
+        deal(|going, number| {
+            going.insert(number, 0.0);
+        });
         let done = with_clock(threads, &|| deal(|_, _| {}), work);
-        deal(|going, number| drop(going.remove(&number)));
+        deal(|going, number| {
+            going.remove(&number);
+        });
         done
     }
 }

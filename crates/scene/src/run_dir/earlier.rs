@@ -12,7 +12,7 @@ use crate::trace::Trace;
 pub(super) enum Earlier {
     Run {
         /// What `run.json` says; `None` when it cannot be read.
-        info: Option<RunInfo>,
+        info: Option<Box<RunInfo>>,
         /// It has a checkpoint to go on from.
         can_go_on: bool,
     },
@@ -36,7 +36,7 @@ impl Earlier {
         // A trace that cannot be read may be worth a lot to its owner; one that is not there is not.
         let samples = Trace::count(folder.join(TRACE)).unwrap_or(1);
         (folder.join(TRACE).exists() && samples > 0).then(|| Self::Run {
-            info: files::read_info(&folder.join(INFO)).ok(),
+            info: files::read_info(&folder.join(INFO)).ok().map(Box::new),
             can_go_on: folder.join(CHECKPOINT).exists(),
         })
     }

@@ -102,6 +102,9 @@ pub(super) fn levels(findings: &EnsembleFindings) -> Option<Picture> {
     Some(picture)
 }
 
+/// A time of an event [ms].
+type Time = fn(&Event) -> Option<f64>;
+
 /// When each roller unloads, touches the floor and is loaded again.
 pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
     const LEFT: f64 = 190.0;
@@ -109,7 +112,7 @@ pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
     const TOP: f64 = 40.0;
     const BELOW: f64 = 50.0;
     const LANE: f64 = 34.0;
-    const KINDS: [(&str, Colour, fn(&Event) -> Option<f64>); 3] = [
+    const KINDS: [(&str, Colour, Time); 3] = [
         ("#1 unloads", Colour::Orange, |e| e.entry_ms),
         ("#2 touches the floor", Colour::Purple, |e| e.floor_ms),
         ("#4 is loaded again", Colour::Green, |e| e.exit_ms),
@@ -118,7 +121,7 @@ pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
     let expected = first.summary.events.first()?;
     let traverse = expected.expected_exit_ms - expected.expected_entry_ms;
     let rollers: Vec<usize> = first.summary.events.iter().map(|e| e.roller).collect();
-    let times = |roller: usize, of: fn(&Event) -> Option<f64>| -> Vec<f64> {
+    let times = |roller: usize, of: Time| -> Vec<f64> {
         let of = |f: &Findings| {
             let event = f.summary.events.iter().find(|e| e.roller == roller)?;
             Some(of(event)? - event.expected_entry_ms)
