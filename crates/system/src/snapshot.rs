@@ -1,7 +1,7 @@
 //! All that changes in time, in one piece: a system continued from it takes the same steps to the bit.
 
 use serde::{Deserialize, Serialize};
-use stribeck_contact::{ContactState, Contacts};
+use stribeck_contact::{ContactState, Contacts, FilmState, Films};
 use stribeck_solver::snapshot::Snapshot as MotionSnapshot;
 
 use crate::{error::Error, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
@@ -12,6 +12,7 @@ use crate::{error::Error, guards::Seen, ledger::Balance, load::LoadMemory, syste
 pub struct Snapshot {
     motion: MotionSnapshot,
     contacts: Option<ContactState>,
+    films: Option<FilmState>,
     loads: Vec<LoadMemory>,
     balance: Balance,
     seen: Seen,
@@ -30,6 +31,7 @@ impl System {
         Snapshot {
             motion: self.dynamics.snapshot(),
             contacts: self.forces.contacts.as_ref().map(Contacts::state),
+            films: self.forces.films.as_ref().map(Films::state),
             loads: self.forces.loads.iter().map(|load| load.memory).collect(),
             balance: *self.balance(),
             seen: *self.seen(),
@@ -41,7 +43,7 @@ impl System {
     /// # Errors
     /// When the snapshot has other nodes, bodies, contacts or loads; nothing is changed then.
     pub fn restore(&mut self, from: Snapshot) -> Result<(), Error> {
-        let Snapshot { motion, contacts, loads, balance, seen } = from;
+        let Snapshot { motion, contacts, films, loads, balance, seen } = from;
         if loads.len() != self.forces.loads.len() {
             return Err(Error::OtherSystem { what: "loads" });
         }
@@ -53,6 +55,14 @@ impl System {
         };
         if !fits {
             return Err(Error::OtherSystem { what: "contacts" });
+        }
+        let oiled = match (&mut self.forces.films, films) {
+            (Some(own), Some(state)) => own.restore(&state),
+            (None, None) => true,
+            _ => false,
+        };
+        if !oiled {
+            return Err(Error::OtherSystem { what: "films" });
         }
         if let Err(error) = self.dynamics.restore(motion) {
             if let (Some(own), Some(state)) = (&mut self.forces.contacts, before) {
