@@ -149,7 +149,6 @@ struct Memory {
     heights: f64,
     speed_places: [Place; 2],
     speed_step: u64,
-    looks: u32,
     next_look: u64,
     /// Share of the force that the land leaves.
     share: f64,
@@ -298,7 +297,6 @@ impl Memory {
             heights: 0.0,
             speed_places: places,
             speed_step: 0,
-            looks: 0,
             next_look: 0,
             share: 1.0,
             fixed: false,
@@ -351,11 +349,12 @@ impl Film {
         let c = self.centre as usize;
         let centre = [at.x[c], at.y[c]];
         let m = &mut self.memory;
-        if m.looks == 0 {
+        if m.above.is_none() {
+            // From anywhere: a land may come into reach at its other end.
             m.places[0] = self.lands[0].begin(both[0], at.x, at.y, centre);
         }
         let track = self.lands[0].nearest(both[0], at.x, at.y, centre, m.places[0]);
-        if m.looks == 0 {
+        if m.above.is_none() {
             m.places[1] = self.lands[1].begin(both[1], at.x, at.y, track.at);
         }
         let round = self.lands[1].nearest(both[1], at.x, at.y, track.at, m.places[1]);
@@ -372,7 +371,7 @@ impl Film {
         } else if m.above.is_none() {
             (m.above, begins) = (Some(gap.max(0.0)), true);
         }
-        if m.looks == 0 || m.speed_step + REST < at.step {
+        if begins || m.above.is_none() || m.speed_step + REST < at.step {
             (m.speed_places, m.speed_step) = (m.places, at.step);
         } else if at.step >= m.speed_step + LOOK_EVERY * SPEED_EVERY {
             // The nearest places sweep over both surfaces at the speeds with which these draw oil in.
@@ -380,7 +379,6 @@ impl Film {
             m.speed = 0.5 * (swept_round - swept) / (at.dt * (at.step - m.speed_step) as f64);
             (m.speed_places, m.speed_step) = (m.places, at.step);
         }
-        m.looks = m.looks.saturating_add(1);
         m.next_look = at.step + if m.above.is_some() { LOOK_EVERY } else { REST };
         if let Some(above) = m.above {
             let normal = m.normal;
