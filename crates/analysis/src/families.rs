@@ -32,8 +32,8 @@ use self::comb::Comb;
 use self::trial::{Channels, Trial};
 use crate::Error;
 
-/// The least lead of a score that counts: what a fit leaves of the channels is then 26 % less than what any rival leaves.
-/// On records that were not used to choose it, wrong combs lead by it in about one case of a hundred (docs/results/families.md).
+/// The least lead of a score that counts: what a comb leaves of the channels is then 26 % less than what any rival leaves. On
+/// records that were not used to choose it, one false comb in some hundreds leads by it (docs/results/families.md).
 pub const LEAST_LEAD: f64 = 0.3;
 /// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;

@@ -133,8 +133,8 @@ fn example_each_family_is_told_from_its_neighbours() {
 
 #[test]
 fn example_two_combs_of_one_motion_are_not_told_apart() {
-    // A tenth of a facet is 0.4 Hz, an eightieth of a resolution.
-    let twins = [CANDIDATES[1], ("other_race_nodes", Source::OuterNodes(1255.1)), CANDIDATES[0]];
+    // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the other.
+    let twins = [CANDIDATES[1], ("other_race_nodes", Source::OuterNodes(1255.02)), CANDIDATES[0]];
     let families = judged(&twins, &sounding(silent(SAMPLES, 0.0), &[Sound::of(CANDIDATES[1].1)], 8.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");
     for (one, other) in [(0, 1), (1, 0)] {
