@@ -2,6 +2,7 @@
 
 mod merge;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
@@ -70,6 +71,8 @@ pub struct StartSummary {
     pub gap_g: Option<f64>,
     /// Largest imbalance of energy over the peak strain energy.
     pub energy_error: Option<f64>,
+    /// Warnings of its run.
+    pub warnings: Vec<String>,
 }
 
 /// How a start ended.
@@ -152,6 +155,7 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
         exit_g: None,
         gap_g: None,
         energy_error: None,
+        warnings: Vec::new(),
     };
     if start.why.is_some() {
         start.ended = Ended::Failed;
@@ -182,6 +186,7 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
     start.simulated_ms = Some(1e3 * run.info.interval_s * run.info.samples as f64);
     start.wall_s = Some(run.info.wall_s + run.info.setup_s);
     start.energy_error = Some(run.info.energy.max_relative_error);
+    start.warnings.clone_from(&run.info.warnings);
     start.ended = match run.info.status {
         Status::Complete if longer_ms < 0.0 => Ended::Early,
         Status::Complete => Ended::Complete,
@@ -212,25 +217,35 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
     }
 }
 
-/// What is missing of the ensemble.
+/// What is missing of the ensemble, and what its runs warn of.
 fn notes(starts: &[StartSummary]) -> Vec<String> {
-    let of = |ended: Ended| starts.iter().filter(move |start| start.ended == ended);
     let mut notes = Vec::new();
-    for (ended, word) in [
-        (Ended::Diverged, "diverged"),
-        (Ended::Failed, "failed"),
-        (Ended::Early, "ended early"),
-        (Ended::Missing, "has not begun"),
-    ] {
-        for start in of(ended) {
-            let why = start.why.as_ref().map_or(String::new(), |why| format!(": {why}"));
-            notes.push(format!("start {} {word} and does not count{why}", start.number));
-        }
+    for start in starts {
+        let word = match start.ended {
+            Ended::Complete => continue,
+            Ended::Diverged => "diverged",
+            Ended::Failed => "failed",
+            Ended::Early => "ended early",
+            Ended::Missing => "has not begun",
+        };
+        let why = start.why.as_ref().map_or(String::new(), |why| format!(": {why}"));
+        notes.push(format!("start {} {word} and does not count{why}", start.number));
     }
-    match of(Ended::Complete).count() {
+    match starts.iter().filter(|start| start.ended == Ended::Complete).count() {
         0 => notes.push("no start is complete: there are no numbers".into()),
         1 => notes.push("one start is complete: it has no scatter, and its means no interval".into()),
         _ => {}
+    }
+    // Warnings that differ in their numbers alone are one.
+    let mut warnings: BTreeMap<String, (&StartSummary, &String, usize)> = BTreeMap::new();
+    for (start, warning) in starts.iter().flat_map(|start| start.warnings.iter().map(move |w| (start, w))) {
+        let words = warning.replace(|c: char| c.is_ascii_digit(), "");
+        warnings.entry(words).and_modify(|w| w.2 += 1).or_insert((start, warning, 1));
+    }
+    for (start, warning, count) in warnings.into_values() {
+        let others =
+            if count > 1 { format!(" (and {} starts more, likewise)", count - 1) } else { String::new() };
+        notes.push(format!("warning of start {}{others}: {warning}", start.number));
     }
     notes
 }

@@ -66,7 +66,8 @@ fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str,
         quantity: quantity.into(),
         paper: text(paper),
         ours: ours.map_or("this record cannot tell".into(), text),
-        value: ours,
+        paper_value: Some(paper),
+        ours_value: ours,
         unit: unit.into(),
         difference: ours.map_or("–".into(), |ours| difference(paper, ours)),
         why: why.into(),
@@ -80,10 +81,18 @@ fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str
         quantity: quantity.into(),
         paper: paper.into(),
         ours,
-        value: None,
+        paper_value: None,
+        ours_value: None,
         unit: String::new(),
         difference: difference.into(),
         why: why.into(),
+    }
+}
+
+impl PaperRow {
+    /// A row of words with the number that they tell.
+    fn telling(self, ours_value: Option<f64>, unit: &str) -> Self {
+        Self { ours_value, unit: unit.into(), ..self }
     }
 }
 

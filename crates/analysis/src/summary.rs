@@ -66,9 +66,11 @@ pub struct PaperRow {
     pub paper: String,
     /// Of this run; words when there is no number.
     pub ours: String,
-    /// The same as a number, where it is one.
-    pub value: Option<f64>,
-    /// Unit of that number.
+    /// The paper's as a number, where it is one.
+    pub paper_value: Option<f64>,
+    /// Ours as a number, where there is one.
+    pub ours_value: Option<f64>,
+    /// Unit of both.
     pub unit: String,
     /// Ours against the paper's.
     pub difference: String,

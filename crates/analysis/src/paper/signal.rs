@@ -67,7 +67,8 @@ fn motion(source: &Source<'_>) -> Vec<PaperRow> {
             percent.map_or("this record cannot tell".into(), |p| format!("{p:+.2} %").replace('-', "−")),
             "–",
             "the paper's rollers would be too fast, which slip cannot do; ours are slowed by slip",
-        ),
+        )
+        .telling(percent, "%"),
     ]
 }
 
@@ -124,6 +125,7 @@ fn lines(source: &Source<'_>) -> Vec<PaperRow> {
         .find(|t| claimed && t.sensor == leading && t.harmonic == 5 && t.name == "roller_vertices")
         .and_then(|t| t.measured_hz);
     let off = measured.map(|hz| 100.0 * (1.0 - hz / EQUATION_2_HZ.0));
+    let slip = summary.kinematics.cage_hz.map(|hz| 100.0 * (1.0 - hz / summary.kinematics.expected_cage_hz));
     vec![
         words(
             NOISE,
@@ -153,7 +155,8 @@ fn lines(source: &Source<'_>) -> Vec<PaperRow> {
             fifth.map_or("not found".into(), |hz| format!("{:.2} kHz", 1e-3 * hz)),
             "–",
             "\"approximately\" in the paper; ours counts when it stands 10 dB above its surroundings and its family is found",
-        ),
+        )
+        .telling(fifth.map(|hz| 1e-3 * hz), "kHz"),
         number(
             NOISE,
             "Equation (2), outer raceway",
@@ -181,17 +184,17 @@ fn lines(source: &Source<'_>) -> Vec<PaperRow> {
             off.map_or("this record cannot tell".into(), |p| format!("{p:.2} %").replace('-', "−")),
             "–",
             "the paper calls it slip; it is 112 instead of 113 edges. Slip is measured on its own, below",
-        ),
+        )
+        .telling(off, "%"),
         words(
             NOISE,
             "Slip of the cage",
             "\"a small amount\"",
-            summary.kinematics.cage_hz.map_or("this record cannot tell".into(), |hz| {
-                format!("{:.2} %", 100.0 * (1.0 - hz / summary.kinematics.expected_cage_hz)).replace('-', "−")
-            }),
+            slip.map_or("this record cannot tell".into(), |p| format!("{p:.2} %").replace('-', "−")),
             "–",
             "recorded rotation of the cage against rolling without slip",
-        ),
+        )
+        .telling(slip, "%"),
     ]
 }
 
@@ -329,14 +332,15 @@ fn events(source: &Source<'_>) -> Vec<PaperRow> {
     )];
     for (event, paper) in events.iter().zip(papers) {
         let ms = |t: Option<f64>| t.map_or("–".into(), |t| format!("{t:.2}"));
-        rows.push(words(
+        let impulse = words(
             EVENTS,
             &format!("Roller {}: impulse, Fig. 2", event.roller),
             &format!("{paper} ms"),
             format!("{} ms", ms(event.exit_ms)),
             "–",
             &format!("the trailing edge is passed at {:.2} ms without slip", event.expected_exit_ms),
-        ));
+        );
+        rows.push(impulse.telling(event.exit_ms, "ms"));
         rows.push(words(
             EVENTS,
             &format!("Roller {}: events #1 to #4, Fig. 8", event.roller),

@@ -67,13 +67,13 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let due = due_starts(&dir, &scene, &ensemble)?;
     let threads = options.threads.unwrap_or_else(host::cores);
     let jobs = options.jobs.unwrap_or(threads).clamp(1, due.len().max(1));
-    let wanted = ensemble.starts;
+    let (wanted, each) = (ensemble.starts, (threads / jobs).max(1));
     eprintln!(
-        "{}: {wanted} starts of {} ms, {} to run, {jobs} at a time with {} threads each → {}",
+        "{}: {wanted} starts of {} ms, {} to run, {jobs} at a time with {each} thread{} each → {}",
         scene.name,
         scene.solver.duration_ms,
         due.len(),
-        (threads / jobs).max(1),
+        if each == 1 { "" } else { "s" },
         shown(dir.path())
     );
     match options.resume {
@@ -87,7 +87,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         due: &due,
         next: AtomicUsize::new(0),
         disk_refuses: AtomicBool::new(false),
-        threads: (threads / jobs).max(1),
+        threads: each,
         clock: SharedClock::default(),
         board: Board::new(due.len()),
         interrupt: &interrupt,

@@ -49,35 +49,42 @@ fn calibrated(scene: &Scene, of_paper: bool) -> String {
 
 /// What nobody adjusted.
 fn predicted(summary: &EnsembleSummary) -> String {
-    let number =
-        |path: &str, factor: f64, decimals: usize| summary.number(path).map(|s| mean(s, factor, decimals));
+    let beside = |path: &str, factor: f64, decimals: usize, words: &str| {
+        summary
+            .number(path)
+            .map_or(String::new(), |s| format!(" ({} {words})", shown(factor * s.mean, decimals)))
+    };
+    let families = summary.ensemble.items("families");
     let mut said = Vec::new();
-    for family in summary.ensemble.items("families") {
+    for family in families {
         let Some((carrier, found)) = family.number("carrier_hz").zip(yes(family.get("found"))) else {
             continue;
         };
         let name = family.text("name").unwrap_or_default().replace('_', " ");
-        let expected = family
-            .number("predicted_hz")
-            .map_or(String::new(), |s| format!(", where the recorded motion says {}", shown(s.mean, 0)));
-        said.push(format!("{name} sound at {} Hz in {found} starts{expected}", mean(carrier, 1.0, 0)));
+        let expected = family.number("predicted_hz").map_or(f64::NAN, |s| s.mean);
+        said.push(format!(
+            "{name} sound at {} Hz in {found} starts ({} by the recorded motion)",
+            mean(carrier, 1.0, 0),
+            shown(expected, 0)
+        ));
     }
-    if let Some(bpfo) = number("kinematics.bpfo_hz", 1.0, 2) {
-        let expected = summary
-            .number("kinematics.expected_bpfo_hz")
-            .map_or(String::new(), |s| format!(" ({} without slip)", shown(s.mean, 2)));
-        said.push(format!("rollers pass at {bpfo} Hz{expected}"));
+    if let Some(bpfo) = summary.number("kinematics.bpfo_hz") {
+        let without_slip = beside("kinematics.expected_bpfo_hz", 1.0, 2, "without slip");
+        said.push(format!("rollers pass at {} Hz{without_slip}", mean(bpfo, 1.0, 2)));
     }
-    if let Some(force) = number("load.max_roller_n", 1e-3, 2) {
-        said.push(format!("the most loaded roller carries {force} kN"));
+    if let Some(force) = summary.number("load.max_roller_n") {
+        let at_rest = beside("load.static_max_roller_defect_n", 1e-3, 2, "between rigid rings at rest");
+        said.push(format!("the most loaded roller carries {} kN{at_rest}", mean(force, 1e-3, 2)));
     }
     if said.is_empty() {
         return "There is no complete start to tell from.".into();
     }
+    let short = !families.is_empty() && families.iter().all(|f| f.number("lead").is_none());
+    let tone = if short { " The records are too short to tell families of facet lines." } else { "" };
     let energy = summary.number("energy.max_relative_error").map_or(String::new(), |s| {
         format!(" Energy balances to {:.2} % in the worst start.", 100.0 * s.most)
     });
-    format!("From geometry, speed and load alone: {}.{energy}", said.join("; "))
+    format!("Adjusted to nothing: {}.{tone}{energy}", said.join("; "))
 }
 
 /// How far to trust a single start, and the mean.
@@ -88,7 +95,7 @@ fn scatter(summary: &EnsembleSummary) -> String {
     }
     let of = |path: &str, what: &str| {
         let s = summary.number(path)?;
-        let needed = s.starts_for(0.1).map_or(String::new(), |n| format!("; ±10 % take {n} starts"));
+        let needed = s.starts_for(0.1).map_or(String::new(), |n| format!("; {n} starts for ±10 %"));
         Some(format!(
             "{what} {} g (one start: {} to {} g, {:.0} % scatter{needed})",
             mean(s, 1.0, 0),

@@ -2,7 +2,7 @@
 
 use super::super::figures::{Item, mark};
 use super::strips;
-use crate::ensemble::EnsembleFindings;
+use crate::ensemble::{EnsembleFindings, Merged};
 use crate::findings::Findings;
 use crate::paper;
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
@@ -161,7 +161,7 @@ fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
             .with(series("mean", Colour::Blue, mean(&leading)))
     };
     let sensor = &first.sensors[0].name;
-    let marks = families(findings);
+    let marks = families(findings, first);
     let title =
         format!("Power spectral density of a_y at sensor “{sensor}”, mean of {} starts", leading.len());
     let mut whole = banded(over("spectrum", &title, (0.0, half)))
@@ -169,7 +169,7 @@ fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
     let zoom = zoom(findings, half);
     let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
     let mut close = banded(over("spectrum-zoom", &title, zoom))
-        .caption("Upright: carriers of families of facet lines, full where most starts hold them.");
+        .caption("Upright: carriers of families of facet lines, full where most starts hold them, dashed where they belong otherwise.");
     (whole.marks, close.marks) = (marks.clone(), marks.clone());
     let mut figures = vec![whole, close];
     if first.sensors.len() > 1 {
@@ -196,18 +196,23 @@ fn zoom(findings: &EnsembleFindings, half: f64) -> (f64, f64) {
     }
 }
 
-/// Carriers of the families: fitted where most starts hold them, predicted otherwise.
-fn families(findings: &EnsembleFindings) -> Vec<Mark> {
+/// Carriers of the families: fitted where most starts hold them, by the motion where most do not; where the records are too
+/// short to judge, by geometry.
+fn families(findings: &EnsembleFindings, first: &Findings) -> Vec<Mark> {
     let items = findings.summary.ensemble.items("families");
     let colours = [Colour::Green, Colour::Purple, Colour::Teal];
-    let carrier = |(family, colour): (&crate::ensemble::Merged, Colour)| {
-        let name = family.text("name").unwrap_or_default().replace('_', " ");
+    let carrier = |((family, (name, geometry_hz)), colour): ((&Merged, &(String, f64)), Colour)| {
+        let name = name.replace('_', " ");
         let found = family.number("carrier_hz").filter(|s| 2 * s.count > s.of);
-        let hz = found.or_else(|| family.number("predicted_hz"))?.mean;
-        let label = if found.is_some() { format!("{name} {hz:.0} Hz") } else { format!("{name} absent") };
-        Some(mark(hz, &label, colour, found.is_none()))
+        let by_motion = family.number("predicted_hz").filter(|_| family.number("lead").is_some());
+        let (hz, word) = match (found, by_motion) {
+            (Some(s), _) => (s.mean, format!("{:.0} Hz", s.mean)),
+            (None, Some(s)) => (s.mean, "absent".to_owned()),
+            (None, None) => (*geometry_hz, "by geometry".to_owned()),
+        };
+        mark(hz, &format!("{name} {word}"), colour, found.is_none())
     };
-    items.iter().zip(colours.into_iter().cycle()).filter_map(carrier).collect()
+    items.iter().zip(&first.prediction.facet_lines).zip(colours.into_iter().cycle()).map(carrier).collect()
 }
 
 /// Force of the outer raceway on each of the first rollers, from before its entry to after its exit.

@@ -77,16 +77,17 @@ pub(super) fn levels(findings: &EnsembleFindings) -> Option<Picture> {
             });
         }
     }
+    let dashed = format!("fill:none;stroke:{};stroke-width:1.5;stroke-dasharray:6 4", Colour::Red.css());
     if of_paper {
-        for (phase, g, words) in
-            [(3.0, paper::IMPULSE_G, "paper, impulses"), (4.0, paper::BETWEEN_G, "paper, between")]
-        {
+        for (phase, g) in [(3.0, paper::IMPULSE_G), (4.0, paper::BETWEEN_G)] {
             let (from, to) = (LEFT + column * phase, LEFT + column * (phase + 1.0));
-            let paint =
-                format!("fill:none;stroke:{};stroke-width:1.5;stroke-dasharray:6 4", Colour::Red.css());
-            sheet.path(&[[from, up(g)], [to, up(g)]], false, &paint);
-            sheet.text([to - 4.0, up(g) - 5.0], 12.0, Anchor::End, Colour::Red.css(), words);
+            sheet.path(&[[from, up(g)], [to, up(g)]], false, &dashed);
         }
+        let x = LEFT + 120.0 * sensors.len() as f64;
+        sheet.path(&[[x, 18.0], [x + 28.0, 18.0]], false, &dashed);
+        let words =
+            format!("the paper: impulses {} g, between them {} g", paper::IMPULSE_G, paper::BETWEEN_G);
+        sheet.text([x + 34.0, 22.0], 12.0, Anchor::Start, "#000", &words);
     }
     for (s, sensor) in sensors.iter().enumerate() {
         let x = LEFT + 120.0 * s as f64;
