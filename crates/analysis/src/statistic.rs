@@ -146,7 +146,7 @@ mod tests {
     }
 
     /// With two degrees of freedom the quantile is t = (2p − 1)/√(2p(1 − p)).
-    /// Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 26.7.
+    /// Source: Abramowitz and Stegun 1964, §26.7.
     #[test]
     fn analytic_interval_of_three_starts() {
         let p: f64 = 0.975;

@@ -296,7 +296,7 @@ mod tests {
         assert!(inside[0].entry_s < 0.0 && inside[0].roller == 1);
     }
 
-    /// Source: rolling without slip; a roller ahead by s arrives earlier by s over the speed of its centre.
+    /// Rolling without slip (THEORY §5.1): a roller ahead by s arrives earlier by s over the speed of its centre.
     #[test]
     fn analytic_a_roller_out_of_the_middle_of_its_pocket_arrives_as_much_later() {
         let mut scene = Scene::default();

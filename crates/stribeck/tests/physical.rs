@@ -38,6 +38,7 @@ impl Hertz {
     }
 }
 
+/// Johnson 1985, §4.2 and §5.6.
 #[test]
 fn analytic_contacts_of_the_physical_scene_are_hertzian() {
     let text = include_str!("../../../fixtures/scenes/physical.ron");
