@@ -120,7 +120,6 @@ mod chord;
 mod contacts;
 mod error;
 mod facet;
-mod film;
 mod foot;
 mod kernel;
 mod law;
@@ -141,7 +140,6 @@ mod surface;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
-pub use film::{FilmResultant, FilmSpec, FilmState, Films, Oil};
 pub use law::Law;
 pub use narrow_phase::{Projection, project};
 pub use points::Method;

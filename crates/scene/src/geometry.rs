@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::scene::{CageScene, DefectScene, FilmScene, MaterialScene, Scene};
+use crate::scene::{CageScene, DefectScene, MaterialScene, Scene};
 
 /// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,8 +51,6 @@ pub struct Geometry {
     pub penalty_stiffness: f64,
     /// Gap at which contact of rollers sets in [m].
     pub contact_onset: f64,
-    /// Oil between rollers and raceways, if there is any.
-    pub film: Option<FilmGeometry>,
     /// Stiffness-proportional damping β [s].
     pub stiffness_damping: f64,
     /// Load on the adapter, downwards [N].
@@ -89,17 +87,6 @@ pub struct DefectGeometry {
     pub depth: f64,
     /// Angle of its centre [rad].
     pub angle: f64,
-}
-
-/// Oil between rollers and raceways.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FilmGeometry {
-    /// Dynamic viscosity η [Pa s].
-    pub viscosity: f64,
-    /// Pressure–viscosity coefficient α [1/Pa].
-    pub pressure_viscosity: f64,
-    /// Composite roughness [m].
-    pub roughness: f64,
 }
 
 /// A linear elastic, isotropic material in plane strain.
@@ -145,7 +132,6 @@ impl Geometry {
             coarse_size: scene.mesh.grading.as_ref().map(|grading| 1e-3 * grading.coarse_mm),
             penalty_stiffness: scene.contact.penalty_scale * material.youngs_modulus / element_size,
             contact_onset: 1e-6 * scene.contact.onset_um,
-            film: scene.film.as_ref().map(FilmGeometry::of),
             stiffness_damping: 1e-9 * scene.solver.stiffness_damping_ns,
             load: scene.operation.load_n,
             gravity: scene.operation.gravity_m_s2,
@@ -201,16 +187,6 @@ impl DefectGeometry {
             length: 1e-3 * defect.length_mm,
             depth: 1e-3 * defect.depth_mm,
             angle: defect.angle_deg.to_radians(),
-        }
-    }
-}
-
-impl FilmGeometry {
-    fn of(film: &FilmScene) -> Self {
-        Self {
-            viscosity: film.viscosity_pa_s,
-            pressure_viscosity: 1e-9 * film.pressure_viscosity_per_gpa,
-            roughness: 1e-6 * film.roughness_um,
         }
     }
 }

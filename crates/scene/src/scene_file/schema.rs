@@ -1,7 +1,7 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
 use super::outline::Outline;
-use crate::scene::{FilmScene, GradingScene, Scene};
+use crate::scene::{GradingScene, Scene};
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -16,7 +16,6 @@ impl Schema {
         scene.mesh.grading = Some(GradingScene::default());
         // Empty by default, but an item must have a kind.
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
-        scene.film = Some(FilmScene::default());
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }
@@ -70,7 +69,7 @@ impl Schema {
             // The two optional counts are `None` by default; so is nothing else.
             _ if value == "None" => Kind::OptionalCount,
             Some('"') => Kind::Text,
-            Some('(') if ["cage", "defect", "film", "mesh.grading", "output.frames"].contains(&path) => {
+            Some('(') if ["cage", "defect", "mesh.grading", "output.frames"].contains(&path) => {
                 Kind::OptionalGroup
             }
             Some('(') => Kind::Group,
