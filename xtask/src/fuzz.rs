@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 
 use inputs::Inputs;
-pub(crate) use stribeck_studies::dice::Dice;
+pub(crate) use stribeck_scene::dice::Dice;
 
 use stribeck::{host, place::shown};
 

@@ -26,6 +26,7 @@
     const largest = splits.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
     const [factor, prefix] = axis.prefixed ? prefixOf(largest) : [1, ""];
     const unit = axis.prefixed && axis.unit ? " " + prefix + axis.unit : "";
+    if (axis.decades) return splits.map((v) => String(Number(Math.pow(10, v).toPrecision(2))));
     return splits.map((v) => minus((v / factor).toFixed(places(step / factor))) + unit);
   };
 
@@ -33,6 +34,7 @@
   const readout = (axis, digits) => (u, v) => {
     if (v == null) return "–";
     const [factor, prefix] = axis.prefixed ? prefixOf(v) : [1, ""];
+    if (axis.decades) v = Math.pow(10, v);
     return minus(String(Number((v / factor).toPrecision(digits)))) + " " + prefix + axis.unit;
   };
 
@@ -47,6 +49,9 @@
     // Joining leaves undefined where only another curve has a point; uPlot draws across that, and breaks at null.
     return one.length ? uPlot.join(one) : [[], []];
   };
+
+  // Shaded grounds have two edges, one after the other.
+  const pairsOf = (list) => list.flatMap((first, i) => (i % 2 ? [] : [[first, list[i + 1]]]));
 
   const theme = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -210,12 +215,14 @@
         ...spec.series.map((s) => ({
           label: s.name,
           stroke: () => theme(s.colour),
-          width: 1.2,
+          width: s.edge ? 0 : 1.2,
           paths: s.points ? () => null : undefined,
           points: s.points ? { show: true, size: 6, fill: () => theme(s.colour) } : { show: false },
           value: readout(spec.y, 4),
         })),
       ],
+      bands: pairsOf(spec.series.flatMap((s, i) => (s.edge ? [i + 1] : []))).map((pair) => (
+        { series: pair, fill: () => theme(spec.series[pair[0] - 1].colour) + "40" })),
       plugins: [decorate(spec, rowLimit), wheelZoom(place, spec.sync)],
     }, data, place);
     if (spec.x.range) chart.setScale("x", { min: from, max: to });

@@ -1,10 +1,11 @@
 //! The ledger of lines: which of them are the bearing, which are its mesh, and what the spectrum shows of each.
 
 use serde::{Deserialize, Serialize};
-use stribeck_dsp::{PeriodCount, Spectrum};
+use stribeck_dsp::{Peak, PeriodCount, Spectrum};
 use stribeck_scene::scene::Scene;
 
 use crate::Error;
+use crate::families::FamilyFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::Prediction;
 use crate::ring;
@@ -52,7 +53,20 @@ pub const LAST_MODE: u32 = 6;
 /// A mounted ring's frequency may differ from the free thin ring's by this much.
 const MODE_REACH: f64 = 0.12;
 
-/// All lines at the leading sensor, `density` being its spectrum [g²/Hz] and `tones` the measured facet lines.
+/// What a run shows of its lines.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen<'a> {
+    /// Facet lines measured one by one.
+    pub tones: &'a [Tone],
+    /// Verdicts on the families.
+    pub families: &'a [FamilyFinding],
+    /// Leading sensor.
+    pub sensor: &'a str,
+    /// Its spectrum [g²/Hz].
+    pub density: &'a Spectrum,
+}
+
+/// All lines at the leading sensor.
 ///
 /// # Errors
 /// [`Error::Signal`] when the spectrum cannot be searched.
@@ -60,18 +74,15 @@ pub fn ledger(
     scene: &Scene,
     prediction: &Prediction,
     motion: &KinematicsFinding,
-    tones: &[Tone],
-    sensor: &str,
-    density: &Spectrum,
+    seen: &Seen<'_>,
 ) -> Result<Vec<Artefact>, Error> {
-    let comb = Comb::of(prediction, motion, density);
-    let of_mesh = |tone: &Tone| Artefact::of_mesh(tone, comb.as_ref());
-    let mut all: Vec<Artefact> = tones.iter().filter(|t| t.sensor == sensor).map(of_mesh).collect();
-    all.extend(beats(prediction, motion, density));
-    all.extend(defect(prediction, motion, sensor, density)?);
-    for (n, hz) in ring::outer_ring_modes(scene, LAST_MODE) {
-        all.push(mode(n, hz, density, comb.as_ref(), &all)?);
-    }
+    let comb = Comb::of(prediction, motion, seen.density);
+    let here = seen.tones.iter().filter(|t| t.sensor == seen.sensor);
+    let mut all: Vec<Artefact> = here.map(|tone| Artefact::of_mesh(tone, comb.as_ref(), seen)).collect();
+    all.extend(beats(prediction, motion, seen.density));
+    all.extend(defect(prediction, motion, seen.sensor, seen.density)?);
+    let modes = ring::outer_ring_modes(scene, LAST_MODE).into_iter();
+    all.extend(modes.map(|(n, hz)| mode(n, hz, motion, seen, comb.as_ref())));
     Ok(all)
 }
 
@@ -190,15 +201,36 @@ impl Comb {
     }
 }
 
-fn mode(
-    n: u32,
-    hz: f64,
-    density: &Spectrum,
-    comb: Option<&Comb>,
-    known: &[Artefact],
-) -> Result<Artefact, Error> {
-    let (from, to) = ((1.0 - MODE_REACH) * hz, (1.0 + MODE_REACH) * hz);
-    let mut entry = Artefact {
+/// A natural frequency with the highest peak near it. It is never booked as measured: a mounted ring's frequencies differ
+/// from the free ring's by more than a peak nearby can prove, and most peaks have another cause.
+fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Option<&Comb>) -> Artefact {
+    let density = seen.density;
+    let width = density.resolution().width_6db_hz;
+    let near =
+        density.peak((1.0 - MODE_REACH) * hz, (1.0 + MODE_REACH) * hz).ok().filter(|peak| !peak.at_edge);
+    let above = |peak: &Peak| density.stands_above_db(peak, 0.6 * hz, 1.4 * hz, 1.5 * width).unwrap_or(0.0);
+    let verdict = match near.filter(|peak| above(peak) >= tones::LEAST_PROMINENCE_DB) {
+        None => "no peak near it: the seat, the rollers and the damping keep it quiet".to_owned(),
+        Some(peak) => {
+            let at = peak.frequency_hz;
+            let family = seen.families.iter().find(|f| f.claims(at, motion.bpfo_hz, 0.5 * width));
+            match (comb.and_then(|c| c.tooth(at)), family) {
+                (_, Some(family)) => format!(
+                    "the highest peak near it, {at:.0} Hz, belongs to the family of {}",
+                    family.spoken()
+                ),
+                (Some(multiple), None) => {
+                    format!("the highest peak near it, {at:.0} Hz, is BPFO ×{multiple}")
+                }
+                (None, None) => format!(
+                    "a peak stands {:+.0} % from it, at {at:.0} Hz; its place alone does not make it this mode",
+                    100.0 * (at / hz - 1.0)
+                )
+                .replace('-', "−"),
+            }
+        }
+    };
+    Artefact {
         family: Family::Ring,
         name: format!("outer ring, n = {n}"),
         harmonic: 1,
@@ -206,55 +238,36 @@ fn mode(
         from_motion_hz: None,
         measured_hz: None,
         level_g: None,
-        verdict: "no peak: the seat, the rollers and the damping keep it quiet".to_owned(),
-    };
-    let Ok(peak) = density.peak(from, to).map_err(Error::Signal) else { return Ok(entry) };
-    let width = density.resolution().width_6db_hz;
-    let above = density.stands_above_db(&peak, 0.6 * hz, 1.4 * hz, 1.5 * width).unwrap_or(0.0);
-    if !peak.at_edge && above >= tones::LEAST_PROMINENCE_DB {
-        let line = density.sinusoid(&peak).map_err(Error::Signal)?;
-        if let Some(multiple) = comb.and_then(|c| c.tooth(line.frequency_hz)) {
-            entry.verdict =
-                format!("the highest peak near it, {:.1} Hz, is BPFO ×{multiple}", line.frequency_hz);
-            return Ok(entry);
-        }
-        let same = |a: &&Artefact| {
-            a.family == Family::Mesh
-                && a.measured_hz.is_some_and(|hz| (hz - line.frequency_hz).abs() < 0.5 * width)
-        };
-        if let Some(mesh) = known.iter().find(same) {
-            entry.verdict = format!(
-                "the highest peak near it, {:.1} Hz, is that of {} ×{}",
-                line.frequency_hz,
-                mesh.name.replace('_', " "),
-                mesh.harmonic
-            );
-            return Ok(entry);
-        }
-        entry.measured_hz = Some(line.frequency_hz);
-        entry.level_g = Some(line.amplitude);
-        entry.verdict = format!(
-            "a peak {above:.0} dB above its surroundings stands near; a free thin ring has its mode here"
-        );
+        verdict,
     }
-    Ok(entry)
 }
 
 impl Artefact {
-    fn of_mesh(tone: &Tone, comb: Option<&Comb>) -> Self {
+    /// A facet line. Only a family that was found by its whole comb claims a peak; one at the predicted place proves nothing.
+    fn of_mesh(tone: &Tone, comb: Option<&Comb>, seen: &Seen<'_>) -> Self {
+        let family = seen.families.iter().find(|f| f.name == tone.name);
+        let found = family.is_some_and(|f| f.found);
+        let carrier = family.filter(|_| tone.harmonic == 1);
         let tooth = tone.measured_hz.and_then(|hz| comb?.tooth(hz));
-        let verdict = match (tooth, tone.measured_hz, tone.prominence_db) {
-            (Some(multiple), ..) => format!("BPFO ×{multiple} stands at the same place: not told apart"),
-            (None, Some(_), _) if tone.unresolved_from.is_empty() => {
-                "artefact of the mesh, on its own".to_owned()
+        let verdict = match (carrier, tooth, tone.measured_hz) {
+            (Some(family), _, _) => family.verdict.clone(),
+            (None, Some(multiple), _) => {
+                format!("BPFO ×{multiple} stands at the same place: not told apart")
             }
-            (None, Some(_), _) => {
-                "artefact of the mesh; this record cannot say of which of the merged lines".to_owned()
+            (None, None, Some(_)) if found => "a line at the harmonic of a family that was found".to_owned(),
+            (None, None, Some(hz)) => {
+                format!("a peak stands at {hz:.1} Hz, but the record does not hold this family")
             }
-            (None, None, Some(db)) => {
+            (None, None, None) => tone.prominence_db.map_or("no peak of its own".to_owned(), |db| {
                 format!("not above the background: {db:.1} dB, {:.0} dB count", tones::LEAST_PROMINENCE_DB)
-            }
-            (None, None, None) => "no peak of its own".to_owned(),
+            }),
+        };
+        // The carrier of a family may be weaker than its sidebands: then it has no line of its own here.
+        let own = carrier.and_then(|f| f.lines.iter().find(|l| l.sideband == 0 && l.sensor == seen.sensor));
+        let (measured_hz, level_g) = match carrier {
+            Some(_) => (own.and_then(|l| l.measured_hz), own.and_then(|l| l.level_g)),
+            None if found => (tone.measured_hz, tone.level_g),
+            None => (None, None),
         };
         Self {
             family: Family::Mesh,
@@ -262,8 +275,8 @@ impl Artefact {
             harmonic: tone.harmonic,
             predicted_hz: tone.predicted_hz,
             from_motion_hz: tone.from_motion_hz,
-            measured_hz: tone.measured_hz,
-            level_g: tone.level_g,
+            measured_hz,
+            level_g,
             verdict,
         }
     }

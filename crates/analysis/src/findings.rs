@@ -7,18 +7,20 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
-use self::passages::{crossing_forces, level_finding, picked_events};
+use self::passages::{crossing_forces, level_finding, picked_events, start_up_end_s};
 use crate::Error;
 use crate::artefacts;
 use crate::enveloping;
+use crate::families::{self, Channel, Motion, RollerTrack};
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
 use crate::load::{self, Distribution};
 use crate::paper;
 use crate::prediction::{Prediction, StaticCurve};
 use crate::reading::CursorReading;
-use crate::record::Record;
+use crate::record::{Record, Roller};
 use crate::ring;
+use crate::rolling;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones::{self, Tone};
 
@@ -34,6 +36,8 @@ const SHORTEST_SPECTRUM: usize = 64;
 pub struct Findings {
     /// The numbers.
     pub summary: Summary,
+    /// True for a scene of the paper's dimensions.
+    pub of_paper: bool,
     /// What geometry predicts.
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
@@ -42,6 +46,8 @@ pub struct Findings {
     pub modes: Vec<(u32, f64)>,
     /// Time of the first usable sample [s].
     pub start_s: f64,
+    /// When the start-up is over [s]; no level of events or gaps contains it.
+    pub start_up_end_s: f64,
     /// Sampling interval [s].
     pub interval_s: f64,
     /// One entry a sensor, the leading one first.
@@ -54,6 +60,8 @@ pub struct Findings {
     pub envelope: Option<Spectrum>,
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
+    /// What the families of facet lines were judged by: recorded motion and accelerations [g].
+    pub heard: (Motion, Vec<Channel>),
 }
 
 /// a_y of one sensor [g] and its spectra [g²/Hz].
@@ -61,8 +69,12 @@ pub struct Findings {
 pub struct SensorSignal {
     /// Name.
     pub name: String,
-    /// Mean over each interval.
+    /// Its angle, counter-clockwise from the x axis [°].
+    pub angle_deg: f64,
+    /// a_y, mean over each interval.
     pub raw_g: Vec<f64>,
+    /// a_x, mean over each interval; empty when it was not recorded.
+    pub across_g: Vec<f64>,
     /// Behind the notch; empty when there is none.
     pub filtered_g: Vec<f64>,
     /// Instantaneous nodal acceleration; empty when it was not recorded.
@@ -84,6 +96,25 @@ pub struct CrossingForce {
     pub filtered_n: Vec<f64>,
 }
 
+impl SensorSignal {
+    /// Acceleration outwards at the sensor's angle [g]; `None` without a_x.
+    pub fn radial_g(&self) -> Option<Vec<f64>> {
+        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
+        self.turned(cos, sin)
+    }
+
+    /// Acceleration along the circle, counter-clockwise [g]; `None` without a_x.
+    pub fn tangential_g(&self) -> Option<Vec<f64>> {
+        let (sin, cos) = self.angle_deg.to_radians().sin_cos();
+        self.turned(-sin, cos)
+    }
+
+    fn turned(&self, of_x: f64, of_y: f64) -> Option<Vec<f64>> {
+        let turned = || self.across_g.iter().zip(&self.raw_g).map(|(x, y)| of_x * x + of_y * y).collect();
+        (!self.across_g.is_empty()).then(turned)
+    }
+}
+
 impl Findings {
     /// Analyses `run`. An interrupted or diverged run yields what its samples hold.
     ///
@@ -102,6 +133,9 @@ impl Findings {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
+        let (tracks, channels) = heard(&record, &prediction, &motion, &sensors);
+        let candidates = prediction.candidates(&run.scene, &run.info.mesh);
+        let families = families::identify(&tracks, &candidates, &channels)?;
         let filter = filter(&record, &prediction, &sensors, &measured, &mut notes)?;
         if let Some(filter) = &filter {
             filter_sensors(filter, &record, &mut sensors)?;
@@ -123,10 +157,15 @@ impl Findings {
         load.static_max_roller_n = static_curve.as_ref().map(|c| c.largest_sound_n);
         load.static_max_roller_defect_n = static_curve.as_ref().map(|c| c.largest_n);
         load.static_loaded_rollers = static_curve.as_ref().map(|c| c.loaded_rollers);
+        let least = |curve| rolling::least_support_n(&run.scene, curve, load.expected_n);
+        load.least_rolling_n = static_curve.as_ref().and_then(least);
+        notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let span = time.last().copied().unwrap_or(0.0);
         let artefacts = match sensors.first().zip(spectrum) {
             Some((sensor, density)) => {
-                artefacts::ledger(&run.scene, &prediction, &motion, &measured, &sensor.name, density)?
+                let seen =
+                    artefacts::Seen { tones: &measured, families: &families, sensor: &sensor.name, density };
+                artefacts::ledger(&run.scene, &prediction, &motion, &seen)?
             }
             None => Vec::new(),
         };
@@ -146,6 +185,7 @@ impl Findings {
             kinematics: motion,
             events,
             load,
+            families,
             tones: measured,
             levels,
             notch,
@@ -156,8 +196,13 @@ impl Findings {
             paper: Vec::new(),
             notes,
         };
-        summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
+        let of_paper = paper::is_scene_of(&run.scene);
+        if of_paper {
+            summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
+        }
         Ok(Self {
+            of_paper,
+            start_up_end_s: start_up_end_s(time, &summary.events),
             summary,
             lines,
             modes: ring::outer_ring_modes(&run.scene, artefacts::LAST_MODE),
@@ -168,6 +213,7 @@ impl Findings {
             distribution: load::distribution(&record),
             envelope,
             static_curve,
+            heard: (tracks, channels),
             prediction,
         })
     }
@@ -224,6 +270,8 @@ fn sensor_signals(
         let raw_density = welch.as_mut().map(|w| w.estimate(&raw_g)).transpose().map_err(Error::Signal)?;
         signals.push(SensorSignal {
             name: sensor.name.clone(),
+            angle_deg: sensor.angle_deg,
+            across_g: record.acceleration_g(&sensor.name, "ax").unwrap_or_default(),
             instant_g: record.acceleration_g(&sensor.name, "ay_instant").unwrap_or_default(),
             raw_g,
             filtered_g: Vec::new(),
@@ -232,6 +280,31 @@ fn sensor_signals(
         });
     }
     Ok(signals)
+}
+
+/// Motion and accelerations of a record, as its families of facet lines are judged by them.
+fn heard(
+    record: &Record<'_>,
+    prediction: &Prediction,
+    motion: &kinematics::KinematicsFinding,
+    sensors: &[SensorSignal],
+) -> (Motion, Vec<Channel>) {
+    let track =
+        |r: &Roller<'_>| RollerTrack { orbit: r.orbit(), spin: r.spin.to_vec(), load_n: r.outer_normal() };
+    let tracks = Motion {
+        interval_s: record.interval_s(),
+        shaft_rad_s: prediction.kinematics.shaft_rad_s,
+        bpfo_hz: motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz),
+        rollers: record.rollers().iter().map(track).collect(),
+    };
+    let channels = sensors.iter().flat_map(|sensor| {
+        [("ay", &sensor.raw_g), ("ax", &sensor.across_g)].map(|(component, values)| Channel {
+            sensor: sensor.name.clone(),
+            component: component.to_owned(),
+            values: values.clone(),
+        })
+    });
+    (tracks, channels.filter(|channel| !channel.values.is_empty()).collect())
 }
 
 /// Every line at every sensor.

@@ -17,10 +17,10 @@
 //! | question | module |
 //! |---|---|
 //! | What does a run hold, what lets geometry expect? | [`record`], [`prediction`], [`plan`] |
-//! | Which lines are there, and what makes them? | [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
+//! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
-//! | Who carries how much, how fast does what turn? | [`load`], [`kinematics`], [`stress`] |
+//! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | What does all of it come to? | [`findings`], [`summary`], [`paper`], [`report`], [`plot`] |
 //!
 //! # A measured gearbox
@@ -55,6 +55,7 @@ pub mod record;
 
 pub mod enveloping;
 pub mod events;
+pub mod families;
 pub mod filtering;
 pub mod kinematics;
 pub mod levels;
@@ -64,6 +65,7 @@ pub mod noise;
 pub mod plan;
 pub mod reading;
 pub mod ring;
+pub mod rolling;
 pub mod signal;
 pub mod spall;
 pub mod tones;
@@ -71,8 +73,10 @@ pub mod tones;
 pub mod artefacts;
 pub mod stress;
 
+pub mod ensemble;
 pub mod findings;
 pub mod paper;
+pub mod statistic;
 
 pub mod plot;
 pub mod report;

@@ -33,6 +33,8 @@ pub struct LoadFinding {
     pub static_max_roller_defect_n: Option<f64>,
     /// Rollers loaded in the static distribution.
     pub static_loaded_rollers: Option<usize>,
+    /// Below this support rollers that have lost their spin do not roll again [N].
+    pub least_rolling_n: Option<f64>,
 }
 
 /// Mean force by angle.
@@ -68,6 +70,7 @@ pub fn measure(record: &Record<'_>, expected_n: f64, facet_period_s: f64) -> Loa
         static_max_roller_n: None,
         static_max_roller_defect_n: None,
         static_loaded_rollers: None,
+        least_rolling_n: None,
     }
 }
 

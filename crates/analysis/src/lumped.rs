@@ -21,9 +21,9 @@ use std::f64::consts::{PI, TAU};
 
 use stribeck_scene::Error;
 use stribeck_scene::geometry::Geometry;
-use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::kinematics::{Kinematics, roller_angles_deg};
 use stribeck_scene::scene::{RollerCopies, Scene};
-use stribeck_scene::static_load::{self, roller_angles_deg};
+use stribeck_scene::static_load;
 
 use crate::levels::STANDARD_GRAVITY;
 
@@ -65,7 +65,7 @@ impl Lumped {
         let (mut re, mut im, mut springs, mut arms) = (0.0, 0.0, 0.0, 0.0);
         let mut smoothing = 1.0;
         let largest = load.max_roller_n();
-        for (force, deg) in load.roller_n.iter().zip(roller_angles_deg(&scene.bearing)) {
+        for (force, deg) in load.roller_n.iter().zip(roller_angles_deg(scene)) {
             if *force <= 0.0 {
                 continue;
             }

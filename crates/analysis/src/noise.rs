@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::levels::{STANDARD_GRAVITY, impulse_span, level, quiet_spans};
+use crate::levels::{STANDARD_GRAVITY, Visit, gap_spans, impulse_span, level, phases};
 use crate::record::Record;
 use crate::signal::{amplitude, band_rms, smoothed_peak};
 
@@ -54,7 +54,8 @@ const LONG_ENOUGH: f64 = 0.9;
 pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet_hz: f64) -> Option<Noise> {
     let (time, rate) = (record.time_s(), record.sample_rate_hz());
     let components = [record.acceleration_g(sensor, "ax")?, record.acceleration_g(sensor, "ay")?];
-    let all = quiet_spans(time, passages, 0.0);
+    let visits: Vec<Visit> = passages.iter().map(|&(entry, exit)| Visit::between(entry, exit)).collect();
+    let all = gap_spans(time, &phases(time, &visits), 0.0);
     let longest = all.iter().map(ExactSizeIterator::len).max()?;
     let least = (LONG_ENOUGH * longest as f64) as usize;
     let quiet: Vec<Range<usize>> = all.iter().filter(|span| span.len() >= least).cloned().collect();

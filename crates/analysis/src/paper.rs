@@ -7,7 +7,7 @@ mod model;
 mod signal;
 
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{BearingScene, Scene};
 
 use crate::prediction::Prediction;
 use crate::summary::{PaperRow, Summary};
@@ -24,6 +24,23 @@ pub const IMPULSE_G: f64 = 180.0;
 pub const BETWEEN_G: f64 = 50.0;
 /// The same behind the notch, Fig. 6 [g].
 pub const FILTERED_G: f64 = 20.0;
+
+/// Whether a scene has the paper's bearing and defect, so that its numbers can be set beside the paper's at all.
+pub fn is_scene_of(scene: &Scene) -> bool {
+    let (b, paper) = (&scene.bearing, Scene::default());
+    let p = &paper.bearing;
+    let size = |b: &BearingScene| {
+        [
+            b.outer_race_diameter_mm,
+            b.outer_ring_thickness_mm,
+            b.inner_race_diameter_mm,
+            b.inner_ring_thickness_mm,
+            b.roller_diameter_mm,
+        ]
+    };
+    let defect = |s: &Scene| s.defect.as_ref().map(|d| [d.length_mm, d.depth_mm]);
+    size(b) == size(p) && b.rollers == p.rollers && defect(scene) == defect(&paper)
+}
 
 /// What the rows are made of.
 struct Source<'a> {
@@ -49,6 +66,9 @@ fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str,
         quantity: quantity.into(),
         paper: text(paper),
         ours: ours.map_or("this record cannot tell".into(), text),
+        paper_value: Some(paper),
+        ours_value: ours,
+        unit: unit.into(),
         difference: ours.map_or("–".into(), |ours| difference(paper, ours)),
         why: why.into(),
     }
@@ -61,8 +81,18 @@ fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str
         quantity: quantity.into(),
         paper: paper.into(),
         ours,
+        paper_value: None,
+        ours_value: None,
+        unit: String::new(),
         difference: difference.into(),
         why: why.into(),
+    }
+}
+
+impl PaperRow {
+    /// A row of words with the number that they tell.
+    fn telling(self, ours_value: Option<f64>, unit: &str) -> Self {
+        Self { ours_value, unit: unit.into(), ..self }
     }
 }
 

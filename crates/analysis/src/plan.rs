@@ -10,8 +10,10 @@ use stribeck_scene::scene::{ContactInterpolation, ContactMethod, ContactSurface,
 use stribeck_scene::static_load;
 
 use crate::Error;
+use crate::kinematics::KinematicsFinding;
 use crate::lumped::Lumped;
 use crate::prediction::Prediction;
+use crate::rolling;
 
 /// What a plan must know of the mesh that a scene makes.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,6 +116,11 @@ impl Plan {
             advice: Vec::new(),
         };
         plan.advise(scene, &geometry);
+        let support_n = geometry.load;
+        if let Ok(curve) = prediction.static_curve(scene, support_n) {
+            let least_n = rolling::least_support_n(scene, &curve, support_n);
+            plan.advice.extend(rolling::warnings(support_n, least_n, &KinematicsFinding::default()));
+        }
         Ok(plan)
     }
 

@@ -2,12 +2,13 @@
 //! defect when, and who carries how much.
 
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
-use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics};
+use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::{DefectScene, Scene};
-use stribeck_scene::static_load::{RigidRings, roller_angles_deg};
+use stribeck_scene::scene::{DefectScene, RollerCopies, Scene};
+use stribeck_scene::static_load::RigidRings;
 
 use crate::Error;
+use crate::families::{Candidate, Source};
 
 /// Steps of the cage over one roller spacing in the static distribution.
 const CAGE_STEPS: usize = 30;
@@ -73,7 +74,7 @@ impl Prediction {
             let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
             // Whoever enters in time leaves at most one traverse later.
             let until_s = Geometry::of(scene).duration + traverse_s;
-            kinematics.crossings(defect, scene.bearing.first_roller_deg, until_s)
+            kinematics.crossings(defect, &roller_angles_deg(scene), until_s)
         };
         Self {
             facet_lines,
@@ -81,6 +82,21 @@ impl Prediction {
             passages: scene.defect.as_ref().map(passages).unwrap_or_default(),
             kinematics,
         }
+    }
+
+    /// The combs that facets can make: rollers, nodes of the outer and of the inner raceway.
+    pub fn candidates(&self, scene: &Scene, mesh: &MeshInfo) -> Vec<Candidate> {
+        let vertices = mesh.roller_facets as f64;
+        let sources = [
+            match scene.mesh.roller_copies {
+                RollerCopies::Rotated => Source::RotatedVertices(vertices),
+                RollerCopies::Translated => Source::TranslatedVertices(vertices),
+            },
+            Source::OuterNodes(outer_facets(scene, mesh.outer_facets)),
+            Source::InnerNodes(mesh.inner_facets as f64),
+        ];
+        let named = |((name, _), source): (&(String, f64), Source)| Candidate { name: name.clone(), source };
+        self.facet_lines.iter().zip(sources).map(named).collect()
     }
 
     /// Longest of the facet periods [s]: a median over it removes every facet line. Zero without facets or motion.
@@ -95,7 +111,7 @@ impl Prediction {
     /// [`Error::Run`] when the rings find no equilibrium.
     pub fn static_curve(&self, scene: &Scene, support_n: f64) -> Result<StaticCurve, Error> {
         let rings = RigidRings::new(&Geometry::of(scene));
-        let start = roller_angles_deg(&scene.bearing);
+        let start = roller_angles_deg(scene);
         let spacing = 360.0 / scene.bearing.rollers as f64;
         let mut points: Vec<(f64, f64)> = Vec::new();
         let mut largest_sound_n = 0.0f64;

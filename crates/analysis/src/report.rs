@@ -1,7 +1,8 @@
 //! From a run directory to `report.html`, `summary.json` and figures. Nothing here simulates: the same
 //! directory gives the same bytes.
 
-mod comparison;
+mod answer;
+mod ensemble;
 mod figures;
 mod pictures;
 mod sections;
@@ -14,8 +15,12 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::Serialize;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::Scene;
+
+pub use ensemble::write_ensemble;
 
 use crate::findings::Findings;
 use crate::plot;
@@ -44,7 +49,8 @@ pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
     let figures = Figures::of(&run, &findings, pictures);
-    write_figures(&figures, &run_dir.join("figures"))?;
+    let all: Vec<&Item> = figures.all().collect();
+    write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.
     let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
     let page = page(&run, &findings, &figures, &scene)?.into_string();
@@ -53,9 +59,9 @@ pub fn write(run_dir: &Path) -> Result<Summary, Error> {
 }
 
 /// Writes every figure, on all cores.
-fn write_figures(figures: &Figures, folder: &Path) -> Result<(), Error> {
+fn write_figures(figures: &[&Item], folder: &Path) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
-    let figures = Mutex::new(figures.all());
+    let figures = Mutex::new(figures.iter());
     let next = || figures.lock().unwrap_or_else(PoisonError::into_inner).next();
     let write_some = || std::iter::from_fn(next).try_for_each(|figure| write_figure(figure, folder));
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -80,83 +86,89 @@ fn write_figure(figure: &Item, folder: &Path) -> Result<(), Error> {
 }
 
 /// `summary.json` with a final line end.
-fn json(summary: &Summary) -> Result<String, Error> {
+fn json(summary: &impl Serialize) -> Result<String, Error> {
     let text = serde_json::to_string_pretty(summary).map_err(Error::Summary)?;
     Ok(text + "\n")
 }
 
 fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Result<Markup, Error> {
     let summary = &findings.summary;
-    let title = format!("{} – Stribeck", summary.scene);
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                // An empty picture keeps browsers from asking a server for an icon.
-                link rel="icon" href="data:,";
-                title { (title) }
-                (plot::script())
-                style { (PreEscaped(include_str!("../assets/report.css"))) }
-            }
+            (head(&summary.scene))
             body {
                 h1 { (summary.scene) }
-                p class="lead" { (lead(run, summary)) }
+                p class="lead" { (lead(&run.scene, summary.run.simulated_ms)) }
                 (banner(run))
-                (contents())
-                (opening(summary, findings))
-                h2 #numbers { "Every number of the paper" }
-                (sections::paper(summary))
-                (section("paper", "The paper's figures", index(&figures.paper), &figures.paper, tables::events(summary), "")?)
-                h2 #artefacts { "Which lines are physics, which are mesh" }
-                (sections::artefacts(summary))
-                (sections::readings(summary))
-                (tables::notch(summary))
-                (section("spectra", "More spectra", html! {}, &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
-                (section("sensors", "Other sensors", html! {}, &figures.acceleration, tables::levels(summary), "One sensor was recorded, and it is above.")?)
-                (section("bearing", "Load, slip and cage", html! {}, &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
-                h3 { "Length of the defect, from the events" }
-                (sections::spall(run, summary))
-                (section("stress", "Stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
+                (answer::paragraphs(run, summary))
+                (contents(findings.of_paper))
+                (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
+                (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
+                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
+                (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
+                (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
                 (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
-                h2 #kinematics { "Kinematics" }
-                (tables::kinematics(summary))
-                h2 #lines { "Facet lines at every sensor" }
-                (tables::tones(summary))
+                h2 #artefacts { "All lines of the leading sensor" }
+                (sections::artefacts(summary))
+                (tables::notch(summary))
+                @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
             }
         }
     })
 }
 
-fn contents() -> Markup {
+/// What a page needs before its first word.
+fn head(name: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            // An empty picture keeps browsers from asking a server for an icon.
+            link rel="icon" href="data:,";
+            title { (name) " – Stribeck" }
+            (plot::script())
+            style { (PreEscaped(include_str!("../assets/report.css"))) }
+        }
+    }
+}
+
+fn contents(of_paper: bool) -> Markup {
     let entries = [
         ("summary", "Summary"),
-        ("numbers", "The paper's numbers"),
-        ("paper", "The paper's figures"),
-        ("artefacts", "Physics or mesh"),
-        ("spectra", "More spectra"),
-        ("sensors", "Other sensors"),
-        ("bearing", "Load, slip and cage"),
-        ("stress", "Stress"),
+        ("acceleration", "Acceleration"),
+        ("spectra", "Spectrum"),
+        ("forces", "Forces"),
+        ("bearing", "Load and slip"),
+        ("stress", "Mesh and stress"),
         ("energy", "Energy"),
-        ("kinematics", "Kinematics"),
-        ("lines", "Facet lines"),
+        ("artefacts", "All lines"),
+        ("numbers", "Appendix: the paper"),
         ("notes", "Notes"),
         ("provenance", "Provenance"),
     ];
-    html! { nav aria-label="Contents" { @for (id, name) in entries { a href={ "#" (id) } { (name) } } } }
+    let shown = entries.into_iter().filter(|(id, _)| of_paper || *id != "numbers");
+    html! { nav aria-label="Contents" { @for (id, name) in shown { a href={ "#" (id) } { (name) } } } }
 }
 
-/// Titles of the figures of a section, as links.
-fn index(items: &[Item]) -> Markup {
-    html! { p class="index" { @for item in items { a href={ "#" (item.id()) } { (item.title().split(':').next().unwrap_or_default()) } " " } } }
+/// The paper's numbers and the figures that only it needs, for a scene of its dimensions.
+fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
+    let drawn = figures.paper.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        h2 #numbers { "Appendix: the paper beside this run" }
+        p class="hint" {
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage \
+             pockets, damping nor the place of its sensor, so its levels are no test of this model."
+        }
+        (sections::paper(summary))
+        @for figure in drawn { (figure) }
+        (sections::readings(summary))
+    })
 }
 
 /// The sentence under the title.
-fn lead(run: &Run, summary: &Summary) -> String {
-    let scene = &run.scene;
+fn lead(scene: &Scene, simulated_ms: f64) -> String {
     let defect = scene.defect.as_ref().map_or("a sound outer raceway".to_owned(), |d| {
         format!("a spall of {} × {} mm on the outer raceway", d.length_mm, d.depth_mm)
     });
@@ -165,7 +177,7 @@ fn lead(run: &Run, summary: &Summary) -> String {
         scene.bearing.rollers,
         1e-3 * scene.operation.load_n,
         scene.operation.speed_rpm,
-        summary.run.simulated_ms
+        simulated_ms
     )
 }
 
@@ -182,23 +194,6 @@ fn banner(run: &Run) -> Markup {
         div class="banner" role="alert" {
             strong { (what) } " " (why) " The report shows what exists: "
             (run.info.steps) " of " (run.info.steps_planned) " steps."
-        }
-    }
-}
-
-fn opening(summary: &Summary, findings: &Findings) -> Markup {
-    html! {
-        h2 #summary { "Summary" }
-        (comparison::table(summary, findings))
-        p class="hint" {
-            "Paper: Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its thickness, cage, \
-             damping and sensor place are not published, so levels agree when they are within a factor of two. A dash means \
-             that the record cannot tell; the reason is in the "
-            a href="#notes" { "notes" } "."
-        }
-        p class="hint" {
-            "Figures: drag to zoom, double-click to reset; the wheel zooms at the cursor with Ctrl or Shift, or after a click \
-             into the figure. Click a name in a legend to hide its curve."
         }
     }
 }
@@ -225,6 +220,10 @@ fn section(
 fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
     html! {
         h2 #notes { "Notes" }
+        p class="hint" {
+            "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a name in a legend hides its \
+             curve."
+        }
         @if summary.notes.is_empty() && run.info.warnings.is_empty() { p { "None." } }
         ul class="notes" {
             @for note in &summary.notes { li { (sentence(note)) } }

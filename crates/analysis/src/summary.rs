@@ -7,6 +7,7 @@ use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
 use crate::enveloping::EnvelopeFinding;
+use crate::families::FamilyFinding;
 use crate::filtering::NotchFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
@@ -32,6 +33,8 @@ pub struct Summary {
     pub events: Vec<Event>,
     /// Forces on the rollers.
     pub load: LoadFinding,
+    /// Combs of lines that the recorded motion predicts, and whether the record holds them.
+    pub families: Vec<FamilyFinding>,
     /// Facet lines at every sensor: the leading sensor first, fundamentals first.
     pub tones: Vec<Tone>,
     /// Impulses and what lies between them, at the leading sensor.
@@ -63,6 +66,12 @@ pub struct PaperRow {
     pub paper: String,
     /// Of this run; words when there is no number.
     pub ours: String,
+    /// The paper's as a number, where it is one.
+    pub paper_value: Option<f64>,
+    /// Ours as a number, where there is one.
+    pub ours_value: Option<f64>,
+    /// Unit of both.
+    pub unit: String,
     /// Ours against the paper's.
     pub difference: String,
     /// Why, or what to make of it.
@@ -124,14 +133,54 @@ pub struct Event {
     pub level_n: Option<f64>,
     /// Largest |a_y| within 1 ms of the exit at the leading sensor [g].
     pub impulse_g: Option<f64>,
-    /// When the roller strikes the floor of the defect [ms] (event #2); `None` when it does not touch it.
-    pub impact_ms: Option<f64>,
+    /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch it.
+    pub floor_ms: Option<f64>,
+    /// Its force then [N].
+    pub floor_n: Option<f64>,
     /// When the roller carries most for a neighbour in the defect [ms] (event #3).
     pub compensation_ms: Option<f64>,
+    /// Its force then [N], a running median as wide as that of the events.
+    pub compensation_n: Option<f64>,
     /// Its force then over its force before that neighbour entered.
     pub compensation_gain: Option<f64>,
     /// Length of the defect estimated from both times and the speed without slip [mm].
     pub spall_mm: Option<f64>,
+}
+
+/// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None` where the
+/// record has no such phase.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct PhaseLevels {
+    /// Largest magnitude in the start-up.
+    pub start_g: Option<f64>,
+    /// Root mean square in the start-up.
+    pub start_rms_g: Option<f64>,
+    /// Largest magnitude while rollers enter the defect.
+    pub entry_g: Option<f64>,
+    /// Root mean square while rollers enter.
+    pub entry_rms_g: Option<f64>,
+    /// Largest magnitude while a roller is in the defect.
+    pub defect_g: Option<f64>,
+    /// Root mean square while a roller is in the defect.
+    pub defect_rms_g: Option<f64>,
+    /// Largest magnitude while rollers leave the defect.
+    pub exit_g: Option<f64>,
+    /// Root mean square while rollers leave.
+    pub exit_rms_g: Option<f64>,
+    /// Largest magnitude in the gaps between the events.
+    pub gap_g: Option<f64>,
+    /// Root mean square in the gaps.
+    pub gap_rms_g: Option<f64>,
+}
+
+/// Levels of one component of a sensor.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComponentLevels {
+    /// `radial`, outwards at the sensor's angle, or `tangential`, counter-clockwise.
+    pub component: String,
+    /// By phase.
+    #[serde(flatten)]
+    pub phases: PhaseLevels,
 }
 
 /// Levels of a_y [g], mean over each sampling interval.
@@ -139,17 +188,20 @@ pub struct Event {
 pub struct LevelsFinding {
     /// Sensor that the figures of this section belong to.
     pub sensor: Option<String>,
+    /// By phase.
+    #[serde(flatten)]
+    pub phases: PhaseLevels,
     /// Largest magnitude within 1 ms of any exit.
     pub impulse_g: Option<f64>,
-    /// Largest magnitude away from events (from 0.5 ms before an entry to 2 ms after the exit).
+    /// Largest magnitude in the gaps, as `gap_g`.
     pub between_g: Option<f64>,
     /// The same behind the notch, its transient left out.
     pub between_filtered_g: Option<f64>,
-    /// Magnitude that 1 % of the samples between events exceed.
+    /// Magnitude that 1 % of the samples in the gaps exceed.
     pub between_p99_g: Option<f64>,
     /// The same behind the notch.
     pub between_filtered_p99_g: Option<f64>,
-    /// Root mean square between events.
+    /// Root mean square in the gaps.
     pub between_rms_g: Option<f64>,
     /// The same behind the notch.
     pub between_filtered_rms_g: Option<f64>,
@@ -159,20 +211,27 @@ pub struct LevelsFinding {
     pub sensors: Vec<SensorLevels>,
 }
 
-/// Levels of a_y at one sensor [g].
+/// Levels at one sensor [g].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SensorLevels {
     /// Sensor.
     pub sensor: String,
-    /// Largest magnitude within 1 ms of any exit.
+    /// Its angle, counter-clockwise from the x axis [°].
+    pub angle_deg: f64,
+    /// a_y by phase.
+    #[serde(flatten)]
+    pub phases: PhaseLevels,
+    /// The radial and the tangential component by phase; empty when a_x was not recorded.
+    pub components: Vec<ComponentLevels>,
+    /// Largest |a_y| within 1 ms of any exit.
     pub impulse_g: Option<f64>,
-    /// Largest magnitude between events.
+    /// Largest |a_y| in the gaps, as `gap_g`.
     pub between_g: Option<f64>,
-    /// Root mean square between events.
+    /// Root mean square in the gaps.
     pub between_rms_g: Option<f64>,
-    /// Largest magnitude between events behind the notch, its transient left out.
+    /// Largest |a_y| in the gaps behind the notch, its transient left out.
     pub between_filtered_g: Option<f64>,
-    /// Root mean square between events behind the notch.
+    /// Root mean square in the gaps behind the notch.
     pub between_filtered_rms_g: Option<f64>,
 }
 
@@ -199,6 +258,18 @@ pub struct SpectrumFinding {
     pub grid_hz: f64,
     /// True when the grid is finer than the resolution.
     pub zero_padded: bool,
+}
+
+impl Event {
+    /// Unloading after the centre would stand over the leading edge without slip [ms].
+    pub fn entry_off_ms(&self) -> Option<f64> {
+        Some(self.entry_ms? - self.expected_entry_ms)
+    }
+
+    /// Re-stressing after the centre would stand over the trailing edge without slip [ms].
+    pub fn exit_off_ms(&self) -> Option<f64> {
+        Some(self.exit_ms? - self.expected_exit_ms)
+    }
 }
 
 impl RunCost {

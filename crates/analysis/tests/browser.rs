@@ -95,6 +95,20 @@ fn example_a_browser_draws_every_figure_without_an_error() {
     let folder = Scratch::new("browser");
     synthetic::write(&folder.0, Status::Complete, 3000);
     report::write(&folder.0).expect("a report");
+    draws_all(&browser, &folder);
+}
+
+#[test]
+fn example_a_browser_draws_every_figure_of_an_ensemble() {
+    let Some(browser) = browser() else { return };
+    let folder = Scratch::new("browser-ensemble");
+    synthetic::write_ensemble(&folder.0, &[0.8, 1.0, 1.2], 3);
+    report::write_ensemble(&folder.0).expect("a report");
+    draws_all(&browser, &folder);
+}
+
+/// Opens the report in `folder`, by day and by night.
+fn draws_all(browser: &Path, folder: &Scratch) {
     let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
     let figures = page.matches("<figure id=").count();
     let watched = page.replacen("<head>", &format!("<head>{WATCH}"), 1).replacen(
@@ -107,7 +121,7 @@ fn example_a_browser_draws_every_figure_without_an_error() {
     let probed = folder.0.join("probed.html");
     std::fs::write(&probed, watched).expect("a writable folder");
     for dark in [false, true] {
-        let said = title_of(&browser, &probed, &folder.0.join("profile"), dark);
+        let said = title_of(browser, &probed, &folder.0.join("profile"), dark);
         assert_eq!(said, format!("figures={figures} undrawn= errors="), "dark: {dark}");
     }
 }

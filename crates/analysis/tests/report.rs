@@ -77,6 +77,29 @@ fn example_tone_levels_and_notch_of_the_synthetic_run() {
     // What is left of an impulse 2 ms later is 180 g · e⁻⁸, nothing.
     let between = summary.levels.between_g.expect("samples between the events");
     assert!(between > TONE_G && between <= riding + 1e-6, "{between}");
+    // Phase by phase: the tone runs through all of them, impulses stand at the exits alone.
+    let phases = summary.levels.phases;
+    assert_eq!((phases.gap_g, phases.exit_g >= Some(IMPULSE_G - riding)), (Some(between), true));
+    for quiet in [phases.start_g, phases.entry_g, phases.defect_g] {
+        assert!(quiet.expect("a level") <= riding + 1e-6, "{phases:?}");
+    }
+    close(
+        phases.gap_rms_g,
+        (0.5 * (1.04 * TONE_G * TONE_G) + NOISE_G * NOISE_G / 3.0).sqrt(),
+        0.5,
+        "RMS of the gaps",
+    );
+    // a_x is 0.3 a_y: at 270° the outward direction is −y and the counter-clockwise one x.
+    let bottom = summary.levels.sensors.iter().find(|s| s.sensor == "bottom").expect("a sensor at 270°");
+    let component =
+        |name: &str| bottom.components.iter().find(|c| c.component == name).expect("a component").phases;
+    close(component("radial").exit_g, bottom.phases.exit_g.expect("a level"), 1e-9, "radial at the bottom");
+    close(
+        component("tangential").gap_g,
+        0.3 * bottom.phases.gap_g.expect("a level"),
+        1e-9,
+        "tangential at the bottom",
+    );
     let filtered = summary.levels.between_filtered_g.expect("samples after the transient");
     assert!(filtered < 0.2 * TONE_G + NOISE_G + 8.0, "{filtered}");
 
@@ -130,7 +153,32 @@ fn golden_the_summary_has_its_stable_names() {
         "/tones/0/predicted_hz",
         "/tones/0/measured_hz",
         "/tones/0/level_g",
+        "/events/2/compensation_n",
         "/levels/impulse_g",
+        "/levels/start_g",
+        "/levels/start_rms_g",
+        "/levels/entry_g",
+        "/levels/entry_rms_g",
+        "/levels/defect_g",
+        "/levels/defect_rms_g",
+        "/levels/exit_g",
+        "/levels/exit_rms_g",
+        "/levels/gap_g",
+        "/levels/gap_rms_g",
+        "/levels/sensors/3/sensor",
+        "/levels/sensors/3/gap_rms_g",
+        "/levels/sensors/3/components/0/component",
+        "/levels/sensors/3/components/1/exit_g",
+        "/families/2/name",
+        "/families/2/predicted_hz",
+        "/families/0/carrier_hz",
+        "/families/0/offset_resolutions",
+        "/families/0/found",
+        "/families/0/level_g",
+        "/families/0/lines/0/sideband",
+        "/families/0/lines/0/predicted_hz",
+        "/families/0/lines/0/sensor",
+        "/families/0/lines/0/component",
         "/levels/between_g",
         "/levels/between_filtered_g",
         "/notch/centre_hz",
@@ -144,6 +192,10 @@ fn golden_the_summary_has_its_stable_names() {
         "/spectrum/segments",
     ] {
         assert!(json.pointer(path).is_some_and(|v| !v.is_null()), "{path} is missing");
+    }
+    // No roller of this run touches the floor: the names are there, without a value.
+    for path in ["/events/0/floor_ms", "/events/0/floor_n"] {
+        assert!(json.pointer(path).is_some_and(serde_json::Value::is_null), "{path} is not null");
     }
     // 300 s over 968 000 steps of 433 elements.
     close(summary.run.ns_per_element_step, 715.74, 0.01, "ns per element and step");
@@ -323,6 +375,12 @@ fn example_the_ledger_tells_mesh_from_physics() {
     assert_eq!(counts, [18, 3, 6, 5]);
     let tone = of(Family::Mesh).next().expect("the roller vertices");
     assert!((tone.measured_hz.expect("a line") - TONE_HZ).abs() < 2.0, "{tone:?}");
+    // The tone follows the rollers' spin: one family has it, and the raceways' nodes 35 Hz away do not.
+    let found: Vec<&str> = summary.families.iter().filter(|f| f.found).map(|f| f.name.as_str()).collect();
+    assert_eq!(found, ["roller_vertices"], "{:#?}", summary.families);
+    assert!(summary.families[0].offset_resolutions.expect("fitted").abs() < 0.5, "{:?}", summary.families[0]);
+    // A place near a natural frequency makes no line of the ring.
+    assert!(of(Family::Ring).all(|a| a.measured_hz.is_none()));
     assert!(of(Family::Defect).all(|a| a.measured_hz.is_none() && a.verdict.contains("ten are needed")));
     assert!(summary.artefacts.iter().all(|a| !a.verdict.is_empty()));
 }
@@ -348,6 +406,26 @@ fn example_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
     assert_eq!((summary.levels.impulse_g, summary.levels.between_filtered_g), (None, None));
     assert!(summary.notes.iter().any(|n| n.contains("until the record ends")), "{:?}", summary.notes);
     assert!(summary.notes.iter().any(|n| n.contains("no impulse level")), "{:?}", summary.notes);
+}
+
+#[test]
+fn example_the_page_begins_with_the_answer() {
+    let (folder, _) = whole("answer");
+    let page = read(&folder.0, "report.html");
+    let places = [
+        "The defect. ",
+        "The mesh. ",
+        "How far to trust it. ",
+        "id=\"acceleration\"",
+        "id=\"spectrum\"",
+        "id=\"force-1\"",
+        "id=\"numbers\"",
+    ]
+    .map(|what| page.find(what).unwrap_or_else(|| panic!("{what} is not in the page")));
+    assert!(places.is_sorted(), "{places:?}");
+    for odd in ["Ball pass", "Notch takes", "The same above"] {
+        assert!(!page.contains(odd), "{odd}");
+    }
 }
 
 #[test]

@@ -187,8 +187,9 @@ impl Assembly {
             .map(|i| {
                 let angle = roller_angle(scene, i);
                 let turned = match scene.mesh.roller_copies {
-                    RollerCopies::Translated => disc.clone(),
-                    RollerCopies::Rotated => disc.rotated(angle),
+                    RollerCopies::Translated if g.roller_phase == 0.0 => disc.clone(),
+                    RollerCopies::Translated => disc.rotated(g.roller_phase),
+                    RollerCopies::Rotated => disc.rotated(angle + g.roller_phase),
                 };
                 let (s, c) = angle.sin_cos();
                 mesh.add(format!("roller {}", i + 1), &turned.translated(path * c, path * s))
@@ -441,8 +442,8 @@ fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: 
         let piece = ArcBlock {
             inner_radius: inner,
             outer_radius: outer,
-            right_line_angle: g.roller_angle(i),
-            left_line_angle: g.roller_angle(i) + TAU / pieces as f64,
+            right_line_angle: g.pocket_angle(i),
+            left_line_angle: g.pocket_angle(i) + TAU / pieces as f64,
             half_width,
             rows: ((1e3 * (outer - inner) / CAGE_ELEMENT_MM).round() as usize).max(1),
             columns: ((1e3 * arc / CAGE_ELEMENT_MM).round() as usize).max(1),

@@ -5,6 +5,7 @@
 //! | imbalance of energy over the peak strain energy; no number at all | `energy_warning_percent` | `energy_stop_percent` |
 //! | hourglass over strain energy | `hourglass_warning_percent` | |
 //! | penetration over element size | `penetration_warning_percent` | `penetration_stop_percent` |
+//! | penetration over what a bearing gives way by itself | above 1 | |
 //! | area of an element over its area at rest | | `area_stop_percent` |
 //! | time step over the critical one, at the start and as elements deform | above 1 | |
 //! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
@@ -12,7 +13,7 @@
 //! | rollers and adapter out of their place | | [`OUT_OF_PLACE`] |
 //!
 //! The fields are those of `guards` in the scene. [`System::look`] watches what can go wrong with any bodies in motion and
-//! says it in the scene's words ([`arm`]); before the first step, and for the last two rows, it is said here. A warning is
+//! says it in the scene's words ([`arm`]); before the first step, for the penetration in the fourth row, and for the last two rows, it is said here. A warning is
 //! given once, at the first sample above its limit. What has been seen is in checkpoints and in
 //! [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
 
@@ -24,6 +25,7 @@ use stribeck_scene::{
     geometry::Geometry,
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
+    static_load,
 };
 
 /// A critical time step that is this share of that of a square cell of the scene's size is worth a word.
@@ -35,6 +37,9 @@ const LOOK_EVERY: u64 = 10;
 /// Rollers may leave their annulus, and the adapter its seat, by this share of a roller's radius.
 const OUT_OF_PLACE: f64 = 0.5;
 
+/// Contact that sinks in by more than this share of the defect's depth moves its edges.
+const OF_DEPTH: f64 = 0.5;
+
 /// A roller carries something above this share of the load.
 const CARRIES: f64 = 1e-3;
 
@@ -43,12 +48,54 @@ const CARRIES: f64 = 1e-3;
 pub(crate) struct Guards {
     /// Time without support above which there is a warning [s].
     unsupported: f64,
+    soft: Softness,
     /// Nearest and farthest place of a roller's centre from that of the outer ring [m].
     annulus: [f64; 2],
     /// How far the adapter may leave its seat [m].
     seat: f64,
     /// Height of the adapter above the outer ring at rest [m].
     adapter_height: f64,
+}
+
+/// What a penetration is to be compared with [m]: a contact that sinks in by more is softer than the bearing itself.
+#[derive(Debug, Clone, Copy)]
+struct Softness {
+    /// Half of the diametral clearance.
+    radial_clearance: f64,
+    /// Approach of one contact of the most loaded roller between rigid rings, by Hertz.
+    hertz: f64,
+    /// Depth of the defect; infinite without one.
+    depth: f64,
+}
+
+impl Softness {
+    fn of(scene: &Scene, g: &Geometry) -> Self {
+        // Rollers that carry nothing in equilibrium leave the clearance alone.
+        let hertz = static_load::at_start(scene).map_or(0.0, |load| 0.5 * load.max_approach_m());
+        let depth = g.defect.map_or(f64::INFINITY, |d| d.depth);
+        Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
+    }
+
+    fn limit(&self) -> f64 {
+        self.radial_clearance.max(self.hertz).min(OF_DEPTH * self.depth)
+    }
+
+    fn warning(&self, penetration: f64, info: &RunInfo) -> String {
+        let um = |length: f64| format!("{:.1} µm", 1e6 * length);
+        let depth = if self.depth.is_finite() {
+            format!(", the defect is {} deep", um(self.depth))
+        } else {
+            String::new()
+        };
+        format!(
+            "contact has sunk in by {} {}: it is softer than the bearing, which has {} of radial clearance and by Hertz gives way by {} at a \
+             contact{depth}. Load zone, times and impulses are those of a softer bearing; a larger `contact.penalty_scale` is nearer to steel",
+            um(penetration),
+            when(info),
+            um(self.radial_clearance),
+            um(self.hertz),
+        )
+    }
 }
 
 impl Guards {
@@ -63,6 +110,7 @@ impl Guards {
             mean(mesh.y[nodes].iter().copied())
         });
         Self {
+            soft: Softness::of(scene, &g),
             unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
             annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
             seat: slack,
@@ -113,12 +161,18 @@ impl Guards {
                 info.warnings.push(finding.message);
             }
         }
+        let size = machine.system.limits.element_size.unwrap_or(0.0);
+        let before = size * info.guards.penetration_share;
         let (seen, guards) = (machine.system.seen(), &mut info.guards);
         guards.energy_warned = seen.energy_warned;
         guards.hourglass_share = seen.hourglass_share;
         guards.penetration_share = seen.penetration_share;
         guards.least_area = seen.least_area;
         guards.strain_checked = seen.strain_checked;
+        let (deepest, limit) = (size * info.guards.penetration_share, self.soft.limit());
+        if before <= limit && deepest > limit {
+            info.warnings.push(self.soft.warning(deepest, info));
+        }
         self.support(info, machine);
         stop.or(self.places(info, machine))
     }

@@ -75,6 +75,7 @@ pub fn simulate(
         mesh,
         wall_s: 0.0,
         cpu_s: 0.0,
+        loop_cpu_s: 0.0,
         setup_s: (host.wall_s)() - started,
         resumed_at_s: Vec::new(),
         energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0 },

@@ -141,9 +141,9 @@ impl<'a> Run<'a> {
     ) -> Result<RunInfo, Error> {
         let steps_per_sample = (self.info.interval_s / self.info.time_step_s).round().max(1.0) as usize;
         let samples = self.info.steps_planned as usize / steps_per_sample;
-        let earlier = (self.info.wall_s, self.info.cpu_s);
+        let earlier = (self.info.wall_s, self.info.cpu_s, self.info.loop_cpu_s);
         let workers = Workers::new(host.threads)?;
-        let began = (host.wall_s)();
+        let (began, set_up_cpu) = ((host.wall_s)(), (host.cpu_s)());
         let mut saved = Saved { sample: self.info.samples, wall_s: began, ..Saved::default() };
         if self.info.samples == 0 {
             // The preload need not be repeated, whatever happens from now on.
@@ -163,7 +163,9 @@ impl<'a> Run<'a> {
             self.info.samples = sample;
             // Clocks may jump; times that are written only grow.
             self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
-            self.info.cpu_s = self.info.cpu_s.max(earlier.1 + (host.cpu_s)());
+            let cpu = (host.cpu_s)();
+            self.info.cpu_s = self.info.cpu_s.max(earlier.1 + cpu);
+            self.info.loop_cpu_s = self.info.loop_cpu_s.max(earlier.2 + cpu - set_up_cpu);
             progress.step = system.steps();
             progress.time_s = system.time();
             progress.energy_error = ledger.relative_error;

@@ -5,12 +5,15 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{coarse, host};
+use stribeck_bearing::assembly::{Assembly, Machine, Roller};
 use stribeck_bearing::simulation::{Progress, simulate};
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
-    scene::{CageScene, DampedBody, DampingFrame, PocketWalls, Scene, Start, StructuralDampingScene},
+    scene::{
+        CageScene, DampedBody, DampingFrame, PocketWalls, RollerCopies, Scene, Start, StructuralDampingScene,
+    },
 };
 use stribeck_testing::{Scratch, ledger};
 
@@ -301,6 +304,47 @@ fn golden_coarse_bearing() {
         for (sample, (row, now)) in rows.iter().zip(column(&run, channel)).enumerate() {
             let off = (row[c] - now).abs() / largest;
             assert!(off < TOLERANCE, "{channel}, sample {sample}: {now}, blessed {} ({off:.1e} off)", row[c]);
+        }
+    }
+}
+
+/// Centres stand where angle and place in the pocket say, and meshes are turned by their phase; the cage stays.
+#[test]
+fn example_rollers_start_where_the_scene_puts_them() {
+    // Sums and products of numbers of the size of one metre.
+    const ROUNDING: f64 = 1e-14;
+    let plain = coarse(1.0);
+    let mut moved = plain.clone();
+    moved.mesh.roller_phase_deg = 1.5;
+    moved
+        .cage
+        .iter_mut()
+        .for_each(|c| c.roller_offsets_um = (0..24).map(|i| 90.0 - 7.5 * f64::from(i)).collect());
+    for copies in [RollerCopies::Rotated, RollerCopies::Translated] {
+        let [before, after] = [&plain, &moved].map(|scene| {
+            let mut scene = scene.clone();
+            scene.mesh.roller_copies = copies;
+            let assembly = Assembly::new(&scene).expect("sound");
+            assembly.machine(&scene, 1).expect("sound")
+        });
+        for (i, (a, b)) in before.rollers.iter().zip(&after.rollers).enumerate() {
+            let [[ax, ay], [bx, by]] = [before.system.position(a.centre), after.system.position(b.centre)];
+            let turned = (ax * by - ay * bx).atan2(ax * bx + ay * by);
+            let along = 1e-6 * (90.0 - 7.5 * i as f64) / 91e-3;
+            assert!((turned - along).abs() < ROUNDING / 91e-3, "{i}: {turned} instead of {along}");
+            assert!((bx.hypot(by) - 91e-3).abs() < ROUNDING);
+            let rim = |machine: &Machine, roller: &Roller| {
+                let [[cx, cy], [x, y]] = [roller.centre, roller.rim].map(|n| machine.system.position(n));
+                (y - cy).atan2(x - cx)
+            };
+            let spun = (rim(&after, b) - rim(&before, a)).rem_euclid(std::f64::consts::TAU);
+            let with_place = if copies == RollerCopies::Rotated { along } else { 0.0 };
+            let expected = (1.5_f64.to_radians() + with_place).rem_euclid(std::f64::consts::TAU);
+            assert!((spun - expected).abs() < ROUNDING / 9e-3, "{i}: {spun} instead of {expected}");
+        }
+        let cage = after.cage.expect("there is one");
+        for (a, b) in before.system.nodes_of(cage).zip(after.system.nodes_of(cage)) {
+            assert_eq!(before.system.position(a), after.system.position(b));
         }
     }
 }

@@ -28,8 +28,12 @@ pub struct Geometry {
     pub thickness: f64,
     /// Diametral clearance [m].
     pub clearance: f64,
-    /// Angle of the centre of roller 1 [rad].
+    /// Angle of the middle of the pocket of roller 1 [rad].
     pub first_roller_angle: f64,
+    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise [m]; empty: not at all.
+    pub roller_offsets: Vec<f64>,
+    /// Angle by which the meshes of all rollers are turned about their own centres [rad].
+    pub roller_phase: f64,
     /// The cage, if there is one.
     pub cage: Option<CageGeometry>,
     /// Width of the adapter [m].
@@ -134,6 +138,13 @@ impl Geometry {
             thickness: 1e-3 * b.thickness_mm,
             clearance: 1e-3 * clearance_mm,
             first_roller_angle: b.first_roller_deg.to_radians(),
+            roller_offsets: scene
+                .cage
+                .iter()
+                .flat_map(|c| &c.roller_offsets_um)
+                .map(|um| 1e-6 * um)
+                .collect(),
+            roller_phase: scene.mesh.roller_phase_deg.to_radians(),
             cage: scene.cage.as_ref().map(CageGeometry::of),
             adapter_width: 1e-3 * scene.adapter.width_mm,
             adapter_height: 1e-3 * scene.adapter.height_mm,
@@ -160,9 +171,15 @@ impl Geometry {
         self.outer_race_radius - self.roller_radius
     }
 
+    /// Angle of the middle of the pocket of roller `i`, from 0, at the start [rad].
+    pub fn pocket_angle(&self, i: usize) -> f64 {
+        self.first_roller_angle + TAU * i as f64 / self.rollers as f64
+    }
+
     /// Angle of the centre of roller `i`, from 0, at the start [rad].
     pub fn roller_angle(&self, i: usize) -> f64 {
-        self.first_roller_angle + TAU * i as f64 / self.rollers as f64
+        let offset = self.roller_offsets.get(i).map_or(0.0, |along| along / self.path_radius());
+        self.pocket_angle(i) + offset
     }
 
     /// Effective radius of a roller in the outer raceway, 1/(1/r − 1/R_o) [m].
@@ -289,6 +306,13 @@ mod tests {
         // Johnson, Contact Mechanics (1985), §4.1: 9.89 mm in the outer raceway.
         assert!((g.outer_contact_radius() - 9.890e-3).abs() < 1e-6, "{}", g.outer_contact_radius());
         assert!((g.inner_contact_radius() - 8.110e-3).abs() < 1e-6, "{}", g.inner_contact_radius());
+        let mut moved = scene.clone();
+        moved.cage.iter_mut().for_each(|cage| cage.roller_offsets_um = vec![91.0; 24]);
+        moved.mesh.roller_phase_deg = 90.0;
+        let m = Geometry::of(&moved);
+        // 91 µm on a path of 91 mm are a milliradian.
+        assert!((m.roller_angle(5) - g.roller_angle(5) - 1e-3).abs() < 1e-12);
+        assert_eq!((m.pocket_angle(5), m.roller_phase), (g.pocket_angle(5), 0.25 * TAU));
         let bare = Scene { cage: None, defect: None, ..scene };
         assert!(Geometry::of(&bare).cage.is_none() && Geometry::of(&bare).defect.is_none());
     }

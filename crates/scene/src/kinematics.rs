@@ -51,7 +51,6 @@ pub struct Kinematics {
 struct Dimensions {
     outer_m: f64,
     inner_m: f64,
-    rollers: f64,
 }
 
 /// Facets of the polygons that a mesh makes of the circles.
@@ -129,7 +128,7 @@ impl Kinematics {
             roller_rad_s,
             roller_relative_rad_s: roller_rad_s - cage_rad_s,
             contact_speed_m_s: TAU * cage_hz * outer / 2.0 * 1e-3,
-            bearing: Dimensions { outer_m: outer * 1e-3, inner_m: inner * 1e-3, rollers: count },
+            bearing: Dimensions { outer_m: outer * 1e-3, inner_m: inner * 1e-3 },
         }
     }
 
@@ -158,20 +157,18 @@ impl Kinematics {
 
     /// Rollers that leave `defect` within `duration_s`, in the order of their entry.
     ///
-    /// Roller 1 starts at `first_roller_deg`, the others follow counter-clockwise, and all move clockwise: the leading
-    /// edge is the one at the larger angle. A roller that starts inside the defect has a negative entry time. Empty when
-    /// the shaft stands still.
-    pub fn crossings(&self, defect: &DefectScene, first_roller_deg: f64, duration_s: f64) -> Vec<Crossing> {
+    /// They start at the angles `start_deg`, roller 1 first, and all move clockwise: the leading edge is the one at the
+    /// larger angle. A roller that starts inside the defect has a negative entry time. Empty when the shaft stands still.
+    pub fn crossings(&self, defect: &DefectScene, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
         let speed = 360.0 * self.cage_hz;
         if !(speed > 0.0 && duration_s.is_finite()) {
             return Vec::new();
         }
         let half = (DefectGeometry::of(defect).length / self.bearing.outer_m).to_degrees();
         let mut crossings = Vec::new();
-        for roller in 0..self.bearing.rollers as usize {
-            let start = first_roller_deg + 360.0 * roller as f64 / self.bearing.rollers;
+        for (roller, start) in start_deg.iter().enumerate() {
             let trailing = defect.angle_deg - half;
-            let mut exit_s = (start - trailing).rem_euclid(360.0) / speed;
+            let mut exit_s = (*start - trailing).rem_euclid(360.0) / speed;
             while exit_s <= duration_s {
                 let (centre_s, entry_s) = (exit_s - half / speed, exit_s - 2.0 * half / speed);
                 crossings.push(Crossing { roller: roller + 1, entry_s, centre_s, exit_s });
@@ -181,6 +178,16 @@ impl Kinematics {
         crossings.sort_by(|a, b| a.entry_s.total_cmp(&b.entry_s));
         crossings
     }
+}
+
+/// Angles of a scene's rollers at the start [°], counter-clockwise from the x axis, roller 1 first.
+pub fn roller_angles_deg(scene: &Scene) -> Vec<f64> {
+    let b = &scene.bearing;
+    let path_mm = 0.5 * (b.outer_race_diameter_mm - b.roller_diameter_mm);
+    let offset = |i: usize| scene.cage.as_ref().and_then(|cage| cage.roller_offsets_um.get(i));
+    let offset_deg = |i: usize| offset(i).map_or(0.0, |um| (1e-3 * um / path_mm).to_degrees());
+    let pocket_deg = |i: usize| b.first_roller_deg + 360.0 * i as f64 / b.rollers as f64;
+    (0..b.rollers).map(|i| pocket_deg(i) + offset_deg(i)).collect()
 }
 
 #[cfg(test)]
@@ -263,7 +270,7 @@ mod tests {
         let reference: serde_json::Value = serde_json::from_str(text).expect("valid JSON");
         let scene = Scene::default();
         let defect = scene.defect.as_ref().expect("the default has one");
-        let crossings = paper().crossings(defect, scene.bearing.first_roller_deg, 30e-3);
+        let crossings = paper().crossings(defect, &roller_angles_deg(&scene), 30e-3);
         assert_eq!(crossings.iter().map(|c| c.roller).collect::<Vec<_>>(), [1, 2, 3]);
         for crossing in crossings {
             let expected = &reference[format!("roller{}", crossing.roller)];
@@ -280,19 +287,35 @@ mod tests {
         let k = paper();
         let scene = Scene::default();
         let defect = scene.defect.as_ref().expect("the default has one");
-        let crossings = k.crossings(defect, 94.0, 1.0);
+        let crossings = k.crossings(defect, &roller_angles_deg(&scene), 1.0);
         assert_eq!(crossings.len(), 90);
         for pair in crossings.windows(2) {
             assert_close(pair[1].exit_s - pair[0].exit_s, 1.0 / (24.0 * k.cage_hz), 1e-9);
         }
-        let inside = k.crossings(defect, 91.0, 6e-3);
+        let inside = k.crossings(defect, &[91.0, 106.0], 6e-3);
         assert!(inside[0].entry_s < 0.0 && inside[0].roller == 1);
+    }
+
+    /// Rolling without slip (THEORY §5.1): a roller ahead by s arrives earlier by s over the speed of its centre.
+    #[test]
+    fn analytic_a_roller_out_of_the_middle_of_its_pocket_arrives_as_much_later() {
+        let mut scene = Scene::default();
+        let offsets: Vec<f64> = (0..24).map(|i| 80.0 - 7.0 * f64::from(i)).collect();
+        let crossings = |scene: &Scene| {
+            paper().crossings(scene.defect.as_ref().expect("one"), &roller_angles_deg(scene), 30e-3)
+        };
+        let centred = crossings(&scene);
+        scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.clone_from(&offsets));
+        for (a, b) in centred.iter().zip(crossings(&scene)) {
+            let speed = TAU * paper().cage_hz * 91e-3;
+            assert_close(b.exit_s - a.exit_s, 1e-6 * offsets[a.roller - 1] / speed, 1e-9);
+        }
     }
 
     #[test]
     fn example_a_standing_shaft_has_no_events() {
         let scene = Scene::default();
         let defect = scene.defect.as_ref().expect("the default has one");
-        assert_eq!(Kinematics::new(&scene.bearing, 0.0).crossings(defect, 94.0, 1.0).len(), 0);
+        assert_eq!(Kinematics::new(&scene.bearing, 0.0).crossings(defect, &[94.0], 1.0).len(), 0);
     }
 }

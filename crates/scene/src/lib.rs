@@ -44,9 +44,12 @@
 //! | What can a scene say, and what is checked? | [`scene`], [`scene_file`] |
 //! | What is that in SI? | [`geometry`] |
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
+//! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 //! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
 mod contact_formula;
+pub mod dice;
+pub mod ensemble;
 pub mod error;
 pub mod frames;
 pub mod geometry;

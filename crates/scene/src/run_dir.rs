@@ -6,6 +6,9 @@
 //!          .lock                                                                       held while the run writes
 //! ```
 //!
+//! An ensemble of many starts has `ensemble.json` and a folder for each start, `start-001`, `start-002` …, which is the folder
+//! of a run, in place of `run.json` and what a run writes.
+//!
 //! A run is never written over another one that holds samples: [`RunDir::create`] refuses such a folder,
 //! [`RunDir::create_numbered`] takes the next free one, and [`RunDir::replace`] keeps the earlier run until the new one is
 //! complete.
@@ -15,6 +18,7 @@
 //! can be made longer.
 
 mod earlier;
+mod ensemble;
 mod files;
 mod replacement;
 mod reservation;
@@ -27,12 +31,14 @@ use crate::run_info::RunInfo;
 use crate::scene::Scene;
 
 use earlier::Earlier;
+pub use ensemble::State;
 pub use files::write_atomic;
 pub use reservation::Reservation;
 pub use run::Run;
 
 const SCENE: &str = "scene.ron";
 const INFO: &str = "run.json";
+const ENSEMBLE: &str = "ensemble.json";
 const TRACE: &str = "trace.npy";
 const ENERGY: &str = "energy.npy";
 const MESH: &str = "mesh.vtu";
@@ -47,7 +53,7 @@ const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no run, so it
 /// goes first and nothing half removed is taken for a result.
-const FILES: [&str; 8] = [INFO, REPORT, SUMMARY, TRACE, ENERGY, MESH, CHECKPOINT, SCENE];
+const FILES: [&str; 9] = [INFO, ENSEMBLE, REPORT, SUMMARY, TRACE, ENERGY, MESH, CHECKPOINT, SCENE];
 
 /// Folders that a run or its report fills, and what they write there.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];
@@ -167,13 +173,16 @@ impl RunDir {
     ///
     /// [`Error::Io`] when a file cannot be removed or written.
     pub fn start(&self, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
-        self.reservation.start();
-        files::remove_run(&self.path)?;
-        if let Some(old) = &self.replaces {
-            replacement::mark(&self.path, old)?;
-        }
+        self.begin()?;
         write_atomic(&self.scene(), scene.to_ron().as_bytes())?;
         self.write_info(info)
+    }
+
+    /// From now on the folder is that of this run: what an earlier one left there is removed.
+    fn begin(&self) -> Result<(), Error> {
+        self.reservation.start();
+        files::remove_run(&self.path)?;
+        self.replaces.as_deref().map_or(Ok(()), |old| replacement::mark(&self.path, old))
     }
 
     /// Writes `scene.ron` and `run.json` of a run that goes on; its scene may last longer than before.

@@ -37,6 +37,9 @@ pub struct RunInfo {
     pub wall_s: f64,
     /// Processor time of the whole run, all threads [s].
     pub cpu_s: f64,
+    /// Processor time of the time loop, all threads [s].
+    #[serde(default)]
+    pub loop_cpu_s: f64,
     /// Wall-clock time from start to the first step (mesh, preload) [s].
     pub setup_s: f64,
     /// Simulated times from which the run was continued [s]; none for a run in one piece. Clocks count all pieces;

@@ -66,6 +66,9 @@ pub struct CageScene {
     pub pocket_clearance_um: f64,
     /// Which part of a roller the walls of its pocket touch.
     pub pocket: PocketWalls,
+    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise, roller 1 first [µm];
+    /// empty: all in the middle.
+    pub roller_offsets_um: Vec<f64>,
 }
 
 /// Which part of a roller the walls of its pocket touch.
@@ -124,6 +127,8 @@ pub struct MeshScene {
     pub roller_facets: usize,
     /// Orientation of the 24 copies of the roller mesh.
     pub roller_copies: RollerCopies,
+    /// Angle by which every roller's mesh is turned about its own centre, on top of that [°].
+    pub roller_phase_deg: f64,
     /// Facets of the outer raceway; `None` takes the circumference divided by the size.
     pub outer_facets: Option<usize>,
     /// Facets of the inner raceway; `None` takes the circumference divided by the size.
@@ -439,6 +444,7 @@ impl Default for CageScene {
             thickness_mm: 4.0,
             pocket_clearance_um: 100.0,
             pocket: PocketWalls::Corners,
+            roller_offsets_um: Vec::new(),
         }
     }
 }
@@ -467,6 +473,7 @@ impl Default for MeshScene {
             size_mm: 0.5,
             roller_facets: 112,
             roller_copies: RollerCopies::Rotated,
+            roller_phase_deg: 0.0,
             outer_facets: None,
             inner_facets: None,
             grading: None,

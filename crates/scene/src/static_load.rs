@@ -6,7 +6,8 @@
 
 use crate::error::Error;
 use crate::geometry::Geometry;
-use crate::scene::{BearingScene, Scene};
+use crate::kinematics::roller_angles_deg;
+use crate::scene::Scene;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
 const TOLERANCE: f64 = 1e-10;
@@ -247,12 +248,6 @@ impl Residual {
     }
 }
 
-/// Angles of a scene's rollers at the start [°], roller 1 first.
-pub fn roller_angles_deg(bearing: &BearingScene) -> Vec<f64> {
-    let step = 360.0 / bearing.rollers as f64;
-    (0..bearing.rollers).map(|i| bearing.first_roller_deg + step * i as f64).collect()
-}
-
 /// Load distribution of a scene at its start, under its load alone (no weights).
 ///
 /// # Errors
@@ -260,12 +255,13 @@ pub fn roller_angles_deg(bearing: &BearingScene) -> Vec<f64> {
 /// As [`RigidRings::distribute`].
 pub fn at_start(scene: &Scene) -> Result<StaticLoad, Error> {
     let rings = RigidRings::new(&Geometry::of(scene));
-    rings.distribute(scene.operation.load_n, &roller_angles_deg(&scene.bearing))
+    rings.distribute(scene.operation.load_n, &roller_angles_deg(scene))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::BearingScene;
 
     /// The reference table prints three digits.
     const PRINTED: f64 = 0.01;
@@ -273,11 +269,12 @@ mod tests {
     fn centred(thickness_mm: f64, without: &[usize]) -> StaticLoad {
         let scene = Scene::default();
         let bearing = BearingScene { thickness_mm, first_roller_deg: 90.0, ..scene.bearing };
-        let mut angles = roller_angles_deg(&bearing);
+        let scene = Scene { bearing, ..scene };
+        let mut angles = roller_angles_deg(&scene);
         for at in without {
             angles.remove(*at);
         }
-        let rings = RigidRings::new(&Geometry::of(&Scene { bearing, ..scene }));
+        let rings = RigidRings::new(&Geometry::of(&scene));
         rings.distribute(50_000.0, &angles).expect("equilibrium")
     }
 
@@ -317,7 +314,7 @@ mod tests {
         let scene = Scene::default();
         let load = at_start(&scene).expect("equilibrium");
         let mut sum = [0.0, 0.0];
-        for (force, angle) in load.roller_n.iter().zip(roller_angles_deg(&scene.bearing)) {
+        for (force, angle) in load.roller_n.iter().zip(roller_angles_deg(&scene)) {
             sum[0] += force * angle.to_radians().cos();
             sum[1] += force * angle.to_radians().sin();
         }

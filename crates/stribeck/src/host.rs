@@ -1,5 +1,7 @@
 //! What a run records about the machine and the program: clocks, names, versions. The crates are told, never look.
 
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use stribeck_bearing::simulation::Host;
@@ -15,15 +17,62 @@ pub const COMMIT: &str = env!("STRIBECK_COMMIT");
 
 /// Calls `work` with a [`Host`] that describes this process; its clocks begin now.
 pub fn with<T>(threads: usize, work: impl FnOnce(&Host<'_>) -> T) -> T {
-    let (start, before) = (Instant::now(), cpu_s());
+    let before = cpu_s();
+    with_clock(threads, &|| cpu_s() - before, work)
+}
+
+/// As [`with`], with another count of processor time.
+fn with_clock<T>(threads: usize, cpu_s: &dyn Fn() -> f64, work: impl FnOnce(&Host<'_>) -> T) -> T {
+    let start = Instant::now();
     work(&Host {
         threads,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: COMMIT.to_owned(),
         machine: machine(),
         wall_s: &|| start.elapsed().as_secs_f64(),
-        cpu_s: &|| cpu_s() - before,
+        cpu_s,
     })
+}
+
+/// Processor time of several runs side by side: the system counts that of the whole process, and each run that is going
+/// gets an equal part.
+#[derive(Debug, Default)]
+pub struct SharedClock(Mutex<Shares>);
+
+#[derive(Debug, Default)]
+struct Shares {
+    /// What the process had used when it was last dealt out [s].
+    dealt_s: f64,
+    /// What each run that is going has got so far [s].
+    going: BTreeMap<usize, f64>,
+}
+
+impl SharedClock {
+    /// Calls `work` of run `number` as [`with`] does.
+    pub fn with<T>(&self, threads: usize, number: usize, work: impl FnOnce(&Host<'_>) -> T) -> T {
+        let deal = |change: fn(&mut BTreeMap<usize, f64>, usize)| -> f64 {
+            let mut shares = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            shares.deal(cpu_s());
+            change(&mut shares.going, number);
+            shares.going.get(&number).copied().unwrap_or(0.0)
+        };
+        deal(|going, number| {
+            going.insert(number, 0.0);
+        });
+        let done = with_clock(threads, &|| deal(|_, _| {}), work);
+        deal(|going, number| {
+            going.remove(&number);
+        });
+        done
+    }
+}
+
+impl Shares {
+    fn deal(&mut self, now_s: f64) {
+        let part = (now_s - self.dealt_s) / self.going.len().max(1) as f64;
+        self.going.values_mut().for_each(|share| *share += part);
+        self.dealt_s = now_s;
+    }
 }
 
 /// Cores that this process may use.
@@ -70,6 +119,17 @@ fn cpu_of(stat: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn example_runs_side_by_side_share_the_processor_time() {
+        let mut shares = Shares::default();
+        shares.deal(5.0);
+        shares.going.insert(1, 0.0);
+        shares.deal(7.0);
+        shares.going.insert(2, 0.0);
+        shares.deal(11.0);
+        assert_eq!(shares.going, BTreeMap::from([(1, 4.0), (2, 2.0)]));
+    }
 
     #[test]
     fn example_processor_time_of_a_stat_line() {

@@ -53,7 +53,7 @@ impl Place {
         if !run.exists() && by_name.exists() { by_name } else { self.locate(run) }
     }
 
-    /// The run below `runs/` whose `run.json` was written last.
+    /// The run or ensemble below `runs/` whose `run.json` or `ensemble.json` was written last.
     ///
     /// # Errors
     /// When there is none.
@@ -62,8 +62,10 @@ impl Place {
         let advice = format!("start one with `{} simulate`, or name a run's folder", self.program);
         let entries = std::fs::read_dir(&folder)
             .with_context(|| format!("no runs in `{}`: {advice}", folder.display()))?;
-        let written =
-            |path: &Path| -> Option<SystemTime> { path.join("run.json").metadata().ok()?.modified().ok() };
+        let written = |path: &Path| -> Option<SystemTime> {
+            let of = |name: &str| path.join(name).metadata().ok()?.modified().ok();
+            of("run.json").max(of("ensemble.json"))
+        };
         let runs = entries.flatten().filter_map(|entry| Some((written(&entry.path())?, entry.path())));
         match runs.max() {
             Some((_, path)) => Ok(path),

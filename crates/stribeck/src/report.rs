@@ -20,6 +20,13 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Some(run) => place.locate_run(run),
         None => place.newest_run()?,
     };
+    if RunDir::is_ensemble(&folder) {
+        for note in stribeck_analysis::report::write_ensemble(&folder)?.notes {
+            eprintln!("warning: {note}");
+        }
+        println!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
+        return Ok(ExitCode::SUCCESS);
+    }
     let dir = RunDir::open(&folder)?;
     for missing in Run::read(dir.path())?.damage() {
         eprintln!("warning: {missing}");

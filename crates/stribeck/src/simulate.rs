@@ -1,9 +1,12 @@
 //! `stribeck simulate`: scene file → run folder → report. Or the rest of a run that ended early.
 
+mod board;
+mod ensemble;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::report;
 use stribeck_bearing::simulation::{self, Progress};
 use stribeck_scene::Error;
@@ -40,6 +43,16 @@ pub struct Options {
     /// Writes no report at the end
     #[arg(long)]
     no_report: bool,
+    /// Runs the scene from N starts, in one folder with one report: start angle, phase of the rollers' facets and places
+    /// in the cage's pockets are drawn; with --resume more starts for an ensemble
+    #[arg(long, value_name = "N", value_parser = starts)]
+    starts: Option<usize>,
+    /// Starts that run side by side, each with its share of the threads [default: as many as threads]
+    #[arg(long, value_name = "M", value_parser = jobs)]
+    jobs: Option<usize>,
+    /// What the starts are drawn from: equal seeds draw the same [default: 1]
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
 }
 
 /// A number of worker threads.
@@ -50,7 +63,42 @@ fn threads(text: &str) -> Result<usize, String> {
     })
 }
 
+/// A number of starts side by side.
+fn jobs(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
+    number.ok_or_else(|| {
+        "the number of starts side by side is a whole number from 1 to 1024; leave it out for as many as there are threads".to_owned()
+    })
+}
+
+/// A number of starts.
+fn starts(text: &str) -> Result<usize, String> {
+    let number = text.parse().ok().filter(|n| (1..=10_000).contains(n));
+    number.ok_or_else(|| {
+        "the number of starts is a whole number from 1 to 10000; ten tell a mean from its scatter, leave it out for a single run"
+            .to_owned()
+    })
+}
+
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let continued = options.resume.as_deref().map(|run| place.locate_run(run));
+    match &continued {
+        Some(folder) if RunDir::is_ensemble(folder) => return ensemble::run(options, place),
+        Some(folder) if options.starts.is_some() => bail!(
+            "`{0}` is a single run, and --starts adds to an ensemble. An ensemble of its scene: {1} simulate {0}/scene.ron --starts {2}",
+            shown(folder),
+            place.program,
+            options.starts.unwrap_or(1)
+        ),
+        None if options.starts.is_some() => return ensemble::run(options, place),
+        _ => {}
+    }
+    for (flag, given) in [("--jobs", options.jobs.is_some()), ("--seed", options.seed.is_some())] {
+        ensure!(
+            !given,
+            "`{flag}` belongs to an ensemble: say how many starts with `--starts N`. A single run has `--threads` and no seed"
+        );
+    }
     let threads = options.threads.unwrap_or_else(host::cores);
     let interrupt = Interrupt::listen()?;
     let (scene, dir) = match &options.resume {
@@ -135,6 +183,14 @@ fn take_place(dir: RunDir) -> Result<RunDir> {
 
 /// A run to go on with, and its scene under `overrides`, which may change the duration and nothing else.
 fn reopen(run: &Path, overrides: &[String]) -> Result<(Scene, RunDir)> {
+    check_overrides(overrides)?;
+    let dir = RunDir::reopen(run)?;
+    let scene = Scene::read(dir.scene())?.with_overrides(overrides)?;
+    Ok((scene, dir))
+}
+
+/// Refuses to change anything but the duration of what has begun.
+fn check_overrides(overrides: &[String]) -> Result<()> {
     const MAY_CHANGE: &str = "solver.duration_ms";
     let other = overrides.iter().find(|text| text.split('=').next().unwrap_or_default().trim() != MAY_CHANGE);
     if let Some(other) = other {
@@ -143,9 +199,7 @@ fn reopen(run: &Path, overrides: &[String]) -> Result<(Scene, RunDir)> {
              change; for anything else start a new run"
         );
     }
-    let dir = RunDir::reopen(run)?;
-    let scene = Scene::read(dir.scene())?.with_overrides(overrides)?;
-    Ok((scene, dir))
+    Ok(())
 }
 
 /// Says how the run ended and what it cost.

@@ -1,7 +1,7 @@
 //! `cargo xtask study impulse`: whether the impulse at the exit is that of a finer mesh. A single impulse says little: rollers
 //! without load rattle, and two starts that differ by a microsecond differ by a factor. Their distributions are compared.
 
-mod statistics;
+pub(crate) mod statistics;
 mod variants;
 
 use anyhow::Result;

@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::dice::Dice;
 use crate::{Answer, Host, Sheet};
+use stribeck_scene::dice::Dice;
 
 /// Flags of `study kills`.
 #[derive(Debug, clap::Args)]

@@ -8,10 +8,10 @@
 //! that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints nothing and reads no
 //! clock: what it needs of the program that runs it is its [`Host`].
 
-pub mod dice;
 pub mod integrators;
 pub mod reference;
 
+mod families;
 mod host;
 mod impulse;
 mod kills;
@@ -19,6 +19,7 @@ mod long;
 mod noise;
 mod paper;
 mod rig;
+mod run_time;
 mod runner;
 mod stability;
 mod table;
@@ -43,11 +44,16 @@ pub enum Study {
     Kills(kills::Options),
     /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
     Stability(stability::Options),
-    /// Error against work: elements, integrators, contacts, meshes
+    /// Error against run time of the whole bearing
+    #[command(name = "run_time")]
+    RunTime(run_time::Options),
+    /// Error against work: problems with a known answer, by elements, integrators and contacts
     #[command(name = "work_precision")]
-    WorkPrecision(work_precision::Options),
+    WorkPrecision,
     /// Where contact noise comes from and what each cure takes away
     Noise(noise::Options),
+    /// Whether the family of lines of any facet count is named rightly, and false ones are not
+    Families(families::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -63,8 +69,10 @@ impl Study {
             Self::Long(options) => long::run(options, host),
             Self::Kills(options) => kills::run(options, host),
             Self::Stability(options) => stability::run(options, host),
-            Self::WorkPrecision(options) => work_precision::run(options, host),
+            Self::RunTime(options) => run_time::run(options, host),
+            Self::WorkPrecision => work_precision::run(host),
             Self::Noise(options) => noise::run(options, host),
+            Self::Families(options) => families::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }

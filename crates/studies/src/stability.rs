@@ -4,6 +4,7 @@ mod geometry;
 mod limit;
 mod long;
 mod materials;
+mod passages;
 mod scenes;
 mod stiffness;
 
@@ -37,7 +38,7 @@ enum Verdict {
     /// It was refused before it began.
     Refused,
     /// It ended with a wrong answer and said nothing.
-    Silent,
+    Undetected,
 }
 
 impl Verdict {
@@ -47,7 +48,7 @@ impl Verdict {
             Self::Warned => "warned",
             Self::Stopped => "stopped",
             Self::Refused => "refused",
-            Self::Silent => "**SILENT**",
+            Self::Undetected => "**undetected**",
         }
     }
 }
@@ -71,7 +72,7 @@ impl Case {
             Some(why) => (Verdict::Stopped, why),
             None if energy > ENERGY_WARNING => (Verdict::Warned, seen),
             None if right => (Verdict::Right, seen),
-            None => (Verdict::Silent, seen),
+            None => (Verdict::Undetected, seen),
         };
         Self { done: done.into(), energy: Some(energy), verdict, seen }
     }
@@ -103,13 +104,14 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
         chapters.push(chapter);
     }
     chapters.push(scenes::chapter(&runner, &options.flags, host)?);
+    chapters.push(passages::chapter(&runner, &options.flags, host)?);
 
     let mut sheet = Sheet::new(host.root(), "stability", "Stability atlas");
     let all = || chapters.iter().flat_map(|c| &c.cases);
     let count = |v: Verdict| all().filter(|c| c.verdict == v).count();
     sheet.say(&format!(
         "{} stiff and extreme cases: {} end with a right answer, {} with a warning that says what to change, {} were stopped by a guard, \
-         {} refused before they began, **{} ended wrong in silence**. *Energy* is the largest imbalance over the peak of the energy in \
+         {} refused before they began, **{} ended wrong and undetected**. *Energy* is the largest imbalance over the peak of the energy in \
          the model (strain energy for bearings); a run warns above 0.5 % (from its tenth sample on: a load that comes at once is measured against a strain energy that has just begun) and stops above 25 %. Rigs are small models of bodies, \
          contacts and loads under the same limits; bearings are whole scenes.",
         all().count(),
@@ -117,7 +119,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
         count(Verdict::Warned),
         count(Verdict::Stopped),
         count(Verdict::Refused),
-        count(Verdict::Silent),
+        count(Verdict::Undetected),
     ));
     for chapter in &chapters {
         sheet.heading(chapter.title);
@@ -132,8 +134,8 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
             sheet.picture(figure)?;
         }
     }
-    let silent = count(Verdict::Silent);
-    let failure = (silent > 0).then(|| format!("{silent} cases ended wrong in silence"));
+    let undetected = count(Verdict::Undetected);
+    let failure = (undetected > 0).then(|| format!("{undetected} cases ended wrong and undetected"));
     Ok(Answer { failure, ..Answer::on(sheet.write()?) })
 }
 

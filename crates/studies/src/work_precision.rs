@@ -1,6 +1,5 @@
 //! `cargo xtask study work_precision`: error against work, one curve a choice.
 
-mod bearing;
 mod contact;
 mod vibration;
 mod waves;
@@ -8,17 +7,7 @@ mod waves;
 use anyhow::Result;
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 
-use crate::{Answer, Flags, Host, Runner, Sheet};
-
-/// Flags of `study work_precision`.
-#[derive(Debug, clap::Args)]
-pub struct Options {
-    #[command(flatten)]
-    flags: Flags,
-    /// Leaves the bearing out: closed forms alone take a minute or two
-    #[arg(long)]
-    closed_forms_only: bool,
-}
+use crate::{Answer, Host, Sheet};
 
 /// One calculation.
 #[derive(Debug, Clone, Copy)]
@@ -205,8 +194,7 @@ fn timed(host: &dyn Host, work: impl FnOnce() -> Result<(f64, f64)>, size: f64) 
     Ok(Point { size, work, seconds: host.seconds() - began, error })
 }
 
-pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
-    let runner = Runner::new("work_precision", &options.flags, host);
+pub(crate) fn run(host: &dyn Host) -> Result<Answer> {
     let mut sheet = Sheet::new(host.root(), "work_precision", "Work and precision");
     sheet.say(
         "Error against work for problems with a known answer, one curve a choice. Work is counted in elements evaluated \
@@ -232,9 +220,6 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
         let problem = problem(host)?;
         host.say(&format!("{}: {} curves", problem.title, problem.curves.len()));
         all.push(problem);
-    }
-    if !options.closed_forms_only {
-        all.extend(bearing::problems(&runner, host)?);
     }
     for problem in &all {
         problem.write(&mut sheet)?;

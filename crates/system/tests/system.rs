@@ -240,3 +240,57 @@ fn invariant_a_settled_system_stays_at_rest() {
     let (found, expected) = (forces / looks, 1e3 + 9.81 * mass);
     assert!((found / expected - 1.0).abs() < TOLERANCE, "{found} N instead of {expected} N");
 }
+
+/// Present contact forces cancel over both bodies, carry what the preload put on them, and asking changes nothing.
+#[test]
+fn conserves_momentum_of_present_contact_forces() {
+    let mut system = plan().build(1).expect("a sound plan");
+    system.settle(&Preload::default()).expect("the load reaches the ground");
+    let (before, forces) = (system.snapshot(), system.contact_forces());
+    assert!(system.snapshot() == before, "asking for forces changed the system");
+    assert_eq!(system.contact_forces(), forces);
+    let sum = |body: &str| {
+        let nodes = system.nodes(body).expect("a body");
+        nodes.iter().fold([0.0, 0.0], |[x, y], &n| [x + forces[n as usize][0], y + forces[n as usize][1]])
+    };
+    let (on_upper, on_lower) = (sum("upper"), sum("lower"));
+    let resultant = system.resultant("upper.bottom and lower.top").expect("a pair").force;
+    for axis in [0, 1] {
+        let (upper, lower, pair) = (on_upper[axis], on_lower[axis], resultant[axis]);
+        assert!(
+            (upper - pair).abs().max((upper + lower).abs()) < 1e-9 * resultant[1],
+            "{upper} {lower} {pair}"
+        );
+    }
+    assert!(on_upper[1] > 999.0, "{on_upper:?}");
+}
+
+/// The largest kinetic energy [J] while pressed blocks, stirred a little, take 3000 steps of `factor` times the critical step
+/// of their present positions; that at the beginning.
+fn stirred(factor: f64) -> [f64; 2] {
+    let mut plan = Plan::new(0.007);
+    plan.add("lower", &block(0.0, 0.0), steel()).expect("a new name");
+    plan.add("upper", &block(0.0, 0.01), steel()).expect("a new name");
+    plan.constrain("lower.bottom", Motion::Held).expect("a surface");
+    plan.contact(Pair::new("upper.bottom", "lower.top", Law::penalty(5e13).expect("a law")))
+        .expect("two surfaces");
+    plan.load("upper.top", [0.0, -1e3]).expect("a surface");
+    let mut system = plan.build(1).expect("a sound plan");
+    system.settle(&Preload::default()).expect("the load reaches the ground");
+    system.set_time_step(factor * system.present_critical_time_step(), None).expect("blocks are stiff");
+    let upper = system.body("upper").expect("a body");
+    system.launch(upper, [1e-5, 1e-5], 0.0);
+    let mut kinetic = Vec::new();
+    system.run(3000, 1, |_, ledger| kinetic.push(ledger.kinetic)).expect("a time step is set");
+    [kinetic[0], kinetic.into_iter().fold(0.0, f64::max)]
+}
+
+/// Central differences are stable to 2/ω_max and no farther (Belytschko, Liu & Moran 2000, §6.6.5). Blocks that do not part keep
+/// the stiffness that the step was found for.
+#[test]
+fn analytic_present_critical_time_step_is_sharp() {
+    let [start, below] = stirred(0.998);
+    assert!(below < 100.0 * start, "below the limit {start} J became {below} J");
+    let [start, above] = stirred(1.01);
+    assert!(above > 1e4 * start || above.is_nan(), "above the limit {start} J became only {above} J");
+}

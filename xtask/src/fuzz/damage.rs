@@ -1,6 +1,6 @@
 //! Chance, and what it does to bytes and text.
 
-use stribeck_studies::dice::Dice;
+use stribeck_scene::dice::Dice;
 
 /// Words that belong somewhere in a scene, or nowhere.
 const WORDS: [&str; 40] = [

@@ -15,7 +15,7 @@ use super::Answer;
 use super::damage::{bytes, text};
 use crate::workspace;
 use stribeck::host;
-use stribeck_studies::dice::Dice;
+use stribeck_scene::dice::Dice;
 
 /// One kind of input.
 pub(crate) struct Kind {

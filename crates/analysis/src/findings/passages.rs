@@ -8,11 +8,11 @@ use super::{CrossingForce, SensorSignal};
 use crate::Error;
 use crate::events::{self, Passage};
 use crate::filtering::Filter;
-use crate::levels;
+use crate::levels::{self, Phase, Visit};
 use crate::prediction::Prediction;
 use crate::record::Record;
 use crate::spall::Edge;
-use crate::summary::{Event, LevelsFinding, SensorLevels};
+use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
 
 /// One event for every passage that begins within the record.
 pub(super) fn picked_events(
@@ -59,7 +59,9 @@ pub(super) fn picked_events(
                 event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
                 event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
                 event.level_n = picked.level_n;
-                event.impact_ms = picked.floor_impact_s(time, &normal, &seen, floor_s).map(|t| 1e3 * t);
+                let floor = picked.floor_impact(time, &normal, &seen, floor_s);
+                event.floor_ms = floor.map(|(at_s, _)| 1e3 * at_s);
+                event.floor_n = floor.map(|(_, force_n)| force_n);
                 let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
                 let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
                 event.spall_mm = run_s.zip(picked.level_n).map(length);
@@ -99,10 +101,11 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let free = |n: &usize| time[*n] < own.0 - smoothing || time[*n] > own.1 + 4.0 * smoothing;
             let most = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b]))?;
             let before = events::median(&mut force[..during.start].to_vec());
-            (before > 0.0 && force[most] > before).then(|| (time[most], force[most] / before))
+            (before > 0.0 && force[most] > before).then(|| (time[most], force[most] / before, force[most]))
         });
-        if let Some((at, gain)) = found.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        if let Some((at, gain, force_n)) = found.max_by(|a, b| a.1.total_cmp(&b.1)) {
             event.compensation_ms = Some(1e3 * at);
+            event.compensation_n = Some(force_n);
             event.compensation_gain = Some(gain);
         }
     }
@@ -116,13 +119,14 @@ pub(super) fn level_finding(
     filter: Option<&Filter>,
     notes: &mut Vec<String>,
 ) -> LevelsFinding {
-    let passages: Vec<(f64, f64)> = events.iter().map(Event::extent_s).collect();
+    let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
+    let phases = levels::phases(time, &visits);
     let start = time.first().copied().unwrap_or(0.0);
     let settled = start + filter.map_or(0.0, Filter::transient_s);
     let exits: Vec<f64> = events.iter().filter_map(|e| e.exit_ms).map(|t| 1e-3 * t).collect();
     let impulses: Vec<_> = exits.iter().map(|&t| levels::impulse_span(time, t)).collect();
-    let quiet = levels::quiet_spans(time, &passages, start);
-    let quiet_settled = levels::quiet_spans(time, &passages, settled);
+    let quiet = levels::gap_spans(time, &phases, start);
+    let quiet_settled = levels::gap_spans(time, &phases, settled);
 
     let mut finding = LevelsFinding::default();
     for (number, sensor) in sensors.iter().enumerate() {
@@ -131,6 +135,7 @@ pub(super) fn level_finding(
         let filtered = levels::level(&sensor.filtered_g, &quiet_settled);
         if number == 0 {
             finding.sensor = Some(sensor.name.clone());
+            finding.phases = by_phase(&sensor.raw_g, &phases);
             finding.impulse_g = impulse.map(|l| l.peak);
             finding.impulse_filtered_g = levels::level(&sensor.filtered_g, &impulses).map(|l| l.peak);
             finding.between_g = between.map(|l| l.peak);
@@ -146,6 +151,9 @@ pub(super) fn level_finding(
         }
         finding.sensors.push(SensorLevels {
             sensor: sensor.name.clone(),
+            angle_deg: sensor.angle_deg,
+            phases: by_phase(&sensor.raw_g, &phases),
+            components: components(sensor, &phases),
             impulse_g: impulse.map(|l| l.peak),
             between_g: between.map(|l| l.peak),
             between_rms_g: between.map(|l| l.rms),
@@ -163,6 +171,43 @@ pub(super) fn level_finding(
         ));
     }
     finding
+}
+
+/// When the start-up is over [s].
+pub(super) fn start_up_end_s(time: &[f64], events: &[Event]) -> f64 {
+    let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
+    let first = levels::phases(time, &visits).iter().position(|p| *p != Phase::StartUp);
+    first.or(time.len().checked_sub(1)).map_or(0.0, |n| time[n])
+}
+
+/// Peak and root mean square of every phase.
+fn by_phase(signal: &[f64], phases: &[Phase]) -> PhaseLevels {
+    let of = |phase| {
+        levels::phase_level(signal, phases, phase).map_or((None, None), |l| (Some(l.peak), Some(l.rms)))
+    };
+    let [start, entry, defect, exit, gap] =
+        [Phase::StartUp, Phase::Entry, Phase::Defect, Phase::Exit, Phase::Gap].map(of);
+    PhaseLevels {
+        start_g: start.0,
+        start_rms_g: start.1,
+        entry_g: entry.0,
+        entry_rms_g: entry.1,
+        defect_g: defect.0,
+        defect_rms_g: defect.1,
+        exit_g: exit.0,
+        exit_rms_g: exit.1,
+        gap_g: gap.0,
+        gap_rms_g: gap.1,
+    }
+}
+
+/// Levels along and across the radius at the sensor's place.
+fn components(sensor: &SensorSignal, phases: &[Phase]) -> Vec<ComponentLevels> {
+    let turned = [("radial", sensor.radial_g()), ("tangential", sensor.tangential_g())];
+    let level = |(component, signal): (&str, Option<Vec<f64>>)| {
+        Some(ComponentLevels { component: component.into(), phases: by_phase(&signal?, phases) })
+    };
+    turned.into_iter().filter_map(level).collect()
 }
 
 pub(super) fn crossing_forces(
@@ -193,10 +238,23 @@ impl Event {
             path_exit_ms: None,
             level_n: None,
             impulse_g: None,
-            impact_ms: None,
+            floor_ms: None,
+            floor_n: None,
             compensation_ms: None,
+            compensation_n: None,
             compensation_gain: None,
             spall_mm: None,
+        }
+    }
+
+    /// The passage as the levels see it.
+    fn visit(&self) -> Visit {
+        let (from_s, until_s) = self.extent_s();
+        Visit {
+            from_s,
+            entry_s: 1e-3 * self.entry_ms.unwrap_or(self.expected_entry_ms),
+            exit_s: 1e-3 * self.exit_ms.unwrap_or(self.expected_exit_ms),
+            until_s,
         }
     }
 

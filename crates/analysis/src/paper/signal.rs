@@ -4,7 +4,6 @@ use stribeck_scene::geometry::Geometry;
 
 use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words};
 use crate::summary::PaperRow;
-use crate::tones;
 
 const MOTION: &str = "Kinematics";
 const NOISE: &str = "Noise";
@@ -68,7 +67,8 @@ fn motion(source: &Source<'_>) -> Vec<PaperRow> {
             percent.map_or("this record cannot tell".into(), |p| format!("{p:+.2} %").replace('-', "−")),
             "–",
             "the paper's rollers would be too fast, which slip cannot do; ours are slowed by slip",
-        ),
+        )
+        .telling(percent, "%"),
     ]
 }
 
@@ -111,17 +111,21 @@ fn levels(source: &Source<'_>) -> Vec<PaperRow> {
 fn lines(source: &Source<'_>) -> Vec<PaperRow> {
     let summary = source.summary;
     let leading = summary.levels.sensor.as_deref().unwrap_or_default();
-    let tone = tones::dominant(&summary.tones, leading).or_else(|| tones::clearest(&summary.tones));
-    let measured = tone.and_then(|t| t.measured_hz);
+    let measured = summary.families.iter().filter(|f| f.found).find_map(|f| f.carrier_hz);
     let (outer, inner) = source.prediction.kinematics.paper_noise_hz(Geometry::of(source.scene).element_size);
     let inner_right = source.prediction.facet_lines.iter().find(|l| l.0 == "inner_race_nodes").map(|l| l.1);
     let resolution = summary.spectrum.as_ref();
     let record = resolution.map_or("no spectrum".into(), |s| {
         format!("{:.1} Hz, drawn every {:.1} Hz", s.resolution_hz, s.grid_hz)
     });
-    let fifth =
-        summary.tones.iter().find(|t| t.sensor == leading && t.harmonic == 5 && t.name == "roller_vertices");
+    let claimed = summary.families.iter().any(|f| f.found && f.name == "roller_vertices");
+    let fifth = summary
+        .tones
+        .iter()
+        .find(|t| claimed && t.sensor == leading && t.harmonic == 5 && t.name == "roller_vertices")
+        .and_then(|t| t.measured_hz);
     let off = measured.map(|hz| 100.0 * (1.0 - hz / EQUATION_2_HZ.0));
+    let slip = summary.kinematics.cage_hz.map(|hz| 100.0 * (1.0 - hz / summary.kinematics.expected_cage_hz));
     vec![
         words(
             NOISE,
@@ -144,20 +148,15 @@ fn lines(source: &Source<'_>) -> Vec<PaperRow> {
                 source.prediction.facet_lines.first().map_or(0.0, |l| l.1)
             ),
         ),
-        number(
+        words(
             NOISE,
             "Fifth harmonic",
-            23.0,
-            Some(
-                fifth.and_then(|t| t.measured_hz).or(fifth.map(|t| t.predicted_hz)).unwrap_or(5.0 * TONE_HZ)
-                    * 1e-3,
-            ),
-            "kHz",
-            match fifth.and_then(|t| t.measured_hz) {
-                Some(_) => "measured; \"approximately\" in the paper",
-                None => "predicted: at this sensor no fifth harmonic stands 10 dB above the background",
-            },
-        ),
+            "23 kHz",
+            fifth.map_or("not found".into(), |hz| format!("{:.2} kHz", 1e-3 * hz)),
+            "–",
+            "\"approximately\" in the paper; ours counts when it stands 10 dB above its surroundings and its family is found",
+        )
+        .telling(fifth.map(|hz| 1e-3 * hz), "kHz"),
         number(
             NOISE,
             "Equation (2), outer raceway",
@@ -185,17 +184,17 @@ fn lines(source: &Source<'_>) -> Vec<PaperRow> {
             off.map_or("this record cannot tell".into(), |p| format!("{p:.2} %").replace('-', "−")),
             "–",
             "the paper calls it slip; it is 112 instead of 113 edges. Slip is measured on its own, below",
-        ),
+        )
+        .telling(off, "%"),
         words(
             NOISE,
             "Slip of the cage",
             "\"a small amount\"",
-            summary.kinematics.cage_hz.map_or("this record cannot tell".into(), |hz| {
-                format!("{:.2} %", 100.0 * (1.0 - hz / summary.kinematics.expected_cage_hz)).replace('-', "−")
-            }),
+            slip.map_or("this record cannot tell".into(), |p| format!("{p:.2} %").replace('-', "−")),
             "–",
             "recorded rotation of the cage against rolling without slip",
-        ),
+        )
+        .telling(slip, "%"),
     ]
 }
 
@@ -215,8 +214,8 @@ fn beat(source: &Source<'_>) -> Vec<PaperRow> {
             &reading.map_or("needs a sample rate".into(), |r| {
                 format!(
                     "{} samples: a cursor reads {:.0}, {:.0} or {:.0} Hz and nothing between. {:.0} % of the periods of a pure \
-                     {TONE_HZ:.0} Hz tone are that long. No line stands there",
-                    r.samples, r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1, 100.0 * r.share_in_tone
+                     {TONE_HZ:.0} Hz tone are that long. Lines of this run near it: {}",
+                    r.samples, r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1, 100.0 * r.share_in_tone, near_cursor(source)
                 )
             }),
         ),
@@ -256,6 +255,30 @@ fn beat(source: &Source<'_>) -> Vec<PaperRow> {
             "3864 and 4712 Hz would beat every 1.2 ms; the lines of the mesh lie tens of hertz apart and beat slower than the gap between impulses",
         ),
     ]
+}
+
+/// Lines of the families within a resolution of the paper's 4545 Hz, in words.
+fn near_cursor(source: &Source<'_>) -> String {
+    let Some(spectrum) = &source.summary.spectrum else { return "no spectrum".into() };
+    let near: Vec<String> = source
+        .summary
+        .families
+        .iter()
+        .flat_map(|f| f.lines.iter().map(move |l| (f, l)))
+        .filter(|(_, l)| l.measured_hz.is_some_and(|hz| (hz - CURSOR_HZ).abs() <= spectrum.resolution_hz))
+        .map(|(f, l)| {
+            format!(
+                "{:.0} Hz ({} {:+}, {} {})",
+                l.measured_hz.unwrap_or(0.0),
+                f.name.replace('_', " "),
+                l.sideband,
+                l.sensor,
+                l.component
+            )
+            .replace('-', "−")
+        })
+        .collect();
+    if near.is_empty() { "none of a facet family".into() } else { near.join(", ") }
 }
 
 fn notch(source: &Source<'_>) -> Vec<PaperRow> {
@@ -309,14 +332,15 @@ fn events(source: &Source<'_>) -> Vec<PaperRow> {
     )];
     for (event, paper) in events.iter().zip(papers) {
         let ms = |t: Option<f64>| t.map_or("–".into(), |t| format!("{t:.2}"));
-        rows.push(words(
+        let impulse = words(
             EVENTS,
             &format!("Roller {}: impulse, Fig. 2", event.roller),
             &format!("{paper} ms"),
             format!("{} ms", ms(event.exit_ms)),
             "–",
             &format!("the trailing edge is passed at {:.2} ms without slip", event.expected_exit_ms),
-        ));
+        );
+        rows.push(impulse.telling(event.exit_ms, "ms"));
         rows.push(words(
             EVENTS,
             &format!("Roller {}: events #1 to #4, Fig. 8", event.roller),
@@ -324,7 +348,7 @@ fn events(source: &Source<'_>) -> Vec<PaperRow> {
             format!(
                 "#1 {} ms, #2 {}, #3 {}, #4 {} ms",
                 ms(event.entry_ms),
-                event.impact_ms.map_or("no touch of the floor".into(), |t| format!("{t:.2} ms")),
+                event.floor_ms.map_or("no touch of the floor".into(), |t| format!("{t:.2} ms")),
                 event.compensation_ms.map_or("no neighbour in the defect".into(), |t| {
                     format!("{t:.2} ms (+{:.0} %)", 100.0 * (event.compensation_gain.unwrap_or(1.0) - 1.0))
                 }),

@@ -26,6 +26,7 @@ struct SentAxis<'a> {
     label: &'a str,
     unit: &'a str,
     prefixed: bool,
+    decades: bool,
     range: Option<(f64, f64)>,
 }
 
@@ -34,6 +35,7 @@ struct SentSeries<'a> {
     name: &'a str,
     colour: &'static str,
     points: bool,
+    edge: bool,
     /// Start and step, when uniform.
     uniform: Option<(f64, f64)>,
     /// Listed positions less `origin`, base64 f32.
@@ -117,19 +119,26 @@ impl Figure {
 
 impl<'a> SentAxis<'a> {
     fn of(axis: &'a Axis) -> Self {
-        Self { label: &axis.label, unit: &axis.unit, prefixed: axis.prefixed, range: axis.range }
+        Self {
+            label: &axis.label,
+            unit: &axis.unit,
+            prefixed: axis.prefixed,
+            decades: axis.decades,
+            range: axis.range,
+        }
     }
 }
 
 impl<'a> SentSeries<'a> {
     fn of(series: &'a Series) -> Self {
-        let (name, colour, points) =
-            (series.name.as_str(), series.colour.name(), series.style == Style::Points);
+        let (name, colour) = (series.name.as_str(), series.colour.name());
+        let (points, edge) = (series.style == Style::Points, series.style == Style::Edge);
         match &series.x {
             Abscissa::Uniform { start, step } if series.y.len() <= POINT_LIMIT => Self {
                 name,
                 colour,
                 points,
+                edge,
                 uniform: Some((*start, *step)),
                 x: None,
                 origin: 0.0,
@@ -143,6 +152,7 @@ impl<'a> SentSeries<'a> {
                     name,
                     colour,
                     points,
+                    edge,
                     uniform: None,
                     x: Some(base64::floats(&x)),
                     origin,

@@ -64,6 +64,8 @@ pub struct Axis {
     pub unit: String,
     /// True when ticks may carry an SI prefix (`5 ms`, `10 kHz`).
     pub prefixed: bool,
+    /// True when values are decimal logarithms: ticks are powers of ten.
+    pub decades: bool,
     /// Range [unit]; `None` follows the data.
     pub range: Option<(f64, f64)>,
 }
@@ -104,6 +106,8 @@ pub enum Style {
     Line,
     /// Separate dots.
     Points,
+    /// One edge of a shaded ground; the next series of this style, at the same positions, is the other.
+    Edge,
 }
 
 /// Colours that stay apart for every kind of colour vision, in light and in dark.
@@ -232,12 +236,17 @@ impl Figure {
 impl Axis {
     /// An axis in a coherent SI unit, whose ticks carry a prefix.
     pub fn si(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), prefixed: true, range: None }
+        Self { label: label.into(), unit: unit.into(), prefixed: true, decades: false, range: None }
     }
 
     /// An axis whose unit takes no prefix (g, dB, °).
     pub fn plain(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), prefixed: false, range: None }
+        Self { label: label.into(), unit: unit.into(), prefixed: false, decades: false, range: None }
+    }
+
+    /// A logarithmic axis: the figure holds decimal logarithms, its ticks say the numbers.
+    pub fn decades(label: &str, unit: &str) -> Self {
+        Self { decades: true, ..Self::plain(label, unit) }
     }
 
     /// The same axis over a fixed range.
@@ -261,6 +270,12 @@ impl Series {
     /// The same series as separate dots.
     pub fn as_points(mut self) -> Self {
         self.style = Style::Points;
+        self
+    }
+
+    /// The same series as an edge of a shaded ground.
+    pub fn as_edge(mut self) -> Self {
+        self.style = Style::Edge;
         self
     }
 

@@ -22,6 +22,8 @@ const CHARACTER: f64 = 6.3 * FINE as f64;
 const LEFT: u32 = 92 * FINE;
 /// Space right of the chart [units].
 const RIGHT: u32 = 26 * FINE;
+/// Strength of a shaded ground between two series.
+const SHADE: f64 = 0.25;
 /// Space below the chart [units].
 const BELOW: u32 = 56 * FINE;
 
@@ -142,11 +144,20 @@ impl Figure {
         chart: &mut Chart<'_, '_>,
         x: (f64, f64),
     ) -> Result<(), Box<dyn std::error::Error>> {
-        for series in &self.series {
+        let edges: Vec<_> = self.series.iter().filter(|s| s.style == Style::Edge).collect();
+        for edges in edges.chunks_exact(2) {
+            let [one, other] = [0, 1].map(|n| decimate::runs(edges[n], x.0, x.1, POINTS));
+            for (there, back) in one.into_iter().zip(other) {
+                let ring: Vec<(f64, f64)> = there.into_iter().chain(back.into_iter().rev()).collect();
+                let paint = edges[0].colour.rgb().mix(SHADE).filled();
+                chart.draw_series(std::iter::once(Polygon::new(ring, paint)))?;
+            }
+        }
+        for series in self.series.iter().filter(|s| s.style != Style::Edge) {
             let colour = series.colour.rgb();
             for run in decimate::runs(series, x.0, x.1, POINTS) {
                 match series.style {
-                    Style::Line => {
+                    Style::Line | Style::Edge => {
                         chart.draw_series(LineSeries::new(run, colour.stroke_width(FINE)))?;
                     }
                     Style::Points => {
@@ -251,6 +262,9 @@ fn draw_grid(
 
 /// Positions and texts of the ticks of one axis.
 fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, String)> {
+    if axis.decades {
+        return decade_texts(low, high);
+    }
     // Angles are read in twelfths of a turn, not in fifties.
     let (at, step): (Vec<f64>, f64) = match axis.unit.as_str() {
         "°" => ((0..=12).map(|n| 30.0 * f64::from(n)).filter(|a| (low..=high).contains(a)).collect(), 30.0),
@@ -260,6 +274,16 @@ fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, 
     let (scale, unit) =
         if axis.prefixed { (Scale::of(largest), axis.unit.as_str()) } else { (Scale::ONE, "") };
     at.into_iter().map(|v| (v, scale.text(v, step, unit))).collect()
+}
+
+/// Ticks of a logarithmic axis: powers of ten, and twice and five times them where there are few.
+fn decade_texts(low: f64, high: f64) -> Vec<(f64, String)> {
+    let steps: &[f64] = if high - low > 4.0 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let decades = low.floor() as i32..=high.ceil() as i32;
+    let values = decades.flat_map(|n| steps.iter().map(move |step| step * 10_f64.powi(n)));
+    // Twelve digits: powers of ten are not exact.
+    let tick = |value: f64| (value.log10(), format!("{}", (value * 1e12).round() / 1e12));
+    values.map(tick).filter(|(at, _)| (low..=high).contains(at)).collect()
 }
 
 /// Quantity with its unit in brackets where ticks do not carry the unit already.

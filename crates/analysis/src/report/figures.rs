@@ -29,13 +29,6 @@ impl Item {
         }
     }
 
-    pub(super) fn title(&self) -> &str {
-        match self {
-            Self::Chart(figure) => &figure.title,
-            Self::Picture(picture) => &picture.title,
-        }
-    }
-
     pub(super) fn to_svg(&self) -> Result<String, Error> {
         match self {
             Self::Chart(figure) => figure.to_svg(),
@@ -62,46 +55,52 @@ impl Item {
 /// All figures that the run can yield, grouped by section.
 #[derive(Debug, Default)]
 pub(super) struct Figures {
-    /// The paper's, in its order.
-    pub(super) paper: Vec<Item>,
     pub(super) acceleration: Vec<Item>,
     pub(super) spectra: Vec<Item>,
+    pub(super) forces: Vec<Item>,
     pub(super) bearing: Vec<Item>,
     pub(super) stress: Vec<Item>,
     pub(super) energy: Vec<Item>,
+    /// Those that only the paper's argument needs.
+    pub(super) paper: Vec<Item>,
 }
 
 impl Figures {
     pub(super) fn of(run: &Run, findings: &Findings, pictures: Pictures) -> Self {
-        let mut mesh = drawn(pictures.mesh).collect::<Vec<_>>();
-        // The paper shows its roller after its spectrum.
-        let roller = if mesh.len() > 2 { mesh.pop() } else { None };
-        let mut paper = mesh;
-        paper.extend(charts(acceleration::raw(findings)));
-        paper.extend(charts(spectra::raw(findings)));
-        paper.extend(roller);
-        paper.extend(charts(beating::figures()));
-        paper.extend(charts(acceleration::notched(findings)));
-        paper.extend(charts(spectra::notched(findings)));
-        paper.extend(charts(forces::crossings(findings)));
+        let paper = if findings.of_paper { charts(beating::figures()).collect() } else { Vec::new() };
         Self {
-            paper,
-            acceleration: charts(acceleration::others(findings)).collect(),
-            spectra: charts(spectra::others(findings)).collect(),
+            acceleration: charts(acceleration::raw(findings))
+                .chain(charts(acceleration::others(findings)))
+                .chain(charts(acceleration::notched(findings)))
+                .collect(),
+            spectra: charts(spectra::raw(findings))
+                .chain(charts(spectra::notched(findings)))
+                .chain(charts(spectra::others(findings)))
+                .collect(),
+            forces: charts(forces::crossings(findings)).collect(),
             bearing: drawn(pictures.load)
                 .chain(charts(load(findings)))
                 .chain(charts(forces::sums(run)))
                 .chain(charts(motion::figures(run, findings)))
                 .collect(),
-            stress: drawn(pictures.stress).collect(),
+            stress: drawn(pictures.mesh).chain(drawn(pictures.stress)).collect(),
             energy: charts(energy(run)).collect(),
+            paper,
         }
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
-        [&self.paper, &self.acceleration, &self.spectra, &self.bearing, &self.stress, &self.energy]
-            .into_iter()
-            .flatten()
+        [
+            &self.acceleration,
+            &self.spectra,
+            &self.forces,
+            &self.bearing,
+            &self.stress,
+            &self.energy,
+            &self.paper,
+        ]
+        .into_iter()
+        .flatten()
     }
 }
 

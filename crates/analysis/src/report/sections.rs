@@ -46,7 +46,63 @@ fn family(family: Family) -> (&'static str, &'static str) {
         Family::Mesh => ("mesh", "Facets passing contacts: artefacts of the mesh"),
         Family::Beat => ("mesh", "Beats of the facet lines: artefacts too"),
         Family::Defect => ("defect", "Rollers passing the defect: physics"),
-        Family::Ring => ("ring", "Bending modes of the free outer ring: physics"),
+        Family::Ring => ("ring", "Bending modes of the free outer ring: places to look at"),
+    }
+}
+
+/// Verdicts on the families, and their lines.
+pub(super) fn families(summary: &Summary) -> Markup {
+    let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
+    let signed = |v: Option<f64>| v.map(|v| format!("{v:+.1}").replace('-', "−"));
+    let lines = summary.families.iter().flat_map(|f| &f.lines).filter(|l| l.measured_hz.is_some());
+    html! {
+        div class="scroll" {
+            table class="ledger" {
+                thead {
+                    tr {
+                        th { "Family of facet lines" } th class="n" { "Predicted Hz" } th class="n" { "Carrier Hz" }
+                        th class="n" { "Off, resolutions" } th class="n" { "± channels" } th class="n" { "Largest g" } th { "Verdict" }
+                    }
+                }
+                tbody {
+                    @for f in &summary.families {
+                        tr {
+                            td { (spoken(&f.name)) }
+                            td class="n" { (format!("{:.1}", f.predicted_hz)) }
+                            (cell(hz(f.carrier_hz)))
+                            (cell(signed(f.offset_resolutions)))
+                            (cell(f.offset_scatter_resolutions.map(|v| format!("{v:.1}"))))
+                            (cell(f.level_g.map(|g| format!("{g:.1}"))))
+                            td class="why" { (f.verdict) }
+                        }
+                    }
+                }
+            }
+        }
+        p class="hint" {
+            "Each family is a carrier with sidebands at multiples of BPFO. Its comb is fitted with the recorded motion of the rollers to \
+             both components of every sensor and to the force on every loaded roller, and must explain them clearly better than combs \
+             that are off their place and than the other families (THEORY §7.7)."
+        }
+        @if summary.families.iter().any(|f| f.carrier_hz.is_some()) {
+            details {
+                summary { "Lines of the families" }
+                table class="close" {
+                    thead { tr { th { "Sensor" } th { "Component" } th class="n" { "Sideband" } th class="n" { "Predicted Hz" } th class="n" { "Measured Hz" } th class="n" { "Level g" } } }
+                    tbody {
+                        @for l in lines {
+                            tr {
+                                td { (l.sensor) } td { (l.component) }
+                                td class="n" { (format!("{:+}", l.sideband).replace('-', "−")) }
+                                td class="n" { (format!("{:.1}", l.predicted_hz)) }
+                                (cell(hz(l.measured_hz)))
+                                (cell(l.level_g.map(|g| format!("{g:.2}"))))
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -68,8 +124,8 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
     html! {
         p {
-            "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”. A line counts as measured when it stands 10 dB above its \
-             surroundings within reach of its prediction. Beats are differences, so they are no lines of their own."
+            "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”, a_y. Facet lines are claimed by a family that was found, never by \
+             their place alone."
         }
         div class="scroll" {
             table class="ledger" {
@@ -143,7 +199,7 @@ pub(super) fn readings(summary: &Summary) -> Markup {
 pub(super) fn envelope(summary: &Summary) -> Markup {
     let Some(envelope) = &summary.envelope else {
         let why = summary.notes.iter().find(|n| n.starts_with("no envelope spectrum"));
-        return html! { p class="hint" { (why.map_or("No envelope spectrum was made.", String::as_str)) "; fixtures/scenes/long.ron is long enough." } };
+        return html! { p class="hint" { (why.map_or("No envelope spectrum was made.", String::as_str)) "." } };
     };
     html! {
         table class="pairs" {
@@ -169,6 +225,7 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
     };
     let off = |found: Option<f64>, truth: f64| found.map(|t| format!("{:+.3}", t - truth).replace('-', "−"));
     html! {
+        h3 { "Length of the defect, from the events" }
         div class="scroll" {
             table {
                 thead {
@@ -192,9 +249,8 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
             }
         }
         p class="hint" {
-            "Off: event against the centre of the roller over the edge without slip. The estimate adds to the way between the two events how \
-             far behind an edge a roller of this load still carries half of it, once for each edge; it uses the speed without slip and \
-             not the place of the roller."
+            "Off: event against the roller's centre over the edge without slip. The estimate allows for the load that a roller still carries \
+             behind an edge (THEORY §7.5)."
         }
     }
 }

@@ -3,96 +3,46 @@
 use maud::{Markup, html};
 use stribeck_scene::run_info::RunInfo;
 
-use super::figures::spoken;
-use crate::summary::Summary;
+use crate::summary::{PhaseLevels, Summary};
 
 /// Measured events of every passage.
 pub(super) fn events(summary: &Summary) -> Markup {
     if summary.events.is_empty() {
-        return html! { p { "No roller crosses a defect within the record." } };
+        return html! {};
     }
-    let ms = |t: Option<f64>| t.map(|t| format!("{t:.3}"));
+    let ms = |t: Option<f64>| t.map(|t| format!("{t:.2}"));
+    let kilo = |n: Option<f64>| n.map(|n| format!("{:.2}", 1e-3 * n));
     html! {
         div class="scroll" {
             table {
                 thead {
                     tr {
-                        th { "Roller" } th class="n" { "Unloaded ms" } th class="n" { "Expected ms" } th class="n" { "Path ms" }
-                        th class="n" { "Loaded again ms" } th class="n" { "Expected ms" } th class="n" { "Path ms" }
-                        th class="n" { "Load before kN" } th class="n" { "Impulse g" }
+                        th { "Roller" } th class="n" { "Load before kN" } th class="n" { "#1 unloads ms" } th class="n" { "no slip ms" }
+                        th class="n" { "#2 floor ms" } th class="n" { "floor kN" }
+                        th class="n" { "#3 neighbour in the defect ms" } th class="n" { "carries kN" }
+                        th class="n" { "#4 loaded ms" } th class="n" { "no slip ms" } th class="n" { "Impulse g" }
                     }
                 }
                 tbody {
                     @for event in &summary.events {
                         tr {
                             td { (event.roller) }
+                            (cell(kilo(event.level_n)))
                             (cell(ms(event.entry_ms)))
-                            td class="n" { (format!("{:.3}", event.expected_entry_ms)) }
-                            (cell(ms(event.path_entry_ms)))
+                            td class="n" { (format!("{:.2}", event.expected_entry_ms)) }
+                            (cell(ms(event.floor_ms)))
+                            (cell(kilo(event.floor_n)))
+                            (cell(ms(event.compensation_ms)))
+                            (cell(kilo(event.compensation_n)))
                             (cell(ms(event.exit_ms)))
-                            td class="n" { (format!("{:.3}", event.expected_exit_ms)) }
-                            (cell(ms(event.path_exit_ms)))
-                            (cell(event.level_n.map(|n| format!("{:.2}", 1e-3 * n))))
+                            td class="n" { (format!("{:.2}", event.expected_exit_ms)) }
                             (cell(event.impulse_g.map(|g| format!("{g:.0}"))))
                         }
                     }
                 }
             }
         }
-        p class="hint" {
-            "Unloaded and loaded again: the normal force, a running median over one facet period or a tenth of the \
-             traverse, falls below or rises above \
-             half its level before the defect. Expected: a roller's centre over the edge without slip. Path: the recorded \
-             centre over the edge."
-        }
     }
-}
-
-/// Predicted and measured lines: every line at the leading sensor, fundamentals at the others.
-pub(super) fn tones(summary: &Summary) -> Markup {
-    let leading = summary.levels.sensor.as_deref().unwrap_or_default();
-    let shown = summary.tones.iter().filter(|t| t.sensor == leading || t.harmonic == 1);
-    html! {
-        div class="scroll" {
-            table class="close" {
-                thead {
-                    tr {
-                        th { "Sensor" } th { "Line" } th class="n" { "No slip Hz" } th class="n" { "From motion Hz" } th class="n" { "Measured Hz" }
-                        th class="n" { "Off by %" } th class="n" { "Amplitude g" } th class="n" { "Stands out dB" }
-                        th { "Merged with" }
-                    }
-                }
-                tbody {
-                    @for tone in shown {
-                        @let off = tone.measured_hz.map(|hz| 100.0 * (hz / tone.predicted_hz - 1.0));
-                        tr {
-                            td { (tone.sensor) }
-                            td { (spoken(&tone.name)) " ×" (tone.harmonic) }
-                            td class="n" { (format!("{:.1}", tone.predicted_hz)) }
-                            (cell(tone.from_motion_hz.map(|hz| format!("{hz:.1}"))))
-                            (cell(tone.measured_hz.map(|hz| format!("{hz:.1}"))))
-                            (cell(off.map(|p| format!("{p:+.2}").replace('-', "−"))))
-                            (cell(tone.level_g.map(|g| format!("{g:.2}"))))
-                            (cell(tone.prominence_db.map(|db| format!("{db:.1}").replace('-', "−"))))
-                            td { (short_names(&tone.unresolved_from)) }
-                        }
-                    }
-                }
-            }
-        }
-        p class="hint" {
-            "Predicted from the facet counts of this mesh, without slip and from the recorded motion of cage and loaded rollers. \
-             A line counts as found when the spectrum has a peak within 0.5 % of either (or half a resolution) and 10 dB above \
-             its surroundings; where this record cannot tell lines apart, the peak goes to those within reach of it. Off by: \
-             from the value without slip."
-        }
-    }
-}
-
-/// Lines of the same harmonic by the first word of their names, which tells them apart.
-fn short_names(lines: &[String]) -> String {
-    let first = |line: &String| spoken(line).split(' ').next().unwrap_or_default().to_owned();
-    lines.iter().map(first).collect::<Vec<_>>().join(", ")
 }
 
 /// The notch in numbers.
@@ -100,23 +50,19 @@ pub(super) fn notch(summary: &Summary) -> Markup {
     let Some(notch) = &summary.notch else { return html! {} };
     let db = |v: Option<f64>| v.map(|v| format!("{v:.1} dB"));
     let rows = [
-        ("Centre", Some(format!("{:.1} Hz (paper: {:.0} Hz)", notch.centre_hz, notch.paper_centre_hz))),
+        ("Centre", Some(format!("{:.1} Hz", notch.centre_hz))),
         ("Quality factor", Some(format!("{:.0}", notch.q))),
         ("Width at −3 dB", Some(format!("{:.0} Hz", notch.width_hz))),
         ("Transient (60 dB)", Some(format!("{:.2} ms", 1e3 * notch.transient_s))),
-        ("Taken from the tone: Hann, whole record", db(notch.attenuation_db)),
+        ("Attenuation at the centre: Hann, whole record", db(notch.attenuation_db)),
         ("Hann, without the transient", db(notch.attenuation_settled_db)),
         ("Boxcar, whole record", db(notch.attenuation_boxcar_db)),
         ("Boxcar, without the transient", db(notch.attenuation_boxcar_settled_db)),
-        ("Taken at 4545 Hz, transfer function", db(notch.attenuation_4545_db)),
+        ("Attenuation at 4545 Hz, transfer function", db(notch.attenuation_4545_db)),
     ];
     html! {
         h3 id="notch" { "The notch" }
         table class="pairs" { tbody { @for (name, value) in rows { tr { td { (name) } (cell(value)) } } } }
-        p class="hint" {
-            "How much a notch takes from a line depends on the window and on whether its own start is counted, so the paper's \
-             25 dB is a figure to set beside these four, not a mark to hit."
-        }
     }
 }
 
@@ -192,35 +138,42 @@ pub(super) fn kinematics(summary: &Summary) -> Markup {
     }
 }
 
-/// Levels at every sensor.
+/// Levels by phase at every sensor, as the paper takes them and along and across the radius.
 pub(super) fn levels(summary: &Summary) -> Markup {
-    let g = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
+    let both = |peak: Option<f64>, rms: Option<f64>| peak.zip(rms).map(|(p, r)| format!("{p:.0} / {r:.1}"));
+    let row = |sensor: &str, component: &str, l: &PhaseLevels| {
+        html! {
+            tr {
+                td { (sensor) } td { (component) }
+                (cell(both(l.start_g, l.start_rms_g)))
+                (cell(both(l.entry_g, l.entry_rms_g)))
+                (cell(both(l.defect_g, l.defect_rms_g)))
+                (cell(both(l.exit_g, l.exit_rms_g)))
+                (cell(both(l.gap_g, l.gap_rms_g)))
+            }
+        }
+    };
     html! {
+        h3 { "Levels by phase, peak / RMS in g" }
         div class="scroll" {
             table {
                 thead {
                     tr {
-                        th { "Sensor" } th class="n" { "Impulse peak g" } th class="n" { "Between peak g" } th class="n" { "Between RMS g" }
-                        th class="n" { "Notched peak g" } th class="n" { "Notched RMS g" }
+                        th { "Sensor" } th { "Component" } th class="n" { "Start-up" } th class="n" { "Entry" } th class="n" { "In the defect" }
+                        th class="n" { "Exit" } th class="n" { "Gap" }
                     }
                 }
                 tbody {
                     @for sensor in &summary.levels.sensors {
-                        tr {
-                            td { (sensor.sensor) }
-                            (cell(g(sensor.impulse_g)))
-                            (cell(g(sensor.between_g)))
-                            (cell(g(sensor.between_rms_g)))
-                            (cell(g(sensor.between_filtered_g)))
-                            (cell(g(sensor.between_filtered_rms_g)))
-                        }
+                        (row(&sensor.sensor, "a_y", &sensor.phases))
+                        @for c in &sensor.components { (row("", &c.component, &c.phases)) }
                     }
                 }
             }
         }
         p class="hint" {
-            "a_y, mean over each sampling interval. Impulse: within 1 ms of an exit. Between: from 2 ms after an exit to 0.5 ms \
-             before the next entry; notched values leave out the filter's transient."
+            "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. Entry: from 0.5 ms before the edge to \
+             1 ms after unloading. Exit: from 1 ms before loading to 2 ms after the edge."
         }
     }
 }

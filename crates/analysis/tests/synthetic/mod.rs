@@ -1,11 +1,13 @@
 //! A run directory made of closed forms: every number that the report should find is written down here.
+#![allow(dead_code, reason = "each test file uses its own part of it")]
 
 mod mesh;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use stribeck_scene::kinematics::{Crossing, Kinematics};
+use stribeck_scene::ensemble::{Ensemble, start};
+use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_scene::scene::Scene;
@@ -80,6 +82,7 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
         mesh: mesh::counts(),
         wall_s: 300.0,
         cpu_s: 590.0,
+        loop_cpu_s: 590.0,
         setup_s: 4.0,
         resumed_at_s: Vec::new(),
         energy: EnergyInfo { max_relative_error: 2.5e-3, peak_strain_j: 0.8 },
@@ -91,21 +94,49 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
 
 /// Writes the paper's scene with `samples` samples into `path`.
 pub(crate) fn write(path: &Path, status: Status, samples: usize) {
+    write_scene(path, &Scene::default(), status, samples, 1.0);
+}
+
+/// Writes an ensemble of `starts` starts into `path`, drawn from the seed 5: as many complete ones as there are gains, one that
+/// diverged when there is a fourth, and a failure for the fifth.
+pub(crate) fn write_ensemble(path: &Path, gains: &[f64], starts: usize) {
     let scene = Scene::default();
     let dir = RunDir::create(path).expect("a free folder");
-    let info = info(status, samples);
-    dir.start(&scene, &info).expect("a writable folder");
-    write_trace(&dir, &scene, samples);
+    let failed = (starts > 4).then(|| (5, "the preload found no equilibrium".to_owned()));
+    let ensemble = Ensemble {
+        version: "0.1.0".into(),
+        commit: "synthetic".into(),
+        scene_hash: scene.hash(),
+        seed: 5,
+        starts,
+        failed: failed.into_iter().collect(),
+    };
+    dir.start_ensemble(&scene, &ensemble).expect("a writable folder");
+    for number in 1..=starts.min(4) {
+        let (drawn, path) = (start(&scene, 5, number), dir.start_folder(number));
+        match gains.get(number - 1) {
+            Some(gain) => write_scene(&path, &drawn, Status::Complete, 3000, *gain),
+            None => write_scene(&path, &drawn, Status::Diverged, 300, 1.0),
+        }
+    }
+}
+
+/// Writes a scene of the paper's bearing with `samples` samples into `path`, accelerations `gain` times as strong.
+pub(crate) fn write_scene(path: &Path, scene: &Scene, status: Status, samples: usize, gain: f64) {
+    let dir = RunDir::create(path).expect("a free folder");
+    let info = RunInfo { scene_hash: scene.hash(), ..info(status, samples) };
+    dir.start(scene, &info).expect("a writable folder");
+    write_trace(&dir, scene, samples, gain);
     write_energy(&dir, samples);
     mesh::write(&dir.mesh());
 }
 
 fn crossings(scene: &Scene) -> Vec<Crossing> {
     let defect = scene.defect.as_ref().expect("the default has one");
-    Kinematics::of(scene).crossings(defect, scene.bearing.first_roller_deg, 40e-3)
+    Kinematics::of(scene).crossings(defect, &roller_angles_deg(scene), 40e-3)
 }
 
-fn write_trace(dir: &RunDir, scene: &Scene, samples: usize) {
+fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
     let mut names = vec!["time_s".to_owned()];
     for sensor in &scene.output.sensors {
         for component in ["ax", "ay", "ax_instant", "ay_instant"] {
@@ -134,7 +165,7 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize) {
         let t = n as f64 * INTERVAL_S;
         let mut row = vec![t];
         for (number, _) in scene.output.sensors.iter().enumerate() {
-            let ay = G * acceleration_g(t, number, &crossings, &mut noise);
+            let ay = gain * G * acceleration_g(t, number, &crossings, &mut noise);
             let instant = ay + 2000.0 * G * noise.next();
             row.extend([0.3 * ay, ay, 0.3 * instant, instant]);
         }
@@ -163,10 +194,8 @@ fn acceleration_g(t: f64, sensor: usize, crossings: &[Crossing], noise: &mut Noi
 fn rollers(scene: &Scene, t: f64, crossings: &[Crossing], row: &mut Vec<f64>) {
     let k = Kinematics::of(scene);
     let count = scene.bearing.rollers;
-    let angle_of = |roller: usize| {
-        let start = scene.bearing.first_roller_deg.to_radians() + TAU * roller as f64 / count as f64;
-        start - TAU * k.cage_hz * (1.0 - SLIP) * t
-    };
+    let start = roller_angles_deg(scene);
+    let angle_of = |roller: usize| start[roller].to_radians() - TAU * k.cage_hz * (1.0 - SLIP) * t;
     let unloaded = |roller: usize| {
         crossings
             .iter()

@@ -2,33 +2,62 @@
 
 use std::path::Path;
 
-use super::{CHECKPOINT, INFO, TRACE, files};
+use super::{CHECKPOINT, ENSEMBLE, INFO, TRACE, files};
+use crate::ensemble::Ensemble;
 use crate::run_info::{RunInfo, Status};
 use crate::trace::Trace;
 
-/// A run that holds samples.
+/// A run that holds samples, or an ensemble of them.
 #[derive(Debug)]
-pub(super) struct Earlier {
-    /// What `run.json` says; `None` when it cannot be read.
-    info: Option<RunInfo>,
-    /// It has a checkpoint to go on from.
-    can_go_on: bool,
+pub(super) enum Earlier {
+    Run {
+        /// What `run.json` says; `None` when it cannot be read.
+        info: Option<Box<RunInfo>>,
+        /// It has a checkpoint to go on from.
+        can_go_on: bool,
+    },
+    Ensemble {
+        /// Starts that were asked for; `None` when `ensemble.json` cannot be read.
+        wanted: Option<usize>,
+        /// Starts that have come to their end.
+        ended: usize,
+    },
 }
 
 impl Earlier {
     /// The run in `folder`, if there is one with samples.
     pub(super) fn of(folder: &Path) -> Option<Self> {
+        if folder.join(ENSEMBLE).exists() {
+            let starts: Vec<Self> = files::start_folders(folder).iter().filter_map(|f| Self::of(f)).collect();
+            let read: Option<Ensemble> = files::read_json(&folder.join(ENSEMBLE)).ok();
+            let ended = starts.iter().filter(|start| start.has_ended()).count();
+            return (!starts.is_empty()).then(|| Self::Ensemble { wanted: read.map(|e| e.starts), ended });
+        }
         // A trace that cannot be read may be worth a lot to its owner; one that is not there is not.
         let samples = Trace::count(folder.join(TRACE)).unwrap_or(1);
-        (folder.join(TRACE).exists() && samples > 0).then(|| Self {
-            info: files::read_info(&folder.join(INFO)).ok(),
+        (folder.join(TRACE).exists() && samples > 0).then(|| Self::Run {
+            info: files::read_info(&folder.join(INFO)).ok().map(Box::new),
             can_go_on: folder.join(CHECKPOINT).exists(),
         })
     }
 
+    fn has_ended(&self) -> bool {
+        let Self::Run { info: Some(info), .. } = self else { return false };
+        matches!(info.status, Status::Complete | Status::Diverged)
+    }
+
     /// What it is.
     pub(super) fn name(&self) -> String {
-        let Some(info) = &self.info else { return "a run whose `run.json` cannot be read".to_owned() };
+        let info = match self {
+            Self::Ensemble { wanted: Some(wanted), ended } => {
+                return format!("an ensemble with {ended} of {wanted} starts at their end");
+            }
+            Self::Ensemble { wanted: None, .. } => {
+                return "an ensemble whose `ensemble.json` cannot be read".to_owned();
+            }
+            Self::Run { info: None, .. } => return "a run whose `run.json` cannot be read".to_owned(),
+            Self::Run { info: Some(info), .. } => info,
+        };
         // To the nanosecond, so that it reads as it was written.
         let ms = |samples: f64| (1e9 * info.interval_s * samples).round() / 1e6;
         let per_sample = (info.interval_s / info.time_step_s).round();
@@ -45,8 +74,16 @@ impl Earlier {
     /// How to go on with it, if that is possible.
     pub(super) fn way_on(&self, folder: &Path) -> Option<String> {
         let folder = folder.display();
-        let status = self.info.as_ref().map(|info| info.status);
-        self.can_go_on.then_some(())?;
+        let status = match self {
+            Self::Ensemble { wanted, ended } => {
+                return wanted.map(|wanted| match *ended < wanted {
+                    true => format!("continue it with `--resume {folder}`"),
+                    false => format!("add starts with `--resume {folder} --starts …`"),
+                });
+            }
+            Self::Run { can_go_on: false, .. } => return None,
+            Self::Run { info, .. } => info.as_ref().map(|info| info.status),
+        };
         match status {
             Some(Status::Complete) => {
                 Some(format!("make it longer with `--resume {folder} --set solver.duration_ms=…`"))

@@ -4,7 +4,10 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
+
 use super::{FILES, FOLDERS, LOCK, PARTIAL};
+use crate::ensemble::{folder_name, number_of};
 use crate::error::Error;
 use crate::run_info::RunInfo;
 
@@ -50,7 +53,22 @@ pub(super) fn remove_run(folder: &Path) -> Result<(), Error> {
             }
         }
     }
+    for start in start_folders(folder) {
+        remove_run(&start)?;
+        remove(&start.join(LOCK))?;
+        // What the owner added stays, and so do the folders that it lies in.
+        FOLDERS.iter().for_each(|(name, _)| drop(std::fs::remove_dir(start.join(name))));
+        std::fs::remove_dir(&start).ok();
+    }
     Ok(())
+}
+
+/// Folders of all starts in the folder of an ensemble, by number.
+pub(super) fn start_folders(folder: &Path) -> Vec<PathBuf> {
+    let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
+    let mut numbers: Vec<usize> = names.filter_map(|name| number_of(name.to_str()?)).collect();
+    numbers.sort_unstable();
+    numbers.into_iter().map(|number| folder.join(folder_name(number))).collect()
 }
 
 fn remove(path: &Path) -> Result<(), Error> {
@@ -65,10 +83,15 @@ fn remove(path: &Path) -> Result<(), Error> {
 /// Whether a run, its report or its lock has a file or folder of this name.
 pub(super) fn is_ours(name: &str) -> bool {
     let name = name.trim_end_matches(PARTIAL);
-    FILES.contains(&name) || FOLDERS.iter().any(|(folder, _)| *folder == name) || name == LOCK
+    let known = FILES.contains(&name) || FOLDERS.iter().any(|(folder, _)| *folder == name) || name == LOCK;
+    known || number_of(name).is_some()
 }
 
 pub(super) fn read_info(path: &Path) -> Result<RunInfo, Error> {
+    read_json(path)
+}
+
+pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, Error> {
     let io = |e| cannot("read", path, "Nothing was changed", e);
     let mut text = Vec::new();
     File::open(path).map_err(io)?.take(MAX_INFO_BYTES).read_to_end(&mut text).map_err(io)?;

@@ -29,6 +29,7 @@ fn info(status: Status) -> RunInfo {
         },
         wall_s: 1.0,
         cpu_s: 2.0,
+        loop_cpu_s: 2.0,
         setup_s: 0.5,
         energy: EnergyInfo { max_relative_error: 1e-3, peak_strain_j: 2.0 },
         guards: crate::run_info::GuardInfo::default(),

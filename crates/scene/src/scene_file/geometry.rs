@@ -28,7 +28,7 @@ const FEWER_ROLLERS: usize = 8;
 
 /// Every impossibility of a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let groups = [rings, bore, pitch_circle, cage, pockets, adapter, defect_length, defect_depth];
+    let groups = [rings, bore, pitch_circle, cage, pockets, places, adapter, defect_length, defect_depth];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
@@ -300,6 +300,42 @@ fn pockets_miss(cage: &CageScene, roller: f64, pitch: f64) -> Finding {
             without_cage(),
         ],
     )
+}
+
+/// A place in its pocket for every roller, or for none.
+fn places(scene: &Scene) -> Option<Finding> {
+    const OFFSETS: &str = "cage.roller_offsets_um";
+    let cage = scene.cage.as_ref()?;
+    let (offsets, rollers, clearance) =
+        (&cage.roller_offsets_um, scene.bearing.rollers, cage.pocket_clearance_um);
+    if offsets.is_empty() {
+        return None;
+    }
+    if offsets.len() != rollers {
+        let message = format!("`{OFFSETS}` has {} numbers for {rollers} rollers", offsets.len());
+        let allowed = format!("{rollers} numbers, one for each roller, or `[]`");
+        let remedy = Remedy::new(OFFSETS, allowed).value("[]", "every roller in the middle of its pocket");
+        return Some(Finding::new(message, vec![remedy]));
+    }
+    let farthest = |a: &usize, b: &usize| offsets[*a].abs().total_cmp(&offsets[*b].abs());
+    let worst = (0..rollers).max_by(farthest).filter(|&i| offsets[i].abs() > clearance)?;
+    let path = format!("{OFFSETS}[{worst}]");
+    let message = format!(
+        "`{path}` is {}: roller {} would start in the wall of its pocket, which leaves it {} µm to either side",
+        number(offsets[worst]),
+        worst + 1,
+        number(clearance)
+    );
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(path, format!("{} to {} µm", number(-clearance), number(clearance)))
+                .number(clearance.copysign(offsets[worst]), "at the wall"),
+            Remedy::new("cage.pocket_clearance_um", format!("at least {} µm", number(offsets[worst].abs())))
+                .number(offsets[worst].abs(), ""),
+            Remedy::new(OFFSETS, "smaller ones").value("[]", "every roller in the middle of its pocket"),
+        ],
+    ))
 }
 
 /// Largest x in 0 … `high` with `fits(x)`, which turns false once; by bisection, from below.

@@ -69,6 +69,7 @@ fn with_everything() -> Scene {
     scene.mesh.inner_facets = Some(1030);
     scene.mesh.grading = Some(GradingScene::default());
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
+    scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
     scene
 }
 
@@ -125,6 +126,9 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("cage.outer_diameter_mm", cage.outer_diameter_mm, positive(20_000.0), "mm");
         add("cage.thickness_mm", cage.thickness_mm, positive(5_000.0), "mm");
         add("cage.pocket_clearance_um", cage.pocket_clearance_um, within(0.0, 10_000.0), "µm");
+        for (i, offset) in cage.roller_offsets_um.iter().enumerate() {
+            add(&format!("cage.roller_offsets_um[{i}]"), *offset, within(-10_000.0, 10_000.0), "µm");
+        }
     }
     add("adapter.width_mm", adapter.width_mm, positive(50_000.0), "mm");
     add("adapter.height_mm", adapter.height_mm, positive(50_000.0), "mm");
@@ -139,6 +143,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("material.density_kg_m3", material.density_kg_m3, positive(1e5), "kg/m³");
     add("mesh.size_mm", mesh.size_mm, positive(1_000.0), "mm");
     add("mesh.roller_facets", mesh.roller_facets as f64, within(8.0, 100_000.0), "");
+    add("mesh.roller_phase_deg", mesh.roller_phase_deg, within(-360.0, 360.0), "°");
     if let Some(facets) = mesh.outer_facets {
         add("mesh.outer_facets", facets as f64, within(16.0, 1e6), "");
     }

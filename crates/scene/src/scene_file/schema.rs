@@ -19,6 +19,8 @@ impl Schema {
         // Absent by default, but its fields must be known.
         scene.mesh.grading = Some(GradingScene::default());
         scene.solver.structural_damping = Some(StructuralDampingScene::default());
+        // Empty by default, but an item must have a kind.
+        scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }

@@ -92,6 +92,11 @@ fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
     let pockets = |walls: &str| parse(&format!("(cage: (pocket: {walls}))")).expect("valid").hash();
     assert_eq!(pockets("corners"), Scene::default().hash());
     assert_ne!(pockets("straight"), Scene::default().hash());
+    let default = Scene::default().hash();
+    let with = |set: &str| Scene::default().with_overrides(&[set]).expect("valid").hash();
+    assert_eq!(with("mesh.roller_phase_deg=0"), default);
+    assert_ne!(with("mesh.roller_phase_deg=1"), default);
+    assert_ne!(with(&format!("cage.roller_offsets_um=[{}]", ["5.0"; 24].join(","))), default);
 }
 
 #[test]
@@ -255,6 +260,13 @@ fn refuses_impossible_cage_adapter_defect_mesh_and_sampling() {
         ),
         ("(output: (sensors: [(name: \"a b\", angle_deg: 0)]))", "output.sensors[0].name", "cannot name"),
         ("(name: \"../x\")", "name", "cannot name"),
+        ("(cage: (roller_offsets_um: [1, 2]))", "cage.roller_offsets_um", "2 numbers for 24 rollers"),
+        (
+            "(bearing: (rollers: 3), cage: (roller_offsets_um: [99, -101, 0]))",
+            "cage.roller_offsets_um[1]",
+            "roller 2 would start in the wall of its pocket, which leaves it 100 µm",
+        ),
+        ("(mesh: (roller_phase_deg: 400))", "mesh.roller_phase_deg", "outside its range"),
     ] {
         if words.is_empty() {
             assert!(parse(text).is_ok(), "{text}");
@@ -307,6 +319,8 @@ fn refuses_overrides_and_points_at_the_command_line() {
         ("output.sensors[9].angle_deg=1", "has 4 items"),
         ("cage=(thicknes_mm: 3)", "did you mean `thickness_mm`?"),
         ("=3", "name of a field is missing"),
+        ("cage.roller_offsets_um[0]=1", "has 0 items"),
+        ("cage.roller_offsets_um=[a]", "cage.roller_offsets_um"),
     ] {
         let problem = refuse(argument);
         let shown = problem.to_string();

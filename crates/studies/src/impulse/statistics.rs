@@ -2,16 +2,16 @@
 
 /// Numbers of one kind, one a start.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sample {
-    pub(super) mean: f64,
+pub(crate) struct Sample {
+    pub(crate) mean: f64,
     /// Standard deviation of one number.
-    pub(super) scatter: f64,
+    pub(crate) scatter: f64,
     count: usize,
 }
 
 impl Sample {
     /// Of two numbers or more.
-    pub(super) fn of(values: &[f64]) -> Self {
+    pub(crate) fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
         let scatter = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
@@ -19,20 +19,20 @@ impl Sample {
     }
 
     /// Standard error of the mean.
-    pub(super) fn error(&self) -> f64 {
+    pub(crate) fn error(&self) -> f64 {
         self.scatter / (self.count as f64).sqrt()
     }
 }
 
 /// How far one mean is off another as a part of it, and the standard error of that.
-pub(super) fn ratio(one: &Sample, other: &Sample) -> [f64; 2] {
+pub(crate) fn ratio(one: &Sample, other: &Sample) -> [f64; 2] {
     let ratio = one.mean / other.mean;
     let error = ratio.abs() * (one.error() / one.mean).hypot(other.error() / other.mean);
     [ratio - 1.0, error]
 }
 
 /// Correlation of pairs of numbers about the mean of the group that they belong to.
-pub(super) fn correlation_within(groups: &[Vec<[f64; 2]>]) -> f64 {
+pub(crate) fn correlation_within(groups: &[Vec<[f64; 2]>]) -> f64 {
     let mut sums = [0.0; 3];
     for pairs in groups {
         let mean = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<f64>() / pairs.len() as f64;

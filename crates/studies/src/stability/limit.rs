@@ -189,7 +189,7 @@ fn judged(name: &str, onset: f64, note: String) -> Case {
     Case {
         done: name.to_owned(),
         energy: None,
-        verdict: if right { Verdict::Right } else { Verdict::Silent },
+        verdict: if right { Verdict::Right } else { Verdict::Undetected },
         seen: format!("unstable from {onset:.4} of the limit{note}"),
     }
 }

@@ -1,8 +1,7 @@
 //! Whole bearings, coarse and short, at the ends of what a scene allows and beyond.
 
-use anyhow::Result;
 use stribeck_scene::run_dir::Run;
-use stribeck_scene::run_info::Status;
+use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
 
 use super::{Case, Chapter, Verdict};
@@ -10,7 +9,7 @@ use crate::{Finished, Flags, Host, Runner, Variant};
 
 /// Coarse bearing of every case, and how long it runs.
 const SCENE: &str = "fixtures/scenes/quick.ron";
-const DURATION: &str = "solver.duration_ms=0.4";
+const BASE: &[&str] = &["solver.duration_ms=0.4"];
 
 /// A case in which the rollers carry less or more than this share of what they must, without a word, is wrong.
 const SUPPORT: [f64; 2] = [0.7, 1.3];
@@ -19,7 +18,7 @@ const SUPPORT: [f64; 2] = [0.7, 1.3];
 const RATTLING: f64 = 0.1;
 
 /// Name, what is done, overrides.
-type Row = (&'static str, &'static str, &'static [&'static str]);
+pub(super) type Row = (&'static str, &'static str, &'static [&'static str]);
 
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
@@ -84,24 +83,8 @@ const ROWS: &[Row] = &[
     ("collocated", "node-to-segment contact", &["contact.method=collocated"]),
 ];
 
-pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> Result<Chapter> {
-    let mut cases = Vec::new();
-    for (name, done, set) in ROWS {
-        if !flags.wants(name) {
-            continue;
-        }
-        let mut variant = Variant::new(*name, SCENE, &[DURATION]);
-        set.iter().for_each(|s| variant = variant.clone().with(*s));
-        if let Err(error) = Scene::read_with(host.root().join(SCENE), &variant.set) {
-            let first = error.problems().first().map_or(String::new(), |p| {
-                format!("{} (allowed: {})", p.message, p.allowed).replace(" (allowed: )", "")
-            });
-            cases.push(Case { done: (*done).into(), energy: None, verdict: Verdict::Refused, seen: first });
-            continue;
-        }
-        let runs = runner.run(&[variant])?;
-        cases.extend(runs.iter().map(|run| judge(done, run)));
-    }
+pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> anyhow::Result<Chapter> {
+    let cases = run_rows(runner, flags, host, (SCENE, BASE), ROWS, judge)?;
     Ok(Chapter {
         title: "Whole bearings",
         words: "The quick scene (2 mm elements, 24 rollers) for 0.4 ms with one thing changed. *Carried* is the vertical force of \
@@ -111,35 +94,82 @@ pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> Re
     })
 }
 
-fn judge(done: &str, run: &Finished) -> Case {
+/// Runs a scene with the changes of each row and judges what became of it; a scene that is refused says why.
+pub(super) fn run_rows(
+    runner: &Runner<'_>,
+    flags: &Flags,
+    host: &dyn Host,
+    (scene, base): (&'static str, &[&str]),
+    rows: &[Row],
+    judge: fn(&str, &Finished) -> Case,
+) -> anyhow::Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    for (name, done, set) in rows {
+        if !flags.wants(name) {
+            continue;
+        }
+        let variant = set.iter().fold(Variant::new(*name, scene, base), |variant, s| variant.with(*s));
+        if let Err(error) = Scene::read_with(host.root().join(scene), &variant.set) {
+            let first = error.problems().first().map_or(String::new(), |p| {
+                format!("{} (allowed: {})", p.message, p.allowed).replace(" (allowed: )", "")
+            });
+            cases.push(Case { done: (*done).into(), energy: None, verdict: Verdict::Refused, seen: first });
+            continue;
+        }
+        let runs = runner.run(&[variant])?;
+        cases.extend(runs.iter().map(|run| judge(done, run)));
+    }
+    Ok(cases)
+}
+
+/// The account of a run that came to its end; the case of one that did not, refused by the preload or stopped by a guard.
+pub(super) fn ended<'a>(done: &str, run: &'a Finished) -> Result<&'a RunInfo, Case> {
     let Some(info) = &run.info else {
         let why = run.summary.as_ref().err().cloned().unwrap_or_default();
         // What was tried and found; the advice that follows is the same each time.
-        let why = why.split("; check that").next().unwrap_or(&why).to_owned();
-        return Case { done: done.to_owned(), energy: None, verdict: Verdict::Refused, seen: why };
+        let seen = why.split("; check that").next().unwrap_or(&why).to_owned();
+        return Err(Case { done: done.to_owned(), energy: None, verdict: Verdict::Refused, seen });
     };
-    let energy = Some(info.energy.max_relative_error);
-    if info.status == Status::Diverged {
-        let why = info.stop_reason.clone().unwrap_or_default();
-        return Case { done: done.to_owned(), energy, verdict: Verdict::Stopped, seen: why };
+    if info.status != Status::Diverged {
+        return Ok(info);
     }
+    let (energy, seen) = (Some(info.energy.max_relative_error), info.stop_reason.clone().unwrap_or_default());
+    Err(Case { done: done.to_owned(), energy, verdict: Verdict::Stopped, seen })
+}
+
+/// What the rollers carried over what they must [-], on average, and the speed [m/s] that the difference gave outer ring and
+/// adapter.
+pub(super) fn carried(run: &Finished, info: &RunInfo) -> [f64; 2] {
     let carried = Run::read(&run.folder).ok().map(|r| support(&r));
     let share = carried.map_or(f64::NAN, |n| n / info.expected_support_n);
     // A force that is not carried, or too much of it, moves outer ring and adapter; a little of that is rattling.
     let mass = (info.expected_support_n - run.scene.operation.load_n) / run.scene.operation.gravity_m_s2;
     let time = info.steps as f64 * info.time_step_s;
-    let gained = (share - 1.0).abs() * info.expected_support_n * time / mass;
+    [share, (share - 1.0).abs() * info.expected_support_n * time / mass]
+}
+
+fn judge(done: &str, run: &Finished) -> Case {
+    let info = match ended(done, run) {
+        Ok(info) => info,
+        Err(case) => return case,
+    };
+    let [share, gained] = carried(run, info);
     let right = (share > SUPPORT[0] && share < SUPPORT[1]) || gained < RATTLING;
+    let seen = format!("carried {share:.3}, {} steps of {:.3} ns", info.steps, 1e9 * info.time_step_s);
+    concluded(done, info, right, seen)
+}
+
+/// The case of a run that came to its end.
+pub(super) fn concluded(done: &str, info: &RunInfo, right: bool, mut seen: String) -> Case {
     let verdict = match (info.warnings.is_empty(), right) {
         (false, _) => Verdict::Warned,
         (true, true) => Verdict::Right,
-        (true, false) => Verdict::Silent,
+        (true, false) => Verdict::Undetected,
     };
-    let mut seen = format!("carried {share:.3}, {} steps of {:.3} ns", info.steps, 1e9 * info.time_step_s);
     for warning in &info.warnings {
         seen += &format!("; {warning}");
     }
-    Case { done: done.to_owned(), energy, verdict, seen }
+    Case { done: done.to_owned(), energy: Some(info.energy.max_relative_error), verdict, seen }
 }
 
 /// Mean vertical force of the rollers on the outer ring [N].

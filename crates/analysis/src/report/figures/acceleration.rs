@@ -3,51 +3,55 @@
 use super::{mark, sampled, transient};
 use crate::findings::{Findings, SensorSignal};
 use crate::paper;
-use crate::plot::{Axis, Colour, Figure, Level, Mark};
+use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
 use crate::summary::Event;
 
 /// Most exits that are named in full.
 const NAMED: usize = 6;
 
-/// Fig. 2: as recorded.
+/// As recorded (the paper's Fig. 2).
 pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first().filter(|s| !s.raw_g.is_empty())?;
     let levels = &findings.summary.levels;
-    let title = format!("Fig. 2: acceleration a_y at sensor “{}”, unfiltered", leading.name);
+    let title = format!("Acceleration a_y at sensor “{}”", leading.name);
     let mut figure = over_time("acceleration", &title)
         .with(sampled(findings, "mean over each interval", Colour::Blue, &leading.raw_g))
         .caption(format!(
-            "Each roller that leaves the defect gives an impulse ({} here, ± 180 g in the paper); between them the noise \
-             reaches {} (± 50 g in the paper).",
-            gravities(levels.impulse_g),
-            gravities(levels.between_g),
+            "Peaks: {} at exits, {} at entries, {} in the gaps.",
+            gravities(levels.phases.exit_g),
+            gravities(levels.phases.entry_g),
+            gravities(levels.phases.gap_g),
         ))
         .note(
-            "Dashed across: the paper's levels, read from its text. Dashed upright: a roller's centre over the trailing edge, by \
-             its recorded path. The paper's exits are near 5, 16–17 and 28 ms.",
+            "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
+             place without slip is drawn.",
         );
-    figure.marks = exits(&findings.summary.events);
-    figure.levels = both_signs(&[(paper::IMPULSE_G, "impulses"), (paper::BETWEEN_G, "between")]);
+    figure.marks = passages(&findings.summary.events);
+    figure.bands = start_up(findings);
+    if findings.of_paper {
+        figure.levels = both_signs(&[(paper::IMPULSE_G, "impulses"), (paper::BETWEEN_G, "between")]);
+    }
     Some(figure)
 }
 
-/// Fig. 6: behind the notch, over the raw trace.
+/// Behind the notch, over the raw trace (the paper's Fig. 6).
 pub(super) fn notched(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first().filter(|s| !s.filtered_g.is_empty())?;
     let levels = &findings.summary.levels;
-    let mut figure = over_time("acceleration-notched", "Fig. 6: the same behind the notch, over the unfiltered trace")
+    let mut figure = over_time("acceleration-notched", "The same with the tone filtered out")
         .with(sampled(findings, "raw", Colour::Grey, &leading.raw_g))
         .with(sampled(findings, "notched", Colour::Orange, &leading.filtered_g))
         .caption(format!(
-            "Without the facet tone the level between the impulses is {1} instead of {0} (paper: 20 instead of 50 g), and the \
-             impulses stay.",
+            "In the gaps the peak falls from {} to {}; the impulses stay.",
             gravities(levels.between_g),
             gravities(levels.between_filtered_g),
         ))
         .note(transient_note(findings));
-    figure.marks = exits(&findings.summary.events);
+    figure.marks = passages(&findings.summary.events);
     figure.bands = transient(findings);
-    figure.levels = both_signs(&[(paper::FILTERED_G, "between, filtered")]);
+    if findings.of_paper {
+        figure.levels = both_signs(&[(paper::FILTERED_G, "between, filtered")]);
+    }
     Some(figure)
 }
 
@@ -62,12 +66,13 @@ pub(super) fn others(findings: &Findings) -> Vec<Figure> {
             figure = figure.with(sampled(findings, "notched", Colour::Orange, &sensor.filtered_g));
         }
         figure.bands = transient(findings);
-        figure.marks = exits(&findings.summary.events);
+        figure.marks = passages(&findings.summary.events);
         let of_sensor = findings.summary.levels.sensors.iter().find(|l| l.sensor == sensor.name);
         figures.push(figure.caption(format!(
-            "The same events from another place on the ring: impulses of {}, {} between them.",
-            gravities(of_sensor.and_then(|l| l.impulse_g)),
-            gravities(of_sensor.and_then(|l| l.between_g)),
+            "a_y: {} at exits, {} at entries, {} in the gaps.",
+            gravities(of_sensor.and_then(|l| l.phases.exit_g)),
+            gravities(of_sensor.and_then(|l| l.phases.entry_g)),
+            gravities(of_sensor.and_then(|l| l.phases.gap_g)),
         )));
     }
     figures.extend(findings.sensors.first().and_then(|leading| instantaneous(findings, leading)));
@@ -95,15 +100,32 @@ fn over_time(id: &str, title: &str) -> Figure {
     Figure::new(id, title, Axis::si("Time", "s"), Axis::plain("a_y", "g")).synced("time")
 }
 
-/// Exits by the recorded path where there is one; of many only the first is named in full.
-fn exits(events: &[Event]) -> Vec<Mark> {
-    let label = |(n, e): (usize, &Event)| match n {
-        _ if events.len() <= NAMED => format!("exit of roller {}", e.roller),
-        0 => format!("exit of roller {}", e.roller),
-        _ => e.roller.to_string(),
-    };
-    let at = |e: &Event| 1e-3 * e.path_exit_ms.unwrap_or(e.expected_exit_ms);
-    events.iter().enumerate().map(|(n, e)| mark(at(e), &label((n, e)), Colour::Green, true)).collect()
+/// Entries and exits by the forces, dashed by rolling without slip where the forces show none; of many only the first is
+/// named in full.
+fn passages(events: &[Event]) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    for (n, e) in events.iter().enumerate() {
+        let full = events.len() <= NAMED || n == 0;
+        let label = |what: &str| if full { format!("{what} {}", e.roller) } else { e.roller.to_string() };
+        let entry = e.entry_ms.unwrap_or(e.expected_entry_ms);
+        let exit = e.exit_ms.unwrap_or(e.expected_exit_ms);
+        marks.push(mark(1e-3 * entry, &label("entry"), Colour::Orange, e.entry_ms.is_none()));
+        marks.push(mark(1e-3 * exit, &label("exit"), Colour::Green, e.exit_ms.is_none()));
+    }
+    marks
+}
+
+/// The start-up, which no level of events or gaps contains.
+fn start_up(findings: &Findings) -> Vec<Band> {
+    let to = findings.start_up_end_s;
+    if to <= findings.start_s {
+        return Vec::new();
+    }
+    vec![Band {
+        from: findings.start_s,
+        to,
+        label: format!("start-up, {:.2} ms", 1e3 * (to - findings.start_s)),
+    }]
 }
 
 /// The paper's levels on either side of zero.

@@ -1,4 +1,4 @@
-//! Contact forces over time: the paper's Fig. 8, and their sum against the load.
+//! Contact forces over time (the paper's Fig. 8), and their sum against the load.
 
 use stribeck_scene::run_dir::Run;
 
@@ -15,7 +15,7 @@ const DRAWN: usize = 3;
 /// A record of more roller spacings is drawn about each passage only.
 const LONG_SPACINGS: f64 = 6.0;
 
-/// Figs. 8a to 8c: vertical force of the outer raceway on each roller that crosses the defect.
+/// Vertical force of the outer raceway on each roller that crosses the defect.
 pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
     let crossings = findings.crossings.iter().zip(&findings.summary.events).take(DRAWN);
     crossings.enumerate().map(|(at, (crossing, event))| force(findings, crossing, event, at)).collect()
@@ -23,7 +23,7 @@ pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
 
 fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize) -> Figure {
     let vertical = Axis::si("Vertical force, compression positive", "N");
-    let title = format!("Fig. 8{}: outer raceway on roller {}", char::from(b'a' + at as u8), crossing.roller);
+    let title = format!("Outer raceway on roller {}", crossing.roller);
     let mut figure = Figure::new(&format!("force-{}", at + 1), &title, Axis::si("Time", "s"), vertical)
         .synced("time")
         .with(sampled(findings, "raw", Colour::Grey, &crossing.raw_n));
@@ -47,7 +47,7 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
     }
     let events = [
         (event.entry_ms, "#1 unloads"),
-        (event.impact_ms, "#2 strikes the floor"),
+        (event.floor_ms, "#2 strikes the floor"),
         (event.compensation_ms, "#3 carries for a neighbour"),
         (event.exit_ms, "#4 loaded again"),
     ];
@@ -57,26 +57,19 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         }
     }
     let time = |ms: Option<f64>| ms.map_or("not at all".into(), |t| format!("at {t:.2} ms"));
-    let floor = event
-        .impact_ms
-        .map_or("does not touch the floor in between".into(), |t| format!("strikes the floor at {t:.2} ms"));
+    let floor = event.floor_ms.zip(event.floor_n).map_or("does not touch the floor (#2)".into(), |(t, n)| {
+        format!("strikes the floor at {t:.2} ms with {n:.0} N (#2)")
+    });
     let help = event.compensation_gain.map_or(String::new(), |gain| {
-        format!(" While a neighbour is in the defect it carries {:.0} % more.", 100.0 * (gain - 1.0))
+        format!(" While a neighbour is in the defect it carries {:.0} % more (#3).", 100.0 * (gain - 1.0))
     });
     figure
         .caption(format!(
-            "The roller loses its load {} (#1; its centre is over the leading edge at {:.2} ms without slip), {floor} (#2) and \
-             takes its load up again {} (#4; trailing edge at {:.2} ms).{help}",
+            "The roller unloads {} (#1), {floor} and is loaded again {} (#4).{help}",
             time(event.entry_ms),
-            event.expected_entry_ms,
-            time(event.exit_ms),
-            event.expected_exit_ms
+            time(event.exit_ms)
         ))
-        .note(
-            "Events are picked from the force by the rule of THEORY §7.4. A roller of finite stiffness unloads after its centre has \
-             passed the leading edge and is loaded before it reaches the trailing one. Forces are filtered from the steady \
-             state of their first value.",
-        )
+        .note("Events follow the rule of THEORY §7.4; edges are drawn where the roller's centre passes them without slip.")
 }
 
 /// What all rollers carry together, sample by sample.

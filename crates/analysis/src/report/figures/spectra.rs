@@ -6,8 +6,8 @@ use stribeck_dsp::Spectrum;
 
 use super::{mark, spoken};
 use crate::artefacts;
+use crate::families::{FamilyFinding, SIDEBANDS};
 use crate::findings::Findings;
-use crate::paper;
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use crate::tones;
 
@@ -18,66 +18,63 @@ const LOW_HZ: f64 = 2_500.0;
 /// Multiples of the defect's frequency that are marked.
 const FAMILY: usize = 10;
 /// Where each colour of the marks comes from.
-const LEGEND: &str = "Dashed: green where roller vertices belong, purple nodes of the outer and teal of the inner raceway, red the                       defect, brown the free outer ring.";
+const LEGEND: &str = "Upright: families of facet lines that were found (full) and absent (dashed); green roller vertices, purple \
+                      nodes of the outer and teal of the inner raceway. Red: the defect. Brown: modes of the free outer ring.";
 
-/// Fig. 3: the leading sensor, as recorded.
+/// The leading sensor, as recorded (the paper's Fig. 3).
 pub(super) fn raw(findings: &Findings) -> Option<Figure> {
-    let raw = findings.sensors.first()?.raw_density.as_ref()?;
-    let mut figure = over_frequency("spectrum", "Fig. 3: power spectral density of a_y", (0.0, 0.5 * raw.sample_rate_hz()))
+    let leading = findings.sensors.first()?;
+    let raw = leading.raw_density.as_ref()?;
+    let title = format!("Power spectral density of a_y at sensor “{}”", leading.name);
+    let mut figure = over_frequency("spectrum", &title, (0.0, 0.5 * raw.sample_rate_hz()))
         .with(density("raw", Colour::Blue, raw))
-        .caption(match tone(findings) {
-            Some(hz) => format!(
-                "The facet tone stands out at {hz:.0} Hz (paper: {:.0} Hz); dashed lines mark where it and its harmonics belong.",
-                paper::TONE_HZ
-            ),
-            None => "No facet tone stands 10 dB above the background at this sensor; dashed lines mark where it and its \
-                     harmonics belong."
-                .into(),
-        })
+        .caption(found(findings))
         .note(format!("{LEGEND} {}", stated(raw)));
     figure.marks = harmonic_marks(findings);
     Some(figure)
 }
 
-/// Figs. 7a and 7b: raw and notched, whole and about the tone.
+/// Which families were found, in one sentence.
+fn found(findings: &Findings) -> String {
+    let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", f.spoken(), f.carrier_hz?));
+    let all: Vec<String> = findings.summary.families.iter().filter_map(name).collect();
+    if all.is_empty() {
+        "No family of facet lines is there.".into()
+    } else {
+        format!("Mesh: {}, with sidebands at multiples of BPFO.", all.join(", "))
+    }
+}
+
+/// Raw and notched, whole and about the tone (the paper's Figs. 7a and 7b).
 pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
     let Some(leading) = findings.sensors.first() else { return Vec::new() };
     let Some(raw) = &leading.raw_density else { return Vec::new() };
     let overlay = |id: &str, title: &str, range: (f64, f64)| {
-        let mut figure = over_frequency(id, title, range).with(density("raw", Colour::Blue, raw));
+        let mut figure = over_frequency(id, title, range);
+        // Drawn first, so that the raw curve stays visible where both agree.
         if let Some(filtered) = &leading.filtered_density {
             figure = figure.with(density("notched", Colour::Orange, filtered));
         }
-        figure
+        figure.with(density("raw", Colour::Blue, raw))
     };
     let attenuation = findings.summary.notch.as_ref().and_then(|n| n.attenuation_db);
-    let mut whole =
-        overlay("spectrum-notched", "Fig. 7a: unfiltered and notched", (0.0, 0.5 * raw.sample_rate_hz()))
-            .caption("The notch takes the tone and leaves everything else, its harmonics included.")
-            .note(stated(raw));
+    let mut whole = overlay("spectrum-notched", "Raw and notched", (0.0, 0.5 * raw.sample_rate_hz()))
+        .caption("The notch removes the carrier and leaves its sidebands and harmonics.")
+        .note(stated(raw));
     whole.marks = harmonic_marks(findings);
     let zoom = zoom(findings, raw);
-    let title = format!("Fig. 7b: the same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
+    let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
     let mut zoomed = overlay("spectrum-zoom", &title, zoom)
         .caption(match (tone(findings), attenuation) {
-            (Some(_), Some(db)) => format!(
-                "The notch takes {db:.0} dB from the tone (paper: 25 dB), and at 4545 Hz what its transfer function says, {} dB \
-                 (paper: 4 dB), whether there is a tone or not.",
-                findings.summary.notch.as_ref().and_then(|n| n.attenuation_4545_db).map_or("–".into(), |db| format!("{db:.2}"))
-            ),
-            _ => "The notch stands where a tone is predicted, but at this sensor none stands out.".into(),
+            (Some(_), Some(db)) => format!("At its centre the notch lowers the density by {db:.0} dB."),
+            _ => "The notch stands where a tone is predicted; none stands out at this sensor.".into(),
         })
         .note(format!(
-            "{LEGEND} {} Lines closer than {:.0} Hz merge. How much is taken from the tone depends on the window and on the \
-             filter's transient: see the notch in numbers.",
+            "{LEGEND} {} Lines closer than {:.0} Hz merge.",
             stated(raw),
             raw.resolution().width_6db_hz
         ));
     zoomed.marks = line_marks(findings);
-    zoomed.marks.push(mark(paper::CURSOR_HZ, "4545 Hz = 100 kHz/22", Colour::Grey, true));
-    if let Some(hz) = tone(findings) {
-        zoomed.marks.push(mark(hz, &format!("measured {hz:.0} Hz"), Colour::Blue, false));
-    }
     vec![whole, zoomed]
 }
 
@@ -122,9 +119,9 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let split = artefacts::shows_family(raw, findings.prediction.kinematics.bpfo_hz);
     figure = figure
         .caption(if split {
-            "Rollers pass the defect at BPFO, and its multiples stand apart."
+            "The record is long enough to separate the multiples of BPFO."
         } else {
-            "BPFO and its multiples belong at the red lines, but this record is too short to show them."
+            "BPFO and its multiples belong at the red lines; this record is too short to show them."
         })
         .note(format!("{LEGEND} {}", stated(raw)));
     figure.marks = physics_marks(findings, top);
@@ -182,7 +179,9 @@ fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
 fn all_sensors(findings: &Findings, zoom: (f64, f64), raw: &Spectrum) -> Figure {
     let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple, Colour::Red, Colour::Teal];
     let mut figure = over_frequency("spectrum-sensors", "All sensors, raw", zoom)
-        .caption("The tone belongs to the contacts, so it stands at the same frequency wherever it is heard.")
+        .caption(
+            "The comb has the same spacing everywhere; which of its lines is strongest depends on the place.",
+        )
         .note(format!("{LEGEND} {}", stated(raw)));
     for (sensor, colour) in findings.sensors.iter().zip(colours.into_iter().cycle()) {
         if let Some(spectrum) = &sensor.raw_density {
@@ -226,23 +225,25 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     marks
 }
 
-/// Every predicted line with its name and frequency.
+/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not.
 fn line_marks(findings: &Findings) -> Vec<Mark> {
-    let colours = [Colour::Green, Colour::Purple, Colour::Teal];
-    let fundamentals = &findings.prediction.facet_lines;
-    let colour_of =
-        |name: &str| fundamentals.iter().position(|f| f.0 == name).map_or(Colour::Grey, |i| colours[i % 3]);
-    let text = |name: &str, harmonic: usize, hz: f64| match harmonic {
-        1 => format!("{} {hz:.0} Hz", spoken(name)),
-        more => format!("{} ×{more} {hz:.0} Hz", spoken(name)),
-    };
-    let mut marks: Vec<Mark> = findings
-        .lines
-        .iter()
-        .map(|l| mark(l.predicted_hz, &text(&l.name, l.harmonic, l.predicted_hz), colour_of(&l.name), true))
-        .collect();
-    marks.extend(
-        findings.modes.iter().map(|(n, hz)| mark(*hz, &format!("ring n = {n}"), Colour::Brown, true)),
-    );
+    let bpfo = findings.summary.kinematics.bpfo_hz.unwrap_or(findings.prediction.kinematics.bpfo_hz);
+    let mut marks = Vec::new();
+    for (family, colour) in
+        findings.summary.families.iter().zip([Colour::Green, Colour::Purple, Colour::Teal])
+    {
+        let Some(carrier) = family.carrier_hz else {
+            let label = format!("{} absent", spoken(&family.name));
+            marks.push(mark(family.predicted_hz, &label, colour, true));
+            continue;
+        };
+        for m in -SIDEBANDS..=SIDEBANDS {
+            let label = match m {
+                0 => format!("{} {carrier:.0} Hz", family.spoken()),
+                _ => format!("{m:+}").replace('-', "−"),
+            };
+            marks.push(mark(carrier + f64::from(m) * bpfo, &label, colour, false));
+        }
+    }
     marks
 }

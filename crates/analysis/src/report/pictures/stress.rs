@@ -1,5 +1,7 @@
 //! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
 
+use std::f64::consts::PI;
+
 use stribeck_scene::frames::{Frame, Window};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
@@ -26,6 +28,42 @@ struct Moment {
     time_s: f64,
     cells: Vec<Cell>,
     focus: [f64; 2],
+    /// What Hertz has for the contact at the focus; `None` at an edge.
+    hertz: Option<Hertz>,
+}
+
+/// A line contact of a roller with the outer raceway (Johnson 1985, §4.2).
+#[derive(Debug, Clone, Copy)]
+struct Hertz {
+    /// Largest pressure [Pa].
+    pressure: f64,
+    /// Half-width [m].
+    half_width: f64,
+}
+
+/// Highest von Mises stress under a line contact over its largest pressure, for ν = 0.3: yield begins at p₀ = 1.79 Y
+/// (Johnson 1985, §6.1).
+const VON_MISES_OF_PRESSURE: f64 = 1.0 / 1.79;
+
+impl Hertz {
+    fn of(geometry: &Geometry, force: f64) -> Self {
+        let (load, modulus) = (force / geometry.thickness, geometry.material.contact_modulus());
+        let half_width = (4.0 * load * geometry.outer_contact_radius() / (PI * modulus)).sqrt();
+        Self { pressure: 2.0 * load / (PI * half_width), half_width }
+    }
+
+    /// Beside the highest stress of the picture.
+    fn beside(&self, von_mises: f64) -> String {
+        let expected = VON_MISES_OF_PRESSURE * self.pressure;
+        format!(
+            "Hertz has a pressure of {:.2} GPa over a half-width of {:.2} mm under this load, and a highest von Mises stress of {:.2} GPa \
+             below it: the picture shows {:.0} % of that.",
+            1e-9 * self.pressure,
+            1e3 * self.half_width,
+            1e-9 * expected,
+            100.0 * von_mises / expected
+        )
+    }
 }
 
 pub(super) fn pictures(
@@ -68,7 +106,15 @@ fn moments(
         let angle = roller.y[at].atan2(roller.x[at]).to_degrees();
         let force = roller.outer_normal()[at];
         let title = format!("roller {} carries {:.1} kN", event.roller, 1e-3 * force);
-        Some(Moment { title, at: "the contact", time_s: *time, cells: cells.clone(), focus: on_race(angle) })
+        let hertz = (force > 0.0).then(|| Hertz::of(geometry, force));
+        Some(Moment {
+            title,
+            at: "the contact",
+            time_s: *time,
+            cells: cells.clone(),
+            focus: on_race(angle),
+            hertz,
+        })
     });
     moments.extend(loaded);
     let exit = findings.prediction.defect.zip(findings.summary.events.first()).and_then(|(edges, event)| {
@@ -80,7 +126,7 @@ fn moments(
         let about = all.iter().filter(|f| (f.0 - exit_s).abs() <= half_ms);
         let (time_s, cells) = about.max_by(|a, b| highest(&a.1).total_cmp(&highest(&b.1)))?;
         let title = format!("roller {} at the exit edge", event.roller);
-        Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus })
+        Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus, hertz: None })
     });
     moments.extend(exit);
     moments
@@ -140,25 +186,26 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
     }
     scale_of_colours(&mut sheet, [10.0, side + top + 14.0], end);
     let mut picture = Picture::new("stress", "Stress under a roller and at the exit edge", sheet);
-    // Where each moment has its highest stress, from the point that it looks at.
-    let places: Vec<String> = moments
-        .iter()
-        .filter_map(|m| {
-            let cells = m.cells.iter().filter(|c| near(m, c));
-            let cell = cells.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises))?;
-            let away = distance(centre(cell, window), m.focus);
-            Some(format!(
-                "at {:.2} ms {:.2} GPa, {:.2} mm away from {}",
-                1e3 * m.time_s,
-                1e-9 * cell.von_mises,
-                1e3 * away,
-                m.at
-            ))
-        })
-        .collect();
-    picture.caption =
-        format!("Load concentrates where roller and raceway meet: highest {}.", places.join("; "));
-    picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this model, and a sharp edge has as much stress as its elements resolve.".into();
+    // Where each moment has its highest stress, from the point that it looks at, and what Hertz has there.
+    let mut places = Vec::new();
+    let mut hertz = String::new();
+    for m in moments {
+        let cells = m.cells.iter().filter(|c| near(m, c));
+        let Some(cell) = cells.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises)) else { continue };
+        let away = distance(centre(cell, window), m.focus);
+        let stress = 1e-9 * cell.von_mises;
+        places.push(format!(
+            "{stress:.2} GPa at {:.2} ms, {:.2} mm from {}",
+            1e3 * m.time_s,
+            1e3 * away,
+            m.at
+        ));
+        hertz.extend(m.hertz.map(|h| format!(" {}", h.beside(cell.von_mises))));
+    }
+    picture.caption = format!("The highest stress is {}.{hertz}", places.join(" and "));
+    picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this model. A penalty softer than the \
+                    material and elements wider than the contact spread the pressure; a sharp edge has as much stress as its elements resolve."
+        .into();
     picture
 }
 

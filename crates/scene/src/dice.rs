@@ -10,6 +10,13 @@ impl Dice {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5851_f42d_4c95_7f2d)
     }
 
+    /// One of many sequences that a seed stands for, independent of each other.
+    pub fn stream(seed: u64, number: u64) -> Self {
+        let mut seeds = Self::new(seed);
+        seeds.0 = seeds.0.wrapping_add(number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+        Self(seeds.bits())
+    }
+
     /// 64 random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);

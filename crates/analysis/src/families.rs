@@ -1,0 +1,382 @@
+//! Combs of lines, fitted to the recorded motion of the rollers: which polygon makes the tone.
+//!
+//! Facets that pass the loaded contacts make no single line. What roller j does to a sensor goes with its load Q_j and its
+//! place θ_j, and its phase Ψ_j is that of its own facets: N_v times its spin seen from the contact, N_o times its way along
+//! the outer raceway, or N_i times that along the inner one. The sum over the rollers,
+//!
+//! ```text
+//! Σ_j Q_j(t) [c₀ + Σ_q a_q cos 2qθ_j + b_q sin 2qθ_j] exp iΨ_j(t)          q = 1 … 3
+//! ```
+//!
+//! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and Ψ are
+//! recorded, so only the seven complex weights are fitted: to each acceleration by itself, and to the forces on the fullest
+//! rollers all at once. A roller's force has its own term of the sum alone, and all rollers have one set of weights, because
+//! what facets do at a place does not depend on the roller that is there.
+//!
+//! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is the mean of
+//! −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within half a resolution (one over the length
+//! of the record) of the recorded motion. Whatever else may explain the same channels is a *rival*: the same comb where it
+//! does not belong, 5 to 20 BPFO away, and the combs of the other families. A family is **found** when its score leads
+//! every rival by [`LEAST_LEAD`], and is highest where it belongs. Families that lead all detuned combs but not each other
+//! are **not told apart**. One that was found stays in the fit while the others are tried on what it leaves; there a comb
+//! must lead its own copies next to its place, too, because what a fit misses lies about the lines that it fits. Where the
+//! lead comes from, and how often noise reaches it: THEORY §7.7.
+
+mod comb;
+mod lines;
+mod trial;
+
+use serde::{Deserialize, Serialize};
+
+use self::comb::Comb;
+use self::trial::{Channels, Trial};
+use crate::Error;
+
+/// The least lead of a score that counts: what a comb leaves of the channels is then 26 % less than what any rival leaves. On
+/// records that were not used to choose it, one false comb in some hundreds leads by it (docs/results/families.md).
+pub const LEAST_LEAD: f64 = 0.3;
+/// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
+pub const LEAST_PERIODS: f64 = 2.0;
+/// Sidebands that are listed on either side of the carrier.
+pub const SIDEBANDS: i32 = 3;
+
+/// What passes the contacts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Source {
+    /// Vertices of rollers with this many facets whose copies are turned with their place on the pitch circle.
+    RotatedVertices(f64),
+    /// The same for copies in one orientation.
+    TranslatedVertices(f64),
+    /// Nodes of the outer raceway, this many a turn.
+    OuterNodes(f64),
+    /// Nodes of the inner raceway, this many a turn.
+    InnerNodes(f64),
+}
+
+/// Recorded motion and load of one roller, one value a sample.
+#[derive(Debug, Clone)]
+pub struct RollerTrack {
+    /// Angle of its centre, counter-clockwise, without jumps [rad].
+    pub orbit: Vec<f64>,
+    /// Accumulated rotation in space, counter-clockwise [rad].
+    pub spin: Vec<f64>,
+    /// Normal force of the outer raceway [N].
+    pub load_n: Vec<f64>,
+}
+
+/// What all families need of a record.
+#[derive(Debug, Clone)]
+pub struct Motion {
+    /// Sampling interval [s].
+    pub interval_s: f64,
+    /// Angular velocity of the inner ring [rad/s], counter-clockwise: negative.
+    pub shaft_rad_s: f64,
+    /// Rate at which rollers pass a place on the outer raceway [Hz], positive.
+    pub bpfo_hz: f64,
+    /// Every roller.
+    pub rollers: Vec<RollerTrack>,
+}
+
+/// An acceleration in which combs are sought.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// Sensor.
+    pub sensor: String,
+    /// Component, `ax` or `ay`.
+    pub component: String,
+    /// Samples [g].
+    pub values: Vec<f64>,
+}
+
+/// A family that a record may hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Candidate {
+    /// Stable name.
+    pub name: String,
+    /// What makes it.
+    pub source: Source,
+}
+
+/// One family beside what the record shows of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FamilyFinding {
+    /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
+    pub name: String,
+    /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
+    pub carrier_hz: Option<f64>,
+    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at loaded contacts.
+    pub predicted_hz: f64,
+    /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is absent, that of the best
+    /// fit within 1.5 BPFO; `None` when it is not judged.
+    pub offset_resolutions: Option<f64>,
+    /// How far the single channels scatter about that offset (standard deviation), in resolutions.
+    pub offset_scatter_resolutions: Option<f64>,
+    /// True when the record holds this family and no other explains its lines as well.
+    pub found: bool,
+    /// Families that explain the same lines as well: at least one of them and this one is there, and the record does not
+    /// tell which.
+    pub not_told_apart_from: Vec<String>,
+    /// How far the score leads that of the best rival; negative when a rival explains more.
+    pub lead: Option<f64>,
+    /// Share of the accelerations in the band that the comb explains, mean over sensors and components; of what is left of
+    /// them once families that were found earlier are in the fit.
+    pub explained: Option<f64>,
+    /// The same of the forces on the loaded rollers.
+    pub explained_forces: Option<f64>,
+    /// Largest peak amplitude of its lines [g]; `None` when there is no carrier or no line stands out.
+    pub level_g: Option<f64>,
+    /// The verdict in words.
+    pub verdict: String,
+    /// Carrier and sidebands at every sensor and component; empty without a carrier.
+    pub lines: Vec<FamilyLine>,
+}
+
+/// One line of a family.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FamilyLine {
+    /// Its distance from the carrier in BPFO.
+    pub sideband: i32,
+    /// Fitted carrier and sideband [Hz].
+    pub predicted_hz: f64,
+    /// Highest peak within half a resolution [Hz]; `None` when none stands 10 dB above its surroundings.
+    pub measured_hz: Option<f64>,
+    /// Its peak amplitude [g].
+    pub level_g: Option<f64>,
+    /// Sensor.
+    pub sensor: String,
+    /// Component, `ax` or `ay`.
+    pub component: String,
+}
+
+/// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers.
+///
+/// # Errors
+/// [`Error::Signal`] when the spectrum of a finite channel is refused.
+pub fn identify(
+    motion: &Motion,
+    candidates: &[Candidate],
+    accelerations: &[Channel],
+) -> Result<Vec<FamilyFinding>, Error> {
+    let listened = trial::listened(motion);
+    let case = |candidate| Case::of(motion, candidate, &listened);
+    let mut cases: Vec<Case> = candidates.iter().map(case).collect();
+    let slowest_hz = cases.iter().filter_map(|c| Some(c.comb.as_ref()?.rate_hz)).reduce(f64::min);
+    if let Some(slowest_hz) = slowest_hz
+        && !accelerations.is_empty()
+        && motion.periods() >= LEAST_PERIODS
+    {
+        judge(motion, &Channels::of(motion, accelerations, &listened, slowest_hz), &mut cases);
+    }
+    (0..cases.len()).map(|n| finding(motion, accelerations, &cases, n)).collect()
+}
+
+/// A candidate on trial.
+struct Case<'a> {
+    name: &'a str,
+    /// `None` when nothing of it can be heard.
+    comb: Option<Comb>,
+    /// The last trial and how far it leads.
+    trial: Option<(Trial, f64)>,
+    verdict: Verdict,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Verdict {
+    Open,
+    Found,
+    /// Another case explains the same lines.
+    Confused(Vec<usize>),
+}
+
+impl<'a> Case<'a> {
+    fn of(motion: &Motion, candidate: &'a Candidate, listened: &[usize]) -> Self {
+        let comb = Comb::of(motion, candidate.source, listened);
+        Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
+    }
+
+    /// Its name in running text.
+    fn spoken(&self) -> String {
+        self.name.replace('_', " ")
+    }
+}
+
+/// Tries all cases, accepts the best that stands, and tries the others on what it leaves, until none stands.
+fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
+    // The case that was accepted last, and those that explained as much before it was.
+    let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
+    loop {
+        let in_fit: Vec<(&Comb, f64)> = cases
+            .iter()
+            .filter(|c| c.verdict != Verdict::Open)
+            .filter_map(|c| Some((c.comb.as_ref()?, c.trial.as_ref()?.0.offset_hz)))
+            .collect();
+        let mut trials: Vec<(usize, Trial)> = Vec::new();
+        for (n, case) in cases.iter().enumerate().filter(|(_, c)| c.verdict == Verdict::Open) {
+            trials.extend(case.comb.as_ref().map(|comb| (n, channels.try_comb(motion, comb, &in_fit))));
+        }
+        if let Some((accepted, ties)) = last.take() {
+            for (n, alone) in ties {
+                // What adds nothing to the accepted comb, and explains as much without it, may be the one that is there.
+                if trials.iter().any(|(other, trial)| *other == n && !trial.stands()) {
+                    trials.retain(|(other, _)| *other != n);
+                    confuse(cases, accepted, n, alone);
+                }
+            }
+        }
+        for (n, trial) in &trials {
+            cases[*n].trial = Some((trial.clone(), trial.lead()));
+        }
+        let standing = trials.iter().filter(|(_, trial)| trial.stands());
+        let Some((n, best)) = standing.max_by(|a, b| a.1.score.total_cmp(&b.1.score)).cloned() else { break };
+        let others: Vec<(usize, Trial)> = trials.into_iter().filter(|(other, _)| *other != n).collect();
+        let lead = others.iter().map(|(_, trial)| best.score - trial.score).fold(best.lead(), f64::min);
+        let ties = others.into_iter().filter(|(_, trial)| best.score - trial.score < LEAST_LEAD).collect();
+        cases[n].verdict = Verdict::Found;
+        cases[n].trial = Some((best, lead));
+        last = Some((n, ties));
+    }
+}
+
+/// Takes down that case `n`, which as `alone` explains as much as the accepted one, is not told apart from it.
+fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
+    let lead = alone.score - cases[accepted].trial.as_ref().map_or(0.0, |(trial, _)| trial.score);
+    cases[n].trial = Some((alone, lead));
+    for (one, other) in [(accepted, n), (n, accepted)] {
+        match &mut cases[one].verdict {
+            Verdict::Confused(others) => others.push(other),
+            verdict => *verdict = Verdict::Confused(vec![other]),
+        }
+    }
+}
+
+/// What is said of case `n`.
+fn finding(
+    motion: &Motion,
+    accelerations: &[Channel],
+    cases: &[Case<'_>],
+    n: usize,
+) -> Result<FamilyFinding, Error> {
+    let case = &cases[n];
+    let predicted_hz = case.comb.as_ref().map_or(0.0, |comb| comb.line_hz);
+    let mut finding = FamilyFinding {
+        name: case.name.to_owned(),
+        carrier_hz: None,
+        predicted_hz,
+        offset_resolutions: None,
+        offset_scatter_resolutions: None,
+        found: case.verdict == Verdict::Found,
+        not_told_apart_from: Vec::new(),
+        lead: None,
+        explained: None,
+        explained_forces: None,
+        level_g: None,
+        verdict: not_judged(motion, case),
+        lines: Vec::new(),
+    };
+    let Some((trial, lead)) = &case.trial else { return Ok(finding) };
+    let resolution_hz = motion.resolution_hz();
+    let there = case.verdict != Verdict::Open;
+    let offset_hz = if there { trial.offset_hz } else { trial.highest_hz };
+    finding.offset_resolutions = Some(offset_hz / resolution_hz);
+    finding.offset_scatter_resolutions = Some(trial.scatter_hz / resolution_hz);
+    finding.lead = Some(*lead);
+    finding.explained = Some(trial.explained);
+    finding.explained_forces = Some(trial.explained_forces);
+    if there {
+        let carrier_hz = predicted_hz + offset_hz;
+        finding.carrier_hz = Some(carrier_hz);
+        finding.lines = lines::read(accelerations, 1.0 / motion.interval_s, carrier_hz, motion.bpfo_hz)?;
+        finding.level_g = finding.lines.iter().filter_map(|l| l.level_g).max_by(f64::total_cmp);
+    }
+    finding.verdict = match &case.verdict {
+        Verdict::Found => format!(
+            "found: its comb explains {:.0} % of the accelerations and {:.0} % of the roller forces about it",
+            100.0 * trial.explained,
+            100.0 * trial.explained_forces
+        ),
+        Verdict::Confused(others) => {
+            let names: Vec<String> = others.iter().map(|&other| cases[other].spoken()).collect();
+            finding.not_told_apart_from = others.iter().map(|&other| cases[other].name.to_owned()).collect();
+            format!(
+                "not told apart from {}: a comb is there, and this record does not say whose",
+                names.join(" and ")
+            )
+        }
+        Verdict::Open => {
+            let found: Vec<String> =
+                cases.iter().filter(|c| c.verdict != Verdict::Open).map(Case::spoken).collect();
+            let beside =
+                if found.is_empty() { String::new() } else { format!(" beside {}", found.join(" and ")) };
+            format!(
+                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}, no more than a comb \
+                 of any other place",
+                100.0 * trial.explained,
+                100.0 * trial.explained_forces
+            )
+        }
+    };
+    Ok(finding)
+}
+
+/// Why a case has no verdict.
+fn not_judged(motion: &Motion, case: &Case<'_>) -> String {
+    if motion.periods() < LEAST_PERIODS {
+        return format!(
+            "not judged: the record holds {:.1} periods of BPFO, a comb needs {LEAST_PERIODS}",
+            motion.periods()
+        );
+    }
+    let why = match case.comb {
+        None => "no roller is loaded on record, or the sampling is too slow for its lines",
+        Some(_) => "no sensor is on record",
+    };
+    format!("not judged: {why}")
+}
+
+impl Motion {
+    fn samples(&self) -> usize {
+        self.rollers.first().map_or(0, |r| r.orbit.len())
+    }
+
+    /// Periods of BPFO on record.
+    fn periods(&self) -> f64 {
+        self.samples() as f64 * self.interval_s * self.bpfo_hz
+    }
+
+    /// One over the length of the record [Hz].
+    fn resolution_hz(&self) -> f64 {
+        1.0 / (self.samples().max(1) as f64 * self.interval_s)
+    }
+}
+
+impl Source {
+    /// Phase of a roller's facets at its contacts, rising with time for a shaft that turns clockwise [rad].
+    fn phase(self, motion: &Motion, roller: &RollerTrack, n: usize) -> f64 {
+        let (orbit, spin) = (roller.orbit[n], roller.spin[n]);
+        match self {
+            Self::RotatedVertices(count) => count * (spin - (orbit - roller.orbit[0])),
+            Self::TranslatedVertices(count) => count * (spin - orbit),
+            Self::OuterNodes(count) => -count * orbit,
+            Self::InnerNodes(count) => count * (orbit - motion.shaft_rad_s * n as f64 * motion.interval_s),
+        }
+    }
+}
+
+impl FamilyFinding {
+    /// Whether a family that is there has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz` included.
+    pub fn claims(&self, hz: f64, bpfo_hz: Option<f64>, reach_hz: f64) -> bool {
+        let Some(carrier_hz) = self.carrier_hz else { return false };
+        let off = hz - carrier_hz;
+        (-SIDEBANDS..=SIDEBANDS).any(|m| (off - f64::from(m) * bpfo_hz.unwrap_or(0.0)).abs() <= reach_hz)
+    }
+
+    /// Its name in running text, with those that are not told apart from it.
+    pub fn spoken(&self) -> String {
+        let names: Vec<String> =
+            [&self.name].into_iter().chain(&self.not_told_apart_from).map(|n| n.replace('_', " ")).collect();
+        names.join(" or ")
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,242 @@
+//! How well a comb explains the channels of a record, where it belongs and elsewhere.
+
+use super::comb::{Columns, Comb, Complex, dot, extend_basis, power, smoothed};
+use super::{Channel, LEAST_LEAD, Motion};
+
+/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
+/// the channel's noise.
+const LEAST_REST: f64 = 0.02;
+/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths, and the lines of
+/// three families lie less than a resolution apart when their combs are laid over each other.
+const AT_HOME: f64 = 0.5;
+/// Half width of the part of the scan that is taken in small steps, and the steps of it, in resolutions.
+const CLOSE: f64 = 1.0;
+const CLOSE_STEP: f64 = 0.05;
+/// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines but the outermost.
+const SCAN: f64 = 1.5;
+/// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies there.
+const BESIDE: f64 = 5.0;
+/// Detuned combs, in BPFO on either side of the carrier: beyond the band that a comb shares with its copy.
+const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
+/// Two of them in a BPFO.
+const DETUNED_STEP: f64 = 0.5;
+/// Rollers that carry at least this part of the fullest one's mean load are listened to, the fullest of them.
+const LOADED: f64 = 0.25;
+const LISTENED: usize = 8;
+/// A contact sounds while it carries at least this part of the largest load.
+const PRESSED: f64 = 0.1;
+
+/// Every signal in which combs are sought.
+pub(super) struct Channels {
+    accelerations: Vec<Vec<f64>>,
+    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the roller.
+    forces: Vec<Vec<f64>>,
+}
+
+/// The channels in a band: one signal an acceleration, and the forces one behind the other.
+struct Signals {
+    accelerations: Vec<Vec<Complex>>,
+    forces: Vec<Complex>,
+}
+
+/// A comb tried on the channels.
+#[derive(Debug, Clone)]
+pub(super) struct Trial {
+    /// Offset of the best fit at home [Hz].
+    pub(super) offset_hz: f64,
+    /// Offset of the best fit of the whole scan [Hz].
+    pub(super) highest_hz: f64,
+    /// Standard deviation of the single channels' best offsets [Hz].
+    pub(super) scatter_hz: f64,
+    /// Score of the best fit at home.
+    pub(super) score: f64,
+    /// Highest score of a comb that is off its place.
+    pub(super) rival: f64,
+    /// Whether the scan has its maximum at home.
+    pub(super) at_home: bool,
+    /// Share explained of the accelerations.
+    pub(super) explained: f64,
+    /// Share explained of the forces.
+    pub(super) explained_forces: f64,
+}
+
+impl Trial {
+    /// How far the score leads that of combs off their place.
+    pub(super) fn lead(&self) -> f64 {
+        self.score - self.rival
+    }
+
+    /// Whether it explains clearly more where it belongs than elsewhere.
+    pub(super) fn stands(&self) -> bool {
+        self.at_home && self.lead() >= LEAST_LEAD
+    }
+}
+
+/// Numbers of the rollers whose forces are looked at, from 0, ascending.
+pub(super) fn listened(motion: &Motion) -> Vec<usize> {
+    let mean = |n: usize| mean(&motion.rollers[n].load_n);
+    let mut rollers: Vec<usize> = (0..motion.rollers.len()).collect();
+    rollers.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)));
+    let fullest = rollers.first().map_or(0.0, |&n| mean(n));
+    rollers.retain(|&n| fullest > 0.0 && mean(n) >= LOADED * fullest);
+    rollers.truncate(LISTENED);
+    rollers.sort_unstable();
+    rollers
+}
+
+impl Channels {
+    /// The accelerations less their mean, and what the forces on the rollers `listened` do besides their running mean over
+    /// two periods of `slowest_hz`.
+    pub(super) fn of(
+        motion: &Motion,
+        accelerations: &[Channel],
+        listened: &[usize],
+        slowest_hz: f64,
+    ) -> Self {
+        let centred = |channel: &Channel| {
+            let mean = mean(&channel.values);
+            channel.values.iter().map(|v| v - mean).collect()
+        };
+        let width = (2.0 / (slowest_hz * motion.interval_s)).round() as usize;
+        let ripple = |&n: &usize| {
+            let load = &motion.rollers[n].load_n;
+            let slow = smoothed(load, width);
+            let least = PRESSED * slow.iter().copied().fold(0.0, f64::max);
+            load.iter().zip(&slow).map(|(l, s)| if *s > least { l - s } else { 0.0 }).collect()
+        };
+        Self {
+            accelerations: accelerations.iter().map(centred).collect(),
+            forces: listened.iter().map(ripple).collect(),
+        }
+    }
+
+    /// Tries a comb beside those that are in the fit with their offsets [Hz].
+    pub(super) fn try_comb(&self, motion: &Motion, comb: &Comb, in_fit: &[(&Comb, f64)]) -> Trial {
+        let resolution_hz = motion.resolution_hz();
+        let base = self.at_baseband(comb);
+        let fit = |centre_hz: f64| {
+            let mut fit = Columns::default();
+            for (comb, offset_hz) in in_fit {
+                extend(&mut fit, &comb.columns(*offset_hz, centre_hz));
+            }
+            fit
+        };
+        let (signals, home) = (base.in_band(comb, 0.0), fit(comb.rate_hz));
+        let scan: Vec<(f64, Vec<f64>)> = offsets(motion, !in_fit.is_empty())
+            .into_iter()
+            .map(|offset_hz| (offset_hz, signals.shares(&home, &comb.columns(offset_hz, comb.rate_hz))))
+            .collect();
+        let within =
+            |hz: f64| move |n: &usize, scan: &[(f64, Vec<f64>)]| scan[*n].0.abs() <= hz * (1.0 + 1e-9);
+        let best_of = |reach_hz: f64, score: &dyn Fn(usize) -> f64| {
+            let allowed = (0..scan.len()).filter(|n| within(reach_hz)(n, &scan));
+            allowed.max_by(|&a, &b| score(a).total_cmp(&score(b))).unwrap_or(0)
+        };
+        let whole = |n: usize| score(&scan[n].1);
+        let best = best_of(AT_HOME * resolution_hz, &whole);
+        let highest = best_of(SCAN * motion.bpfo_hz, &whole);
+        let beside = (0..scan.len())
+            .filter(|n| !in_fit.is_empty() && !within(CLOSE * resolution_hz)(n, &scan))
+            .map(whole);
+        let detuned = DETUNED
+            .flat_map(|n| [-n, n])
+            .map(|n| f64::from(n) * DETUNED_STEP * motion.bpfo_hz)
+            .filter(|offset_hz| comb.baseband.fits(motion, comb.rate_hz + offset_hz))
+            .map(|offset_hz| {
+                let centre_hz = comb.rate_hz + offset_hz;
+                let columns = comb.columns(offset_hz, centre_hz);
+                score(&base.in_band(comb, offset_hz).shares(&fit(centre_hz), &columns))
+            });
+        let rival = beside.chain(detuned).fold(0.0, f64::max);
+        let channels = scan[best].1.len();
+        let squares = (0..channels).map(|channel| {
+            let single = best_of(CLOSE * resolution_hz, &|n| scan[n].1[channel]);
+            (scan[single].0 - scan[best].0).powi(2)
+        });
+        let (forces, accelerations) = scan[best].1.split_last().unwrap_or((&0.0, &[]));
+        Trial {
+            offset_hz: scan[best].0,
+            highest_hz: scan[highest].0,
+            scatter_hz: (squares.sum::<f64>() / channels as f64).sqrt(),
+            score: whole(best),
+            rival,
+            at_home: within(AT_HOME * resolution_hz)(&highest, &scan),
+            explained: mean(accelerations),
+            explained_forces: *forces,
+        }
+    }
+
+    /// At the baseband of a comb.
+    fn at_baseband(&self, comb: &Comb) -> Base {
+        let of = |values: &Vec<f64>| comb.baseband.of_signal(values);
+        Base {
+            accelerations: self.accelerations.iter().map(of).collect(),
+            forces: self.forces.iter().map(of).collect(),
+        }
+    }
+}
+
+/// The channels at the baseband of a comb.
+struct Base {
+    accelerations: Vec<Vec<Complex>>,
+    forces: Vec<Vec<Complex>>,
+}
+
+impl Base {
+    /// In the band `offset_hz` off the comb's own.
+    fn in_band(&self, comb: &Comb, offset_hz: f64) -> Signals {
+        let band = |values: &Vec<Complex>| comb.baseband.band(values, -offset_hz);
+        Signals {
+            accelerations: self.accelerations.iter().map(band).collect(),
+            forces: self.forces.iter().flat_map(band).collect(),
+        }
+    }
+}
+
+impl Signals {
+    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit` leaves, 0 to 1.
+    fn shares(&self, fit: &Columns, columns: &Columns) -> Vec<f64> {
+        let mut basis = fit.clone();
+        extend(&mut basis, columns);
+        let share = |signal: &[Complex], fit: &[Vec<Complex>], basis: &[Vec<Complex>]| {
+            let left = dot(signal, signal).0 - power(fit, signal);
+            if left > 0.0 { (power(&basis[fit.len()..], signal) / left).clamp(0.0, 1.0) } else { 0.0 }
+        };
+        let accelerations = self.accelerations.iter().map(|signal| share(signal, &fit.sums, &basis.sums));
+        accelerations.chain([share(&self.forces, &fit.own, &basis.own)]).collect()
+    }
+}
+
+fn extend(basis: &mut Columns, columns: &Columns) {
+    extend_basis(&mut basis.sums, &columns.sums);
+    extend_basis(&mut basis.own, &columns.own);
+}
+
+/// Mean of −ln(1 − R² + [`LEAST_REST`]) over the accelerations plus that of the forces, which are the last.
+fn score(shares: &[f64]) -> f64 {
+    let scores: Vec<f64> = shares.iter().map(|r2| -(1.0 - r2 + LEAST_REST).ln()).collect();
+    let (forces, accelerations) = scores.split_last().unwrap_or((&0.0, &[]));
+    mean(accelerations) + forces
+}
+
+/// Offsets of the scan [Hz], ascending; `beside` combs in the fit they reach farther.
+fn offsets(motion: &Motion, beside: bool) -> Vec<f64> {
+    let resolution_hz = motion.resolution_hz();
+    let close = (CLOSE / CLOSE_STEP).round() as i32;
+    let mut offsets: Vec<f64> = (-close..=close).map(|n| f64::from(n) * CLOSE_STEP * resolution_hz).collect();
+    let step_hz = 0.5 * resolution_hz;
+    let reach_hz = motion.bpfo_hz * if beside { BESIDE } else { SCAN };
+    let mut offset_hz = CLOSE * resolution_hz + step_hz;
+    while offset_hz <= reach_hz {
+        offsets.extend([-offset_hz, offset_hz]);
+        // Beyond the scan rivals are samples, not a curve.
+        offset_hz +=
+            if offset_hz < SCAN * motion.bpfo_hz { step_hz } else { step_hz.max(motion.bpfo_hz / 6.0) };
+    }
+    offsets.sort_unstable_by(f64::total_cmp);
+    offsets
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}

@@ -1,0 +1,154 @@
+//! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to trust it.
+
+use maud::{Markup, html};
+use stribeck_scene::run_dir::Run;
+
+use crate::artefacts::Family;
+use crate::families::FamilyFinding;
+use crate::rolling;
+use crate::summary::Summary;
+
+/// The first paragraphs of the page.
+pub(super) fn paragraphs(run: &Run, summary: &Summary) -> Markup {
+    html! {
+        div #summary class="answer" {
+            p { strong { "The defect. " } (defect(run, summary)) }
+            p { strong { "The mesh. " } (mesh(summary)) }
+            p { strong { "The physics. " } (physics(summary)) }
+            p { strong { "How far to trust it. " } (trust(summary)) }
+            @for warning in rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, &summary.kinematics) {
+                p { strong { "Warning. " } (super::sentence(&warning)) }
+            }
+        }
+    }
+}
+
+fn gravities(level: Option<f64>) -> Option<String> {
+    level.map(|g| format!("{g:.0} g"))
+}
+
+/// Number and noun.
+fn count(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+fn defect(run: &Run, summary: &Summary) -> String {
+    if run.scene.defect.is_none() {
+        let gap = gravities(summary.levels.phases.gap_g);
+        let level =
+            gap.map_or(String::new(), |g| format!(" The acceleration reaches {g} after the start-up."));
+        return format!("The raceway is sound, so there is none to see.{level}");
+    }
+    let events = &summary.events;
+    if events.is_empty() {
+        return "No roller reaches it on this record.".into();
+    }
+    let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
+    let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
+    let floors: Vec<String> =
+        events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
+    let floor = match floors.len() {
+        0 => "none touches the floor".to_owned(),
+        1 => format!("roller {} touches the floor", floors[0]),
+        _ => format!("rollers {} touch the floor", floors.join(", ")),
+    };
+    let levels = &summary.levels.phases;
+    let heard = match (gravities(levels.exit_g), gravities(levels.gap_g)) {
+        (Some(exit), Some(gap)) => {
+            let entry = gravities(levels.entry_g).map_or(String::new(), |g| format!(", {g} at entries"));
+            format!(
+                " Sensor “{}” reads {exit} at exits{entry} and {gap} in the gaps (a_y, peak).",
+                sensor(summary)
+            )
+        }
+        _ => " The record is too short to set exits beside gaps.".into(),
+    };
+    format!(
+        "{} cross{} it; the contact forces show {} and {}, and {floor}.{heard}",
+        count(events.len(), "roller"),
+        if events.len() == 1 { "es" } else { "" },
+        if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
+        count(exits, "exit"),
+    )
+}
+
+fn mesh(summary: &Summary) -> String {
+    let families = &summary.families;
+    if families.iter().all(|f| f.lead.is_none()) {
+        return "This record is too short to tell a family of facet lines from anything else.".into();
+    }
+    let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
+    let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
+    let place = |f: &FamilyFinding| {
+        let level = f.level_g.map_or(String::new(), |g| format!(", up to {g:.0} g"));
+        let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
+        format!(
+            "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands every {spacing_hz:.1} Hz{level}",
+            f.carrier_hz.unwrap_or(f.predicted_hz)
+        )
+        .replace('-', "−")
+    };
+    let mut said: Vec<String> = families
+        .iter()
+        .filter(|f| f.found)
+        .map(|f| format!("The {} make {}.", f.spoken(), place(f)))
+        .collect();
+    if let Some(first) = families.iter().find(|f| !f.not_told_apart_from.is_empty()) {
+        said.push(format!("The {} make {}; this record does not tell which.", first.spoken(), place(first)));
+    }
+    if said.is_empty() {
+        return "No family of facet lines is there, neither in the accelerations nor in the roller forces."
+            .into();
+    }
+    let absent: Vec<String> =
+        families.iter().filter(|f| f.carrier_hz.is_none()).map(FamilyFinding::spoken).collect();
+    if !absent.is_empty() {
+        said.push(format!("No lines of the {} are found.", absent.join(" or the ")));
+    }
+    format!(
+        "{} Facet lines are artefacts: a real bearing has none, and another mesh moves them.",
+        said.join(" ")
+    )
+}
+
+fn physics(summary: &Summary) -> String {
+    let seen: Vec<String> = summary
+        .artefacts
+        .iter()
+        .filter(|a| a.family == Family::Defect && a.measured_hz.is_some())
+        .map(|a| format!("×{}", a.harmonic))
+        .collect();
+    let bpfo = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
+    let lines = if seen.is_empty() {
+        let periods = 1e-3 * summary.run.simulated_ms * bpfo;
+        format!(
+            "BPFO ({bpfo:.1} Hz) shows in the times of the events, not as a line: the record holds {periods:.1} of its periods."
+        )
+    } else {
+        format!("BPFO ({bpfo:.1} Hz) stands in the spectrum with its multiples {}.", seen.join(", "))
+    };
+    let lines = if summary.events.is_empty() { String::new() } else { lines };
+    format!(
+        "Bursts at entries and exits and the forces of the rollers follow from load and geometry. {lines} No line is booked as a \
+         natural frequency of the ring, because a place near one proves nothing."
+    )
+}
+
+fn trust(summary: &Summary) -> String {
+    let energy = format!("Energy balances to {:.2} %", 100.0 * summary.energy.max_relative_error);
+    let load = summary
+        .load
+        .relative_error
+        .map_or(String::new(), |e| format!(", the mean load to {:.2} %", 100.0 * e.abs()));
+    let spectrum = summary.spectrum.as_ref().map_or(String::new(), |s| {
+        format!(" Frequencies are good to {:.0} Hz, one over the record.", s.resolution_hz)
+    });
+    format!(
+        "{energy}{load}.{spectrum} Peaks are those of one start: another start angle moves them by tens of per cent. They also \
+         depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
+    )
+}
+
+fn sensor(summary: &Summary) -> &str {
+    summary.levels.sensor.as_deref().unwrap_or("none")
+}
