@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene};
 use stribeck_scene::static_load;
@@ -37,6 +38,8 @@ pub struct Plan {
     pub load_n: f64,
     /// See `load_n`.
     pub half_width_m: f64,
+    /// Oil under the most loaded roller, on the outer and on the inner raceway; `None` without oil.
+    pub films: Option<[LoadedFilm; 2]>,
     /// Length of a roller's facets [m].
     pub facet_m: f64,
     /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may differ by a
@@ -105,6 +108,7 @@ impl Plan {
             ],
             load_n,
             half_width_m,
+            films: lubrication::loaded_films(scene)?,
             facet_m: 2.0 * PI * radius / facets,
             elements: counts.quads + counts.triangles,
             time_step_s: interval_s / per_sample,

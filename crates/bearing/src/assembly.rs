@@ -5,19 +5,20 @@ use std::{
     ops::Range,
 };
 
-use stribeck_contact::{Law, Method, Sides, Smoothing};
+use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{
     Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
 };
 use stribeck_solver::{
     Behaviour, Elastic, Model, Motion, critical::damped_time_step, structural_damping::StructuralDamping,
 };
-use stribeck_system::{Pair, Plan, System};
+use stribeck_system::{Film, Pair, Plan, System};
 
 use crate::{error::Error, grading};
 use stribeck_scene::{
     geometry::{CageGeometry, Geometry},
     kinematics::{FacetCounts, Kinematics},
+    lubrication,
     run_info::MeshInfo,
     scene::{
         ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, DampedBody, RollerCopies, Scene,
@@ -78,6 +79,8 @@ pub struct Machine {
     pub housing: Vec<u32>,
     /// Contact pairs by what touches.
     pub pairs: Pairs,
+    /// Whether there is oil: a film of each roller on the outer and on the inner raceway in turn.
+    pub oiled: bool,
 }
 
 /// One roller.
@@ -317,6 +320,7 @@ impl Assembly {
         plan.surface(TOP, surface(&self.adapter, "top").clone())?;
         plan.load(TOP, [0.0, -scene.operation.load_n])?;
         let pairs = self.touch(&mut plan, scene)?;
+        oil(&mut plan, scene, &rollers)?;
         Ok(Machine {
             system: plan.build(threads)?,
             outer: self.outer.body,
@@ -326,6 +330,7 @@ impl Assembly {
             cage: self.cage.as_ref().map(|cage| cage.body),
             housing: surface(&self.outer, "outer").nodes.clone(),
             pairs,
+            oiled: scene.film.is_some(),
         })
     }
 
@@ -372,6 +377,25 @@ impl Assembly {
         }
         Ok(Pairs { rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } })
     }
+}
+
+/// Puts oil between every roller and both raceways, the outer one first.
+fn oil(plan: &mut Plan, scene: &Scene, rollers: &[Roller]) -> Result<(), Error> {
+    let g = Geometry::of(scene);
+    let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(()) };
+    for (i, roller) in rollers.iter().enumerate() {
+        for (track, loaded) in [OUTER_RACEWAY, INNER_RACEWAY].into_iter().zip(&loaded) {
+            plan.film(Film {
+                round: rim(i),
+                centre: roller.centre,
+                track: track.to_owned(),
+                oil: Oil { viscosity: film.viscosity, least: loaded.least },
+                stiffness: g.penalty_stiffness,
+                speed: loaded.speed,
+            })?;
+        }
+    }
+    Ok(())
 }
 
 /// Name of the contact surface of a roller, from 0.

@@ -17,6 +17,8 @@ pub(crate) struct Recorder {
     before_step: Vec<[f64; 2]>,
     /// Resultant of each pair, summed over the steps since the last sample.
     force: Vec<[f64; 2]>,
+    /// The same of each film.
+    film: Vec<[f64; 2]>,
     steps: usize,
     row: Vec<f64>,
 }
@@ -71,6 +73,7 @@ impl Recorder {
             before_step: vec![[0.0; 2]; memory.sensors.len()],
             memory,
             force: vec![[0.0; 2]; machine.system.resultants().count()],
+            film: vec![[0.0; 2]; machine.system.films().count()],
             steps: 0,
             row: Vec::new(),
         }
@@ -89,7 +92,7 @@ impl Recorder {
                 names.push(format!("sensor.{}.{channel}", s.name));
             }
         }
-        let with_cage = scene.cage.is_some();
+        let (with_cage, oiled) = (scene.cage.is_some(), scene.film.is_some());
         for i in 1..=scene.bearing.rollers {
             for channel in ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"]
             {
@@ -98,6 +101,9 @@ impl Recorder {
             if with_cage {
                 names.push(format!("roller.{i}.cage_fx_n"));
                 names.push(format!("roller.{i}.cage_fy_n"));
+            }
+            for ring in ["outer", "inner"].into_iter().filter(|_| oiled) {
+                names.extend(["fx_n", "fy_n", "m"].map(|what| format!("roller.{i}.{ring}_film_{what}")));
             }
         }
         if with_cage {
@@ -119,6 +125,10 @@ impl Recorder {
         for (sum, Resultant { force, .. }) in self.force.iter_mut().zip(machine.system.resultants()) {
             sum[0] += force[0];
             sum[1] += force[1];
+        }
+        for (sum, film) in self.film.iter_mut().zip(machine.system.films()) {
+            sum[0] += film.force[0];
+            sum[1] += film.force[1];
         }
         self.steps += 1;
     }
@@ -143,6 +153,8 @@ impl Recorder {
             let sum = |c: usize| self.force[pairs.clone()].iter().map(|f| f[c]).sum::<f64>();
             [sum(0) / self.steps as f64, sum(1) / self.steps as f64]
         };
+        let film = |n: usize| self.film.get(n).map(|sum| sum.map(|f| f / self.steps as f64));
+        let mut thicknesses = system.films().map(|film| film.thickness);
         for (i, roller) in machine.rollers.iter().enumerate() {
             let [x, y] = system.position(roller.centre);
             let angle = rim_angle(machine, i);
@@ -152,11 +164,20 @@ impl Recorder {
             last_angle[i] = angle;
             self.row.extend([x, y, spin[i]]);
             let pairs = &machine.pairs;
-            for ring in [pairs.outer(i), pairs.inner(i)] {
-                self.row.extend(mean(ring..ring + 1));
+            // What a raceway does to a roller, it does through contact and oil.
+            for (side, ring) in [pairs.outer(i), pairs.inner(i)].into_iter().enumerate() {
+                let mut force = mean(ring..ring + 1);
+                if let Some(film) = film(2 * i + side) {
+                    force = [force[0] + film[0], force[1] + film[1]];
+                }
+                self.row.extend(force);
             }
             if machine.cage.is_some() {
                 self.row.extend(mean(pairs.cage(i)));
+            }
+            for (side, thickness) in thicknesses.by_ref().take(2).enumerate() {
+                self.row.extend(film(2 * i + side).unwrap_or_default());
+                self.row.push(thickness);
             }
         }
         if let Some(at) = machine.cage.and_then(|cage| system.rigid(cage)) {
@@ -165,6 +186,7 @@ impl Recorder {
         let seat = machine.pairs.seat();
         self.row.extend(mean(seat..seat + 1));
         self.force.fill([0.0; 2]);
+        self.film.fill([0.0; 2]);
         self.steps = 0;
         &self.row
     }

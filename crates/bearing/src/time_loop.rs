@@ -20,7 +20,7 @@ use stribeck_scene::{
     trace::TraceWriter,
 };
 
-/// Columns of `energy.npy`.
+/// Columns of `energy.npy`; with oil, one of its heat follows.
 const COLUMNS: [&str; 11] = [
     "time_s",
     "kinetic_j",
@@ -35,11 +35,20 @@ const COLUMNS: [&str; 11] = [
     "relative_error",
 ];
 
+/// The column of a scene with oil.
+const FILM: &str = "film_j";
+
 /// Checkpoint and `run.json` are written again after this many samples …
 const SAVE_EVERY: usize = 100;
 
 /// … but not so often that it would take more than this share of the time.
 const SAVE_SHARE: f64 = 0.005;
+
+/// Names of the columns of `energy.npy`.
+fn columns(scene: &Scene) -> Vec<&'static str> {
+    let film = scene.film.is_some().then_some(FILM);
+    COLUMNS.into_iter().chain(film).collect()
+}
 
 /// A run in its time loop.
 pub(crate) struct Run<'a> {
@@ -87,7 +96,7 @@ impl<'a> Run<'a> {
         Ok(Self {
             recorder: Recorder::new(scene, &machine),
             trace: TraceWriter::create(dir.trace(), &Recorder::names(scene))?,
-            energy: TraceWriter::create(dir.energy(), &COLUMNS)?,
+            energy: TraceWriter::create(dir.energy(), &columns(scene))?,
             frames: Frames::of(scene, dir.frames()),
             guards: Guards::new(scene, assembly, &machine),
             identity: identity(scene),
@@ -121,7 +130,7 @@ impl<'a> Run<'a> {
         Ok(Self {
             recorder,
             trace: TraceWriter::resume(dir.trace(), &Recorder::names(scene), rows)?,
-            energy: TraceWriter::resume(dir.energy(), &COLUMNS, rows)?,
+            energy: TraceWriter::resume(dir.energy(), &columns(scene), rows)?,
             frames: Frames::of(scene, dir.frames()),
             guards: Guards::new(scene, assembly, &machine),
             identity: identity(scene),
@@ -250,7 +259,7 @@ impl<'a> Run<'a> {
         let balance = self.machine.system.balance();
         self.info.energy.peak_strain_j = balance.peak_strain;
         self.info.energy.max_relative_error = balance.largest_error;
-        self.energy.push(&[
+        let mut row = vec![
             l.time,
             l.kinetic,
             l.strain,
@@ -262,7 +271,11 @@ impl<'a> Run<'a> {
             l.external,
             l.drive,
             l.relative_error,
-        ])?;
+        ];
+        if self.machine.oiled {
+            row.push(l.film);
+        }
+        self.energy.push(&row)?;
         Ok(self.trace.push(self.recorder.sample(&self.machine))?)
     }
 }

@@ -9,7 +9,7 @@ use stribeck_bearing::simulation::simulate;
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::RunInfo,
-    scene::{Scene, Start},
+    scene::{FilmScene, Scene, Start},
 };
 use stribeck_testing::Scratch;
 
@@ -17,9 +17,10 @@ use stribeck_testing::Scratch;
 /// before them, and grow a list, are far fewer.
 const PER_STEP: f64 = 0.05;
 
-/// A short run of a coarse bearing; what it allocated.
-fn run(time_step_factor: f64) -> (RunInfo, u64) {
+/// A short run of a coarse bearing, oiled or dry; what it allocated.
+fn run(film: Option<FilmScene>, time_step_factor: f64) -> (RunInfo, u64) {
     let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
+    scene.film = film;
     scene.mesh.size_mm = 2.0;
     scene.mesh.roller_facets = 88;
     scene.solver.duration_ms = 0.3;
@@ -34,18 +35,20 @@ fn run(time_step_factor: f64) -> (RunInfo, u64) {
     (info.expect("the scene is sound"), taken.count_total)
 }
 
-/// Mass damping, contact with damping and friction, gravity, cage, sensors, energies: two runs of the same samples, one
+/// Mass damping, contact with damping and friction, oil, gravity, cage, sensors, energies: two runs of the same samples, one
 /// with three times the steps of the other, take the same memory.
 #[test]
 fn invariant_more_steps_between_samples_allocate_nothing_more() {
-    let (few, memory_of_few) = run(0.9);
-    let (many, memory_of_many) = run(0.3);
-    assert_eq!(few.samples, many.samples);
-    let more = many.steps.abs_diff(few.steps) as f64;
-    assert!(more > few.steps as f64, "{} and {} steps", few.steps, many.steps);
-    let taken = memory_of_many.abs_diff(memory_of_few) as f64;
-    assert!(
-        taken < PER_STEP * more,
-        "{taken} more allocations for {more} more steps, {memory_of_few} in all"
-    );
+    for film in [None, Some(FilmScene::default())] {
+        let (few, memory_of_few) = run(film.clone(), 0.9);
+        let (many, memory_of_many) = run(film, 0.3);
+        assert_eq!(few.samples, many.samples);
+        let more = many.steps.abs_diff(few.steps) as f64;
+        assert!(more > few.steps as f64, "{} and {} steps", few.steps, many.steps);
+        let taken = memory_of_many.abs_diff(memory_of_few) as f64;
+        assert!(
+            taken < PER_STEP * more,
+            "{taken} more allocations for {more} more steps, {memory_of_few} in all"
+        );
+    }
 }

@@ -120,6 +120,7 @@ mod chord;
 mod contacts;
 mod error;
 mod facet;
+mod film;
 mod foot;
 mod kernel;
 mod law;
@@ -140,6 +141,7 @@ mod surface;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
+pub use film::{FilmResultant, FilmSpec, FilmState, Films, Oil};
 pub use law::Law;
 pub use narrow_phase::{Projection, project};
 pub use points::Method;

@@ -7,7 +7,9 @@
 use std::f64::consts::TAU;
 
 use crate::contact_formula::ContactNumbers;
-use crate::scene::{CageScene, DefectScene, MaterialScene, PocketWalls, Scene, StructuralDampingScene};
+use crate::scene::{
+    CageScene, DefectScene, FilmScene, MaterialScene, PocketWalls, Scene, StructuralDampingScene,
+};
 
 /// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +56,8 @@ pub struct Geometry {
     pub contact_layer_mass: f64,
     /// Gap at which contact of rollers sets in [m].
     pub contact_onset: f64,
+    /// Oil between rollers and raceways, if there is any.
+    pub film: Option<FilmGeometry>,
     /// Stiffness-proportional damping β [s].
     pub stiffness_damping: f64,
     /// Structural damping, if there is some.
@@ -109,6 +113,17 @@ pub struct DampedBand {
     pub band: [f64; 2],
 }
 
+/// Oil between rollers and raceways.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilmGeometry {
+    /// Dynamic viscosity η [Pa s].
+    pub viscosity: f64,
+    /// Pressure–viscosity coefficient α [1/Pa].
+    pub pressure_viscosity: f64,
+    /// Composite roughness [m].
+    pub roughness: f64,
+}
+
 /// A linear elastic, isotropic material in plane strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
@@ -154,6 +169,7 @@ impl Geometry {
             penalty_stiffness: contact.stiffness,
             contact_layer_mass: contact.layer_mass,
             contact_onset: 1e-6 * scene.contact.onset_um,
+            film: scene.film.as_ref().map(FilmGeometry::of),
             stiffness_damping: 1e-9 * scene.solver.stiffness_damping_ns,
             structural_damping: scene.solver.structural_damping.as_ref().map(DampedBand::of),
             load: scene.operation.load_n,
@@ -237,6 +253,16 @@ impl DefectGeometry {
 impl DampedBand {
     fn of(damping: &StructuralDampingScene) -> Self {
         Self { ratio: 1e-2 * damping.ratio_percent, band: [1e3 * damping.from_khz, 1e3 * damping.to_khz] }
+    }
+}
+
+impl FilmGeometry {
+    fn of(film: &FilmScene) -> Self {
+        Self {
+            viscosity: film.viscosity_pa_s,
+            pressure_viscosity: 1e-9 * film.pressure_viscosity_per_gpa,
+            roughness: 1e-6 * film.roughness_um,
+        }
     }
 }
 

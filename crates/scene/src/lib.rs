@@ -54,6 +54,7 @@ pub mod error;
 pub mod frames;
 pub mod geometry;
 pub mod kinematics;
+pub mod lubrication;
 pub mod mesh_file;
 pub mod run_dir;
 pub mod run_info;

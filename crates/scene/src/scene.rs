@@ -24,6 +24,8 @@ pub struct Scene {
     pub operation: OperationScene,
     /// Contact method and laws.
     pub contact: ContactScene,
+    /// Oil between rollers and raceways; `None` leaves them dry.
+    pub film: Option<FilmScene>,
     /// Time integration.
     pub solver: SolverScene,
     /// What is recorded.
@@ -259,6 +261,18 @@ pub enum ContactMethod {
     Integrated,
 }
 
+/// Oil between rollers and raceways, as much as they take up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct FilmScene {
+    /// Dynamic viscosity of the oil at the temperature of the bearing and ambient pressure [Pa s].
+    pub viscosity_pa_s: f64,
+    /// Pressure–viscosity coefficient α [1/GPa].
+    pub pressure_viscosity_per_gpa: f64,
+    /// Composite roughness of roller and raceway, √(Rq₁² + Rq₂²) [µm].
+    pub roughness_um: f64,
+}
+
 /// Time integration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -415,6 +429,7 @@ impl Default for Scene {
             mesh: MeshScene::default(),
             operation: OperationScene::default(),
             contact: ContactScene::default(),
+            film: None,
             solver: SolverScene::default(),
             output: OutputScene::default(),
             guards: GuardsScene::default(),
@@ -508,6 +523,12 @@ impl Default for ContactScene {
             friction: 0.005,
             seat_friction: 0.1,
         }
+    }
+}
+
+impl Default for FilmScene {
+    fn default() -> Self {
+        Self { viscosity_pa_s: 0.05, pressure_viscosity_per_gpa: 22.0, roughness_um: 0.3 }
     }
 }
 

@@ -51,6 +51,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
          docs/results/noise.md has two to five times as much in the paper's scene",
         plan.lumped.level_g, plan.lumped.frequency_hz, plan.lumped.smoothing, plan.lumped.phases
     );
+    if let Some([outer, inner]) = plan.films {
+        println!(
+            "  oil under it (Dowson and Higginson): {:.2} and {:.2} µm at the outer and inner raceway, {:.1} and {:.1} times the roughness",
+            1e6 * outer.thickness,
+            1e6 * inner.thickness,
+            outer.lambda,
+            inner.lambda
+        );
+    }
     let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
     println!(
         "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s of processor time at {} ns per element-step",

@@ -1,6 +1,6 @@
 //! From a plan to a system: mesh numbers become places in memory, here and nowhere else.
 
-use stribeck_contact::{Contacts, PairSpec, Surface};
+use stribeck_contact::{Contacts, FilmSpec, Films, PairSpec, Surface};
 use stribeck_solver::{Dynamics, force::NodalLoad};
 
 use crate::{
@@ -8,7 +8,7 @@ use crate::{
     forces::Forces,
     load::Load,
     names::unknown,
-    plan::{LoadedNodes, NamedSurface, Pair, Plan, PlannedForce, PlannedLoad},
+    plan::{Film, LoadedNodes, NamedSurface, Pair, Plan, PlannedForce, PlannedLoad},
     system::System,
 };
 
@@ -20,8 +20,17 @@ impl Plan {
     /// When the solver or contact refuses something.
     pub fn build(self, threads: usize) -> Result<System, Error> {
         let announced = self.announced();
-        let Self { model, stiffness_damping, structural_damping, names, surfaces, pairs, loads, further } =
-            self;
+        let Self {
+            model,
+            stiffness_damping,
+            structural_damping,
+            names,
+            surfaces,
+            pairs,
+            films,
+            loads,
+            further,
+        } = self;
         let mut dynamics = Dynamics::new(&model, &announced, threads)?;
         dynamics.set_stiffness_damping(stiffness_damping)?;
         dynamics.set_structural_damping(structural_damping.as_ref())?;
@@ -75,15 +84,37 @@ impl Plan {
             all.set_parallel(threads > 1);
             contacts = Some(all);
         }
-        let forces = Forces { loads, contacts, further };
+        let mut oil = None;
+        if !films.is_empty() {
+            let oiled = films.iter().flat_map(|film| [&film.round, &film.track]);
+            let oiled: Vec<&NamedSurface> =
+                surfaces.iter().filter(|s| oiled.clone().any(|name| *name == s.name)).collect();
+            let find =
+                |name: &str| oiled.iter().position(|s| s.name == name).expect("a film names its surfaces");
+            let specs = films.iter().map(|Film { round, centre, track, oil, stiffness, speed }| FilmSpec {
+                round: find(round),
+                centre: dynamics.layout().slot_of_node[*centre as usize],
+                track: find(track),
+                oil: *oil,
+                stiffness: *stiffness,
+                speed: *speed,
+            });
+            let curves = oiled
+                .iter()
+                .map(|s| Surface::new(s.name.clone(), slots(&s.surface.nodes), s.surface.closed, x, y));
+            let curves = curves.collect::<Result<Vec<_>, _>>()?;
+            oil = Some(Films::new(curves, &specs.collect::<Vec<_>>(), model.thickness, x, y)?);
+        }
+        let forces = Forces { loads, contacts, films: oil, further };
         let pairs = pairs.into_iter().map(|pair| pair.name).collect();
         Ok(System::new(dynamics, forces, names, model.behaviour, pairs, shortest_facet))
     }
 
-    /// Which nodes forces may push: those of contact surfaces, of loads and of the user's laws.
+    /// Which nodes forces may push: those of contact surfaces, of films, of loads and of the user's laws.
     fn announced(&self) -> Vec<bool> {
         let mut announced = vec![false; self.model.mesh.x.len()];
-        let touching = self.pairs.iter().flat_map(|pair| [&pair.first, &pair.second]);
+        let oiled = self.films.iter().flat_map(|film| [&film.round, &film.track]);
+        let touching = self.pairs.iter().flat_map(|pair| [&pair.first, &pair.second]).chain(oiled);
         let touching = self.surfaces.iter().filter(|s| touching.clone().any(|name| *name == s.name));
         let touching = touching.flat_map(|s| s.surface.nodes.iter().copied());
         let loaded = self.loads.iter().flat_map(|load| match &load.on {

@@ -1,6 +1,6 @@
 //! The one list of all that pushes on nodes besides the elements: loads, contact, and what the user adds.
 
-use stribeck_contact::Contacts;
+use stribeck_contact::{Contacts, Films};
 use stribeck_solver::{
     Force,
     force::RankOne,
@@ -15,6 +15,8 @@ pub(crate) struct Forces {
     pub(crate) loads: Vec<Load>,
     /// None without contact pairs.
     pub(crate) contacts: Option<Contacts>,
+    /// None without oil.
+    pub(crate) films: Option<Films>,
     /// Laws of the user, with their names.
     pub(crate) further: Vec<(String, Box<dyn Force + Send>)>,
 }
@@ -22,10 +24,11 @@ pub(crate) struct Forces {
 impl std::fmt::Debug for Forces {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let further: Vec<&str> = self.further.iter().map(|(name, _)| name.as_str()).collect();
-        let Self { loads, contacts, .. } = self;
+        let Self { loads, contacts, films, .. } = self;
         f.debug_struct("Forces")
             .field("loads", loads)
             .field("contacts", contacts)
+            .field("films", films)
             .field("further", &further)
             .finish()
     }
@@ -35,12 +38,18 @@ impl Forces {
     fn all(&self) -> impl Iterator<Item = &dyn Force> {
         let loads = self.loads.iter().map(|load| load as &dyn Force);
         let contacts = self.contacts.iter().map(|contacts| contacts as &dyn Force);
-        loads.chain(contacts).chain(self.further.iter().map(|(_, force)| &**force as &dyn Force))
+        let films = self.films.iter().map(|films| films as &dyn Force);
+        loads.chain(contacts).chain(films).chain(self.further.iter().map(|(_, force)| &**force as &dyn Force))
     }
 
     /// Energy of contact alone [J].
     pub(crate) fn of_contact(&self) -> Energy {
         self.contacts.as_ref().map_or_else(Energy::default, Contacts::energy)
+    }
+
+    /// Energy of oil films alone [J].
+    pub(crate) fn of_films(&self) -> Energy {
+        self.films.as_ref().map_or_else(Energy::default, Films::energy)
     }
 
     /// Energy of loads and of the user's laws [J].
@@ -61,6 +70,7 @@ impl Force for Forces {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
         self.loads.iter_mut().for_each(|load| load.accumulate(at, force));
         self.contacts.iter_mut().for_each(|contacts| contacts.accumulate(at, force));
+        self.films.iter_mut().for_each(|films| films.accumulate(at, force));
         self.further.iter_mut().for_each(|(_, law)| law.accumulate(at, force));
     }
 

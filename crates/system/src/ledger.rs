@@ -17,7 +17,7 @@ pub struct Ledger {
     pub strain: f64,
     /// Energy in the hourglass stiffness.
     pub hourglass: f64,
-    /// Stored in contact.
+    /// Stored in contact, and in its springs under oil films.
     pub contact: f64,
     /// Stored by forces that the user has added.
     pub further: f64,
@@ -27,6 +27,8 @@ pub struct Ledger {
     pub damping: f64,
     /// Heat of damping in contact, and in forces that the user has added, since the start.
     pub contact_damping: f64,
+    /// Heat of oil films since the start.
+    pub film: f64,
     /// Work of loads and of gravity since the first step.
     pub external: f64,
     /// Work of prescribed motions since the start.
@@ -53,6 +55,7 @@ impl Ledger {
             + self.friction
             + self.damping
             + self.contact_damping
+            + self.film
             - self.external
             - self.drive
     }

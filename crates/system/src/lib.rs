@@ -76,7 +76,7 @@ mod workers;
 pub use error::Error;
 pub use guards::{Finding, Limits, Seen, Watched, Words};
 pub use ledger::{Balance, Ledger, Scale};
-pub use plan::{Pair, Plan};
+pub use plan::{Film, Pair, Plan};
 pub use preload::{Preload, Settled, UndecidedMotion};
 pub use snapshot::Snapshot;
 pub use system::{Parts, System};

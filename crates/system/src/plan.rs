@@ -1,6 +1,6 @@
 //! What the user gives: bodies, which of their surfaces may touch, what pushes on them.
 
-use stribeck_contact::{Law, Method, Sides, Smoothing};
+use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{Mesh, Part, Placed, Surface};
 use stribeck_solver::{Elastic, Force, Model, Motion, structural_damping::StructuralDamping};
 
@@ -25,6 +25,7 @@ pub struct Plan {
     /// In the order in which they were named.
     pub(crate) surfaces: Vec<NamedSurface>,
     pub(crate) pairs: Vec<Pair>,
+    pub(crate) films: Vec<Film>,
     pub(crate) loads: Vec<PlannedLoad>,
     pub(crate) further: Vec<PlannedForce>,
 }
@@ -59,6 +60,23 @@ impl Pair {
             sides: Sides::Both,
         }
     }
+}
+
+/// Oil between a round body and a surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Film {
+    /// Name of the round body's surface.
+    pub round: String,
+    /// The node in its centre.
+    pub centre: u32,
+    /// Name of the surface that it rolls on.
+    pub track: String,
+    /// The oil.
+    pub oil: Oil,
+    /// Penalty stiffness of the contact of the two [Pa/m].
+    pub stiffness: f64,
+    /// Entrainment speed before the first step [m/s]: half the sum of the speeds of both surfaces against the contact.
+    pub speed: f64,
 }
 
 /// A surface and the curve that it stands for.
@@ -97,9 +115,19 @@ impl From<Model> for Plan {
     /// Bodies of a model; their surfaces are named by [`Plan::surface`].
     fn from(model: Model) -> Self {
         let names = Names { bodies: model.mesh.bodies.clone(), groups: Vec::new() };
-        let (surfaces, pairs, loads, further) = Default::default();
+        let (surfaces, pairs, films, loads, further) = Default::default();
         let structural_damping = None;
-        Self { model, stiffness_damping: 0.0, structural_damping, names, surfaces, pairs, loads, further }
+        Self {
+            model,
+            stiffness_damping: 0.0,
+            structural_damping,
+            names,
+            surfaces,
+            pairs,
+            films,
+            loads,
+            further,
+        }
     }
 }
 
@@ -185,6 +213,18 @@ impl Plan {
         self.find_surface(&pair.first)?;
         self.find_surface(&pair.second)?;
         self.pairs.push(pair);
+        Ok(())
+    }
+
+    /// Puts oil between a round body and a surface, with or without a contact of the two.
+    ///
+    /// # Errors
+    /// When there is no surface of one of the names, or the centre is not in the mesh.
+    pub fn film(&mut self, film: Film) -> Result<(), Error> {
+        self.find_surface(&film.round)?;
+        self.find_surface(&film.track)?;
+        self.check_nodes(&format!("film of `{}`", film.round), &[film.centre])?;
+        self.films.push(film);
         Ok(())
     }
 

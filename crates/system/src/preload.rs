@@ -101,10 +101,12 @@ impl System {
             tolerance: TOLERANCE * load,
             iterations: ITERATIONS,
         };
+        self.forces.films.iter_mut().for_each(|films| films.set_preload(true));
         let settled = self.go_through_stages(&preload.softness, &statics, load);
         if let Some(contacts) = &mut self.forces.contacts {
             contacts.set_preload(None);
         }
+        self.forces.films.iter_mut().for_each(|films| films.set_preload(false));
         self.balance.reference = None;
         settled
     }

@@ -1,10 +1,10 @@
 //! All that changes in time, in one piece: a system continued from it takes the same steps to the bit.
 
 use serde::{Deserialize, Serialize};
-use stribeck_contact::{ContactState, Contacts};
+use stribeck_contact::{ContactState, Contacts, FilmState, Films};
 use stribeck_solver::snapshot::Snapshot as MotionSnapshot;
 
-use crate::{error::Error, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
+use crate::{error::Error, forces::Forces, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
 
 /// What changes in time. Bodies, pairs, limits, the time step and damping are no part of it, and neither is what forces
 /// added by [`Plan::force`](crate::Plan::force) remember.
@@ -12,6 +12,7 @@ use crate::{error::Error, guards::Seen, ledger::Balance, load::LoadMemory, syste
 pub struct Snapshot {
     motion: MotionSnapshot,
     contacts: Option<ContactState>,
+    films: Option<FilmState>,
     loads: Vec<LoadMemory>,
     balance: Balance,
     seen: Seen,
@@ -27,9 +28,11 @@ impl Snapshot {
 impl System {
     /// What has changed since the start.
     pub fn snapshot(&self) -> Snapshot {
+        let (contacts, films) = self.contact_states();
         Snapshot {
             motion: self.dynamics.snapshot(),
-            contacts: self.forces.contacts.as_ref().map(Contacts::state),
+            contacts,
+            films,
             loads: self.forces.loads.iter().map(|load| load.memory).collect(),
             balance: *self.balance(),
             seen: *self.seen(),
@@ -41,27 +44,48 @@ impl System {
     /// # Errors
     /// When the snapshot has other nodes, bodies, contacts or loads; nothing is changed then.
     pub fn restore(&mut self, from: Snapshot) -> Result<(), Error> {
-        let Snapshot { motion, contacts, loads, balance, seen } = from;
+        let Snapshot { motion, contacts, films, loads, balance, seen } = from;
         if loads.len() != self.forces.loads.len() {
             return Err(Error::OtherSystem { what: "loads" });
         }
-        let before = self.forces.contacts.as_ref().map(Contacts::state);
-        let fits = match (&mut self.forces.contacts, contacts) {
-            (Some(own), Some(state)) => own.restore(state),
-            (None, None) => true,
-            _ => false,
+        let (own_contacts, own_films) = self.contact_states();
+        let refused = if !self.restore_contacts(contacts) {
+            Some(Error::OtherSystem { what: "contacts" })
+        } else if !self.restore_films(films) {
+            Some(Error::OtherSystem { what: "films" })
+        } else {
+            self.dynamics.restore(motion).err().map(Error::from)
         };
-        if !fits {
-            return Err(Error::OtherSystem { what: "contacts" });
-        }
-        if let Err(error) = self.dynamics.restore(motion) {
-            if let (Some(own), Some(state)) = (&mut self.forces.contacts, before) {
-                own.restore(state);
-            }
-            return Err(error.into());
+        if let Some(refused) = refused {
+            self.restore_contacts(own_contacts);
+            self.restore_films(own_films);
+            return Err(refused);
         }
         self.forces.loads.iter_mut().zip(loads).for_each(|(load, memory)| load.memory = memory);
         (self.balance, self.seen) = (balance, seen);
         Ok(())
+    }
+
+    fn contact_states(&self) -> (Option<ContactState>, Option<FilmState>) {
+        let Forces { contacts, films, .. } = &self.forces;
+        (contacts.as_ref().map(Contacts::state), films.as_ref().map(Films::state))
+    }
+
+    /// False when the state is that of other contacts, which stay as they are then.
+    fn restore_contacts(&mut self, state: Option<ContactState>) -> bool {
+        match (&mut self.forces.contacts, state) {
+            (Some(own), Some(state)) => own.restore(state),
+            (None, None) => true,
+            _ => false,
+        }
+    }
+
+    /// The same for films.
+    fn restore_films(&mut self, state: Option<FilmState>) -> bool {
+        match (&mut self.forces.films, state) {
+            (Some(own), Some(state)) => own.restore(&state),
+            (None, None) => true,
+            _ => false,
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A system in motion: its step, its time step, its energies.
 
-use stribeck_contact::{Contacts, Resultant};
+use stribeck_contact::{Contacts, FilmResultant, Resultant};
 use stribeck_solver::{
     Behaviour, Dynamics, Force, Velocities, critical::damped_time_step, damping::MassDamping,
     state::NodeForces,
@@ -48,7 +48,7 @@ pub struct Parts {
     pub dynamics: Dynamics,
     /// Contact, if there are pairs.
     pub contacts: Option<Contacts>,
-    /// Loads and the laws of the user, as one force.
+    /// Loads, films and the laws of the user, as one force.
     pub others: Box<dyn Force + Send>,
 }
 
@@ -210,18 +210,20 @@ impl System {
         d.step(&mut [&mut self.forces]);
         self.check_announced()?;
         let d = &self.dynamics;
-        let (contact, others) = (self.forces.of_contact(), self.forces.of_others());
+        let (contact, film, others) =
+            (self.forces.of_contact(), self.forces.of_films(), self.forces.of_others());
         let gravity_work = gravity - *self.balance.gravity_work.get_or_insert(gravity);
         Ok(Ledger {
             time: d.state.time - d.time_step(),
             kinetic: d.kinetic_energy(&self.before),
             strain: elastic.strain,
             hourglass: elastic.hourglass,
-            contact: contact.stored,
+            contact: contact.stored + film.stored,
             further: others.stored,
             friction: contact.friction + others.friction,
             damping: d.heat.at_last_positions() + d.structural_loss(),
             contact_damping: contact.damping + others.damping,
+            film: film.damping,
             external: others.supplied + gravity_work,
             drive: d.drive.at_last_positions(),
             ..Ledger::default()
@@ -241,8 +243,8 @@ impl System {
 
     /// Takes a system apart, to measure one part of a step alone. What is left speaks in the solver's own numbers.
     pub fn into_parts(self) -> Parts {
-        let Forces { contacts, loads, further } = self.forces;
-        let others = Box::new(Forces { contacts: None, loads, further });
+        let Forces { contacts, films, loads, further } = self.forces;
+        let others = Box::new(Forces { contacts: None, films, loads, further });
         Parts { dynamics: self.dynamics, contacts, others }
     }
 
@@ -279,6 +281,11 @@ impl System {
     /// What each contact pair did in the last step, in the order of the plan.
     pub fn resultants(&self) -> impl Iterator<Item = Resultant> {
         self.forces.contacts.iter().flat_map(|contacts| contacts.resultants())
+    }
+
+    /// What each oil film did in the last step, in the order of the plan.
+    pub fn films(&self) -> impl Iterator<Item = FilmResultant> {
+        self.forces.films.iter().flat_map(|films| films.resultants())
     }
 
     /// Force of all contact pairs on each node of the mesh at the present positions [N], in and out of equilibrium. Nothing

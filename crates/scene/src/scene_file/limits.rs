@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
-use crate::scene::{GradingScene, Scene, StructuralDampingScene};
+use crate::scene::{FilmScene, GradingScene, Scene, StructuralDampingScene};
 
 /// Longest name of a scene or sensor: they become folder and channel names.
 const MAX_NAME: usize = 64;
@@ -70,6 +70,7 @@ fn with_everything() -> Scene {
     scene.mesh.grading = Some(GradingScene::default());
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
     scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
+    scene.film = Some(FilmScene::default());
     scene
 }
 
@@ -163,6 +164,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("contact.damping_ratio", contact.damping_ratio, within(0.0, 1.0), "");
     add("contact.friction", contact.friction, within(0.0, 2.0), "");
     add("contact.seat_friction", contact.seat_friction, within(0.0, 2.0), "");
+    if let Some(film) = &scene.film {
+        // From petrol to honey.
+        add("film.viscosity_pa_s", film.viscosity_pa_s, within(1e-4, 10.0), "Pa s");
+        add("film.pressure_viscosity_per_gpa", film.pressure_viscosity_per_gpa, within(1.0, 100.0), "1/GPa");
+        add("film.roughness_um", film.roughness_um, within(0.01, 10.0), "µm");
+    }
     add("solver.duration_ms", solver.duration_ms, positive(60_000.0), "ms");
     // Above 1 a run diverges and says so: wanted by studies of stability.
     add("solver.time_step_factor", solver.time_step_factor, positive(1.5), "");

@@ -1,11 +1,11 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
 use super::outline::Outline;
-use crate::scene::{GradingScene, Scene, StructuralDampingScene};
+use crate::scene::{FilmScene, GradingScene, Scene, StructuralDampingScene};
 
 /// Groups that a scene may lack.
-const OPTIONAL_GROUPS: [&str; 5] =
-    ["cage", "defect", "mesh.grading", "solver.structural_damping", "output.frames"];
+const OPTIONAL_GROUPS: [&str; 6] =
+    ["cage", "defect", "film", "mesh.grading", "solver.structural_damping", "output.frames"];
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -21,6 +21,7 @@ impl Schema {
         scene.solver.structural_damping = Some(StructuralDampingScene::default());
         // Empty by default, but an item must have a kind.
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
+        scene.film = Some(FilmScene::default());
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }

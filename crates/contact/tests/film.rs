@@ -1,0 +1,166 @@
+//! Oil films between a roller and a raceway with a groove, without the bodies behind them: where they push, and how much.
+
+use std::f64::consts::TAU;
+
+use stribeck_contact::{FilmResultant, FilmSpec, Films, Oil, Surface};
+use stribeck_solver::{
+    Force,
+    state::{Moment, NodeForces},
+};
+
+/// Raceway, roller, groove [m] and out-of-plane thickness [m]: the paper's.
+const RACEWAY: f64 = 0.1;
+const RADIUS: f64 = 9e-3;
+const HALF_GROOVE: f64 = 5e-3;
+const DEPTH: f64 = 0.2e-3;
+const LENGTH: f64 = 30e-3;
+
+/// Oil [Pa s, m] and entrainment speed [m/s].
+const VISCOSITY: f64 = 0.05;
+const LEAST: f64 = 0.5e-6;
+const SPEED: f64 = 2.4;
+
+/// Penalty stiffness [Pa/m].
+const STIFFNESS: f64 = 2e13;
+
+/// Nodes of a raceway with a groove at its top, of a roller, and of its centre.
+struct Model {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    ring: Surface,
+    rim: Surface,
+    rim_at: std::ops::Range<usize>,
+    centre: usize,
+    turned: f64,
+}
+
+impl Model {
+    fn new() -> Self {
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        let mut add = |r: f64, angle: f64| {
+            x.push(r * angle.cos());
+            y.push(r * angle.sin());
+            x.len() as u32 - 1
+        };
+        // The solid lies outside: clockwise, from the end of the groove all round to its beginning, then along its floor.
+        let (half, top) = (HALF_GROOVE / RACEWAY, 0.25 * TAU);
+        let (land, floor) = (1200, 20);
+        let mut ring: Vec<u32> = (0..=land)
+            .map(|i| add(RACEWAY, top - half - (TAU - 2.0 * half) * f64::from(i) / f64::from(land)))
+            .collect();
+        ring.extend(
+            (0..=floor)
+                .map(|i| add(RACEWAY + DEPTH, top + half - 2.0 * half * f64::from(i) / f64::from(floor))),
+        );
+        let first = ring.len();
+        let rim: Vec<u32> = (0..112).map(|i| add(RADIUS, TAU * f64::from(i) / 112.0)).collect();
+        let centre = add(0.0, 0.0) as usize;
+        let ring = Surface::new("raceway", ring, true, &x, &y).expect("a surface");
+        let rim = Surface::new("rim", rim, true, &x, &y).expect("a surface");
+        Self { x, y, ring, rim, rim_at: first..centre, centre, turned: 0.0 }
+    }
+
+    /// Turns the roller about its centre to an angle and puts that at `r`, `along` the raceway from the middle of the groove [m].
+    fn place(&mut self, r: f64, along: f64, turned: f64) {
+        let (cx, cy) = (self.x[self.centre], self.y[self.centre]);
+        let angle = 0.25 * TAU - along / RACEWAY;
+        let (nx, ny) = (r * angle.cos(), r * angle.sin());
+        let (s, c) = (turned - self.turned).sin_cos();
+        for n in self.rim_at.clone() {
+            let (dx, dy) = (self.x[n] - cx, self.y[n] - cy);
+            (self.x[n], self.y[n]) = (nx + c * dx - s * dy, ny + s * dx + c * dy);
+        }
+        (self.x[self.centre], self.y[self.centre]) = (nx, ny);
+        self.turned = turned;
+    }
+
+    fn films(&self) -> Films {
+        let oil = Oil { viscosity: VISCOSITY, least: LEAST };
+        let centre = self.centre as u32;
+        let spec = FilmSpec { round: 1, centre, track: 0, oil, stiffness: STIFFNESS, speed: SPEED };
+        Films::new(vec![self.ring.clone(), self.rim.clone()], &[spec], LENGTH, &self.x, &self.y)
+            .expect("a film")
+    }
+
+    /// What a film of steady rolling does here; forces and their moment must cancel.
+    fn steady(&self, films: &mut Films) -> FilmResultant {
+        /// Of a few dozen products of forces of some 100 N.
+        const ROUNDING: f64 = 1e-11;
+        let rest = vec![0.0; self.x.len()];
+        let mut force = NodeForces::zeros(self.x.len());
+        films.set_preload(true);
+        let at = Moment { step: 0, time: 0.0, dt: 0.0, x: &self.x, y: &self.y, vx: &rest, vy: &rest };
+        films.accumulate(at, &mut force);
+        let (mut sum, mut scale) = ([0.0; 3], 0.0);
+        for n in 0..self.x.len() {
+            sum[0] += force.fx[n];
+            sum[1] += force.fy[n];
+            sum[2] += (self.x[n] * force.fy[n] - self.y[n] * force.fx[n]) / RACEWAY;
+            scale += force.fx[n].abs() + force.fy[n].abs();
+        }
+        assert!(sum.iter().all(|s| s.abs() <= ROUNDING * scale), "{sum:?} of {scale} N");
+        films.resultants().next().expect("one film")
+    }
+}
+
+/// Away from the groove W = 4.895 ηuRL/h (H. M. Martin, Engineering 102 (1916) 119) with the relative radius of a roller in a
+/// raceway, wherever nodes lie; over the middle of the groove the same with its floor.
+#[test]
+fn analytic_films_on_the_raceway_and_on_the_floor() {
+    /// Shares of the land's ends, and what springs give: 0.2 µm of 20.
+    const TOLERANCE: f64 = 0.02;
+    let mut model = Model::new();
+    let mut films = model.films();
+    for (along, race, gap) in [
+        (0.1, RACEWAY, 20e-6),
+        (0.10013, RACEWAY, 20e-6),
+        (0.10026, RACEWAY, 5e-6),
+        (-0.1, RACEWAY, 20e-6),
+        (0.0, RACEWAY + DEPTH, 30e-6),
+        (0.11e-3, RACEWAY + DEPTH, 30e-6),
+    ] {
+        for turned in [0.0, 0.011, 0.028] {
+            model.place(race - RADIUS - gap, along, turned);
+            let film = model.steady(&mut films);
+            let radius = 1.0 / (1.0 / RADIUS - 1.0 / race);
+            let force = film.force[0].hypot(film.force[1]);
+            let expected = 4.895 * VISCOSITY * SPEED * radius * LENGTH / film.thickness;
+            assert!((force / expected - 1.0).abs() < TOLERANCE, "{along}: {force} N, not {expected} N");
+            let given = film.thickness - LEAST - gap;
+            let spring = 4.0 / 3.0 * STIFFNESS * LENGTH * (2.0 * radius).sqrt() * given.powf(1.5);
+            assert!(
+                (force / spring - 1.0).abs() < TOLERANCE,
+                "{along}: {force} N, not {spring} N of springs"
+            );
+        }
+    }
+}
+
+/// A roller that is led over the groove feels its film fade and come again, without a jump.
+#[test]
+fn invariant_a_groove_fades_the_film_in_and_out() {
+    /// From place to place, 5 µm apart, of the force on the sound raceway; the film is a millimetre wide.
+    const STEP: f64 = 0.02;
+    let mut model = Model::new();
+    let mut films = model.films();
+    model.place(RACEWAY - RADIUS - 10e-6, 0.1, 0.0);
+    let whole = model.steady(&mut films).force.map(|f| f * f).iter().sum::<f64>().sqrt();
+    let (mut last, mut least, mut largest) = (None, f64::INFINITY, 0.0_f64);
+    for n in -1600..=1600 {
+        let along = 5e-6 * f64::from(n);
+        model.place(RACEWAY - RADIUS - 10e-6, along, 0.0);
+        let film = model.steady(&mut films);
+        let force = film.force[0].hypot(film.force[1]);
+        if let Some(last) = last {
+            let jump = (force - last) / whole;
+            largest = largest.max(jump);
+            assert!(jump.abs() < STEP, "{along}: from {last} to {force} N of {whole} N");
+        }
+        least = least.min(force);
+        last = Some(force);
+    }
+    // In its middle only the floor is left, 0.21 mm away.
+    let floor = 4.895 * VISCOSITY * SPEED * 9.88e-3 * LENGTH / 0.2105e-3;
+    assert!((least / floor - 1.0).abs() < 0.05, "{least} N, not {floor} N");
+    assert!(largest > 1e-4);
+}
