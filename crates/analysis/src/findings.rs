@@ -11,6 +11,7 @@ use self::passages::{crossing_forces, level_finding, picked_events};
 use crate::Error;
 use crate::artefacts;
 use crate::enveloping;
+use crate::film::FilmFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
 use crate::load::{self, Distribution};
@@ -146,6 +147,7 @@ impl Findings {
             kinematics: motion,
             events,
             load,
+            film: FilmFinding::measure(run, &record),
             tones: measured,
             levels,
             notch,

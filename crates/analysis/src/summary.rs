@@ -7,6 +7,7 @@ use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
 use crate::enveloping::EnvelopeFinding;
+use crate::film::FilmFinding;
 use crate::filtering::NotchFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
@@ -32,6 +33,9 @@ pub struct Summary {
     pub events: Vec<Event>,
     /// Forces on the rollers.
     pub load: LoadFinding,
+    /// Oil between rollers and raceways; `None` for a dry bearing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub film: Option<FilmFinding>,
     /// Facet lines at every sensor: the leading sensor first, fundamentals first.
     pub tones: Vec<Tone>,
     /// Impulses and what lies between them, at the leading sensor.

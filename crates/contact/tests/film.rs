@@ -49,7 +49,8 @@ impl Model {
             .map(|i| add(RACEWAY, top - half - (TAU - 2.0 * half) * f64::from(i) / f64::from(land)))
             .collect();
         ring.extend(
-            (0..=floor).map(|i| add(RACEWAY + DEPTH, top + half - 2.0 * half * f64::from(i) / f64::from(floor))),
+            (0..=floor)
+                .map(|i| add(RACEWAY + DEPTH, top + half - 2.0 * half * f64::from(i) / f64::from(floor))),
         );
         let first = ring.len();
         let rim: Vec<u32> = (0..112).map(|i| add(RADIUS, TAU * f64::from(i) / 112.0)).collect();
@@ -77,7 +78,8 @@ impl Model {
         let oil = Oil { viscosity: VISCOSITY, least: LEAST };
         let centre = self.centre as u32;
         let spec = FilmSpec { round: 1, centre, track: 0, oil, stiffness: STIFFNESS, speed: SPEED };
-        Films::new(vec![self.ring.clone(), self.rim.clone()], &[spec], LENGTH, &self.x, &self.y).expect("a film")
+        Films::new(vec![self.ring.clone(), self.rim.clone()], &[spec], LENGTH, &self.x, &self.y)
+            .expect("a film")
     }
 
     /// What a film of steady rolling does here; forces and their moment must cancel.
@@ -126,7 +128,10 @@ fn analytic_films_on_the_raceway_and_on_the_floor() {
             assert!((force / expected - 1.0).abs() < TOLERANCE, "{along}: {force} N, not {expected} N");
             let given = film.thickness - LEAST - gap;
             let spring = 4.0 / 3.0 * STIFFNESS * LENGTH * (2.0 * radius).sqrt() * given.powf(1.5);
-            assert!((force / spring - 1.0).abs() < TOLERANCE, "{along}: {force} N, not {spring} N of springs");
+            assert!(
+                (force / spring - 1.0).abs() < TOLERANCE,
+                "{along}: {force} N, not {spring} N of springs"
+            );
         }
     }
 }
