@@ -12,6 +12,7 @@ use crate::Error;
 use crate::artefacts;
 use crate::enveloping;
 use crate::families::{self, Channel, Motion, RollerTrack};
+use crate::film::FilmFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
 use crate::load::{self, Distribution};
@@ -186,6 +187,7 @@ impl Findings {
             events,
             load,
             families,
+            film: FilmFinding::measure(run, &record),
             tones: measured,
             levels,
             notch,

@@ -56,6 +56,7 @@ pub mod record;
 pub mod enveloping;
 pub mod events;
 pub mod families;
+pub mod film;
 pub mod filtering;
 pub mod kinematics;
 pub mod levels;

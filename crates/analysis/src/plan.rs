@@ -7,7 +7,9 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::{ContactInterpolation, ContactMethod, ContactSurface, RollerCopies, Scene};
+use stribeck_scene::scene::{
+    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, RollerCopies, Scene,
+};
 use stribeck_scene::static_load;
 
 use crate::Error;
@@ -169,6 +171,14 @@ impl Plan {
                 1e-3 * points_hz
             ));
         }
+        if let Some(films) = &self.films {
+            if scene.solver.mass_damping_per_s > 0.0 && scene.solver.damping_frame == DampingFrame::Rolling {
+                say("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
+            }
+            if films.iter().any(|film| film.lambda < 1.0) {
+                say("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
+            }
+        }
         let facets = scene.mesh.roller_facets;
         if c.surface == ContactSurface::Facet {
             if facets.is_multiple_of(2) {
@@ -209,6 +219,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_scene::scene::FilmScene;
 
     /// The paper's bearing in elements of 2 mm.
     fn facts() -> MeshFacts {
@@ -248,6 +259,16 @@ mod tests {
         scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&Geometry::of(&scene), 8);
         let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
+        scene.film = Some(FilmScene { roughness_um: 1.0, ..FilmScene::default() });
+        let oiled = of(&scene);
+        assert!(
+            oiled.films.is_some_and(|[outer, _]| (0.3..0.8).contains(&outer.lambda)),
+            "{:?}",
+            oiled.films
+        );
+        for words in ["damping_frame=rigid_motion", "film.roughness_um"] {
+            assert!(oiled.advice.iter().any(|a| a.contains(words)), "{:?}", oiled.advice);
+        }
         // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
         scene.mesh.size_mm = 0.5;
         let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&Geometry::of(&scene), 8);

@@ -8,6 +8,7 @@ use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 use crate::artefacts::Artefact;
 use crate::enveloping::EnvelopeFinding;
 use crate::families::FamilyFinding;
+use crate::film::FilmFinding;
 use crate::filtering::NotchFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
@@ -35,6 +36,9 @@ pub struct Summary {
     pub load: LoadFinding,
     /// Combs of lines that the recorded motion predicts, and whether the record holds them.
     pub families: Vec<FamilyFinding>,
+    /// Oil between rollers and raceways; `None` for a dry bearing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub film: Option<FilmFinding>,
     /// Facet lines at every sensor: the leading sensor first, fundamentals first.
     pub tones: Vec<Tone>,
     /// Impulses and what lies between them, at the leading sensor.

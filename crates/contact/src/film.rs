@@ -16,10 +16,10 @@ use stribeck_solver::{
     state::{Energy, Moment, NodeForces},
 };
 
-use crate::{error::Error, surface::Surface};
+use crate::{error::Error, smooth::Smoothing, surface::Surface};
 use reynolds::{EMPTY, Pressed, left_of_land};
 use spring::Spring;
-use track::{Land, Nearest, Place, SUPPORT};
+use track::{Land, Place, Point};
 
 /// Steps from one look for the nearest places to the next; in between the film stays at the nodes where it was.
 const LOOK_EVERY: u64 = 8;
@@ -101,7 +101,6 @@ pub struct Films {
     films: Vec<Film>,
     /// First film of each spec, and one more.
     first: Vec<usize>,
-    thickness: f64,
     /// Whether films are those of steady rolling, in a static preload.
     preload: bool,
     heat: f64,
@@ -124,7 +123,8 @@ struct Film {
     least: f64,
     spring: Spring,
     memory: Memory,
-    hold: Hold,
+    /// Nodes that it hangs on, which follow from its places.
+    nodes: [u32; 4],
     /// Force on the round body [N], and how far springs are pressed in with and without the film [m].
     push: f64,
     pressed: [f64; 2],
@@ -143,10 +143,10 @@ struct Memory {
     speed: f64,
     /// Places of the film on the track and on the round body, and what they were when the speed was last taken.
     places: [Place; 2],
-    /// From the track to the round body.
-    normal: [f64; 2],
-    /// Heights of both surfaces above their splines there [m].
-    heights: f64,
+    /// Where a unit of force goes, node by node: two of the track, two of the round body.
+    shares: [[f64; 2]; 4],
+    /// The gap when each node stands at the origin [m]: it grows as the force would move nodes.
+    offset: f64,
     speed_places: [Place; 2],
     speed_step: u64,
     next_look: u64,
@@ -154,13 +154,6 @@ struct Memory {
     share: f64,
     /// So thin and so pressed that nothing can change before the next look.
     fixed: bool,
-}
-
-/// The nodes of track and round body that a film hangs on; they follow from the places.
-#[derive(Debug, Clone, Copy, Default)]
-struct Hold {
-    slots: [[u32; SUPPORT]; 2],
-    shares: [[f64; SUPPORT]; 2],
 }
 
 impl Films {
@@ -180,11 +173,9 @@ impl Films {
             if value.is_finite() && ok { Ok(()) } else { Err(Error::OutOfRange { field, value, allowed }) }
         };
         check("thickness [m]", thickness, thickness > 0.0)?;
-        // What moves as a spline has no corners from facet to facet, and circles stay circles.
-        let surfaces: Vec<Surface> = surfaces
-            .into_iter()
-            .map(|s| Ok(s.smoothed(crate::Smoothing::Nagata, x, y)?.splined(x, y)))
-            .collect::<Result<_, Error>>()?;
+        // Polygons would be felt through a film that is thinner than their sag.
+        let surfaces: Vec<Surface> =
+            surfaces.into_iter().map(|s| s.smoothed(Smoothing::Nagata, x, y)).collect::<Result<_, _>>()?;
         let lands: Vec<Vec<Land>> = surfaces.iter().map(|s| Land::of(s, x, y)).collect();
         let (mut films, mut first) = (Vec::new(), Vec::new());
         for spec in specs {
@@ -219,14 +210,14 @@ impl Films {
                     least: oil.least,
                     spring: Spring::new(stiffness * thickness, radius),
                     memory: Memory::new(speed),
-                    hold: Hold::default(),
+                    nodes: [0; 4],
                     push: 0.0,
                     pressed: [0.0; 2],
                 });
             }
         }
         first.push(films.len());
-        Ok(Self { surfaces, films, first, thickness, preload: false, heat: 0.0 })
+        Ok(Self { surfaces, films, first, preload: false, heat: 0.0 })
     }
 
     /// For a static preload: films have the thickness of steady rolling at any moment.
@@ -236,19 +227,15 @@ impl Films {
         self.films.iter_mut().for_each(|film| (film.memory.above, film.memory.next_look) = (None, 0));
     }
 
-    /// Out-of-plane thickness [m].
-    pub fn thickness(&self) -> f64 {
-        self.thickness
-    }
-
     /// What each film does, in the order given.
     pub fn resultants(&self) -> impl Iterator<Item = FilmResultant> {
         self.first.windows(2).map(|of_spec| {
             let mut sum = FilmResultant { force: [0.0; 2], thickness: WIDEST };
             for film in &self.films[of_spec[0]..of_spec[1]] {
                 let Some(above) = film.memory.above else { continue };
-                sum.force[0] += film.push * film.memory.normal[0];
-                sum.force[1] += film.push * film.memory.normal[1];
+                let [.., a, b] = film.memory.shares;
+                sum.force[0] += film.push * (a[0] + b[0]);
+                sum.force[1] += film.push * (a[1] + b[1]);
                 sum.thickness = sum.thickness.min(above + film.least);
             }
             sum
@@ -275,8 +262,10 @@ impl Films {
         }
         for (film, memory) in self.films.iter_mut().zip(&state.films) {
             film.memory = *memory;
-            let surfaces = [film.track, film.round].map(|surface| &self.surfaces[surface]);
-            film.hold = Hold::new(surfaces, memory.places);
+            let [track, round] = memory.places;
+            let ends = |surface: usize, place: Place| self.surfaces[surface].ends(place.facet as usize);
+            let ((a, b), (c, d)) = (ends(film.track, track), ends(film.round, round));
+            film.nodes = [a, b, c, d].map(|n| n as u32);
             (film.push, film.pressed) = (0.0, [0.0; 2]);
         }
         self.heat = state.heat;
@@ -293,50 +282,13 @@ impl Memory {
             force: 0.0,
             speed,
             places,
-            normal: [0.0; 2],
-            heights: 0.0,
+            shares: [[0.0; 2]; 4],
+            offset: 0.0,
             speed_places: places,
             speed_step: 0,
             next_look: 0,
             share: 1.0,
             fixed: false,
-        }
-    }
-}
-
-impl Hold {
-    fn new(surfaces: [&Surface; 2], places: [Place; 2]) -> Self {
-        let shares = [0, 1].map(|side| {
-            let Place { facet, along } = places[side];
-            surfaces[side].shares(facet as usize, along)
-        });
-        Self {
-            slots: [0, 1].map(|side: usize| shares[side].map(|(vertex, _)| surfaces[side].slots[vertex])),
-            shares: shares.map(|of_side| of_side.map(|(_, share)| share)),
-        }
-    }
-
-    /// Distance of the round body's spline from the track's along a normal [m].
-    #[inline]
-    fn distance(&self, normal: [f64; 2], at: &Moment<'_>) -> f64 {
-        let mut between = [0.0; 2];
-        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            for (&slot, &share) in self.slots[side].iter().zip(&self.shares[side]) {
-                between[0] += sign * share * at.x[slot as usize];
-                between[1] += sign * share * at.y[slot as usize];
-            }
-        }
-        normal[0] * between[0] + normal[1] * between[1]
-    }
-
-    /// Pushes the round body with a force, and the track the other way.
-    #[inline]
-    fn push(&self, [fx, fy]: [f64; 2], to: &mut NodeForces) {
-        for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            for (&slot, &share) in self.slots[side].iter().zip(&self.shares[side]) {
-                to.fx[slot as usize] += sign * share * fx;
-                to.fy[slot as usize] += sign * share * fy;
-            }
         }
     }
 }
@@ -359,12 +311,17 @@ impl Film {
         }
         let round = self.lands[1].nearest(both[1], at.x, at.y, track.at, m.places[1]);
         m.places = [track.place, round.place];
-        // The place on the round body is the one nearest to that on the track: its normal is the line between them, so that
+        // The point of the round body is the one nearest to that of the track: its normal is the line between them, so that
         // forces along it turn nothing.
-        m.normal = [-round.normal[0], -round.normal[1]];
-        m.heights = track.height + round.height;
-        self.hold = Hold::new(both, m.places);
-        let gap = self.hold.distance(m.normal, at) - m.heights;
+        let normal = round.normal.map(|n| -n);
+        let gap = normal[0] * (round.at[0] - track.at[0]) + normal[1] * (round.at[1] - track.at[1]);
+        let ([a, b], [c, d]) = (track.shares(round.normal), round.shares(normal));
+        m.shares = [a, b, c, d];
+        let ([a, b], [c, d]) = (track.ends, round.ends);
+        self.nodes = [a, b, c, d];
+        m.offset = 0.0;
+        self.memory.offset = gap - self.gap(at);
+        let m = &mut self.memory;
         if gap > WIDEST {
             *m = Memory { above: None, force: 0.0, end: STEADY, ..*m };
             (self.push, self.pressed) = (0.0, [0.0; 2]);
@@ -381,14 +338,23 @@ impl Film {
         }
         m.next_look = at.step + if m.above.is_some() { LOOK_EVERY } else { REST };
         if let Some(above) = m.above {
-            let normal = m.normal;
             self.memory.share = self.share(both[0], track, normal, above + self.least);
         }
         begins
     }
 
+    /// The gap between the two points [m].
+    #[inline]
+    fn gap(&self, at: &Moment<'_>) -> f64 {
+        let mut gap = self.memory.offset;
+        for (&n, [x, y]) in self.nodes.iter().zip(&self.memory.shares) {
+            gap += x * at.x[n as usize] + y * at.y[n as usize];
+        }
+        gap
+    }
+
     /// Share of the force that is left where the land ends nearby.
-    fn share(&self, surface: &Surface, track: Nearest, normal: [f64; 2], thickness: f64) -> f64 {
+    fn share(&self, surface: &Surface, track: Point, normal: [f64; 2], thickness: f64) -> f64 {
         let per_metre = self.slope / thickness.sqrt();
         let ends = self.lands[0].to_ends(surface, track.place);
         let tilt = track.normal[0] * normal[1] - track.normal[1] * normal[0];
@@ -520,15 +486,17 @@ impl Force for Films {
                 continue;
             }
             let Some(above) = film.memory.above else { continue };
-            let normal = film.memory.normal;
-            let gap = film.hold.distance(normal, &at) - film.memory.heights;
+            let gap = film.gap(&at);
             if settle {
                 film.settle(gap);
             } else {
                 *heat += film.flow(above, gap, at.dt);
             }
             if film.push != 0.0 {
-                film.hold.push([film.push * normal[0], film.push * normal[1]], force);
+                for (&n, [x, y]) in film.nodes.iter().zip(&film.memory.shares) {
+                    force.fx[n as usize] += film.push * x;
+                    force.fy[n as usize] += film.push * y;
+                }
             }
         }
     }
@@ -539,14 +507,14 @@ impl Force for Films {
     }
 
     fn stiffness_bound(&self, _dt: f64, bound: &mut [f64]) {
-        // As in contact, (a − b)² ≤ 2a² + 2b², and a surface holds one film at a place.
+        // As in contact, (a − b)² ≤ 2a² + 2b², and a surface holds one film at a place. All of it may hang on one node.
         let mut own = vec![0.0_f64; bound.len()];
         for film in &self.films {
             for surface in [film.track, film.round] {
                 let surface = &self.surfaces[surface];
-                for (&slot, share) in surface.slots.iter().zip(surface.largest_shares()) {
-                    let own = &mut own[slot as usize];
-                    *own = own.max(2.0 * film.spring.stiffest() * share);
+                let stiffness = 2.0 * film.spring.stiffest() * (1.0 + surface.steepest().powi(2));
+                for &slot in &surface.slots {
+                    own[slot as usize] = own[slot as usize].max(stiffness);
                 }
             }
         }
@@ -555,7 +523,7 @@ impl Force for Films {
 
     fn tangent(&self, _x: &[f64], _y: &[f64], visit: &mut dyn FnMut(RankOne<'_>)) {
         for film in &self.films {
-            let Film { hold, memory, .. } = film;
+            let Film { nodes, memory, .. } = film;
             let Some(above) = memory.above else { continue };
             let [depth, dry] = film.pressed.map(|depth| film.spring.stiffness(depth));
             let mut stiffness = depth;
@@ -567,17 +535,7 @@ impl Force for Films {
             if stiffness <= 0.0 {
                 continue;
             }
-            let mut nodes = [0; 2 * SUPPORT];
-            let mut direction = [0.0; 4 * SUPPORT];
-            for (side, sign) in [-1.0, 1.0].into_iter().enumerate() {
-                for i in 0..SUPPORT {
-                    let k = side * SUPPORT + i;
-                    nodes[k] = hold.slots[side][i];
-                    direction[2 * k] = sign * hold.shares[side][i] * memory.normal[0];
-                    direction[2 * k + 1] = sign * hold.shares[side][i] * memory.normal[1];
-                }
-            }
-            visit(RankOne { nodes: &nodes, direction: &direction, stiffness });
+            visit(RankOne { nodes, direction: memory.shares.as_flattened(), stiffness });
         }
     }
 }

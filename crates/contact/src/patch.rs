@@ -32,11 +32,6 @@ impl Patch<f64> {
         Self { curve, height, chord: [chord[0] / square, chord[1] / square] }
     }
 
-    /// Height of the surface above the curve at a place [m].
-    pub(crate) fn height_at(&self, place: f64) -> f64 {
-        cubic(&self.height, place)
-    }
-
     /// The same in all lanes.
     #[inline(always)]
     pub(crate) fn spread<N: Number>(&self, like: N) -> Patch<N> {

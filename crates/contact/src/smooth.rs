@@ -40,6 +40,11 @@ pub(crate) fn slope([r0, r1]: Rise, s: f64) -> f64 {
     r0 * (1.0 - s) * (1.0 - 3.0 * s) - r1 * s * (2.0 - 3.0 * s)
 }
 
+/// Rate of the slope [m per facet, per facet].
+pub(crate) fn bend([r0, r1]: Rise, s: f64) -> f64 {
+    r0 * (6.0 * s - 4.0) + r1 * (6.0 * s - 2.0)
+}
+
 /// Rise of every facet of a polyline, given its corners.
 pub(crate) fn rises(smoothing: Smoothing, at: &Vertices<'_>, corner: &[bool]) -> Vec<Rise> {
     match smoothing {

@@ -184,19 +184,6 @@ impl Surface {
         most
     }
 
-    /// Largest share that each vertex takes of a force on the surface, times all of its shares [-].
-    pub(crate) fn largest_shares(&self) -> Vec<f64> {
-        let mut most = vec![0.0_f64; self.slots.len()];
-        for f in 0..self.facets() {
-            for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
-                let shares = self.shares(f, s);
-                let sum: f64 = shares.iter().map(|(_, s)| s.abs()).sum();
-                shares.iter().for_each(|&(v, s)| most[v] = most[v].max(s.abs() * sum));
-            }
-        }
-        most
-    }
-
     /// Slots of the two ends of a facet.
     #[inline(always)]
     pub(crate) fn ends(&self, facet: usize) -> (usize, usize) {

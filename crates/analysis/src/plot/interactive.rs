@@ -187,6 +187,7 @@ impl Colour {
             Self::Red => "--c-red",
             Self::Teal => "--c-teal",
             Self::Brown => "--c-brown",
+            Self::Pink => "--c-pink",
             Self::Black => "--ink",
         }
     }

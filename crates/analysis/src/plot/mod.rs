@@ -129,6 +129,8 @@ pub enum Colour {
     Teal,
     /// Seventh foreground.
     Brown,
+    /// Eighth foreground.
+    Pink,
     /// The colour of the text.
     Black,
 }

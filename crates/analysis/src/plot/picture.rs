@@ -168,6 +168,7 @@ impl Colour {
             Self::Red => "#b3202c",
             Self::Teal => "#00809a",
             Self::Brown => "#7a5c2e",
+            Self::Pink => "#c2408f",
             Self::Black => "#14181c",
         }
     }

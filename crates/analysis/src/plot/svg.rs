@@ -227,6 +227,7 @@ impl Colour {
             Self::Red => RGBColor(179, 32, 44),
             Self::Teal => RGBColor(0, 128, 154),
             Self::Brown => RGBColor(122, 92, 46),
+            Self::Pink => RGBColor(194, 64, 143),
             Self::Black => RGBColor(20, 24, 28),
         }
     }

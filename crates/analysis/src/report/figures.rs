@@ -158,6 +158,7 @@ fn energy(run: &Run) -> Vec<Figure> {
         ("friction_j", "friction", Colour::Red),
         ("damping_j", "damping", Colour::Purple),
         ("contact_damping_j", "contact damping", Colour::Teal),
+        ("film_j", "oil films", Colour::Pink),
         ("external_j", "supplied by load", Colour::Grey),
         ("drive_j", "supplied by drive", Colour::Black),
     ];

@@ -3,6 +3,8 @@
 use maud::{Markup, html};
 use stribeck_scene::run_info::RunInfo;
 
+use super::figures::spoken;
+use crate::film::FilmFinding;
 use crate::summary::{PhaseLevels, Summary};
 
 /// Measured events of every passage.
@@ -82,7 +84,28 @@ pub(super) fn loads(summary: &Summary) -> Markup {
         ("Static, rigid rings, roller over the defect left out", kilo(load.static_max_roller_defect_n)),
         ("Rollers loaded at rest", load.static_loaded_rollers.map(|n| n.to_string())),
     ];
+    let oil = summary.film.iter().flat_map(films);
+    let rows = rows.into_iter().chain(oil);
     html! { table class="pairs" { tbody { @for (name, value) in rows { tr { td { (name) } (cell(value)) } } } } }
+}
+
+/// Oil on both raceways in numbers.
+fn films(film: &FilmFinding) -> [(&'static str, Option<String>); 4] {
+    let both = |values: [Option<f64>; 2], digits: usize, unit: &str| match values {
+        [Some(outer), Some(inner)] => Some(format!("{outer:.digits$} and {inner:.digits$} {unit}")),
+        _ => None,
+    };
+    let [outer, inner] = film.lambda;
+    let loaded = both(film.loaded_um.map(Some), 2, "µm");
+    [
+        (
+            "Oil film under the most loaded roller, outer and inner raceway (Dowson and Higginson)",
+            loaded.map(|films| format!("{films}, {outer:.1} and {inner:.1} times the roughness")),
+        ),
+        ("Oil film of rollers without load, median", both(film.floating_um, 1, "µm")),
+        ("Largest force of an oil film on a roller", both(film.largest_n, 0, "N")),
+        ("Heat of the oil films", film.heat_j.map(|heat| format!("{:.1} mJ", 1e3 * heat))),
+    ]
 }
 
 /// Frequencies of the bearing, and every roller's own.

@@ -2,13 +2,21 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{facet::Facet, polyline::Vertices, spline_facet::SplineFacet, surface::Surface};
+use crate::{
+    plane::{cross, dot, minus, unit_normal},
+    polyline::Vertices,
+    smooth::{Rise, bend, height, slope},
+    surface::Surface,
+};
 
 /// A land of fewer facets is a wall or a chamfer, and carries no film.
 const LEAST_FACETS: usize = 3;
 
-/// Nodes that a place hangs on.
-pub(crate) const SUPPORT: usize = 6;
+/// Parts of a facet that do not matter; so close to a joint a place belongs to either facet.
+const JOINT: f64 = 1e-12;
+
+/// Corrections of a place at most.
+const CORRECTIONS: usize = 8;
 
 /// Facets between two corners of a surface.
 #[derive(Debug, Clone)]
@@ -29,16 +37,20 @@ pub(crate) struct Place {
     pub(crate) along: f64,
 }
 
-/// What is nearest to a point.
+/// A point of a surface in present positions.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Nearest {
+pub(crate) struct Point {
     pub(crate) place: Place,
-    /// Position on the spline [m].
+    /// Slots of the nodes that it hangs on.
+    pub(crate) ends: [u32; 2],
+    /// Position [m].
     pub(crate) at: [f64; 2],
-    /// Height of the surface above it [m].
-    pub(crate) height: f64,
     /// Outward normal of the surface.
     pub(crate) normal: [f64; 2],
+    /// Height above the chord [m], its normal and its length [m].
+    height: f64,
+    chord: [f64; 2],
+    length: f64,
 }
 
 impl Land {
@@ -97,37 +109,24 @@ impl Land {
     }
 
     /// The place nearest to `p`, walking on from another; ends are never passed.
-    pub(crate) fn nearest(
-        &self,
-        surface: &Surface,
-        x: &[f64],
-        y: &[f64],
-        p: [f64; 2],
-        from: Place,
-    ) -> Nearest {
-        let mut facet = from.facet as usize;
-        for _ in 0..self.facets {
-            let patch = SplineFacet::new(surface, x, y, facet);
-            let along = patch.foot(p).place;
-            let on = if along < 0.0 {
+    pub(crate) fn nearest(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], from: Place) -> Point {
+        let (mut facet, mut before) = (from.facet as usize, None);
+        loop {
+            let arc = Arc::new(surface, x, y, facet);
+            let along = arc.nearest(p);
+            let on = if along < -JOINT {
                 self.neighbour(surface, facet, false)
-            } else if along > 1.0 {
+            } else if along > 1.0 + JOINT {
                 self.neighbour(surface, facet, true)
             } else {
                 None
             };
             match on {
-                Some(next) => facet = next,
-                None => return Nearest::at(&patch, facet, along.clamp(0.0, 1.0)),
-            }
-            // A joint that either facet sends on to the other.
-            if (along > -1e-9 && along < 0.0) || (along > 1.0 && along < 1.0 + 1e-9) {
-                let along = if along < 0.0 { 1.0 } else { 0.0 };
-                return Nearest::at(&SplineFacet::new(surface, x, y, facet), facet, along);
+                // Of two facets that send on to each other their joint is nearest.
+                Some(next) if before != Some(next) => (before, facet) = (Some(facet), next),
+                _ => return arc.point(facet, along.clamp(0.0, 1.0)),
             }
         }
-        let patch = SplineFacet::new(surface, x, y, facet);
-        Nearest::at(&patch, facet, patch.foot(p).place.clamp(0.0, 1.0))
     }
 
     fn neighbour(&self, surface: &Surface, facet: usize, forward: bool) -> Option<usize> {
@@ -151,12 +150,61 @@ impl Land {
     }
 }
 
-impl Nearest {
-    fn at(patch: &SplineFacet, facet: usize, along: f64) -> Self {
-        let height = patch.patch.height_at(along);
-        let point = patch.point(along, 0.0);
+/// The curve of a facet in present positions.
+struct Arc {
+    ends: [u32; 2],
+    origin: [f64; 2],
+    length: f64,
+    tangent: [f64; 2],
+    normal: [f64; 2],
+    rise: Rise,
+}
+
+impl Arc {
+    fn new(surface: &Surface, x: &[f64], y: &[f64], facet: usize) -> Self {
+        let (a, b) = surface.ends(facet);
+        let along = [x[b] - x[a], y[b] - y[a]];
+        let (normal, inverse) = unit_normal(along);
+        let tangent = along.map(|t| t * inverse);
+        let ends = [a as u32, b as u32];
+        Self { ends, origin: [x[a], y[a]], length: 1.0 / inverse, tangent, normal, rise: surface.rise[facet] }
+    }
+
+    /// Where the curve, which goes on beyond its ends, is nearest to `p`.
+    fn nearest(&self, p: [f64; 2]) -> f64 {
+        let from = minus(p, self.origin);
+        let (along, off) = (dot(from, self.tangent), dot(from, self.normal));
+        let mut s = along / self.length;
+        for _ in 0..CORRECTIONS {
+            let (e, de, dde) = (height(self.rise, s), slope(self.rise, s), bend(self.rise, s));
+            let rest = (along - s * self.length) * self.length + (off - e) * de;
+            let stiff = self.length * self.length + de * de - (off - e) * dde;
+            let correction = rest / stiff;
+            s += correction;
+            if correction.abs() < JOINT {
+                break;
+            }
+        }
+        s
+    }
+
+    fn point(&self, facet: usize, along: f64) -> Point {
+        let (height, slope) = (height(self.rise, along), slope(self.rise, along) / self.length);
+        let (t, n) = (self.tangent, self.normal);
+        let at = [0, 1].map(|k| self.origin[k] + along * self.length * t[k] + height * n[k]);
+        // Outwards from the curve, which climbs against its chord.
+        let turned = [0, 1].map(|k| (n[k] - slope * t[k]) / slope.hypot(1.0));
         let place = Place { facet: facet as u32, along };
-        Self { place, at: point.at, height, normal: point.normal }
+        Point { place, ends: self.ends, at, normal: turned, height, chord: n, length: self.length }
+    }
+}
+
+impl Point {
+    /// Forces on the facet's two nodes that are worth the force `f` on the point, which turns with its chord.
+    pub(crate) fn shares(&self, f: [f64; 2]) -> [[f64; 2]; 2] {
+        let lever = -self.height / self.length * cross(self.chord, f);
+        let second = [0, 1].map(|k| self.place.along * f[k] + lever * self.chord[k]);
+        [minus(f, second), second]
     }
 }
 

@@ -1,0 +1,55 @@
+//! Oil between rollers and raceways: how thick it is, what it carries, what it takes.
+
+use serde::{Deserialize, Serialize};
+use stribeck_scene::{lubrication, run_dir::Run};
+
+use crate::record::Record;
+
+/// A film that is no more than this much thicker than its least is that of a loaded contact [-].
+const LOADED: f64 = 0.01;
+
+/// Oil on the outer and on the inner raceway.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FilmFinding {
+    /// Film thickness under the most loaded roller at rest by Dowson and Higginson [µm].
+    pub loaded_um: [f64; 2],
+    /// The same over the composite roughness [-].
+    pub lambda: [f64; 2],
+    /// Median thickness over all samples of all rollers that the raceway does not load [µm].
+    pub floating_um: [Option<f64>; 2],
+    /// Largest force of a film on a roller, mean over a sampling interval [N].
+    pub largest_n: [Option<f64>; 2],
+    /// Heat of all films over the record [J].
+    pub heat_j: Option<f64>,
+}
+
+impl FilmFinding {
+    /// `None` for a scene without oil, or one whose loaded films are not to be had.
+    pub fn measure(run: &Run, record: &Record<'_>) -> Option<Self> {
+        let loaded = lubrication::loaded_films(&run.scene).ok()??;
+        let rollers = 1..=run.scene.bearing.rollers;
+        let channel = |roller: usize, ring: &str, what: &str| {
+            record.channel(&format!("roller.{roller}.{ring}_film_{what}"))
+        };
+        let rings = ["outer", "inner"];
+        let floating = |side: usize| {
+            let thick = rollers.clone().filter_map(|r| channel(r, rings[side], "m")).flatten();
+            let mut thick: Vec<f64> =
+                thick.copied().filter(|h| *h > (1.0 + LOADED) * loaded[side].least).collect();
+            let middle = thick.len() / 2;
+            (!thick.is_empty()).then(|| 1e6 * *thick.select_nth_unstable_by(middle, f64::total_cmp).1)
+        };
+        let largest = |side: usize| {
+            let force = |r: usize| Some((channel(r, rings[side], "fx_n")?, channel(r, rings[side], "fy_n")?));
+            let forces = rollers.clone().filter_map(force);
+            forces.flat_map(|(x, y)| x.iter().zip(y).map(|(x, y)| x.hypot(*y))).reduce(f64::max)
+        };
+        Some(Self {
+            loaded_um: [0, 1].map(|side: usize| 1e6 * loaded[side].thickness),
+            lambda: [0, 1].map(|side: usize| loaded[side].lambda),
+            floating_um: [0, 1].map(floating),
+            largest_n: [0, 1].map(largest),
+            heat_j: run.energy.get("film_j").and_then(|heat| heat.last().copied()),
+        })
+    }
+}
