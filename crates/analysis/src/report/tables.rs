@@ -3,7 +3,6 @@
 use maud::{Markup, html};
 use stribeck_scene::run_info::RunInfo;
 
-use super::figures::spoken;
 use crate::film::FilmFinding;
 use crate::summary::{PhaseLevels, Summary};
 

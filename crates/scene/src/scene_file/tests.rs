@@ -92,6 +92,9 @@ fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
     let pockets = |walls: &str| parse(&format!("(cage: (pocket: {walls}))")).expect("valid").hash();
     assert_eq!(pockets("corners"), Scene::default().hash());
     assert_ne!(pockets("straight"), Scene::default().hash());
+    let oil = |film: &str| parse(&format!("(film: {film})")).expect("valid").hash();
+    assert_eq!(oil("None"), Scene::default().hash());
+    assert_ne!(oil("()"), Scene::default().hash());
     let default = Scene::default().hash();
     let with = |set: &str| Scene::default().with_overrides(&[set]).expect("valid").hash();
     assert_eq!(with("mesh.roller_phase_deg=0"), default);
