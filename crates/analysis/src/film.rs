@@ -17,7 +17,7 @@ pub struct FilmFinding {
     pub lambda: [f64; 2],
     /// Median thickness over all samples of all rollers that the raceway does not load [µm].
     pub floating_um: [Option<f64>; 2],
-    /// Largest force of a film on a roller, mean over a sampling interval [N].
+    /// Largest force through the film of a roller, mean over a sampling interval at whose ends the raceway does not load it [N].
     pub largest_n: [Option<f64>; 2],
     /// Heat of all films over the record [J].
     pub heat_j: Option<f64>,
@@ -28,21 +28,26 @@ impl FilmFinding {
     pub fn measure(run: &Run, record: &Record<'_>) -> Option<Self> {
         let loaded = lubrication::loaded_films(&run.scene).ok()??;
         let rollers = 1..=run.scene.bearing.rollers;
-        let channel = |roller: usize, ring: &str, what: &str| {
-            record.channel(&format!("roller.{roller}.{ring}_film_{what}"))
+        let channel = |roller: usize, side: usize, what: &str| {
+            let ring = ["outer", "inner"][side];
+            record.channel(&format!("roller.{roller}.{ring}_{what}"))
         };
-        let rings = ["outer", "inner"];
+        let floats = |side: usize, thickness: f64| thickness > (1.0 + LOADED) * loaded[side].least;
         let floating = |side: usize| {
-            let thick = rollers.clone().filter_map(|r| channel(r, rings[side], "m")).flatten();
-            let mut thick: Vec<f64> =
-                thick.copied().filter(|h| *h > (1.0 + LOADED) * loaded[side].least).collect();
+            let thick = rollers.clone().filter_map(|r| channel(r, side, "film_m")).flatten();
+            let mut thick: Vec<f64> = thick.copied().filter(|h| floats(side, *h)).collect();
             let middle = thick.len() / 2;
             (!thick.is_empty()).then(|| 1e6 * *thick.select_nth_unstable_by(middle, f64::total_cmp).1)
         };
         let largest = |side: usize| {
-            let force = |r: usize| Some((channel(r, rings[side], "fx_n")?, channel(r, rings[side], "fy_n")?));
-            let forces = rollers.clone().filter_map(force);
-            forces.flat_map(|(x, y)| x.iter().zip(y).map(|(x, y)| x.hypot(*y))).reduce(f64::max)
+            let of = |r: usize| {
+                Some((channel(r, side, "film_m")?, channel(r, side, "fx_n")?, channel(r, side, "fy_n")?))
+            };
+            let forces = rollers.clone().filter_map(of).flat_map(|(thick, x, y)| {
+                let floats = move |n: usize| floats(side, thick[n - 1]) && floats(side, thick[n]);
+                (1..thick.len()).filter(move |n| floats(*n)).map(|n| x[n].hypot(y[n]))
+            });
+            forces.reduce(f64::max)
         };
         Some(Self {
             loaded_um: [0, 1].map(|side: usize| 1e6 * loaded[side].thickness),

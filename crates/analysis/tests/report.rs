@@ -7,8 +7,13 @@ use std::path::Path;
 
 use stribeck_analysis::report;
 use stribeck_analysis::summary::Summary;
+use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::run_info::Status;
-use synthetic::{ENTRY_LAG_S, EXIT_LEAD_S, IMPULSE_G, NOISE_G, SLIP, SUPPORT_N, Scratch, TONE_G, TONE_HZ};
+use stribeck_scene::scene::{FilmScene, Scene};
+use synthetic::{
+    ENTRY_LAG_S, EXIT_LEAD_S, FLOATING_M, IMPULSE_G, INTERVAL_S, NOISE_G, OIL_W, SLIP, SUPPORT_N, Scratch,
+    TONE_G, TONE_HZ, WEIGHT_N,
+};
 
 /// The whole record of the paper, 30 ms at 100 kHz.
 const SAMPLES: usize = 3000;
@@ -54,7 +59,7 @@ fn roundtrip_every_number_of_the_synthetic_run() {
 
     // 30 ms hold 140.2 periods of the ripple of 10 %: the rest averages to less than 0.1/(2π·140).
     close(summary.load.mean_n, SUPPORT_N, 2e-4 * SUPPORT_N, "vertical force");
-    close(summary.load.inner_mean_n, SUPPORT_N + 24.0 * 0.39, 2e-4 * SUPPORT_N, "vertical force, inner");
+    close(summary.load.inner_mean_n, SUPPORT_N + 24.0 * WEIGHT_N, 2e-4 * SUPPORT_N, "vertical force, inner");
     assert!(summary.load.max_roller_n < summary.load.max_roller_peak_n);
 }
 
@@ -406,6 +411,30 @@ fn example_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
     assert_eq!((summary.levels.impulse_g, summary.levels.between_filtered_g), (None, None));
     assert!(summary.notes.iter().any(|n| n.contains("until the record ends")), "{:?}", summary.notes);
     assert!(summary.notes.iter().any(|n| n.contains("no impulse level")), "{:?}", summary.notes);
+}
+
+#[test]
+fn roundtrip_oil_films_of_the_synthetic_run() {
+    /// Of decimal numbers in binary.
+    const ROUNDING: f64 = 1e-9;
+    let (_dry, summary) = whole("dry");
+    assert!(summary.film.is_none());
+    let folder = Scratch::new("oil");
+    let scene = Scene { film: Some(FilmScene::default()), ..Scene::default() };
+    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
+    let film = report::write(&folder.0).expect("a report").film.expect("oil");
+    for (ring, what) in ["outer", "inner"].into_iter().enumerate() {
+        close(film.floating_um[ring], 1e6 * FLOATING_M[ring], ROUNDING, what);
+        close(film.largest_n[ring], [0.0, WEIGHT_N][ring], ROUNDING, what);
+        let loaded = loaded_films(&scene).expect("a load").expect("oil")[ring];
+        close(Some(film.loaded_um[ring]), 1e6 * loaded.thickness, ROUNDING, what);
+        close(Some(film.lambda[ring]), loaded.thickness / 0.3e-6, ROUNDING, what);
+    }
+    close(film.heat_j, OIL_W * (SAMPLES - 1) as f64 * INTERVAL_S, ROUNDING, "heat");
+    let page = read(&folder.0, "report.html");
+    for words in ["Oil film of rollers without load", "30.0 and 45.0 µm", "0.0 and 0.4 N"] {
+        assert!(page.contains(words), "{words}");
+    }
 }
 
 #[test]

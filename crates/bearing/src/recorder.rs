@@ -102,8 +102,8 @@ impl Recorder {
                 names.push(format!("roller.{i}.cage_fx_n"));
                 names.push(format!("roller.{i}.cage_fy_n"));
             }
-            for ring in ["outer", "inner"].into_iter().filter(|_| oiled) {
-                names.extend(["fx_n", "fy_n", "m"].map(|what| format!("roller.{i}.{ring}_film_{what}")));
+            if oiled {
+                names.extend(["outer", "inner"].map(|ring| format!("roller.{i}.{ring}_film_m")));
             }
         }
         if with_cage {
@@ -175,10 +175,7 @@ impl Recorder {
             if machine.cage.is_some() {
                 self.row.extend(mean(pairs.cage(i)));
             }
-            for (side, thickness) in thicknesses.by_ref().take(2).enumerate() {
-                self.row.extend(film(2 * i + side).unwrap_or_default());
-                self.row.push(thickness);
-            }
+            self.row.extend(thicknesses.by_ref().take(2));
         }
         if let Some(at) = machine.cage.and_then(|cage| system.rigid(cage)) {
             self.row.extend([at.centre[0], at.centre[1], at.angle]);

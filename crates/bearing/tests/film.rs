@@ -41,19 +41,20 @@ fn example_rollers_float_and_loaded_contacts_are_dry() {
     // Roller 14 stands at the bottom, in the middle of its clearance: 40 µm less what the load has taken.
     for ring in ["outer", "inner"] {
         assert!(of(14, &format!("{ring}_film_m")).iter().all(|h| (5e-6..80e-6).contains(h)), "{ring}");
-        let (film, all) = (of(14, &format!("{ring}_film_fy_n")), of(14, &format!("{ring}_fy_n")));
-        assert!(film.iter().all(|f| f.abs() > 0.3 && f.abs() < 30.0), "{ring}: {film:?}");
-        assert!(film.iter().zip(all).all(|(film, all)| film == all), "{ring}: it touches");
+        let force = of(14, &format!("{ring}_fy_n"));
+        assert!(force.iter().all(|f| f.abs() > 0.3 && f.abs() < 30.0), "{ring}: {force:?}");
     }
-    assert!(of(14, "outer_film_fy_n").iter().all(|f| *f > 0.0));
-    assert!(of(14, "inner_film_fy_n").iter().all(|f| *f < 0.0));
+    assert!(of(14, "outer_fy_n").iter().all(|f| *f > 0.0));
+    assert!(of(14, "inner_fy_n").iter().all(|f| *f < 0.0));
     // Roller 24 carries a fifth of the load.
     let least = of(24, "outer_film_m")[0];
     assert!((0.2e-6..1e-6).contains(&least), "{least}");
     assert!(of(24, "outer_film_m").iter().all(|h| *h == least));
-    assert!(of(24, "outer_film_fy_n").iter().all(|f| *f == 0.0));
     let heat = run.energy.get("film_j").expect("a column of a scene with oil");
     assert!(heat.iter().all(|heat| heat.is_finite()) && heat.last() != Some(&0.0));
+    // NumPy reads longer headers only when it is told to.
+    let file = std::fs::read(folder.path().join("trace.npy")).expect("what was just written");
+    assert!(u16::from_le_bytes([file[8], file[9]]) < 10_000);
 }
 
 #[test]

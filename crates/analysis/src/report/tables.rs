@@ -102,7 +102,7 @@ fn films(film: &FilmFinding) -> [(&'static str, Option<String>); 4] {
             loaded.map(|films| format!("{films}, {outer:.1} and {inner:.1} times the roughness")),
         ),
         ("Oil film of rollers without load, median", both(film.floating_um, 1, "µm")),
-        ("Largest force of an oil film on a roller", both(film.largest_n, 0, "N")),
+        ("Largest force through the oil film of a roller without load", both(film.largest_n, 1, "N")),
         ("Heat of the oil films", film.heat_j.map(|heat| format!("{:.1} mJ", 1e3 * heat))),
     ]
 }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use stribeck_scene::ensemble::{Ensemble, start};
 use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
+use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_scene::scene::Scene;
@@ -31,6 +32,12 @@ pub(crate) const EXIT_LEAD_S: f64 = 0.20e-3;
 pub(crate) const SLIP: f64 = 0.001;
 /// Vertical force through the rollers [N].
 pub(crate) const SUPPORT_N: f64 = 50_120.0;
+/// Oil films of rollers without load, at the outer and at the inner raceway [m].
+pub(crate) const FLOATING_M: [f64; 2] = [30e-6, 45e-6];
+/// What a roller without load feels from the inner raceway [N].
+pub(crate) const WEIGHT_N: f64 = 0.39;
+/// Power that oil takes [W].
+pub(crate) const OIL_W: f64 = 0.5;
 /// Sampling interval [s].
 pub(crate) const INTERVAL_S: f64 = 1e-5;
 
@@ -127,7 +134,7 @@ pub(crate) fn write_scene(path: &Path, scene: &Scene, status: Status, samples: u
     let info = RunInfo { scene_hash: scene.hash(), ..info(status, samples) };
     dir.start(scene, &info).expect("a writable folder");
     write_trace(&dir, scene, samples, gain);
-    write_energy(&dir, samples);
+    write_energy(&dir, scene, samples);
     mesh::write(&dir.mesh());
 }
 
@@ -158,6 +165,12 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
         names.extend(per_roller.iter().map(|what| format!("roller.{roller}.{what}")));
     }
     names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad", "seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    let (films, oiled) = (loaded_films(scene).expect("a load"), roller_angles_deg(scene));
+    if films.is_some() {
+        for roller in 1..=scene.bearing.rollers {
+            names.extend(["outer", "inner"].map(|ring| format!("roller.{roller}.{ring}_film_m")));
+        }
+    }
     let mut writer = TraceWriter::create(dir.trace(), &names).expect("a writable folder");
     let mut noise = Noise(3);
     let crossings = crossings(scene);
@@ -172,6 +185,13 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
         rollers(scene, t, &crossings, &mut row);
         let cage = -TAU * Kinematics::of(scene).cage_hz * (1.0 - SLIP) * t;
         row.extend([0.0, 0.0, cage, 0.0, -SUPPORT_N + 60.0]);
+        if let Some(films) = &films {
+            for angle in &oiled {
+                // The lowest ones stay below the axis of the bearing, without load.
+                let floats = angle.to_radians().sin() < -0.9;
+                row.extend([0, 1].map(|ring| if floats { FLOATING_M[ring] } else { films[ring].least }));
+            }
+        }
         writer.push(&row).expect("a writable folder");
     }
     writer.finish().expect("a writable folder");
@@ -209,12 +229,12 @@ fn rollers(scene: &Scene, t: f64, crossings: &[Crossing], row: &mut Vec<f64>) {
         let force = SUPPORT_N * share(roller) / vertical * ripple;
         let spin = TAU * (k.roller_spin_hz - k.cage_hz * (1.0 - SLIP)) * t;
         row.extend([91e-3 * cos, 91e-3 * sin, spin]);
-        row.extend([-force * cos, -force * sin, force * cos, force * sin + 0.39, 0.0, 0.0]);
+        row.extend([-force * cos, -force * sin, force * cos, force * sin + WEIGHT_N, 0.0, 0.0]);
     }
 }
 
-fn write_energy(dir: &RunDir, samples: usize) {
-    let names = [
+fn write_energy(dir: &RunDir, scene: &Scene, samples: usize) {
+    let mut names = vec![
         "time_s",
         "kinetic_j",
         "strain_j",
@@ -227,12 +247,14 @@ fn write_energy(dir: &RunDir, samples: usize) {
         "drive_j",
         "relative_error",
     ];
+    let oil = scene.film.is_some();
+    names.extend(oil.then_some("film_j"));
     let mut writer = TraceWriter::create(dir.energy(), &names).expect("a writable folder");
     for n in 0..samples {
         let t = n as f64 * INTERVAL_S;
         let strain = 0.7 + 0.05 * (TAU * 90.0 * t).sin();
         let friction = 12.0 * t;
-        let row = [
+        let mut row = vec![
             t,
             30.0 - 0.05 * (TAU * 90.0 * t).sin(),
             strain,
@@ -245,6 +267,7 @@ fn write_energy(dir: &RunDir, samples: usize) {
             14.0 * t,
             2.5e-3 * t / 30e-3,
         ];
+        row.extend(oil.then_some(OIL_W * t));
         writer.push(&row).expect("a writable folder");
     }
     writer.finish().expect("a writable folder");
