@@ -429,7 +429,7 @@ impl Default for Scene {
             mesh: MeshScene::default(),
             operation: OperationScene::default(),
             contact: ContactScene::default(),
-            film: None,
+            film: Some(FilmScene::default()),
             solver: SolverScene::default(),
             output: OutputScene::default(),
             guards: GuardsScene::default(),
@@ -458,7 +458,7 @@ impl Default for CageScene {
             outer_diameter_mm: 196.0,
             thickness_mm: 4.0,
             pocket_clearance_um: 100.0,
-            pocket: PocketWalls::Corners,
+            pocket: PocketWalls::Straight,
             roller_offsets_um: Vec::new(),
         }
     }
@@ -538,10 +538,10 @@ impl Default for SolverScene {
             duration_ms: 30.0,
             time_step_factor: 0.98,
             hourglass_scale: 1.0,
-            mass_damping_per_s: 5000.0,
+            mass_damping_per_s: 0.0,
             damping_frame: DampingFrame::Rolling,
             stiffness_damping_ns: 0.0,
-            structural_damping: None,
+            structural_damping: Some(StructuralDampingScene::default()),
             start: Start::Preloaded,
         }
     }
@@ -553,7 +553,7 @@ impl Default for StructuralDampingScene {
             ratio_percent: 2.0,
             from_khz: 2.0,
             to_khz: 40.0,
-            branches: 2,
+            branches: 1,
             bodies: vec![DampedBody::OuterRing, DampedBody::InnerRing, DampedBody::Adapter],
         }
     }

@@ -11,7 +11,7 @@ use crate::{Answer, Finished, Flags, Host, Runner, Sheet, Variant};
 use stribeck_scene::dice::Dice;
 
 /// What is run: chords, copies turned with the pattern.
-const SCENE: &str = "fixtures/scenes/lean.ron";
+const SCENE: &str = "fixtures/scenes/studies/lean.ron";
 /// Counts by which the least lead was chosen.
 const CALIBRATED: [usize; 5] = [91, 106, 112, 117, 122];
 /// Counts that earlier versions of the test were tried on: never drawn.

@@ -11,7 +11,7 @@ use stribeck_analysis::tones::{self, Tone};
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet};
 
 /// Scene of the variants: the paper's facets, larger elements away from the raceways.
-const LEAN: &str = "fixtures/scenes/lean.ron";
+const LEAN: &str = "fixtures/scenes/studies/lean.ron";
 /// What every variant sets: one exit and the time to the next entry, no pictures.
 const SHORT: [&str; 2] = ["solver.duration_ms=12.0", "output.frames=None"];
 
@@ -42,7 +42,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let wanted = |part| options.part.is_none_or(|only| only == part);
     let mut sheet = Sheet::new(host.root(), "paper", "The paper's choices and its hypothesis");
     sheet.say(
-        "All runs are of the graded mesh `fixtures/scenes/lean.ron`, which has the paper's facets on raceways and rollers, and \
+        "All runs are of the graded mesh `fixtures/scenes/studies/lean.ron`, which has the paper's facets on raceways and rollers, and \
          last 12 ms unless stated: one exit at 5 ms and the quiet time until the next entry at 11.9 ms. They resolve 83 Hz; lines \
          closer than 167 Hz merge. Accelerations are means over 10 µs of a_y at the sensor on the ring's side (0°), unless stated.",
     );

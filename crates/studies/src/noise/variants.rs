@@ -2,8 +2,8 @@
 
 use crate::Variant;
 
-pub(crate) const LEAN: &str = "fixtures/scenes/lean.ron";
-pub(crate) const UNIFORM: &str = "fixtures/scenes/singh2014.ron";
+pub(crate) const LEAN: &str = "fixtures/scenes/studies/lean.ron";
+pub(crate) const UNIFORM: &str = "fixtures/scenes/studies/uniform.ron";
 /// One exit and the quiet time until the next entry, no pictures.
 const SHORT: [&str; 2] = ["solver.duration_ms=12.0", "output.frames=None"];
 /// Three exits, two quiet times.

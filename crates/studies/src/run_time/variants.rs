@@ -1,7 +1,10 @@
 //! What is run: meshes, steps and contacts of one bearing, each from several starts.
 
 use crate::Variant;
-use crate::noise::variants::{LEAN, UNIFORM};
+
+/// The default bearing, graded and with elements of one size.
+const LEAN: &str = "fixtures/scenes/lean.ron";
+const UNIFORM: &str = "fixtures/scenes/singh2014.ron";
 
 /// Until a millisecond behind the last start's exit.
 const SHORT: [&str; 2] = ["solver.duration_ms=6.5", "output.frames=None"];

@@ -8,7 +8,7 @@ use super::{Case, Chapter, Verdict};
 use crate::{Finished, Flags, Host, Runner, Variant};
 
 /// Coarse bearing of every case, and how long it runs.
-const SCENE: &str = "fixtures/scenes/quick.ron";
+const SCENE: &str = "fixtures/scenes/studies/quick.ron";
 const BASE: &[&str] = &["solver.duration_ms=0.4"];
 
 /// A case in which the rollers carry less or more than this share of what they must, without a word, is wrong.
