@@ -32,6 +32,13 @@ fn calibrated(scene: &Scene, of_paper: bool) -> String {
     if solver.mass_damping_per_s > 0.0 {
         chosen.push(format!("a mass damping of {} per second", solver.mass_damping_per_s));
     }
+    if let Some(damping) = &solver.structural_damping {
+        let (from, to) = (damping.from_khz, damping.to_khz);
+        chosen.push(format!("a structural damping of {} % from {from} to {to} kHz", damping.ratio_percent));
+    }
+    if let Some(film) = &scene.film {
+        chosen.push(format!("oil of {} Pa s", film.viscosity_pa_s));
+    }
     if solver.stiffness_damping_ns > 0.0 {
         chosen.push(format!("a stiffness damping of {} ns", solver.stiffness_damping_ns));
     }
