@@ -9,7 +9,7 @@ use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_scene::run_dir::Run;
 
-use self::variants::{Choice, REFERENCE, choices};
+use self::variants::{Choice, choices};
 use crate::impulse::statistics::{Sample, ratio};
 use crate::table::number;
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet};
@@ -22,7 +22,10 @@ pub struct Options {
     /// Starts of each choice, 0.01° of the cage apart
     #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(2..=1000))]
     starts: u16,
-    /// Starts of the reference, whose elements are a quarter as large
+    /// Elements of the reference at the contacts [mm]: 0.125 takes an hour a start
+    #[arg(long, value_name = "MM", default_value = "0.125", value_parser = ["0.125", "0.25"])]
+    finest_mm: String,
+    /// Starts of the reference
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(2..=1000))]
     reference_starts: u16,
 }
@@ -69,14 +72,14 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let runner = Runner::new("run_time", &options.flags, host);
     let mut measured = Vec::new();
     // The dear ones last, so that an interrupted study has a table.
-    for choice in choices(options.starts, options.reference_starts) {
+    let finest = options.finest_mm.parse()?;
+    for choice in choices(options.starts, options.reference_starts, finest) {
         let runs = runner.run(&choice.starts)?;
         let starts: Vec<Measured> = runs.iter().filter_map(|run| measure(&choice, run)).collect();
         measured.push((choice, starts));
     }
     let mut sheet = Sheet::new(host.root(), "run_time", "Error against run time of the bearing");
-    let Some(reference) = measured.iter().find(|(choice, _)| choice.name == REFERENCE).map(|m| m.1.clone())
-    else {
+    let Some(reference) = measured.iter().find(|(choice, _)| choice.reference).map(|m| m.1.clone()) else {
         anyhow::bail!("the reference is no choice");
     };
     let rows: Vec<Row> = measured
@@ -128,7 +131,7 @@ impl Row {
             Some((entry - entry0).abs().max((exit - exit0).abs()) / (exit0 - entry0))
         }));
         let impulse = sample(&starts);
-        let own = choice.name == REFERENCE;
+        let own = choice.reference;
         let impulse_off = impulse.zip(sample(reference)).filter(|_| !own).map(|(a, b)| ratio(&a, &b));
         Self {
             seconds: median(starts.iter().map(|m| m.seconds)),
@@ -160,11 +163,12 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn introduce(sheet: &mut Sheet, rows: &[Row]) {
-    let reference = rows.iter().find(|row| row.choice.name == REFERENCE);
-    let starts = reference.map_or(0, |row| row.starts.len());
+    let reference = rows.iter().find(|row| row.choice.reference);
+    let (finest, starts) =
+        reference.map_or(("no reference", 0), |row| (row.choice.name.as_str(), row.starts.len()));
     sheet.say(&format!(
-        "What a simulated millisecond of the paper\u{2019}s bearing costs, and how far the result is from that of elements of \
-         0.125 mm at the contacts and the defect ({starts} starts). Contact keeps its stiffness and its damping over an area on all meshes, so that \
+        "What a simulated millisecond of the paper\u{2019}s bearing costs, and how far the result is from the finest mesh\u{2019}s \
+         ({finest} at the contacts and the defect, {starts} starts). Contact keeps its stiffness and its damping over an area on all meshes, so that \
          only the mesh, the step and the way contact is evaluated differ. *Seconds* are processor time of the time loop, \
          medians over starts. *Force* is the mean of the outer raceway on roller 2 from {FROM_MS} to 6.5 ms; *events* are when roller 1 \
          loses the raceway and meets it again, the larger error as a share of the time in between; both start by start. The \
@@ -345,19 +349,25 @@ mod tests {
     #[test]
     fn example_a_choice_is_held_against_the_same_starts_of_the_reference() {
         let reference = [measured(0, 9.0, 100.0, 5.0, 50.0), measured(1, 9.0, 200.0, 6.0, 70.0)];
-        let choice = |name: &str| Choice { curve: "c", name: name.into(), shows: "", starts: Vec::new() };
+        let choice = |name: &str, reference| Choice {
+            curve: "c",
+            name: name.into(),
+            shows: "",
+            reference,
+            starts: Vec::new(),
+        };
         // The third start has no twin: its force is not compared.
         let starts = vec![
             measured(0, 1.0, 101.0, 5.0, 30.0),
             measured(1, 3.0, 194.0, 6.5, 90.0),
             measured(2, 2.0, 1.0, 9.0, 60.0),
         ];
-        let row = Row::of(choice("coarse"), starts, &reference);
+        let row = Row::of(choice("coarse", false), starts, &reference);
         assert_eq!(row.seconds, 2.0);
         assert!((row.force.expect("two twins") - 0.02).abs() < 1e-12, "{:?}", row.force);
         assert!((row.events.expect("two twins") - 0.05).abs() < 1e-12, "{:?}", row.events);
         assert_eq!(row.impulse_off.expect("means")[0], 0.0);
-        let itself = Row::of(choice(REFERENCE), reference.to_vec(), &reference);
+        let itself = Row::of(choice("fine", true), reference.to_vec(), &reference);
         assert!(itself.force.is_none() && itself.impulse_off.is_none());
     }
 }

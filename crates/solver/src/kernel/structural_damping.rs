@@ -1,6 +1,8 @@
 //! Structural damping: elements see each node where stretched springs would pull it, so that their forces hold those of the
 //! springs (THEORY §2.8); and the energy of the springs.
 
+use std::ops::Range;
+
 use pulp::{Simd, WithSimd};
 
 use crate::{
@@ -72,19 +74,17 @@ impl WithSimd for Stretch<'_> {
         let (seen_x, seen_y) = (&mut seen_x[..n], &mut seen_y[..n]);
         let nodes = [&*x, &*y, &*vx, &*vy];
         let [[ax, ay], [bx, by], [cx, cy]] = stretch;
+        let all = 0..x.len();
         let to = [&mut *seen_x, &mut *seen_y];
-        match branches.count {
-            0 => {}
-            1 => stretch_all(simd, structural, nodes, [[&mut *ax, &mut *ay]], to, branches),
-            2 => {
-                let springs = [[&mut *ax, &mut *ay], [&mut *bx, &mut *by]];
-                stretch_all(simd, structural, nodes, springs, to, branches);
-            }
-            _ => {
-                let springs = [[&mut *ax, &mut *ay], [&mut *bx, &mut *by], [&mut *cx, &mut *cy]];
-                stretch_all(simd, structural, nodes, springs, to, branches);
-            }
-        }
+        stretch_nodes(
+            simd,
+            structural,
+            nodes,
+            [[&mut *ax, &mut *ay], [&mut *bx, &mut *by], [&mut *cx, &mut *cy]],
+            to,
+            branches,
+            all,
+        );
         if !branches.measure {
             return energies;
         }
@@ -143,16 +143,36 @@ fn displace<S: Simd>(simd: S, to: &mut [f64], share: f64, u: &[f64]) {
     }
 }
 
+/// Takes the springs of some nodes, whole groups of lanes, a step on and finds where elements see these nodes.
+#[inline(always)]
+pub(crate) fn stretch_nodes<S: Simd>(
+    simd: S,
+    structural: &TileStructural,
+    nodes: [&[f64]; 4],
+    [a, b, c]: [[&mut [f64]; 2]; MAX_BRANCHES],
+    seen: [&mut [f64]; 2],
+    branches: &BranchSteps,
+    which: Range<usize>,
+) {
+    match branches.count {
+        0 => {}
+        1 => stretch(simd, structural, nodes, [a], seen, branches, which),
+        2 => stretch(simd, structural, nodes, [a, b], seen, branches, which),
+        _ => stretch(simd, structural, nodes, [a, b, c], seen, branches, which),
+    }
+}
+
 /// The same for a number of branches that is known when the program is compiled. Springs are stretched by the velocity
 /// relative to a rotation at the spin of each lane's body: a rigid motion is then seen as one and the same shift of all nodes.
 #[inline(always)]
-fn stretch_all<S: Simd, const BRANCHES: usize>(
+fn stretch<S: Simd, const BRANCHES: usize>(
     simd: S,
     structural: &TileStructural,
     [x, y, vx, vy]: [&[f64]; 4],
-    mut stretch: [[&mut [f64]; 2]; BRANCHES],
+    mut springs: [[&mut [f64]; 2]; BRANCHES],
     [seen_x, seen_y]: [&mut [f64]; 2],
     steps: &BranchSteps,
+    which: Range<usize>,
 ) {
     // Loops: within a closure the compiler would not use the instruction set of this function.
     let mut each = [[Vector::all(simd, 0.0); 3]; BRANCHES];
@@ -160,13 +180,13 @@ fn stretch_all<S: Simd, const BRANCHES: usize>(
         *to = [Vector::all(simd, keep), Vector::all(simd, gain), Vector::all(simd, share)];
     }
     // A tile's slots are whole lines of cache.
-    for i in (0..x.len()).step_by(Vector::<S>::LEN) {
+    for i in which.step_by(Vector::<S>::LEN) {
         let (x, y) = (Vector::load(simd, x, i), Vector::load(simd, y, i));
         let (vx, vy) = (Vector::load(simd, vx, i), Vector::load(simd, vy, i));
         let spin = Vector::load(simd, &structural.spin, i % LANES);
         let (rx, ry) = (spin.times_plus(y, vx), (-spin).times_plus(x, vy));
         let (mut to_x, mut to_y) = (x, y);
-        for ([ux, uy], [keep, gain, share]) in stretch.iter_mut().zip(&each) {
+        for ([ux, uy], [keep, gain, share]) in springs.iter_mut().zip(&each) {
             let new_x = gain.times_plus(rx, *keep * Vector::load(simd, ux, i));
             let new_y = gain.times_plus(ry, *keep * Vector::load(simd, uy, i));
             new_x.store(ux, i);

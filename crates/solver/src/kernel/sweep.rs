@@ -1,6 +1,8 @@
 //! One pass over a tile: element forces, then each finished row of nodes moves while it is still in cache
 //! (THEORY §2.3; cost in PERFORMANCE.md).
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
@@ -14,12 +16,17 @@ use crate::{
         gather::{congruent_elements, single_elements},
         stiffness_damping::{Extrapolate, Extrapolated},
         strip::strip,
-        structural_damping::{BranchSteps, SpringEnergies, Stretch},
-        tile::Tile,
+        structural_damping::{BranchSteps, SpringEnergies, Stretch, stretch_nodes},
+        tile::{Tile, TileStructural},
     },
     model::Motion,
+    structural_damping::MAX_BRANCHES,
 };
-use stribeck_simd::{field::Field, lanes::Vector, threads::Met};
+use stribeck_simd::{
+    field::Field,
+    lanes::{LANES, Vector},
+    threads::Met,
+};
 
 /// Memory of one thread for the tile at hand.
 #[derive(Debug, Clone)]
@@ -73,7 +80,11 @@ pub(crate) fn sweep(
 ) -> StepEnergies {
     let arch = Arch::new();
     if !sees_ahead(tile, &parameters) {
-        return arch.dispatch(Sweep { tile, fields, scratch, parameters });
+        return arch.dispatch(Sweep { tile, fields, scratch, parameters, stretch: None });
+    }
+    let stretch = tile.structural.is_some() && !branches.measure;
+    if stretch {
+        return arch.dispatch(Sweep { tile, fields, scratch, parameters, stretch: Some(branches) });
     }
     // The first pass reads all of a tile: there is nothing left to prefetch.
     let parameters = StepParameters { fetch: false, ..parameters };
@@ -81,11 +92,13 @@ pub(crate) fn sweep(
     if tile.structural.is_some() {
         let (fields, seen) = (&mut fields, extrapolated);
         let springs = arch.dispatch(Stretch { tile, fields: fields.again(), seen, parameters, branches });
-        let energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, parameters });
+        let fields = fields.again();
+        let energies = arch.dispatch(Sweep { tile, fields, scratch, parameters, stretch: None });
         return StepEnergies { springs, ..energies };
     }
     let before = arch.dispatch(Extrapolate { tile, fields: fields.again(), extrapolated, parameters });
-    let mut energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, parameters });
+    let again = fields.again();
+    let mut energies = arch.dispatch(Sweep { tile, fields: again, scratch, parameters, stretch: None });
     if parameters.count_heat {
         energies.heat +=
             0.5 * parameters.dt * (before + scratch.extrapolated.power(tile.own, fields.vx, fields.vy));
@@ -104,6 +117,8 @@ struct Sweep<'a> {
     fields: TileFields<'a>,
     scratch: &'a mut Scratch,
     parameters: StepParameters,
+    /// Branches whose springs are still to be stretched, each row of nodes just before its first element.
+    stretch: Option<&'a BranchSteps>,
 }
 
 impl WithSimd for Sweep<'_> {
@@ -126,12 +141,12 @@ impl WithSimd for Sweep<'_> {
 impl Sweep<'_> {
     #[inline(always)]
     fn run<S: Simd, D: Damping>(self, simd: S) -> StepEnergies {
-        let Self { tile, fields, scratch, parameters } = self;
+        let Self { tile, fields, scratch, parameters, stretch: branches } = self;
         let StepParameters { dt, gravity, .. } = parameters;
         let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
         let step = &Step::new(simd, &parameters, rate, frames);
         let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y, .. } = fields;
+        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y, stretch } = fields;
         let n = tile.slots.len();
         let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
         for run in &tile.loaded {
@@ -147,6 +162,14 @@ impl Sweep<'_> {
         } else {
             (x, y, &mut [][..], &mut [][..])
         };
+        let mut springs = D::STIFFNESS.then(|| Springs::of(tile, branches, stretch)).flatten();
+        if let Some(springs) = &mut springs {
+            let nodes = [&*own_x, &*own_y, &*vx, &*vy];
+            springs.stretch_ghosts(simd, nodes, [&mut *x, &mut *y]);
+            if tile.congruent || !tile.quads.is_empty() || !tile.triangles.is_empty() {
+                springs.stretch_until(simd, tile.own, nodes, [&mut *x, &mut *y]);
+            }
+        }
         if tile.congruent {
             congruent_elements(simd, tile, stiffness, x, y, fx, fy);
         } else {
@@ -159,6 +182,9 @@ impl Sweep<'_> {
         let (mut work, mut heat) = (0.0, Vector::all(simd, 0.0));
         for done in 0..=tile.strips.len() {
             while let Some(f) = finish.next_if(|f| f.after == done) {
+                if let Some(springs) = &mut springs {
+                    springs.stretch_nodes_until(simd, f.nodes.end, &mut nodes);
+                }
                 let free = match f.motion {
                     Motion::Free => [1.0, 1.0],
                     Motion::HeldX => [0.0, 1.0],
@@ -173,12 +199,66 @@ impl Sweep<'_> {
                 advance_row::<S, D>(simd, &mut nodes, f.nodes.clone(), tile.congruent, free, step, &mut heat);
             }
             if let Some(s) = tile.strips.get(done) {
+                if let Some(springs) = &mut springs {
+                    springs.stretch_nodes_until(simd, s.last_node() + 1, &mut nodes);
+                }
                 strip::<S, D>(simd, s, &tile.varying, stiffness, &mut nodes, step, &mut heat);
             }
         }
         fx[tile.own..].fill(0.0);
         fy[tile.own..].fill(0.0);
         StepEnergies { work, heat: step.heat(heat), ..StepEnergies::default() }
+    }
+}
+
+/// Springs of structural damping that follow the sweep: a row of nodes is then in cache when its elements are computed.
+struct Springs<'a> {
+    structural: &'a TileStructural,
+    branches: &'a BranchSteps,
+    stretch: [[&'a mut [f64]; 2]; MAX_BRANCHES],
+    /// Nodes before this one are done.
+    done: usize,
+    /// Whole groups of lanes of own nodes end here; the others are done with the ghosts.
+    own: usize,
+}
+
+impl<'a> Springs<'a> {
+    #[inline(always)]
+    fn of(
+        tile: &'a Tile,
+        branches: Option<&'a BranchSteps>,
+        stretch: [[&'a mut [f64]; 2]; MAX_BRANCHES],
+    ) -> Option<Self> {
+        let (structural, branches) = tile.structural.as_ref().zip(branches)?;
+        Some(Self { structural, branches, stretch, done: 0, own: tile.own - tile.own % LANES })
+    }
+
+    #[inline(always)]
+    fn stretch_ghosts<S: Simd>(&mut self, simd: S, nodes: [&[f64]; 4], seen: [&mut [f64]; 2]) {
+        let which = self.own..nodes[0].len();
+        self.stretch(simd, which, nodes, seen);
+    }
+
+    #[inline(always)]
+    fn stretch_until<S: Simd>(&mut self, simd: S, until: usize, nodes: [&[f64]; 4], seen: [&mut [f64]; 2]) {
+        let until = until.next_multiple_of(LANES).min(self.own);
+        if until > self.done {
+            let which = std::mem::replace(&mut self.done, until)..until;
+            self.stretch(simd, which, nodes, seen);
+        }
+    }
+
+    #[inline(always)]
+    fn stretch_nodes_until<S: Simd>(&mut self, simd: S, until: usize, nodes: &mut Nodes<'_>) {
+        let Nodes { x, y, own_x, own_y, vx, vy, .. } = nodes;
+        self.stretch_until(simd, until, [own_x, own_y, vx, vy], [x, y]);
+    }
+
+    #[inline(always)]
+    fn stretch<S: Simd>(&mut self, simd: S, which: Range<usize>, nodes: [&[f64]; 4], seen: [&mut [f64]; 2]) {
+        let [[ax, ay], [bx, by], [cx, cy]] = &mut self.stretch;
+        let springs = [[&mut **ax, &mut **ay], [&mut **bx, &mut **by], [&mut **cx, &mut **cy]];
+        stretch_nodes(simd, self.structural, nodes, springs, seen, self.branches, which);
     }
 }
 
@@ -327,7 +407,7 @@ mod tests {
                 fy: &mut fy[own],
                 stretch: Default::default(),
             };
-            in_lanes(Sweep { tile, fields, scratch: &mut scratch, parameters }, lanes);
+            in_lanes(Sweep { tile, fields, scratch: &mut scratch, parameters, stretch: None }, lanes);
         }
         let found = slots.iter().flat_map(|&slot| [d.state.vx[slot], d.state.vy[slot]]).collect();
         [found, expected]

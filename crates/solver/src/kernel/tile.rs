@@ -143,6 +143,12 @@ pub(crate) struct Finish {
 }
 
 impl Strip {
+    /// The largest number among its nodes, plus what a last group of lanes reads behind it.
+    pub(crate) fn last_node(&self) -> usize {
+        let [a, b, c, d] = self.corners;
+        a.max(b).max(c).max(d) as usize + self.len + LANES
+    }
+
     /// Renumbers the corners 4, 3, 2, 1: the upper row becomes the lower one.
     fn turn_over(&mut self, varying: &mut VaryingReferences) {
         self.corners.reverse();

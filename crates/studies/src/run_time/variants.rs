@@ -20,15 +20,14 @@ const ARCS: [&str; 4] = [
     "contact.onset_um=8.0",
 ];
 
-/// What the others are held against: the name of its choice.
-pub(super) const REFERENCE: &str = "graded, 0.125 mm";
-
 /// One way to simulate the bearing, and its starts.
 pub(super) struct Choice {
     /// Points of one curve differ in their element size alone.
     pub(super) curve: &'static str,
     pub(super) name: String,
     pub(super) shows: &'static str,
+    /// Whether the others are held against this one.
+    pub(super) reference: bool,
     pub(super) starts: Vec<Variant>,
 }
 
@@ -55,8 +54,8 @@ fn graded(size_mm: f64) -> Vec<String> {
     set
 }
 
-/// All choices; `starts` of each, and `few` of the finest.
-pub(super) fn choices(starts: u16, few: u16) -> Vec<Choice> {
+/// All choices; `starts` of each, and `few` of the reference, whose elements are of `finest` [mm] at the contacts.
+pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
     let owned = |set: &[&str]| set.iter().map(|s| (*s).to_owned()).collect::<Vec<String>>();
     let choice = |curve, name: &str, shows, scene, set: Vec<String>, starts: u16| {
         let id: String =
@@ -68,7 +67,8 @@ pub(super) fn choices(starts: u16, few: u16) -> Vec<Choice> {
                 .fold(Variant::new(format!("{id}-{k:03}"), scene, &SHORT), |v, s| v.with(s.clone()));
             all.with(format!("bearing.first_roller_deg={:.3}", first_roller_deg(k)))
         };
-        Choice { curve, name: name.to_owned(), shows, starts: (0..starts).map(variant).collect() }
+        let starts = (0..starts).map(variant).collect();
+        Choice { curve, name: name.to_owned(), shows, reference: false, starts }
     };
     let mut all = Vec::new();
     for (name, size) in [("uniform, 2 mm", 2.0), ("uniform, 1 mm", 1.0), ("uniform, 0.5 mm", 0.5)] {
@@ -76,18 +76,15 @@ pub(super) fn choices(starts: u16, few: u16) -> Vec<Choice> {
             if size == BASE_MM { "the paper\u{2019}s mesh" } else { "elements of one size throughout" };
         all.push(choice("uniform", name, shows, UNIFORM, sized(size), starts));
     }
-    for (name, size, starts) in [
-        ("graded, 2 mm", 2.0, starts),
-        ("graded, 1 mm", 1.0, starts),
-        ("graded, 0.5 mm", 0.5, starts),
-        ("graded, 0.25 mm", 0.25, starts),
-        (REFERENCE, 0.125, few),
-    ] {
-        let shows = match size {
-            0.125 => "the reference",
-            _ => "fine elements at the raceways and rims only",
+    for size in [2.0, 1.0, 0.5, 0.25, 0.125].into_iter().filter(|&size| size >= finest) {
+        let reference = size == finest;
+        let (shows, starts) = if reference {
+            ("the reference", few)
+        } else {
+            ("fine elements at the raceways and rims only", starts)
         };
-        all.push(choice("graded", name, shows, LEAN, graded(size), starts));
+        let named = format!("graded, {size} mm");
+        all.push(Choice { reference, ..choice("graded", &named, shows, LEAN, graded(size), starts) });
     }
     let lean = [
         ("half the step", "Δt × 0.5", "0.49 of the critical step", owned(&["solver.time_step_factor=0.49"])),
@@ -120,11 +117,18 @@ mod tests {
         for field in ["mesh.roller_facets=224", "contact.penalty_scale=0.025", "mesh.grading.fine_layers=4"] {
             assert!(set.iter().any(|s| s == field), "{field} is not in {set:?}");
         }
-        let names: Vec<String> = choices(3, 1).iter().map(|c| c.starts[0].name.clone()).collect();
+        let names: Vec<String> = choices(3, 1, 0.125).iter().map(|c| c.starts[0].name.clone()).collect();
         let mut once = names.clone();
         once.sort_unstable();
         once.dedup();
         assert_eq!(once.len(), names.len(), "{names:?}");
-        assert!(choices(3, 1).iter().any(|c| c.name == REFERENCE && c.starts.len() == 1));
+        for finest in [0.125, 0.25] {
+            let all = choices(3, 1, finest);
+            let reference = all.iter().find(|c| c.reference).expect("a reference");
+            assert_eq!(
+                (reference.name.as_str(), reference.starts.len()),
+                (&*format!("graded, {finest} mm"), 1)
+            );
+        }
     }
 }
