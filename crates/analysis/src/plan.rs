@@ -260,6 +260,7 @@ mod tests {
         let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
         scene.film = Some(FilmScene { roughness_um: 1.0, ..FilmScene::default() });
+        scene.solver.mass_damping_per_s = 5000.0;
         let oiled = of(&scene);
         assert!(
             oiled.films.is_some_and(|[outer, _]| (0.3..0.8).contains(&outer.lambda)),
