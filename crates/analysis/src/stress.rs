@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use stribeck_scene::frames::Frame;
-use stribeck_scene::geometry::Material;
+use stribeck_scene::material::Material;
 use stribeck_scene::mesh_file::RunMesh;
 
 /// Lamé's constants [Pa].

@@ -22,13 +22,13 @@ use spring::Spring;
 use track::{Land, Place, Point};
 
 /// Steps from one look for the nearest places to the next; in between the film stays at the nodes where it was.
-const LOOK_EVERY: u64 = 8;
+const LOOK_EVERY: u64 = 16;
 
 /// Steps between two looks at a film that is too thick to push.
 const REST: u64 = 128;
 
 /// Looks over which the speed of rolling is taken.
-const SPEED_EVERY: u64 = 8;
+const SPEED_EVERY: u64 = 4;
 
 /// Wider gaps hold no film [m].
 const WIDEST: f64 = 1e-3;
@@ -46,8 +46,8 @@ const FAR: f64 = 20.0;
 /// A contact that carries so many times what its film can lift stays as it is until the next look.
 const FIXED: f64 = 4.0;
 
-/// Share of the way that is left when the end of a film is found.
-const ACCURACY: f64 = 1e-9;
+/// Share of the way that is left when the end of a film is found. The next step makes up for it.
+const ACCURACY: f64 = 1e-6;
 
 /// Most corrections of the place where a film ends.
 const MOST_CORRECTIONS: usize = 30;

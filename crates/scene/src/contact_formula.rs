@@ -1,7 +1,7 @@
 //! Stiffness and damping of contact by the formula that a scene names, as numbers of one law (THEORY §4.2).
 
 use crate::{
-    geometry::Material,
+    material::Material,
     scene::{ContactFormula, ContactPasses, Scene},
 };
 

@@ -7,9 +7,8 @@
 use std::f64::consts::TAU;
 
 use crate::contact_formula::ContactNumbers;
-use crate::scene::{
-    CageScene, DefectScene, FilmScene, MaterialScene, PocketWalls, Scene, StructuralDampingScene,
-};
+use crate::material::Material;
+use crate::scene::{CageScene, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene};
 
 /// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,17 +121,6 @@ pub struct FilmGeometry {
     pub pressure_viscosity: f64,
     /// Composite roughness [m].
     pub roughness: f64,
-}
-
-/// A linear elastic, isotropic material in plane strain.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// Young's modulus E [Pa].
-    pub youngs_modulus: f64,
-    /// Poisson's ratio ν [-].
-    pub poissons_ratio: f64,
-    /// Density ρ [kg/m³].
-    pub density: f64,
 }
 
 impl Geometry {
@@ -263,38 +251,6 @@ impl FilmGeometry {
             pressure_viscosity: 1e-9 * film.pressure_viscosity_per_gpa,
             roughness: 1e-6 * film.roughness_um,
         }
-    }
-}
-
-impl Material {
-    /// A material in SI.
-    pub fn of(material: &MaterialScene) -> Self {
-        Self {
-            youngs_modulus: 1e9 * material.youngs_modulus_gpa,
-            poissons_ratio: material.poissons_ratio,
-            density: material.density_kg_m3,
-        }
-    }
-
-    /// Modulus of two touching bodies of this material, E* = E/(2(1 − ν²)) [Pa].
-    pub fn contact_modulus(&self) -> f64 {
-        self.youngs_modulus / (2.0 * (1.0 - self.poissons_ratio.powi(2)))
-    }
-
-    /// Bulk modulus K = E/(3(1 − 2ν)) [Pa].
-    pub fn bulk_modulus(&self) -> f64 {
-        self.youngs_modulus / (3.0 * (1.0 - 2.0 * self.poissons_ratio))
-    }
-
-    /// Speed of dilatational waves √((λ + 2µ)/ρ) [m/s].
-    pub fn dilatational_speed(&self) -> f64 {
-        let nu = self.poissons_ratio;
-        (self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) / self.density).sqrt()
-    }
-
-    /// Shear modulus G = E/(2(1 + ν)) [Pa].
-    pub fn shear_modulus(&self) -> f64 {
-        self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
     }
 }
 

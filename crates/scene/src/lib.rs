@@ -55,6 +55,7 @@ pub mod frames;
 pub mod geometry;
 pub mod kinematics;
 pub mod lubrication;
+pub mod material;
 pub mod mesh_file;
 pub mod run_dir;
 pub mod run_info;

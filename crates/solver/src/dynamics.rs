@@ -1,7 +1,5 @@
 //! The time loop's one step, and what is known about the model while it runs.
 
-use serde::{Deserialize, Serialize};
-
 use crate::{
     damping::{Frame, MassDamping, PLACE_EVERY},
     element::{QuadReference, Stiffness, TriangleReference},
@@ -20,9 +18,8 @@ use crate::{
     },
     model::{Behaviour, Model, Motion},
     rigid::{RigidBody, RigidMotion, RigidState},
-    springs::Springs,
-    state::{Moment, NodeForces, State},
-    structural_damping::MAX_BRANCHES,
+    state::{Accumulated, Moment, NodeForces, State},
+    structural_damping::{MAX_BRANCHES, StructuralDamping},
 };
 use stribeck_simd::{field::Field, lanes::LANES, threads::share_out};
 
@@ -77,36 +74,13 @@ pub(crate) struct DampedBody {
     pub(crate) places: Vec<(usize, usize)>,
 }
 
-/// Energy counted step by step [J].
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Accumulated {
-    /// Up to half a step after the positions' time.
-    total: f64,
-    /// Of the last step, half of which lies after the positions' time.
-    last: f64,
-}
-
-impl Accumulated {
-    fn add(&mut self, step: f64) {
-        self.total += step;
-        self.last = step;
-    }
-
-    /// Adds a step that is not counted: it is taken to be like the last one that was.
-    pub(crate) fn repeat(&mut self) {
-        self.add(self.last);
-    }
-
-    /// Adds a step that is counted, as every `every`-th is: in between it ran straight from the last one to this.
-    pub(crate) fn count(&mut self, step: f64, every: u64) {
-        self.total += 0.5 * (every - 1) as f64 * (step - self.last);
-        self.add(step);
-    }
-
-    /// Up to the time of the positions before the last step [J].
-    pub fn at_last_positions(&self) -> f64 {
-        self.total - 0.5 * self.last
-    }
+/// Structural damping of a model in motion.
+#[derive(Debug)]
+pub(crate) struct Springs {
+    pub(crate) damping: StructuralDamping,
+    pub(crate) bodies: Vec<DampedBody>,
+    /// Whether the next step is to measure what they hold.
+    pub(crate) measure: bool,
 }
 
 /// All elements in slot numbers, for energies and statics.

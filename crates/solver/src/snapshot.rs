@@ -4,11 +4,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     damping::PlacedFrame,
-    dynamics::{Accumulated, Dynamics},
+    dynamics::Dynamics,
     error::{Error, check_count},
     rigid::RigidState,
-    springs::Springs,
-    state::State,
+    state::{Accumulated, State},
 };
 
 /// Everything about a model in motion that changes in time. The model, its time step and its damping are no part of it.
@@ -64,7 +63,7 @@ impl Dynamics {
         for field in s.springs.stretch.iter().flatten() {
             check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
         }
-        let bodies = if spins == 0 { 0 } else { springs.map_or(0, Springs::bodies) };
+        let bodies = if spins == 0 { 0 } else { springs.map_or(0, |springs| springs.bodies.len()) };
         check_count("spins of the snapshot", spins, bodies, "one for each body with structural damping")?;
         let (found, bodies) = (from.rigid.len(), self.rigid.len());
         check_count("rigid bodies of the snapshot", found, bodies, "those of the model")?;

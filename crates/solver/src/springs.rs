@@ -1,16 +1,15 @@
 //! The springs and dashpots of structural damping in motion: where they are, how fast their bodies turn, what they hold and
 //! lose (THEORY §2.8).
 
-use serde::{Deserialize, Serialize};
-
 use crate::{
-    dynamics::{Accumulated, DampedBody, Dynamics},
+    dynamics::{DampedBody, Dynamics, Springs},
     error::{Error, check},
     kernel::{
         mass_sums::{LaneSums, MassSums, lane_sums},
         structural_damping::{BranchSteps, SpringEnergies},
         tile::{Tile, TileStructural},
     },
+    state::SpringState,
     structural_damping::StructuralDamping,
 };
 use stribeck_simd::{field::Field, lanes::LANES};
@@ -18,44 +17,6 @@ use stribeck_simd::{field::Field, lanes::LANES};
 /// Steps from one measurement of spins and losses to the next. Bodies turn at a steady pace, and losses follow the squares of
 /// stretches, which dashpots keep from changing fast.
 const MEASURE_EVERY: u64 = 32;
-
-/// What changes in time.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct SpringState {
-    /// How far the springs of each branch are stretched (x, y) [m], one value a slot, a step before the positions.
-    pub(crate) stretch: Vec<[Field; 2]>,
-    /// Angular velocity of each damped body when it was last measured [rad/s]; empty before.
-    spins: Vec<f64>,
-    /// Heat of the dashpots [J].
-    lost: Accumulated,
-    /// Energy of the springs when it was last measured [J].
-    held: f64,
-    /// Whether a step has been taken: springs are relaxed at the positions of the first.
-    moving: bool,
-}
-
-impl SpringState {
-    /// Stretches, and the bodies whose spins are known.
-    pub(crate) fn counts(&self) -> (usize, usize) {
-        (self.stretch.len(), self.spins.len())
-    }
-}
-
-/// Structural damping of a model in motion.
-#[derive(Debug)]
-pub(crate) struct Springs {
-    damping: StructuralDamping,
-    bodies: Vec<DampedBody>,
-    /// Whether the next step is to measure what they hold.
-    measure: bool,
-}
-
-impl Springs {
-    /// Number of damped bodies.
-    pub(crate) fn bodies(&self) -> usize {
-        self.bodies.len()
-    }
-}
 
 impl Dynamics {
     /// Sets the structural damping of elastic bodies, or none; replaces an earlier one. Its springs are relaxed where the

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::springs::SpringState;
 use stribeck_simd::field::Field;
 
 /// Everything that changes in time. Node fields are flat arrays, one value a slot (see [`crate::layout`]).
@@ -24,6 +23,60 @@ pub struct State {
     pub vy: Field,
     /// Springs of structural damping.
     pub springs: SpringState,
+}
+
+/// What changes in time of the springs and dashpots of structural damping.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SpringState {
+    /// How far the springs of each branch are stretched (x, y) [m], one value a slot, a step before the positions.
+    pub(crate) stretch: Vec<[Field; 2]>,
+    /// Angular velocity of each damped body when it was last measured [rad/s]; empty before.
+    pub(crate) spins: Vec<f64>,
+    /// Heat of the dashpots [J].
+    pub(crate) lost: Accumulated,
+    /// Energy of the springs when it was last measured [J].
+    pub(crate) held: f64,
+    /// Whether a step has been taken: springs are relaxed at the positions of the first.
+    pub(crate) moving: bool,
+}
+
+impl SpringState {
+    /// Stretches, and the bodies whose spins are known.
+    pub(crate) fn counts(&self) -> (usize, usize) {
+        (self.stretch.len(), self.spins.len())
+    }
+}
+
+/// Energy counted step by step [J].
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Accumulated {
+    /// Up to half a step after the positions' time.
+    pub(crate) total: f64,
+    /// Of the last step, half of which lies after the positions' time.
+    pub(crate) last: f64,
+}
+
+impl Accumulated {
+    pub(crate) fn add(&mut self, step: f64) {
+        self.total += step;
+        self.last = step;
+    }
+
+    /// Adds a step that is not counted: it is taken to be like the last one that was.
+    pub(crate) fn repeat(&mut self) {
+        self.add(self.last);
+    }
+
+    /// Adds a step that is counted, as every `every`-th is: in between it ran straight from the last one to this.
+    pub(crate) fn count(&mut self, step: f64, every: u64) {
+        self.total += 0.5 * (every - 1) as f64 * (step - self.last);
+        self.add(step);
+    }
+
+    /// Up to the time of the positions before the last step [J].
+    pub fn at_last_positions(&self) -> f64 {
+        self.total - 0.5 * self.last
+    }
 }
 
 /// What a force sees of the state: positions at `time`, velocities half a step before.

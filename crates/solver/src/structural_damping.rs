@@ -212,12 +212,7 @@ mod tests {
                     let fit = StructuralDamping::over_band(ratio, band, branches, vec![0])
                         .expect("a possible band");
                     let ripple = fit.ripple(ratio, band);
-                    println!(
-                        "ζ {ratio}, band of {width}, {branches}: ± {:.2} %, {:?}",
-                        100.0 * ripple,
-                        fit.branches()
-                    );
-                    assert!(ripple < before, "{ripple} after {before}");
+                    assert!(ripple < before, "{ripple} after {before}: {:?}", fit.branches());
                     before = ripple;
                 }
             }

@@ -108,7 +108,7 @@ fn refuses_structural_damping_of_nothing() {
         |damping: &str, more: &str| parse(&format!("(solver: (structural_damping: {damping}, {more}))"));
     assert!(scene("()", "").is_ok() && scene("(bodies: [rollers], branches: 3)", "").is_ok());
     for (damping, more, field, words) in [
-        ("(from_khz: 30.0)", "", "solver.structural_damping.to_khz", "too narrow"),
+        ("(from_khz: 30.0)", "", "solver.structural_damping.from_khz", "too narrow"),
         ("(bodies: [])", "", "solver.structural_damping.bodies", "nothing would be damped"),
         ("(bodies: [adapter, adapter])", "", "solver.structural_damping.bodies", "twice"),
         ("()", "stiffness_damping_ns: 5.0", "solver.stiffness_damping_ns", "exclude each other"),
