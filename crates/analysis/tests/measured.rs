@@ -189,7 +189,7 @@ fn of_file(file: &std::path::Path, part: &str, rate_hz: f64, rpm: f64) -> Findin
 
 #[test]
 fn peer_verdicts_on_the_records_of_hit_sm() {
-    // HIT-SM: a self-built rig of Harbin Institute of Technology, bearing 6205, defects over 2, 5 and 8° of arc.
+    // HIT-SM (2020), a self-built rig of Harbin Institute of Technology: bearing 6205, defects over 2, 5 and 8° of arc.
     let Some(folder) = measured("hit-sm") else { return };
     let mut hits = [0, 0];
     let (mut errors, mut covered) = (Vec::new(), 0);
@@ -235,7 +235,7 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
 
 #[test]
 fn peer_verdicts_on_records_of_case_western_reserve() {
-    // Case Western Reserve University Bearing Data Center, drive end, 12 kHz.
+    // Case Western Reserve University Bearing Data Center (2000), drive end, 12 kHz.
     let Some(folder) = measured("cwru") else { return };
     for (file, rpm, expected) in [
         ("106_1", 1772.0, vec!["BPFI"]),

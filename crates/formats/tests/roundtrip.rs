@@ -92,7 +92,7 @@ fn survives_files_damaged_at_any_byte() {
 
 #[test]
 fn peer_other_programs_read_what_is_written() {
-    // numpy 2, scipy.io 1.17, pyuff 2 and soundfile 0.13, where the interpreter in STRIBECK_PYTHON (or python3) has them.
+    // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8 and soundfile 0.14.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
     let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let folder = Scratch::create("formats-foreign");
     let expected = folder.path().join("expected.csv");
@@ -117,7 +117,7 @@ fn peer_other_programs_read_what_is_written() {
 
 #[test]
 fn peer_files_of_other_programs_are_read() {
-    // npTDMS 1 and scipy.io 1.17 write what the formats allow and we do not: other types, byte orders, structs, segments.
+    // npTDMS 1.13.0 and scipy.io 1.17.1 write what the formats allow and we do not: other types, byte orders, structs, segments.
     let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let folder = Scratch::create("formats-theirs");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/write_signals.py");

@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn peer_orders_are_those_that_the_data_center_prints() {
-        // Case Western Reserve University Bearing Data Center, defect frequencies, in multiples of the shaft; its 4.7135
+        // Case Western Reserve University Bearing Data Center (2000), defect frequencies, in multiples of the shaft; its 4.7135
         // and 3.9874 are twice the spin. Dimensions have four digits there, so the third decimal is shared.
         const SHARED: f64 = 2e-3;
         for (name, bpfi, bpfo, ftf, twice_bsf) in
