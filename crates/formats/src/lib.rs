@@ -18,6 +18,7 @@
 
 mod error;
 mod number;
+mod open;
 mod recording;
 
 pub mod csv;

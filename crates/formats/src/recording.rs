@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::number::Number;
-use crate::{Error, Result, csv, mat5, npy, npz, tdms, uff58, wav};
+use crate::{Error, Result, csv};
 
 /// Channels of one file.
 #[derive(Debug, Clone)]
@@ -65,49 +65,6 @@ pub(crate) struct Strided {
 const PIECE: usize = 1 << 18;
 
 impl Recording {
-    /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
-    ///
-    /// # Errors
-    /// [`Error::Unknown`] for a file of another kind, [`Error::Damaged`] for one that contradicts its format,
-    /// [`Error::Unsupported`], [`Error::Number`], [`Error::Io`].
-    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        let mut start = Vec::new();
-        let file = File::open(path).map_err(|e| Error::read(path, e))?;
-        file.take(4096).read_to_end(&mut start).map_err(|e| Error::read(path, e))?;
-        let begins = |magic: &[u8]| start.starts_with(magic);
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let unknown = |seen: &str| Err(Error::Unknown { path: path.to_owned(), seen: seen.to_owned() });
-        if start.is_empty() {
-            return unknown("it is empty");
-        }
-        if begins(npy::MAGIC) {
-            npy::open(path)
-        } else if begins(b"PK") {
-            npz::open(path)
-        } else if begins(b"RIFF") || begins(b"RF64") {
-            wav::open(path)
-        } else if begins(b"\x89HDF") || (begins(b"MATLAB 7.3") && start.len() > 512) {
-            unknown("it is HDF5 (in MATLAB: save it again with `-v7`)")
-        } else if mat5::recognise(&start) {
-            mat5::open(path)
-        } else if begins(b"PAR1") {
-            unknown("it is Parquet")
-        } else if begins(b"TDSm") {
-            tdms::open(path)
-        } else if begins(b"MDF") {
-            unknown("it is MDF")
-        } else if begins(b"fLaC") {
-            unknown("it is FLAC (`flac -d` makes a .wav of it)")
-        } else if uff58::recognise(&start) || matches!(extension.as_str(), "uff" | "unv" | "u58") {
-            uff58::open(path)
-        } else if start.contains(&0) {
-            unknown("its first bytes belong to no known format, and it is no text")
-        } else {
-            csv::open(path)
-        }
-    }
-
     /// The channel called `name`, or the only one whose name contains it.
     ///
     /// # Errors
