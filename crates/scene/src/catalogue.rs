@@ -30,8 +30,21 @@ pub struct CatalogueBearing {
     pub pitch_mm: f64,
     /// Contact angle [°].
     pub angle_deg: f64,
+    /// What it is fitted into; `None` where no source is known.
+    pub boundary: Option<Boundary>,
     /// Where the numbers are from.
     pub source: String,
+}
+
+/// Boundary dimensions of a bearing [mm].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Boundary {
+    /// Diameter of the bore.
+    pub bore_mm: f64,
+    /// Outside diameter.
+    pub outside_mm: f64,
+    /// Width of the outer ring.
+    pub width_mm: f64,
 }
 
 /// Frequencies of a defect over that of the shaft; inner ring turning, outer ring fixed, no slip.
@@ -47,7 +60,7 @@ pub struct DefectOrders {
     pub ftf: f64,
 }
 
-type Row = (&'static str, Element, Option<u32>, f64, f64, f64, &'static str);
+type Row = (&'static str, Element, Option<u32>, f64, f64, f64, Option<[f64; 3]>, &'static str);
 
 const CWRU: &str = "Case Western Reserve University Bearing Data Center, bearing information";
 const IMS: &str = "J. Lee et al., Bearing data set, IMS, University of Cincinnati, 2007";
@@ -56,46 +69,47 @@ const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
 
-/// Pairs of raceway diameters F and E [mm] of cylindrical roller bearings of E design, by designation.
-const CYLINDRICAL: [(&str, f64, f64); 21] = [
-    ("NU 202", 19.3, 30.3),
-    ("NU 203", 22.1, 35.1),
-    ("NU 204", 26.5, 41.5),
-    ("NU 205", 31.5, 46.5),
-    ("NU 206", 37.5, 55.5),
-    ("NU 207", 44.0, 64.0),
-    ("NU 208", 49.5, 71.5),
-    ("NU 209", 54.5, 76.5),
-    ("NU 210", 59.5, 81.5),
-    ("NU 211", 66.0, 90.0),
-    ("NU 212", 72.0, 100.0),
-    ("NU 303", 24.2, 40.2),
-    ("NU 304", 27.5, 45.5),
-    ("NU 305", 34.0, 54.0),
-    ("NU 306", 40.5, 62.5),
-    ("NU 307", 46.2, 70.2),
-    ("NU 308", 52.0, 80.0),
-    ("NU 309", 58.5, 88.5),
-    ("NU 310", 65.0, 97.0),
-    ("NU 311", 70.5, 106.5),
-    ("NU 312", 77.0, 115.0),
+/// Raceway diameters F and E [mm] of cylindrical roller bearings of E design, by designation, with bore, outside diameter and
+/// width [mm] by ISO 15.
+const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 21] = [
+    ("NU 202", 19.3, 30.3, [15.0, 35.0, 11.0]),
+    ("NU 203", 22.1, 35.1, [17.0, 40.0, 12.0]),
+    ("NU 204", 26.5, 41.5, [20.0, 47.0, 14.0]),
+    ("NU 205", 31.5, 46.5, [25.0, 52.0, 15.0]),
+    ("NU 206", 37.5, 55.5, [30.0, 62.0, 16.0]),
+    ("NU 207", 44.0, 64.0, [35.0, 72.0, 17.0]),
+    ("NU 208", 49.5, 71.5, [40.0, 80.0, 18.0]),
+    ("NU 209", 54.5, 76.5, [45.0, 85.0, 19.0]),
+    ("NU 210", 59.5, 81.5, [50.0, 90.0, 20.0]),
+    ("NU 211", 66.0, 90.0, [55.0, 100.0, 21.0]),
+    ("NU 212", 72.0, 100.0, [60.0, 110.0, 22.0]),
+    ("NU 303", 24.2, 40.2, [17.0, 47.0, 14.0]),
+    ("NU 304", 27.5, 45.5, [20.0, 52.0, 15.0]),
+    ("NU 305", 34.0, 54.0, [25.0, 62.0, 17.0]),
+    ("NU 306", 40.5, 62.5, [30.0, 72.0, 19.0]),
+    ("NU 307", 46.2, 70.2, [35.0, 80.0, 21.0]),
+    ("NU 308", 52.0, 80.0, [40.0, 90.0, 23.0]),
+    ("NU 309", 58.5, 88.5, [45.0, 100.0, 25.0]),
+    ("NU 310", 65.0, 97.0, [50.0, 110.0, 27.0]),
+    ("NU 311", 70.5, 106.5, [55.0, 120.0, 29.0]),
+    ("NU 312", 77.0, 115.0, [60.0, 130.0, 31.0]),
 ];
 
 const OTHERS: [Row; 7] = [
-    ("6203", Element::Ball, Some(8), 6.746, 28.5, 0.0, CWRU),
-    ("6205", Element::Ball, Some(9), 7.94, 39.04, 0.0, CWRU),
-    ("6206", Element::Ball, Some(9), 9.525, 46.0, 0.0, BOUNDARY),
-    ("6209", Element::Ball, None, 12.7, 65.0, 0.0, BOUNDARY),
-    ("6305", Element::Ball, Some(7), 11.509, 43.5, 0.0, BOUNDARY),
-    ("ZA-2115", Element::Roller, Some(16), 8.407, 71.501, 15.17, IMS),
-    ("UER204", Element::Ball, Some(8), 7.92, 34.55, 0.0, XJTU),
+    ("6203", Element::Ball, Some(8), 6.746, 28.5, 0.0, Some([17.0, 40.0, 12.0]), CWRU),
+    ("6205", Element::Ball, Some(9), 7.94, 39.04, 0.0, Some([25.0, 52.0, 15.0]), CWRU),
+    ("6206", Element::Ball, Some(9), 9.525, 46.0, 0.0, Some([30.0, 62.0, 16.0]), BOUNDARY),
+    ("6209", Element::Ball, None, 12.7, 65.0, 0.0, Some([45.0, 85.0, 19.0]), BOUNDARY),
+    ("6305", Element::Ball, Some(7), 11.509, 43.5, 0.0, Some([25.0, 62.0, 17.0]), BOUNDARY),
+    ("ZA-2115", Element::Roller, Some(16), 8.407, 71.501, 15.17, None, IMS),
+    ("UER204", Element::Ball, Some(8), 7.92, 34.55, 0.0, Some([20.0, 47.0, 17.0]), XJTU),
 ];
 
 /// All bearings that have a name here.
 pub fn all() -> Vec<CatalogueBearing> {
-    let cylindrical = CYLINDRICAL
-        .iter()
-        .map(|&(name, f, e)| (name, Element::Roller, None, 0.5 * (e - f), 0.5 * (e + f), 0.0, E_TYPE));
+    let cylindrical = CYLINDRICAL.iter().map(|&(name, f, e, boundary)| {
+        (name, Element::Roller, None, 0.5 * (e - f), 0.5 * (e + f), 0.0, Some(boundary), E_TYPE)
+    });
     OTHERS.iter().copied().chain(cylindrical).map(CatalogueBearing::of).collect()
 }
 
@@ -123,6 +137,7 @@ impl CatalogueBearing {
             diameter_mm: f64::NAN,
             pitch_mm: f64::NAN,
             angle_deg: 0.0,
+            boundary: None,
             source: "the user".to_owned(),
         });
         for part in parts {
@@ -181,9 +196,11 @@ impl CatalogueBearing {
         })
     }
 
-    fn of((name, element, elements, diameter_mm, pitch_mm, angle_deg, source): Row) -> Self {
+    fn of((name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source): Row) -> Self {
         let (name, source) = (name.to_owned(), source.to_owned());
-        Self { name, element, elements, diameter_mm, pitch_mm, angle_deg, source }
+        let boundary =
+            boundary.map(|[bore_mm, outside_mm, width_mm]| Boundary { bore_mm, outside_mm, width_mm });
+        Self { name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source }
     }
 }
 

@@ -58,6 +58,7 @@ pub mod kinematics;
 pub mod lubrication;
 pub mod material;
 pub mod mesh_file;
+mod point_contact;
 pub mod run_dir;
 pub mod run_info;
 pub mod scene;

@@ -38,6 +38,9 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BearingScene {
+    /// Designation; a scene that says `bearing: "NU 205"` has all numbers from the catalogue
+    /// ([`catalogue`](crate::catalogue)), and one that gives them may say here what it is.
+    pub designation: String,
     /// Diameter of the outer raceway [mm].
     pub outer_race_diameter_mm: f64,
     /// Radial thickness of the outer ring [mm].
@@ -440,6 +443,7 @@ impl Default for Scene {
 impl Default for BearingScene {
     fn default() -> Self {
         Self {
+            designation: String::new(),
             outer_race_diameter_mm: 200.0,
             outer_ring_thickness_mm: 10.0,
             inner_race_diameter_mm: 163.96,

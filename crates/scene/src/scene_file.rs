@@ -12,6 +12,7 @@ mod foreign;
 mod geometry;
 mod limits;
 mod load;
+mod named;
 mod origin;
 mod outline;
 mod overrides;
@@ -27,6 +28,8 @@ use crate::scene::Scene;
 use check::check;
 use load::load;
 use origin::Origin;
+use outline::Outline;
+use problem::place_in_file;
 pub use problem::{Place, Problem, SceneError};
 
 impl Scene {
@@ -87,10 +90,27 @@ impl Scene {
 fn compose<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Scene, SceneError> {
     // Some editors put a byte order mark in front; RON knows none.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let scene = syntax::parse(text, file)?;
+    let outline = Outline::of(text);
+    let in_file = named::take(text, &outline);
+    let mut scene = syntax::parse(in_file.as_ref().map_or(text, |(blanked, _)| blanked), file)?;
+    if let Some((_, name)) = in_file {
+        let mut given = named::written(text);
+        given.extend(named::written_by(overrides));
+        named::put(&mut scene, &name, &given).map_err(|why| {
+            let place = outline.get("bearing").map(|entry| place_in_file(file, text, entry.value.clone()));
+            unknown_bearing(why, place.unwrap_or(Place::Unwritten { file: file.to_owned() }))
+        })?;
+    }
     let (scene, set) = overrides::apply(scene, overrides)?;
     check(&scene, &Origin::in_file(file, text, set))?;
     Ok(scene)
+}
+
+/// A designation that gives no bearing.
+pub(crate) fn unknown_bearing(why: String, place: Place) -> Problem {
+    let mut problem = Problem::new(why, place);
+    "bearing".clone_into(&mut problem.field);
+    problem
 }
 
 #[cfg(test)]

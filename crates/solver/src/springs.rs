@@ -14,9 +14,13 @@ use crate::{
 };
 use stribeck_simd::{field::Field, lanes::LANES};
 
-/// Steps from one measurement of spins and losses to the next. Bodies turn at a steady pace, and losses follow the squares of
-/// stretches, which dashpots keep from changing fast.
+/// Steps from one measurement of spins to the next, bodies turn at a steady pace; and most steps from one measurement of
+/// losses to the next.
 const MEASURE_EVERY: u64 = 32;
+
+/// Measurements of losses in the shortest relaxation time τ. Dashpots lose most to vibrations of 1/(2πτ), whose loss swings
+/// twice a cycle: once in πτ.
+const MEASUREMENTS: f64 = 6.0;
 
 impl Dynamics {
     /// Sets the structural damping of elastic bodies, or none; replaces an earlier one. Its springs are relaxed where the
@@ -129,9 +133,16 @@ impl Dynamics {
         }
     }
 
+    /// Steps from one measurement of losses to the next.
+    fn losses_every(&self) -> u64 {
+        let branches = self.structural_damping().map_or(&[][..], |damping| damping.branches());
+        let shortest = branches.iter().map(|b| b.relaxation_time).fold(f64::INFINITY, f64::min);
+        ((shortest / (MEASUREMENTS * self.time_step())) as u64).clamp(1, MEASURE_EVERY)
+    }
+
     /// What the branches do in the step at hand.
     pub(crate) fn branch_steps(&mut self) -> BranchSteps {
-        let (due, dt) = (self.state.step.is_multiple_of(MEASURE_EVERY), self.time_step());
+        let (due, dt) = (self.state.step.is_multiple_of(self.losses_every()), self.time_step());
         let Some(springs) = &mut self.springs else { return BranchSteps::default() };
         let measure = std::mem::take(&mut springs.measure) || due;
         let moving = std::mem::replace(&mut self.state.springs.moving, true);
@@ -140,7 +151,8 @@ impl Dynamics {
 
     /// Adds what dashpots lose in a step, 2E/τ, which a step that measures has found anew.
     pub(crate) fn count_structural_loss(&mut self, measured: bool, energies: SpringEnergies) {
-        let (due, dt) = (self.state.step.is_multiple_of(MEASURE_EVERY), self.time_step());
+        let (every, dt) = (self.losses_every(), self.time_step());
+        let due = self.state.step.is_multiple_of(every);
         let Some(springs) = &self.springs else { return };
         let SpringState { lost, held, .. } = &mut self.state.springs;
         if measured {
@@ -149,7 +161,7 @@ impl Dynamics {
         if due {
             let branches = energies.iter().zip(springs.damping.branches());
             let power: f64 = branches.map(|(energy, b)| 2.0 * energy / b.relaxation_time).sum();
-            lost.count(dt * power, MEASURE_EVERY);
+            lost.count(dt * power, every);
         } else {
             lost.repeat();
         }

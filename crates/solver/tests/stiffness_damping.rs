@@ -4,9 +4,9 @@ mod common;
 use std::f64::consts::{PI, TAU};
 
 use common::*;
-use stribeck_mesh::{Annulus, Disc, Mesh};
-use stribeck_solver::{Dynamics, Model, Motion, critical::damped_time_step};
-use stribeck_testing::{Noise, assert_close, ledger};
+use stribeck_mesh::Disc;
+use stribeck_solver::{Dynamics, Motion, critical::damped_time_step};
+use stribeck_testing::{assert_close, ledger};
 
 /// Sets the damping [s] and `factor` of the critical time step under it.
 fn damp(d: &mut Dynamics, beta: f64, factor: f64) {
@@ -20,44 +20,6 @@ fn damp(d: &mut Dynamics, beta: f64, factor: f64) {
 fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
     let now = step_and_balance(d, &mut []);
     [now.mechanical(), d.heat.at_last_positions()]
-}
-
-/// Rings and discs that are large enough for several tiles, strips of both kinds, triangles and congruent bodies.
-fn workshop() -> Model {
-    let mut mesh = Mesh::new();
-    let ring = Annulus {
-        inner_radius: 0.1,
-        outer_radius: 0.11,
-        facets: 1200,
-        layers: 10,
-        start_angle: 0.0,
-        groove: None,
-    };
-    let ring = mesh.add("ring", &ring.part().expect("a ring"));
-    for i in 0..3 {
-        let disc = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
-        mesh.add(format!("disc {i}"), &disc.translated(0.03 * i as f64, 0.0));
-    }
-    let mut block = rectangle(0.02, 0.01, 9, 5);
-    distort(&mut block, 9, 5, 3e-4);
-    mesh.add("block", &block.translated(0.0, 0.2));
-    let mut model = Model::new(mesh, steel(), THICKNESS).expect("a positive thickness");
-    let nodes = model.mesh.bodies[ring.body].nodes.clone();
-    // The bore of the ring is driven.
-    for n in nodes {
-        if model.mesh.x[n].hypot(model.mesh.y[n]) < 0.1001 {
-            model.motion[n] = Motion::Rotating { centre: [0.0; 2], rate: 50.0 };
-        }
-    }
-    model
-}
-
-/// Gives every node that may move a velocity up to `speed` [m/s].
-fn shake(d: &mut Dynamics, speed: f64) {
-    let mut noise = Noise::new(6);
-    for n in massive(d) {
-        (d.state.vx[n], d.state.vy[n]) = (speed * noise.uniform(), speed * noise.uniform());
-    }
 }
 
 /// Source: THEORY §2.7.

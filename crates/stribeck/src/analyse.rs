@@ -144,6 +144,7 @@ fn of_scene(scene: &Scene) -> CatalogueBearing {
         diameter_mm: b.roller_diameter_mm,
         pitch_mm: 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm),
         angle_deg: 0.0,
+        boundary: None,
         source: "scene.ron of the run".to_owned(),
     }
 }
@@ -160,8 +161,12 @@ fn print(analysis: &Analysis) {
         let measured = f.measured_hz.map_or("        –".to_owned(), |hz| format!("{hz:9.3}"));
         let level = f.level_db.map_or("    –".to_owned(), |db| format!("{db:5.1}"));
         println!(
-            "  {:4} expected {:9.3} Hz, measured {measured} Hz, {level} dB, {} of 5 harmonics, false alarm {:.0e}: {}",
-            f.name, f.expected_hz, f.harmonics, f.p_value, f.reason
+            "  {:4} expected {:9.3} Hz, measured {measured} Hz, {level} dB, {} of 5 harmonics, false alarm {}: {}",
+            f.name,
+            f.expected_hz,
+            f.harmonics,
+            f.false_alarm(),
+            f.reason
         );
     }
     for note in &findings.notes {

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, said, says};
 
 /// A very coarse bearing, from rest, for half a millisecond.
 const COARSE: [&str; 8] = [
@@ -37,16 +37,6 @@ fn run(desk: &Scratch, words: &[&str]) -> Output {
 fn simulate(desk: &Scratch, words: &[&str]) -> Output {
     let mut command = stribeck(desk, &COARSE);
     command.args(words).output().expect("it starts")
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
-}
-
-#[track_caller]
-fn says(output: &Output, words: &[&str]) {
-    let said = said(output);
-    words.iter().for_each(|word| assert!(said.contains(word), "`{word}` is missing in: {said}"));
 }
 
 #[track_caller]

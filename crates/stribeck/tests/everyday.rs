@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, said, says};
 
 /// A very coarse bearing, from rest.
 const COARSE: [&str; 6] = [
@@ -103,16 +103,6 @@ impl Desk {
 fn ctrl_c(child: &Child) {
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill is there");
     assert!(sent.success());
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
-}
-
-#[track_caller]
-fn says(output: &Output, words: &[&str]) {
-    let said = said(output);
-    words.iter().for_each(|word| assert!(said.contains(word), "`{word}` is missing in: {said}"));
 }
 
 #[test]

@@ -4,14 +4,10 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use stribeck_formats::{Channel, Recording, mat5};
-use stribeck_testing::{Noise, Scratch};
+use stribeck_testing::{Noise, Scratch, said};
 
 fn stribeck(folder: &Path, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_stribeck")).current_dir(folder).args(words).output().expect("it starts")
-}
-
-fn said(output: &Output) -> String {
-    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
 /// Knocks of an outer raceway of a 6205 at 1200 rpm.

@@ -1,14 +1,16 @@
 //! What the tests of several crates share: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers, temporary
-//! folders.
+//! folders, and what a program said.
 //!
 //! It depends on no other crate of the workspace, so that all can have it as a dev-dependency. What needs the solver
 //! stands in `tests/common` of the crate that uses it.
 
 pub mod ledger;
 mod noise;
+mod said;
 mod scratch;
 
 pub use noise::Noise;
+pub use said::{said, says};
 pub use scratch::Scratch;
 
 /// Fails unless `ours` is within `tolerance` (relative) of `theirs`.

@@ -273,6 +273,11 @@ impl Family {
         self.p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
     }
 
+    /// The probability of a false alarm in words. What lies far beyond any test of the noise is a bound, not a number.
+    pub fn false_alarm(&self) -> String {
+        if self.p_value < 1e-9 { "< 1e-9".to_owned() } else { format!("{:.1e}", self.p_value) }
+    }
+
     /// Whether it is more than noise and as deep as knocks, whoever makes them.
     fn knocks(&self) -> bool {
         self.p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)

@@ -77,7 +77,7 @@ fn families(families: &[Family]) -> Markup {
                     td { (f.harmonics) }
                     td { (f.level_db.map_or("–".to_owned(), |db| format!("{db:.1}"))) }
                     td { (f.depth.map_or("–".to_owned(), |d| format!("{d:.2}"))) }
-                    td { (format!("{:.1e}", f.p_value)) }
+                    td { (f.false_alarm()) }
                     td { (f.band_hz.map_or("–".to_owned(), |(low, high)| format!("{low:.0}–{high:.0}"))) }
                     td { @if f.claimed { strong { "yes" } } @else { "no" } }
                     td { (f.reason) }

@@ -9,7 +9,7 @@ use super::problem::{Place, Problem, SceneError};
 use super::schema::Schema;
 use super::syntax::deserialize;
 use super::wording::{list, shown};
-use super::{foreign, suggest};
+use super::{foreign, named, suggest};
 use crate::scene::Scene;
 
 /// Applies `arguments` in order; the result is not yet checked for meaning.
@@ -19,15 +19,21 @@ pub(crate) fn apply<S: AsRef<str>>(
 ) -> Result<(Scene, Vec<Override>), SceneError> {
     let schema = Schema::new();
     let mut set = Vec::with_capacity(arguments.len());
+    let given = named::written_by(arguments);
     for argument in arguments {
-        let (next, by) = apply_one(&scene, argument.as_ref(), &schema)?;
+        let (next, by) = apply_one(&scene, argument.as_ref(), &schema, &given)?;
         scene = next;
         set.push(by);
     }
     Ok((scene, set))
 }
 
-fn apply_one(scene: &Scene, argument: &str, schema: &Schema) -> Result<(Scene, Override), Box<Problem>> {
+fn apply_one(
+    scene: &Scene,
+    argument: &str,
+    schema: &Schema,
+    given: &[String],
+) -> Result<(Scene, Override), Box<Problem>> {
     let whole = command_line(argument, 0, argument.len());
     let Some((path, value)) = argument.split_once('=') else {
         let example = "write `--set field=value`, for example `--set mesh.size_mm=1.0`";
@@ -39,6 +45,16 @@ fn apply_one(scene: &Scene, argument: &str, schema: &Schema) -> Result<(Scene, O
     let by = Override { path: path.to_owned(), argument: argument.to_owned() };
     known(path, argument, schema, &outline)?;
 
+    if path == "bearing"
+        && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
+    {
+        // Another bearing than the file's: what surrounds it follows, but for what the command line says.
+        let mut scene = scene.clone();
+        return match named::put(&mut scene, &name, given) {
+            Ok(()) => Ok((scene, by)),
+            Err(why) => Err(Box::new(super::unknown_bearing(why, by.place_of_value()))),
+        };
+    }
     let value = quoted(value.trim(), schema.default_of(path));
     if !is_single_value(&value) {
         return Err(incomplete(path, &value, schema, by.place_of_value()));
@@ -48,6 +64,12 @@ fn apply_one(scene: &Scene, argument: &str, schema: &Schema) -> Result<(Scene, O
         Ok(scene) => Ok((scene, by)),
         Err(fault) => Err(Box::new(fault.problem(by.place_of_value()))),
     }
+}
+
+/// A designation without its quotes, which shells take away.
+fn bare_designation(value: &str) -> Option<String> {
+    let value = value.trim();
+    (!value.is_empty() && !value.contains(['(', ')', '"'])).then(|| value.to_owned())
 }
 
 /// Refuses a value that is not one value: a bracket is missing, or something follows.

@@ -233,6 +233,8 @@ fn hint(text: &str, at: usize) -> &'static str {
         "names of fields are written without quotes: `name: value`"
     } else if rest.starts_with('#') {
         "`//` begins a comment"
+    } else if rest.starts_with('(') && before.ends_with("Some(") {
+        "leave `Some` out: `name: ( … )`"
     } else {
         "look for a missing comma, bracket or quote near the mark"
     }

@@ -408,3 +408,65 @@ proptest! {
         prop_assert_eq!(parse(&scene.to_ron()).expect("in range"), scene);
     }
 }
+
+#[test]
+fn example_a_bearing_by_its_name() {
+    let scene = Scene::parse("(bearing: \"NU 205\", operation: (speed_rpm: 1500))", "mine").unwrap();
+    let b = &scene.bearing;
+    assert_eq!((scene.name.as_str(), b.designation.as_str(), b.rollers), ("nu-205", "NU 205", 13));
+    assert_eq!((b.inner_race_diameter_mm, b.outer_race_diameter_mm), (31.5, 46.5));
+    // Bore 25 and outside diameter 52.
+    assert_eq!((b.inner_ring_thickness_mm, b.outer_ring_thickness_mm), (3.25, 2.75));
+    assert_eq!(scene.operation.speed_rpm, 1500.0);
+    // Facets of the paper's number.
+    assert!((scene.mesh.size_mm / b.roller_diameter_mm - 0.5 / 18.0).abs() < 1e-4);
+    // What the file or the command line says stays; the complete scene reads back to itself.
+    let text = "(bearing: \"NU205, elements=12\", cage: (pocket_clearance_um: 80), mesh: (size_mm: 0.4))";
+    let own = Scene::parse(text, "mine").unwrap();
+    assert_eq!((own.bearing.rollers, own.mesh.size_mm), (12, 0.4));
+    let cage = own.cage.as_ref().unwrap();
+    assert!(cage.pocket_clearance_um == 80.0 && cage.outer_diameter_mm < 46.5, "{cage:?}");
+    assert_eq!(Scene::parse(&own.to_ron(), "complete").unwrap(), own);
+    let set = ["operation.load_n=1000", "bearing=NU 205"];
+    let other = Scene::default().with_overrides(&set).unwrap();
+    assert_eq!((other.operation.load_n, other.bearing.rollers), (1000.0, 13));
+}
+
+#[test]
+fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
+    let mut refused = Vec::new();
+    for bearing in crate::catalogue::all() {
+        let text = format!("(bearing: \"{}\")", bearing.name);
+        match Scene::parse(&text, "mine") {
+            Ok(scene) => assert_eq!(scene.bearing.designation, bearing.name),
+            Err(why) => {
+                assert!(why.to_string().contains("contact angle"), "{text}: {why}");
+                refused.push(bearing.name);
+            }
+        }
+    }
+    assert_eq!(refused, ["ZA-2115"]);
+}
+
+#[test]
+fn invariant_balls_are_cylinders_of_their_own_stiffness() {
+    use crate::{geometry::Geometry, point_contact, static_load::RigidRings};
+    let scene = Scene::parse("(bearing: \"6205\", operation: (load_n: 2000))", "mine").unwrap();
+    let g = Geometry::of(&scene);
+    let load = 4.37 * 2000.0 / 9.0;
+    let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
+    let ball = |race| point_contact::approach(g.roller_radius, race, 1.04 * g.roller_radius, load, modulus);
+    let ratio =
+        RigidRings::new(&g).approach_m(load) / (ball(g.inner_race_radius) + ball(-g.outer_race_radius));
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+}
+
+#[test]
+fn refuses_a_bearing_that_nobody_knows() {
+    for set in ["bearing=NU 999", "bearing=\"NU 999\""] {
+        let why = Scene::default().with_overrides(&[set]).unwrap_err();
+        assert!(why.to_string().contains("no bearing `NU 999`"), "{why}");
+    }
+    let why = Scene::parse("(\n  bearing: \"NU 999\",\n)", "mine").unwrap_err();
+    assert!(why.to_string().contains("mine:2:12"), "{why}");
+}

@@ -1,0 +1,203 @@
+//! `bearing: "NU 205"`: all numbers of a bearing from its designation, and of all that surrounds it unless the file says
+//! otherwise.
+//!
+//! What no catalogue prints follows the paper's bearing in proportion: the mesh has as many facets, contact the same pressure.
+
+use std::f64::consts::PI;
+
+use super::outline::Outline;
+use crate::catalogue::{Boundary, CatalogueBearing, Element};
+use crate::geometry::Geometry;
+use crate::point_contact;
+use crate::scene::{BearingScene, CageScene, DefectScene, FramesScene, GradingScene, Scene};
+use crate::static_load::RigidRings;
+
+/// Circumference of the pitch circle over the rolling elements side by side, where their number is not known: cages of E
+/// design leave about a quarter.
+const SPACING: f64 = 1.25;
+
+/// Length of a roller over the width of its ring, between flanges.
+const ROLLER_LENGTH: f64 = 0.6;
+
+/// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
+const STRIBECK: f64 = 4.37;
+
+/// The text with a designation in the place of its bearing's numbers blanked out, so that all other places stay, and the
+/// designation.
+pub(crate) fn take(text: &str, outline: &Outline) -> Option<(String, String)> {
+    let value = outline.get("bearing")?.value.clone();
+    let name = designation(&text[value.clone()])?;
+    let blank = format!("{:<1$}", "()", value.len());
+    Some((format!("{}{blank}{}", &text[..value.start], &text[value.end..]), name))
+}
+
+/// Paths of all fields that a text gives.
+pub(crate) fn written(text: &str) -> Vec<String> {
+    Outline::of(text).entries.into_iter().map(|entry| entry.path).collect()
+}
+
+/// Paths of all fields that arguments `field=value` give.
+pub(crate) fn written_by<S: AsRef<str>>(arguments: &[S]) -> Vec<String> {
+    let fields = |argument: &S| {
+        let (path, value) = argument.as_ref().split_once('=')?;
+        let path = path.trim().to_owned();
+        let inside: Vec<String> = written(value).iter().map(|inner| format!("{path}.{inner}")).collect();
+        Some(std::iter::once(path).chain(inside).collect::<Vec<_>>())
+    };
+    arguments.iter().filter_map(fields).flatten().collect()
+}
+
+/// What stands between the quotes of a text.
+pub(crate) fn designation(value: &str) -> Option<String> {
+    let inner = value.trim().strip_prefix('"')?.strip_suffix('"')?;
+    (!inner.contains('"')).then(|| inner.to_owned())
+}
+
+/// Puts the bearing into the scene, and around it what the user did not write; `given` has the paths of what was.
+///
+/// # Errors
+/// Words on what is not known of the bearing, or why a plane model has no such bearing.
+pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
+    let given = |path: &str| given.iter().any(|written| written == path);
+    let known = CatalogueBearing::parse(name)?;
+    let bearing = of(&known)?;
+    let paper = Scene::default();
+    let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
+    let size = bearing.roller_diameter_mm / paper.bearing.roller_diameter_mm;
+    let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
+    let across = outside(&bearing) / outside(&paper.bearing);
+    if !given("name") {
+        scene.name = known.name.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+    }
+    let follow = |path: &str, field: &mut f64, value: f64| {
+        if !given(path) {
+            *field = tidy(value);
+        }
+    };
+    if let Some(cage) = &mut scene.cage {
+        let roller = bearing.roller_diameter_mm;
+        follow("cage.outer_diameter_mm", &mut cage.outer_diameter_mm, known.pitch_mm + 0.4 * roller);
+        follow("cage.thickness_mm", &mut cage.thickness_mm, 0.4 * roller);
+        let room = size * CageScene::default().pocket_clearance_um;
+        follow("cage.pocket_clearance_um", &mut cage.pocket_clearance_um, room);
+    }
+    follow("adapter.width_mm", &mut scene.adapter.width_mm, across * paper.adapter.width_mm);
+    follow("adapter.height_mm", &mut scene.adapter.height_mm, across * paper.adapter.height_mm);
+    if let Some(defect) = &mut scene.defect {
+        let of_paper = DefectScene::default();
+        follow("defect.length_mm", &mut defect.length_mm, size * of_paper.length_mm);
+        follow("defect.depth_mm", &mut defect.depth_mm, size * of_paper.depth_mm);
+    }
+    follow("mesh.size_mm", &mut scene.mesh.size_mm, size * facets * paper.mesh.size_mm);
+    if let Some(grading) = &mut scene.mesh.grading {
+        follow("mesh.grading.coarse_mm", &mut grading.coarse_mm, size * GradingScene::default().coarse_mm);
+    }
+    // The same pressure where rollers carry the same share.
+    let area = |b: &BearingScene| b.rollers as f64 * b.roller_diameter_mm * b.thickness_mm;
+    let load = paper.operation.load_n * area(&bearing) / area(&paper.bearing);
+    follow("operation.load_n", &mut scene.operation.load_n, load);
+    if let Some(frames) = &mut scene.output.frames {
+        let of_paper = FramesScene::default();
+        follow("output.frames.half_width_mm", &mut frames.half_width_mm, size * of_paper.half_width_mm);
+        // Roller 1 begins as far before the defect in parts of the pitch, which passes with each roller.
+        let passing = |b: &BearingScene, rpm: f64| {
+            let pitch = 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm);
+            rpm.abs().max(1e-3) * b.rollers as f64 * b.inner_race_diameter_mm / pitch
+        };
+        let slower =
+            passing(&paper.bearing, paper.operation.speed_rpm) / passing(&bearing, scene.operation.speed_rpm);
+        follow("output.frames.from_ms", &mut frames.from_ms, slower * of_paper.from_ms);
+        let to = (slower * of_paper.to_ms).min(scene.solver.duration_ms);
+        follow("output.frames.to_ms", &mut frames.to_ms, to);
+        let every = (slower * of_paper.every_us).max(scene.output.interval_us);
+        follow("output.frames.every_us", &mut frames.every_us, every);
+    }
+    scene.bearing = bearing;
+    if known.element == Element::Ball {
+        // By the load, which was chosen for cylinders as long as the balls' ring allows, if nobody gave one.
+        scene.bearing.thickness_mm = tidy(thickness_of_balls(scene));
+    }
+    Ok(())
+}
+
+/// Rings and rolling elements of a bearing in the catalogue.
+fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
+    let name = &known.name;
+    if known.angle_deg != 0.0 {
+        return Err(format!(
+            "`{name}` has a contact angle of {}°, and a plane model has none: its rows share the load along the shaft, too",
+            known.angle_deg
+        ));
+    }
+    let Some(Boundary { bore_mm, outside_mm, width_mm }) = known.boundary else {
+        return Err(format!("the rings of `{name}` are not known: give the bearing by its fields"));
+    };
+    let (ball, pitch) = (known.diameter_mm, known.pitch_mm);
+    let clearance = clearance_mm(known.element, bore_mm);
+    // Rings are as far apart as the catalogue says; the clearance is taken from the rollers, or from the groove of the outer
+    // ring.
+    let (roller, outer) = match known.element {
+        Element::Roller => (ball - 0.5 * clearance, pitch + ball),
+        Element::Ball => (ball, pitch + ball + clearance),
+    };
+    let inner = pitch - ball;
+    let count = known.elements.map_or((PI * pitch / (SPACING * ball)).round() as usize, |n| n as usize);
+    Ok(BearingScene {
+        designation: name.clone(),
+        outer_race_diameter_mm: tidy(outer),
+        outer_ring_thickness_mm: tidy(0.5 * (outside_mm - outer)),
+        inner_race_diameter_mm: tidy(inner),
+        inner_ring_thickness_mm: tidy(0.5 * (inner - bore_mm)),
+        rollers: count,
+        roller_diameter_mm: tidy(roller),
+        thickness_mm: tidy(ROLLER_LENGTH * width_mm),
+        // As far before the middle of its load zone, in parts of the pitch, as the paper's.
+        first_roller_deg: tidy(90.0 + 4.0 * 24.0 / count as f64),
+    })
+}
+
+/// Diametral clearance [mm]: the middle of the normal group (ISO 5753-1).
+fn clearance_mm(element: Element, bore_mm: f64) -> f64 {
+    let um = match element {
+        Element::Ball if bore_mm <= 18.0 => 10.5,
+        Element::Ball if bore_mm <= 30.0 => 12.5,
+        Element::Ball => 14.5,
+        Element::Roller if bore_mm <= 30.0 => 32.5,
+        Element::Roller if bore_mm <= 40.0 => 37.5,
+        Element::Roller if bore_mm <= 50.0 => 45.0,
+        Element::Roller => 55.0,
+    };
+    1e-3 * um
+}
+
+/// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would (THEORY §6.2).
+fn thickness_of_balls(scene: &Scene) -> f64 {
+    let mut g = Geometry::of(scene);
+    let load = STRIBECK * g.load / g.rollers as f64;
+    let groove = 2.0 * point_contact::CONFORMITY * g.roller_radius;
+    let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
+    let wanted: f64 = [g.inner_race_radius, -g.outer_race_radius]
+        .iter()
+        .map(|&race| point_contact::approach(g.roller_radius, race, groove, load, modulus))
+        .sum();
+    // The approach falls as the length grows.
+    let (mut short, mut long): (f64, f64) = (1e-3 * g.roller_radius, 1e3 * g.roller_radius);
+    for _ in 0..60 {
+        g.thickness = (short * long).sqrt();
+        if RigidRings::new(&g).approach_m(load) > wanted {
+            short = g.thickness;
+        } else {
+            long = g.thickness;
+        }
+    }
+    1e3 * g.thickness
+}
+
+/// Four digits: what a person would write into a scene.
+fn tidy(number: f64) -> f64 {
+    if number == 0.0 || !number.is_finite() {
+        return number;
+    }
+    let digits = 10_f64.powi(5 - number.abs().log10().ceil() as i32);
+    (number * digits).round() / digits
+}

@@ -1,0 +1,15 @@
+//! What a program said on its way.
+
+use std::process::Output;
+
+/// What it wrote to standard output, then what it wrote to standard error.
+pub fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// Fails unless it said all of these words.
+#[track_caller]
+pub fn says(output: &Output, words: &[&str]) {
+    let said = said(output);
+    words.iter().for_each(|word| assert!(said.contains(word), "`{word}` is missing in: {said}"));
+}
