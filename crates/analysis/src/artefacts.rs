@@ -86,15 +86,12 @@ pub fn ledger(
     Ok(all)
 }
 
-/// Predicted lines of the defect: BPFO and its multiples.
+/// Predicted lines of the defect: BPFO or BPFI and its multiples.
 pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<PredictedLine> {
-    if prediction.defect.is_none() {
-        return Vec::new();
-    }
-    let bpfo = prediction.kinematics.bpfo_hz;
-    let mut lines = tones::harmonics(&[("BPFO".to_owned(), bpfo)], DEFECT_HARMONICS, f64::INFINITY);
+    let Some((name, hz)) = prediction.family else { return Vec::new() };
+    let mut lines = tones::harmonics(&[(name.to_owned(), hz)], DEFECT_HARMONICS, f64::INFINITY);
     for line in &mut lines {
-        line.from_motion_hz = motion.bpfo_hz.map(|hz| hz * line.harmonic as f64);
+        line.from_motion_hz = prediction.moved(motion.bpfo_hz).map(|hz| hz * line.harmonic as f64);
     }
     lines
 }
@@ -150,7 +147,8 @@ fn defect(
 ) -> Result<Vec<Artefact>, Error> {
     let lines = defect_lines(prediction, motion);
     let resolution = density.resolution();
-    let split = shows_family(density, prediction.kinematics.bpfo_hz);
+    let fundamental = prediction.family.map_or(0.0, |(_, hz)| hz);
+    let split = shows_family(density, fundamental);
     let tones = if split { tones::measure(sensor, &lines, density)? } else { Vec::new() };
     let entry = |line: &PredictedLine| {
         let tone = tones.iter().find(|t| t.harmonic == line.harmonic);
@@ -158,7 +156,7 @@ fn defect(
             None => format!(
                 "a record of {:.3} s holds {:.1} of its periods, ten are needed",
                 resolution.record_s,
-                resolution.record_s * prediction.kinematics.bpfo_hz
+                resolution.record_s * fundamental
             ),
             Some(tone) if tone.measured_hz.is_some() => "physics: rollers pass the defect".to_owned(),
             Some(_) => {
@@ -179,8 +177,9 @@ fn defect(
     Ok(lines.iter().map(entry).collect())
 }
 
-/// All multiples of BPFO, where a spectrum shows them: knocks make a comb over the whole spectrum.
+/// All multiples of the defect's frequency, where a spectrum shows them: knocks make a comb over the whole spectrum.
 struct Comb {
+    name: &'static str,
     spacing_hz: f64,
     /// A line closer to a tooth than this is not told from it [Hz].
     reach_hz: f64,
@@ -188,13 +187,13 @@ struct Comb {
 
 impl Comb {
     fn of(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum) -> Option<Self> {
-        prediction.defect?;
-        let spacing_hz = motion.bpfo_hz.unwrap_or(prediction.kinematics.bpfo_hz);
+        let (name, hz) = prediction.family?;
+        let spacing_hz = prediction.moved(motion.bpfo_hz).unwrap_or(hz);
         let reach_hz = 0.5 * density.resolution().width_6db_hz;
-        shows_family(density, spacing_hz).then_some(Self { spacing_hz, reach_hz })
+        shows_family(density, spacing_hz).then_some(Self { name, spacing_hz, reach_hz })
     }
 
-    /// The multiple of BPFO that stands at `hz`, if any.
+    /// The multiple that stands at `hz`, if any.
     fn tooth(&self, hz: f64) -> Option<u64> {
         let nearest = (hz / self.spacing_hz).round();
         (nearest >= 1.0 && (hz - nearest * self.spacing_hz).abs() < self.reach_hz).then_some(nearest as u64)
@@ -214,13 +213,13 @@ fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Opti
         Some(peak) => {
             let at = peak.frequency_hz;
             let family = seen.families.iter().find(|f| f.claims(at, motion.bpfo_hz, 0.5 * width));
-            match (comb.and_then(|c| c.tooth(at)), family) {
+            match (comb.and_then(|c| Some((c.name, c.tooth(at)?))), family) {
                 (_, Some(family)) => format!(
                     "the highest peak near it, {at:.0} Hz, belongs to the family of {}",
                     family.spoken()
                 ),
-                (Some(multiple), None) => {
-                    format!("the highest peak near it, {at:.0} Hz, is BPFO ×{multiple}")
+                (Some((name, multiple)), None) => {
+                    format!("the highest peak near it, {at:.0} Hz, is {name} ×{multiple}")
                 }
                 (None, None) => format!(
                     "a peak stands {:+.0} % from it, at {at:.0} Hz; its place alone does not make it this mode",
@@ -248,11 +247,11 @@ impl Artefact {
         let family = seen.families.iter().find(|f| f.name == tone.name);
         let found = family.is_some_and(|f| f.found);
         let carrier = family.filter(|_| tone.harmonic == 1);
-        let tooth = tone.measured_hz.and_then(|hz| comb?.tooth(hz));
+        let tooth = tone.measured_hz.zip(comb).and_then(|(hz, comb)| Some((comb.name, comb.tooth(hz)?)));
         let verdict = match (carrier, tooth, tone.measured_hz) {
             (Some(family), _, _) => family.verdict.clone(),
-            (None, Some(multiple), _) => {
-                format!("BPFO ×{multiple} stands at the same place: not told apart")
+            (None, Some((name, multiple)), _) => {
+                format!("{name} ×{multiple} stands at the same place: not told apart")
             }
             (None, None, Some(_)) if found => "a line at the harmonic of a family that was found".to_owned(),
             (None, None, Some(hz)) => {
@@ -288,7 +287,7 @@ mod tests {
 
     #[test]
     fn example_multiples_of_bpfo_are_teeth_and_what_lies_between_is_not() {
-        let comb = Comb { spacing_hz: 89.8, reach_hz: 3.0 };
+        let comb = Comb { name: "BPFO", spacing_hz: 89.8, reach_hz: 3.0 };
         assert_eq!((comb.tooth(89.8), comb.tooth(628.7), comb.tooth(592.0)), (Some(1), Some(7), None));
         assert_eq!((comb.tooth(1.0), comb.tooth(45.0)), (None, None));
     }

@@ -245,6 +245,7 @@ fn notes_on(run: &Run, record: &Record<'_>) -> Vec<String> {
     if record.is_empty() {
         notes.push("the trace holds no usable sample".into());
     }
+    notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.bearing));
     notes
 }
 

@@ -38,7 +38,7 @@ pub fn is_scene_of(scene: &Scene) -> bool {
             b.roller_diameter_mm,
         ]
     };
-    let defect = |s: &Scene| s.defect.as_ref().map(|d| [d.length_mm, d.depth_mm]);
+    let defect = |s: &Scene| s.defect.as_ref().map(|d| (d.ring, [d.length_mm, d.depth_mm, d.edge_slope_deg]));
     size(b) == size(p) && b.rollers == p.rollers && defect(scene) == defect(&paper)
 }
 

@@ -4,7 +4,7 @@
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::{DefectScene, RollerCopies, Scene};
+use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies, Scene};
 use stribeck_scene::static_load::RigidRings;
 
 use crate::Error;
@@ -20,8 +20,10 @@ pub struct Prediction {
     pub kinematics: Kinematics,
     /// Names and frequencies [Hz] of the fundamental facet-passing lines, from the actual mesh counts.
     pub facet_lines: Vec<(String, f64)>,
-    /// Edges of the defect, when there is one.
+    /// Edges of the defect, when there is one on the outer raceway; one on the inner raceway has no fixed place.
     pub defect: Option<DefectEdges>,
+    /// What a defect strikes: the name and the frequency [Hz] of its family.
+    pub family: Option<(&'static str, f64)>,
     /// Passages over the defect that begin in the simulated time, in order of entry.
     pub passages: Vec<Crossing>,
 }
@@ -58,8 +60,8 @@ impl Prediction {
         let kinematics = Kinematics::of(scene);
         let counts = FacetCounts {
             roller: mesh.roller_facets,
-            outer: outer_facets(scene, mesh.outer_facets),
-            inner: mesh.inner_facets as f64,
+            outer: facets_around(scene, DefectRing::Outer, mesh.outer_facets),
+            inner: facets_around(scene, DefectRing::Inner, mesh.inner_facets),
         };
         let facet_lines = kinematics.facet_tones(counts).map(|tone| (tone.name.to_owned(), tone.hz)).to_vec();
         let edges = |defect: &DefectScene| {
@@ -71,6 +73,7 @@ impl Prediction {
             }
         };
         let passages = |defect: &DefectScene| {
+            // On the inner raceway the contact is as fast: rollers do not slip.
             let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
             // Whoever enters in time leaves at most one traverse later.
             let until_s = Geometry::of(scene).duration + traverse_s;
@@ -78,10 +81,22 @@ impl Prediction {
         };
         Self {
             facet_lines,
-            defect: scene.defect.as_ref().map(edges),
+            defect: scene.defect.as_ref().filter(|d| d.ring == DefectRing::Outer).map(edges),
+            family: scene.defect.as_ref().map(|defect| match defect.ring {
+                DefectRing::Outer => ("BPFO", kinematics.bpfo_hz),
+                DefectRing::Inner => ("BPFI", kinematics.bpfi_hz),
+            }),
             passages: scene.defect.as_ref().map(passages).unwrap_or_default(),
             kinematics,
         }
+    }
+
+    /// The defect's frequency in a bearing whose rollers were seen to pass the outer raceway at `bpfo_hz`: they pass either
+    /// raceway as often as the shaft takes them round, less what they pass the other.
+    pub fn moved(&self, bpfo_hz: Option<f64>) -> Option<f64> {
+        let k = &self.kinematics;
+        let (name, _) = self.family?;
+        bpfo_hz.map(|hz| if name == "BPFI" { k.bpfo_hz + k.bpfi_hz - hz } else { hz })
     }
 
     /// The combs that facets can make: rollers, nodes of the outer and of the inner raceway.
@@ -92,8 +107,8 @@ impl Prediction {
                 RollerCopies::Rotated => Source::RotatedVertices(vertices),
                 RollerCopies::Translated => Source::TranslatedVertices(vertices),
             },
-            Source::OuterNodes(outer_facets(scene, mesh.outer_facets)),
-            Source::InnerNodes(mesh.inner_facets as f64),
+            Source::OuterNodes(facets_around(scene, DefectRing::Outer, mesh.outer_facets)),
+            Source::InnerNodes(facets_around(scene, DefectRing::Inner, mesh.inner_facets)),
         ];
         let named = |((name, _), source): (&(String, f64), Source)| Candidate { name: name.clone(), source };
         self.facet_lines.iter().zip(sources).map(named).collect()
@@ -149,14 +164,14 @@ impl Prediction {
     }
 }
 
-/// Facets that a whole turn of the outer raceway would have at the spacing outside the defect; `facets` counts them all.
-fn outer_facets(scene: &Scene, facets: usize) -> f64 {
-    let all = facets as f64;
-    let Some(defect) = &scene.defect else { return all };
-    let part = defect.length_mm / (std::f64::consts::PI * scene.bearing.outer_race_diameter_mm);
-    // The floor is meshed as finely as the raceway, in two facets at least; the two walls take no angle.
-    let floor = (part * all).round().max(2.0);
-    ((all - floor - 2.0) / (1.0 - part)).max(0.0)
+/// Facets that a whole turn of the raceway of `ring` would have at the spacing outside the defect; `facets` counts them all.
+fn facets_around(scene: &Scene, ring: DefectRing, facets: usize) -> f64 {
+    let g = Geometry::of(scene);
+    let radius = match ring {
+        DefectRing::Outer => g.outer_race_radius,
+        DefectRing::Inner => g.inner_race_radius,
+    };
+    g.defect_of(ring).map_or(facets as f64, |defect| defect.facets_around(facets, radius))
 }
 
 #[cfg(test)]

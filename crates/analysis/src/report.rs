@@ -19,7 +19,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{DefectRing, Scene};
 
 pub use ensemble::write_ensemble;
 pub use measured::write_measured;
@@ -171,11 +171,19 @@ fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
 
 /// The sentence under the title.
 fn lead(scene: &Scene, simulated_ms: f64) -> String {
-    let defect = scene.defect.as_ref().map_or("a sound outer raceway".to_owned(), |d| {
-        format!("a spall of {} × {} mm on the outer raceway", d.length_mm, d.depth_mm)
+    let defect = scene.defect.as_ref().map_or("sound raceways".to_owned(), |d| {
+        let ring = match d.ring {
+            DefectRing::Outer => "outer",
+            DefectRing::Inner => "inner",
+        };
+        format!("a spall of {} × {} mm on the {ring} raceway", d.length_mm, d.depth_mm)
     });
+    let name = match scene.bearing.designation.as_str() {
+        "" => String::new(),
+        name => format!("{name}: "),
+    };
     format!(
-        "{} rollers under {} kN at {} rpm, {defect}; {:.1} ms on record.",
+        "{name}{} rollers under {} kN at {} rpm, {defect}; {:.1} ms on record.",
         scene.bearing.rollers,
         1e-3 * scene.operation.load_n,
         scene.operation.speed_rpm,

@@ -21,7 +21,8 @@ use stribeck_scene::{
     lubrication,
     run_info::MeshInfo,
     scene::{
-        ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, DampedBody, RollerCopies, Scene,
+        ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, DampedBody, DefectRing,
+        RollerCopies, Scene,
     },
 };
 
@@ -156,7 +157,7 @@ impl Assembly {
             facets: outer_facets,
             layers: grading::layers(&scene.mesh, b.outer_ring_thickness_mm),
             start_angle: 0.0,
-            groove: g.defect.map(|d| Groove { centre_angle: d.angle, length: d.length, depth: d.depth }),
+            groove: groove_in(&g, DefectRing::Outer),
         };
         let outer = mesh.add("outer ring", &made(&outer, &outer_grading)?);
 
@@ -168,7 +169,7 @@ impl Assembly {
             facets: inner_facets,
             layers: grading::layers(&scene.mesh, b.inner_ring_thickness_mm),
             start_angle: 0.0,
-            groove: None,
+            groove: groove_in(&g, DefectRing::Inner),
         };
         let inner = mesh.add("inner ring", &made(&inner, &inner_grading)?);
 
@@ -227,8 +228,8 @@ impl Assembly {
         }
         let facets = FacetCounts {
             roller: scene.mesh.roller_facets,
-            outer: effective_outer_facets(&g, outer_facets),
-            inner: inner_facets as f64,
+            outer: effective_facets(&g, DefectRing::Outer, outer_facets, outer_radius),
+            inner: effective_facets(&g, DefectRing::Inner, inner_facets, inner_radius),
         };
         Ok(Self { model, kinematics, facets, outer, inner, adapter, rollers, cage })
     }
@@ -443,14 +444,24 @@ fn adapter_rows(g: &Geometry, size: f64) -> usize {
     ((g.adapter_height / (FLATTEST * size)) as usize).max(2)
 }
 
-/// Facets a full turn would have at the spacing outside the defect.
-fn effective_outer_facets(g: &Geometry, facets: usize) -> f64 {
-    let Some(d) = &g.defect else { return facets as f64 };
-    let radius = g.outer_race_radius;
-    let sector = d.length / radius;
-    let floor = (d.length / (TAU * radius / facets as f64)).round().max(2.0);
-    // Two facets are walls and take no angle.
-    (facets as f64 - floor - 2.0) * TAU / (TAU - sector)
+/// Facets that a whole turn of the raceway of `ring` would have at the spacing outside a defect.
+fn effective_facets(g: &Geometry, ring: DefectRing, facets: usize, radius: f64) -> f64 {
+    g.defect_of(ring).map_or(facets as f64, |defect| defect.facets_around(facets, radius))
+}
+
+/// The defect as a groove in the raceway of `ring`, if it lies there.
+fn groove_in(g: &Geometry, ring: DefectRing) -> Option<Groove> {
+    let circle = match ring {
+        DefectRing::Outer => Circle::Inner,
+        DefectRing::Inner => Circle::Outer,
+    };
+    g.defect_of(ring).map(|d| Groove {
+        centre_angle: d.angle,
+        length: d.length,
+        depth: d.depth,
+        slope: d.edge_slope,
+        circle,
+    })
 }
 
 /// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the rollers: piece i

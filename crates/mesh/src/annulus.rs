@@ -1,16 +1,16 @@
-//! Rings, with or without a rectangular groove in the inner surface.
+//! Rings, with or without a groove in one of their surfaces.
 
 use crate::error::{count, elements, finite, positive};
 use crate::groove::{self, Groove};
 use crate::polar_grid::{Place, PolarGrid};
 use crate::rows::{self, NextRow};
 use crate::smoothing::sound;
-use crate::{Error, Part};
+use crate::{Circle, Error, Part};
 
 /// An annulus about the origin, made of quadrilaterals in circumferential rows.
 ///
-/// Row 0 of the nodes is the inner surface, the last row the outer one; each row runs counter-clockwise and
-/// node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
+/// Row 0 of the nodes is the inner surface, the last row the outer one, or the other way round where a groove is cut into the
+/// outer one; each row runs counter-clockwise and node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
 /// (counter-clockwise, its first node at `start_angle`, or two facets or so beside it where there is a groove).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Annulus {
@@ -24,7 +24,7 @@ pub struct Annulus {
     pub layers: usize,
     /// Angle of the first node of every row [rad]; a groove moves nodes along the circumference.
     pub start_angle: f64,
-    /// Rectangular groove in the inner surface.
+    /// Groove in one of the surfaces.
     pub groove: Option<Groove>,
 }
 
@@ -37,9 +37,14 @@ impl Annulus {
     pub fn part(&self) -> Result<Part, Error> {
         self.check()?;
         let (grid, n, layers) = (self.grid(), self.facets, self.layers);
+        let from = self.groove.map_or(Circle::Inner, |groove| groove.circle);
         let mut part = Part::default();
         let mut places = Vec::with_capacity(n * (layers + 1));
-        for row in 0..=layers {
+        for i in 0..=layers {
+            let row = match from {
+                Circle::Inner => i,
+                Circle::Outer => layers - i,
+            };
             let radius = grid.row_radius(row as f64);
             for column in 0..n {
                 let (sin, cos) = grid.column_angle(column).sin_cos();
@@ -47,9 +52,16 @@ impl Annulus {
                 places.push(Place { column, row: row as f64 });
             }
         }
-        part.quads = rows::quads(0, layers, n, true, NextRow::Outwards);
-        part.push_surface("inner", (0..n as u32).rev().collect(), true);
-        part.push_surface("outer", (0..n).map(|c| rows::node(layers, c, n)).collect(), true);
+        let near: Vec<u32> = (0..n as u32).collect();
+        let far: Vec<u32> = (0..n).map(|c| rows::node(layers, c, n)).collect();
+        let (next, mut inner, outer) = match from {
+            Circle::Inner => (NextRow::Outwards, near, far),
+            Circle::Outer => (NextRow::Inwards, far, near),
+        };
+        inner.reverse();
+        part.quads = rows::quads(0, layers, n, true, next);
+        part.push_surface("inner", inner, true);
+        part.push_surface("outer", outer, true);
         if let Some(groove) = &self.groove {
             groove::cut(&grid, groove, &places, f64::INFINITY, &mut part)?;
         }

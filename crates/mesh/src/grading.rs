@@ -100,9 +100,9 @@ impl Grading {
         count(SHAPE, "facets", annulus.facets, 8 * self.ratio(), advice)?;
         let advice = "use fewer `fine_layers` or `transitions`, or finer layers";
         count(SHAPE, "layers", annulus.layers, self.layers_needed(), advice)?;
-        if self.fine == Circle::Outer && annulus.groove.is_some() {
-            let (field, other) = ("groove", "fine: Circle::Outer");
-            let advice = "a groove lies in the inner circle, so that one must be the fine one";
+        if annulus.groove.is_some_and(|groove| groove.circle != self.fine) {
+            let (field, other) = ("groove", "fine");
+            let advice = "a groove lies in the fine circle";
             return Err(Error::Conflict { shape: SHAPE, field, other, advice });
         }
         elements(SHAPE, "layers", annulus.layers, annulus.facets)
@@ -139,7 +139,11 @@ impl Annulus {
         part.push_surface("inner", inner, true);
         part.push_surface("outer", outer, true);
         if let Some(groove) = &self.groove {
-            let finest = grid.inner_facet().min(grid.layer());
+            let facet = match groove.circle {
+                Circle::Inner => grid.inner_facet(),
+                Circle::Outer => grid.from_outside().inner_facet(),
+            };
+            let finest = facet.min(grid.layer());
             groove::cut(&grid, groove, &lattice.places, enough(finest), &mut part)?;
         }
         sound("annulus", part)

@@ -1,4 +1,4 @@
-//! A rectangular groove in the inner surface of an grid.
+//! A groove in the inner or the outer surface of an annulus.
 
 use std::f64::consts::TAU;
 
@@ -6,30 +6,50 @@ use crate::error::{MOST, finite, positive};
 use crate::polar_grid::{Place, PolarGrid};
 use crate::shape_optimisation::{SHARPNESS, raise_assembled_step};
 use crate::smoothing::{inside_out, raise_critical_step_to};
-use crate::{Error, Part};
+use crate::{Circle, Error, Part};
 
-/// A rectangular groove: a floor on a larger radius between two radial walls.
+/// A groove: a floor between two walls, cut into the inner or the outer surface of an annulus.
 ///
-/// No element is removed, so the rows stay strips: two neighbouring nodes of the inner surface stand at the
-/// same angle, one on the inner radius and one on the floor, and the facet between them is the wall. The
+/// No element is removed, so the rows stay strips: of two neighbouring nodes of the surface one stands on its circle and one
+/// on the floor, at the same angle where walls are radial, and the facet between them is the wall. The
 /// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
-/// and equally long on the rest of the inner surface. Columns at some distance from the groove are radial and equally
-/// wide, so that the cells of a row are alike there, and the facets of the outer surface are some per cent shorter behind the
-/// groove than elsewhere; in rings that have no room for that the outer surface stays as it is. The rows below follow smoothly, so that the assembled
+/// and equally long on the rest of the surface. Columns at some distance from the groove are radial and equally
+/// wide, so that the cells of a row are alike there, and the facets of the other surface are some per cent shorter behind the
+/// groove than elsewhere; in rings that have no room for that the other surface stays as it is. The rows below follow smoothly, so that the assembled
 /// elements keep nine tenths of the critical time step of squares, short grooves four fifths and deep ones two thirds
 /// (THEORY §2.4).
 ///
 /// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
-/// leaves less than a quarter of the inner surface or more floor than facets, and a groove so deep or a
-/// layer so thick that some element stays inside out.
+/// leaves less than a quarter of the surface or more floor than facets, walls that leave no floor or are wider than
+/// [`Groove::WIDEST_WALL`] facets, and a groove so deep or a layer so thick that some element stays inside out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groove {
     /// Angle of the middle of the groove [rad].
     pub centre_angle: f64,
-    /// Arc length between the walls, measured on the inner circle [m].
+    /// Arc length between the upper ends of the walls, measured on the circle [m].
     pub length: f64,
     /// Height of the walls [m].
     pub depth: f64,
+    /// Angle between walls and circle [rad]: a quarter of a turn for radial ones.
+    pub slope: f64,
+    /// The circle that it is cut into.
+    pub circle: Circle,
+}
+
+impl Groove {
+    /// Widest wall, in facets: each is one facet.
+    pub const WIDEST_WALL: f64 = 2.0;
+
+    /// With radial walls, in the inner surface.
+    pub const fn rectangular(centre_angle: f64, length: f64, depth: f64) -> Self {
+        Self { centre_angle, length, depth, slope: 0.25 * TAU, circle: Circle::Inner }
+    }
+
+    /// Angle that a wall takes on a circle of the radius `radius` [rad].
+    fn wall(&self, radius: f64) -> f64 {
+        // A radial wall takes none, whatever the rounding of a tangent.
+        if self.slope == 0.25 * TAU { 0.0 } else { self.depth / (self.slope.tan() * radius) }
+    }
 }
 
 /// Poisson's ratio for which the cells under a groove are shaped; the best shape hardly depends on it.
@@ -54,7 +74,7 @@ const FADES: usize = 2;
 /// Fewer radial columns are not worth moving the outer surface for.
 const LEAST_RADIAL: usize = 32;
 
-/// Cuts the groove into an annulus by moving its nodes. The first of them are those of the inner surface,
+/// Cuts the groove into an annulus by moving its nodes. The first of them are those of the groove's surface,
 /// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
 /// become larger.
 pub(crate) fn cut(
@@ -64,8 +84,17 @@ pub(crate) fn cut(
     enough: f64,
     part: &mut Part,
 ) -> Result<(), Error> {
+    let layers = grid.layers;
+    let (grid, places) = match groove.circle {
+        Circle::Inner => (grid, places.to_vec()),
+        Circle::Outer => {
+            let from_outside = |p: &Place| Place { row: layers as f64 - p.row, ..*p };
+            (&grid.from_outside(), places.iter().map(from_outside).collect())
+        }
+    };
+    let places = &places[..];
     let plan = Plan::new(grid, groove)?;
-    let (n, layers) = (grid.facets, grid.layers);
+    let n = grid.facets;
     let plain = part.clone();
     let (angle, radius) = spread(&plan, n, layers);
     for (at, place) in places.iter().enumerate() {
@@ -123,7 +152,10 @@ impl Plan {
     fn new(grid: &PolarGrid, groove: &Groove) -> Result<Plan, Error> {
         let n = grid.facets;
         let sector = check(grid, groove)?;
-        let floor = ((n as f64 * sector / TAU).round() as usize).max(2);
+        let wall = groove.wall(grid.inner_radius);
+        let flat = sector - 2.0 * wall;
+        let floor = ((n as f64 * flat / TAU).round() as usize).max(2);
+        let inwards = if grid.inner_radius < grid.outer_radius { 1.0 } else { -1.0 };
         // Two walls, the floor and at least a few facets elsewhere share the inner surface.
         if floor + 2 + 4 > n {
             let advice = "use more facets or a shorter groove";
@@ -140,18 +172,18 @@ impl Plan {
             let target = if m == 0 {
                 -0.5 * sector
             } else if m <= floor + 1 {
-                -0.5 * sector + sector * (m - 1) as f64 / floor as f64
+                -0.5 * flat + flat * (m - 1) as f64 / floor as f64
             } else {
                 0.5 * sector + (TAU - sector) * (m - 2 - floor) as f64 / rest as f64
             };
             let uniform = TAU * (from + m as f64 - middle) / n as f64;
             angle[(first + m) % n] = target - uniform;
-            rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { groove.depth } else { 0.0 };
+            rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { inwards * groove.depth } else { 0.0 };
         }
         let cell = grid.inner_facet();
         // A groove of several layers disturbs as many columns as it is deep.
         let columns = REACH + (groove.depth / cell).ceil() as usize;
-        let thickness = ((grid.outer_radius - grid.inner_radius) / cell).ceil() as usize;
+        let thickness = ((grid.outer_radius - grid.inner_radius).abs() / cell).ceil() as usize;
         let beside = (FADES * thickness).max(columns + 3);
         let (back, bent) = if floor + 2 * beside + 4 + LEAST_RADIAL < n {
             let (from, bent) = (first + n - beside, floor + 2 + 2 * beside);
@@ -171,12 +203,14 @@ impl Plan {
     /// Writes the four wall nodes out, so that no rounding tilts a wall.
     fn place_walls(&self, grid: &PolarGrid, groove: &Groove, part: &mut Part) {
         let half = 0.5 * groove.length / grid.inner_radius;
-        let (top, bottom) = (grid.inner_radius, grid.inner_radius + groove.depth);
+        let inwards = if grid.inner_radius < grid.outer_radius { 1.0 } else { -1.0 };
+        let (top, bottom) = (grid.inner_radius, grid.inner_radius + inwards * groove.depth);
         let (a, b) = (groove.centre_angle - half, groove.centre_angle + half);
+        let wall = groove.wall(grid.inner_radius);
         for (column, angle, radius) in [
             (self.first, a, top),
-            (self.first + 1, a, bottom),
-            (self.first + 1 + self.floor, b, bottom),
+            (self.first + 1, a + wall, bottom),
+            (self.first + 1 + self.floor, b - wall, bottom),
             (self.first + 2 + self.floor, b, top),
         ] {
             let (sin, cos) = angle.sin_cos();
@@ -246,12 +280,26 @@ fn check(grid: &PolarGrid, groove: &Groove) -> Result<f64, Error> {
     };
     let limit = 0.75 * TAU * grid.inner_radius;
     if groove.length > limit {
-        return refuse("length", groove.length, limit, "a quarter of the inner surface must remain");
+        return refuse("length", groove.length, limit, "a quarter of the surface must remain");
     }
     // A little more, because 60 % of a difference of radii is rounded.
-    let limit = 0.6 * (1.0 + 1e-9) * (grid.outer_radius - grid.inner_radius);
+    let limit = 0.6 * (1.0 + 1e-9) * (grid.outer_radius - grid.inner_radius).abs();
     if groove.depth > limit {
         return refuse("depth", groove.depth, limit, "keep it below 60 % of the thickness");
     }
-    Ok(groove.length / grid.inner_radius)
+    let sector = groove.length / grid.inner_radius;
+    if !(groove.slope > 0.0 && groove.slope <= 0.25 * TAU) {
+        let (field, value, limit) = ("slope", groove.slope, 0.25 * TAU);
+        let (relation, advice) = ("above 0, at most", "walls stand on the floor at 90° or less");
+        return Err(Error::OutOfRange { shape: SHAPE, field, value, relation, limit, advice });
+    }
+    let wall = groove.wall(grid.inner_radius);
+    let widest = (Groove::WIDEST_WALL * TAU / grid.facets as f64).min(0.4 * sector);
+    if wall > widest {
+        let least = (groove.depth / (widest * grid.inner_radius)).atan();
+        let (field, value, relation) = ("slope", groove.slope, "at least");
+        let advice = "make the walls steeper, the groove shallower or longer";
+        return Err(Error::OutOfRange { shape: SHAPE, field, value, relation, limit: least, advice });
+    }
+    Ok(sector)
 }

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 /// The plain grid of an annulus about the origin.
 #[derive(Clone, Copy)]
 pub(crate) struct PolarGrid {
-    /// Radius of the inner circle [m].
+    /// Radius of the circle of row 0 [m], the inner one unless rows are counted from outside.
     pub(crate) inner_radius: f64,
-    /// Radius of the outer circle [m].
+    /// Radius of the circle of the last row [m].
     pub(crate) outer_radius: f64,
     /// Columns.
     pub(crate) facets: usize,
@@ -41,12 +41,17 @@ impl PolarGrid {
         self.start_angle + TAU * column as f64 / self.facets as f64
     }
 
-    /// Thickness of a row of elements [m].
-    pub(crate) fn layer(&self) -> f64 {
-        (self.outer_radius - self.inner_radius) / self.layers as f64
+    /// The same annulus with its rows counted from the outer circle.
+    pub(crate) fn from_outside(&self) -> Self {
+        Self { inner_radius: self.outer_radius, outer_radius: self.inner_radius, ..*self }
     }
 
-    /// Length of a facet of the inner circle [m].
+    /// Thickness of a row of elements [m].
+    pub(crate) fn layer(&self) -> f64 {
+        (self.outer_radius - self.inner_radius).abs() / self.layers as f64
+    }
+
+    /// Length of a facet of the circle of row 0 [m].
     pub(crate) fn inner_facet(&self) -> f64 {
         TAU * self.inner_radius / self.facets as f64
     }

@@ -280,7 +280,7 @@ mod tests {
                 (0.01, 1e-3, [0.89; 2]),
                 (0.02, 3e-3, [0.69; 2]),
             ] {
-                let groove = Groove { centre_angle: 0.25 * TAU, length, depth };
+                let groove = Groove::rectangular(0.25 * TAU, length, depth);
                 let (inner_radius, outer_radius) = (0.1, 0.11);
                 let cut = Some(groove);
                 let ring =

@@ -18,7 +18,7 @@ const RING: Annulus = Annulus {
     groove: None,
 };
 
-const GROOVE: Groove = Groove { centre_angle: 0.5 * PI, length: 0.01, depth: 0.2e-3 };
+const GROOVE: Groove = Groove::rectangular(0.5 * PI, 0.01, 0.2e-3);
 
 fn ring(groove: Option<Groove>) -> Part {
     Annulus { groove, ..RING }.part().expect("a ring that can be made")
@@ -188,7 +188,7 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
             (7.0, 0.01, 1e-3),
             (3.0, 0.02, 3e-3),
         ] {
-            let groove = Some(Groove { centre_angle, length, depth });
+            let groove = Some(Groove::rectangular(centre_angle, length, depth));
             let part = Annulus { facets, layers, groove, ..RING }.part().expect("a groove that can be cut");
             assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");
             // An element alone; what the assembled ones keep is tested in `shape_optimisation.rs`.
@@ -235,4 +235,71 @@ fn refuses_with_field_and_limit() {
     }
     let few = Annulus { facets: 8, ..with(Groove { length: 0.2, ..GROOVE }) };
     assert!(matches!(few.part(), Err(Error::Count { field: "facets", value: 8, .. })));
+}
+
+#[test]
+fn example_a_groove_in_the_outer_surface_is_that_in_the_inner_one_seen_from_outside() {
+    let groove = Groove { circle: Circle::Outer, ..GROOVE };
+    let ring = Annulus {
+        inner_radius: 0.0715,
+        outer_radius: 0.0815,
+        facets: 1024,
+        layers: 20,
+        start_angle: 0.0,
+        groove: Some(groove),
+    };
+    let graded = Grading { fine: Circle::Outer, fine_layers: 2, transitions: 1 };
+    for part in [ring.part(), ring.graded_part(&graded)] {
+        let part = part.expect("a groove that can be cut");
+        let outer = part.surface("outer").expect("an outer surface");
+        let place = |&n: &u32| (part.x[n as usize], part.y[n as usize]);
+        let radii: Vec<f64> = outer.nodes.iter().map(|n| place(n).0.hypot(place(n).1)).collect();
+        let floor = radii.iter().filter(|r| (**r - (0.0815 - 0.2e-3)).abs() < 1e-12).count();
+        let circle = radii.iter().filter(|r| (**r - 0.0815).abs() < 1e-12).count();
+        // 10 mm of facets 0.5 mm long, the two ends of the floor among them.
+        assert_eq!((floor, floor + circle), (21, 1024));
+        // What the groove takes from the area: its length at half of its depth, and the facets' sag.
+        let whole = std::f64::consts::PI * (0.0815_f64.powi(2) - 0.0715_f64.powi(2));
+        let taken = 0.01 * 0.2e-3;
+        assert!((part.area() - (whole - taken)).abs() < 0.02 * taken + 7e-6 * whole, "{}", part.area());
+    }
+}
+
+#[test]
+fn example_sloped_walls_are_as_wide_as_their_slope_asks() {
+    for circle in [Circle::Inner, Circle::Outer] {
+        let slope = PI / 6.0;
+        let groove = Groove { slope, circle, ..GROOVE };
+        let ring = Annulus {
+            inner_radius: 0.1,
+            outer_radius: 0.11,
+            facets: 1200,
+            layers: 20,
+            start_angle: 0.0,
+            groove: Some(groove),
+        };
+        let part = ring.part().expect("a groove that can be cut");
+        let (name, on) = if circle == Circle::Inner { ("inner", 0.1) } else { ("outer", 0.11) };
+        let surface = part.surface(name).expect("a surface");
+        let mut angles: Vec<f64> = Vec::new();
+        for &n in &surface.nodes {
+            let (x, y) = (part.x[n as usize], part.y[n as usize]);
+            if (x.hypot(y) - on).abs() > 0.19e-3 {
+                angles.push(y.atan2(x));
+            }
+        }
+        let (low, high) = angles.iter().fold((f64::MAX, f64::MIN), |(l, h), a| (l.min(*a), h.max(*a)));
+        let wall = 0.2e-3 / slope.tan();
+        assert!(((high - low) * on - (0.01 - 2.0 * wall)).abs() < 1e-9, "{}", (high - low) * on);
+    }
+    let flat = Groove { slope: 0.02, ..GROOVE };
+    let ring = Annulus {
+        inner_radius: 0.1,
+        outer_radius: 0.11,
+        facets: 1200,
+        layers: 20,
+        start_angle: 0.0,
+        groove: Some(flat),
+    };
+    assert!(matches!(ring.part(), Err(Error::OutOfRange { field: "slope", .. })));
 }

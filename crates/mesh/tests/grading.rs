@@ -18,7 +18,7 @@ const RING: Annulus = Annulus {
     groove: None,
 };
 
-const GROOVE: Groove = Groove { centre_angle: 0.5 * PI, length: 0.01, depth: 0.2e-3 };
+const GROOVE: Groove = Groove::rectangular(0.5 * PI, 0.01, 0.2e-3);
 
 /// Two layers of 0.5 mm, then one facet of three.
 const INWARDS: Grading = Grading { fine: Circle::Inner, fine_layers: 2, transitions: 1 };
@@ -131,7 +131,7 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
         for (centre_angle, length, depth) in
             [(0.0, 0.01, 0.05e-3), (-2.0, 0.04, 0.5e-3), (7.0, 0.01, 1e-3), (3.0, 0.02, 3e-3)]
         {
-            let groove = Some(Groove { centre_angle, length, depth });
+            let groove = Some(Groove::rectangular(centre_angle, length, depth));
             let ring = Annulus { facets, layers, groove, ..RING };
             let part = made(ring, Grading { fine_layers: 1, ..INWARDS });
             assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");

@@ -6,6 +6,8 @@
 
 use std::fmt;
 
+use crate::scene::BearingScene;
+
 /// Shapes of rolling elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Element {
@@ -111,6 +113,30 @@ pub fn all() -> Vec<CatalogueBearing> {
         (name, Element::Roller, None, 0.5 * (e - f), 0.5 * (e + f), 0.0, Some(boundary), E_TYPE)
     });
     OTHERS.iter().copied().chain(cylindrical).map(CatalogueBearing::of).collect()
+}
+
+/// What a scene of a bearing in the catalogue rests on that no catalogue prints; nothing for a scene of the user's own numbers.
+pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
+    let Some(known) = all().into_iter().find(|known| known.name == bearing.designation) else {
+        return Vec::new();
+    };
+    let (name, length) = (&known.name, bearing.thickness_mm);
+    let mut notes = Vec::new();
+    if known.elements.is_none() {
+        notes.push(format!(
+            "makers fit different numbers of rolling elements into {name}; {} are assumed here",
+            bearing.rollers
+        ));
+    }
+    match known.element {
+        Element::Roller => notes.push(format!(
+            "clearance, cage and the length of the rollers, {length} mm, are usual ones for {name}, not its maker's"
+        )),
+        Element::Ball => notes.push(format!(
+            "the balls of {name} run as cylinders {length} mm long, between which raceways approach each other as with balls at the load that the scene was made for; pressures and stresses are those of lines, not of points, and clearance and cage are usual ones"
+        )),
+    }
+    notes
 }
 
 impl CatalogueBearing {

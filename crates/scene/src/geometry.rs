@@ -8,7 +8,9 @@ use std::f64::consts::TAU;
 
 use crate::contact_formula::ContactNumbers;
 use crate::material::Material;
-use crate::scene::{CageScene, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene};
+use crate::scene::{
+    CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
+};
 
 /// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,15 +94,19 @@ pub struct CageGeometry {
     pub pocket: PocketWalls,
 }
 
-/// The rectangular spall on the outer raceway.
+/// The spall on a raceway.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DefectGeometry {
+    /// Ring on whose raceway it lies.
+    pub ring: DefectRing,
     /// Circumferential length [m], measured on the raceway.
     pub length: f64,
     /// Depth [m].
     pub depth: f64,
-    /// Angle of its centre [rad].
+    /// Angle of its centre at the start [rad].
     pub angle: f64,
+    /// Angle between its edges and the raceway [rad].
+    pub edge_slope: f64,
 }
 
 /// A damping ratio over a band of frequencies.
@@ -124,6 +130,11 @@ pub struct FilmGeometry {
 }
 
 impl Geometry {
+    /// The spall, if it lies on this ring.
+    pub fn defect_of(&self, ring: DefectRing) -> Option<DefectGeometry> {
+        self.defect.filter(|defect| defect.ring == ring)
+    }
+
     /// The scene in SI.
     pub fn of(scene: &Scene) -> Self {
         let b = &scene.bearing;
@@ -230,11 +241,23 @@ impl CageGeometry {
 impl DefectGeometry {
     /// A spall in SI.
     pub fn of(defect: &DefectScene) -> Self {
+        // A right angle is one, whatever the rounding of its degrees.
+        let upright = defect.edge_slope_deg == 90.0;
         Self {
+            ring: defect.ring,
             length: 1e-3 * defect.length_mm,
             depth: 1e-3 * defect.depth_mm,
             angle: defect.angle_deg.to_radians(),
+            edge_slope: if upright { 0.25 * TAU } else { defect.edge_slope_deg.to_radians() },
         }
+    }
+
+    /// Facets that a whole turn of a raceway of the radius `radius` [m] would have at the spacing outside the spall, of all its
+    /// `facets`: the floor is meshed as finely as the raceway, in two facets at least, and upright walls take no angle.
+    pub fn facets_around(&self, facets: usize, radius: f64) -> f64 {
+        let part = self.length / (TAU * radius);
+        let floor = (part * facets as f64).round().max(2.0);
+        ((facets as f64 - floor - 2.0) / (1.0 - part)).max(0.0)
     }
 }
 

@@ -7,7 +7,7 @@
 use std::f64::consts::TAU;
 
 use crate::geometry::DefectGeometry;
-use crate::scene::{BearingScene, DefectScene, Scene};
+use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
 
 /// Speeds of a bearing whose outer ring stands still and whose rollers do not slip.
 ///
@@ -157,18 +157,22 @@ impl Kinematics {
 
     /// Rollers that leave `defect` within `duration_s`, in the order of their entry.
     ///
-    /// They start at the angles `start_deg`, roller 1 first, and all move clockwise: the leading edge is the one at the
-    /// larger angle. A roller that starts inside the defect has a negative entry time. Empty when the shaft stands still.
+    /// They start at the angles `start_deg`, roller 1 first. As seen from the outer ring all move clockwise: the leading edge
+    /// is the one at the larger angle; as seen from the inner one, which turns faster, counter-clockwise. A roller that starts
+    /// inside the defect has a negative entry time. Empty when the shaft stands still.
     pub fn crossings(&self, defect: &DefectScene, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
-        let speed = 360.0 * self.cage_hz;
+        let (speed, diameter, ahead) = match defect.ring {
+            DefectRing::Outer => (360.0 * self.cage_hz, self.bearing.outer_m, 1.0),
+            DefectRing::Inner => (360.0 * (self.shaft_hz - self.cage_hz), self.bearing.inner_m, -1.0),
+        };
         if !(speed > 0.0 && duration_s.is_finite()) {
             return Vec::new();
         }
-        let half = (DefectGeometry::of(defect).length / self.bearing.outer_m).to_degrees();
+        let half = (DefectGeometry::of(defect).length / diameter).to_degrees();
         let mut crossings = Vec::new();
         for (roller, start) in start_deg.iter().enumerate() {
-            let trailing = defect.angle_deg - half;
-            let mut exit_s = (*start - trailing).rem_euclid(360.0) / speed;
+            let trailing = defect.angle_deg - ahead * half;
+            let mut exit_s = (ahead * (*start - trailing)).rem_euclid(360.0) / speed;
             while exit_s <= duration_s {
                 let (centre_s, entry_s) = (exit_s - half / speed, exit_s - 2.0 * half / speed);
                 crossings.push(Crossing { roller: roller + 1, entry_s, centre_s, exit_s });
@@ -193,6 +197,21 @@ pub fn roller_angles_deg(scene: &Scene) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Source: an inner raceway meets every roller (f_s − f_c) N times in N turns of the cage relative to it, THEORY §5.1.
+    #[test]
+    fn analytic_rollers_cross_an_inner_defect_at_bpfi() {
+        let scene = Scene::default();
+        let defect = DefectScene { ring: DefectRing::Inner, ..DefectScene::default() };
+        let k = paper();
+        let crossings = k.crossings(&defect, &roller_angles_deg(&scene), 1.0);
+        let apart = (crossings[100].centre_s - crossings[0].centre_s) / 100.0;
+        assert_close(apart, 1.0 / k.bpfi_hz, 1e-9);
+        // The roller behind the defect in the sense of rotation comes never first: the inner ring runs ahead of it.
+        assert_eq!(crossings[0].roller, 24);
+        let length_m = k.contact_speed_m_s * (crossings[0].exit_s - crossings[0].entry_s);
+        assert_close(length_m, 10e-3, 1e-9);
+    }
 
     /// The notes print four or five digits.
     const PRINTED: f64 = 1.5e-4;

@@ -14,7 +14,7 @@ pub struct Scene {
     pub cage: Option<CageScene>,
     /// The block that carries the load to the outer ring.
     pub adapter: AdapterScene,
-    /// Rectangular spall on the outer raceway; `None` is a sound bearing.
+    /// Spall on a raceway; `None` is a sound bearing.
     pub defect: Option<DefectScene>,
     /// Linear elastic material of every body.
     pub material: MaterialScene,
@@ -98,16 +98,30 @@ pub struct AdapterScene {
     pub height_mm: f64,
 }
 
-/// Rectangular spall on the outer raceway.
+/// Spall on a raceway.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DefectScene {
+    /// Ring on whose raceway it lies; on the inner one it turns with the shaft.
+    pub ring: DefectRing,
     /// Circumferential length [mm], measured on the raceway.
     pub length_mm: f64,
     /// Depth [mm].
     pub depth_mm: f64,
-    /// Angle of its centre [°]; 90 is the top, in the middle of the load zone.
+    /// Angle of its centre at the start [°]; 90 is the top, in the middle of the load zone.
     pub angle_deg: f64,
+    /// Angle between its edges and the raceway [°]; 90 for radial walls.
+    pub edge_slope_deg: f64,
+}
+
+/// One of the two rings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum DefectRing {
+    /// The outer ring, which stands still.
+    Outer,
+    /// The inner ring, which turns with the shaft.
+    Inner,
 }
 
 /// Linear elastic, isotropic, plane strain.
@@ -476,7 +490,13 @@ impl Default for AdapterScene {
 
 impl Default for DefectScene {
     fn default() -> Self {
-        Self { length_mm: 10.0, depth_mm: 0.2, angle_deg: 90.0 }
+        Self {
+            ring: DefectRing::Outer,
+            length_mm: 10.0,
+            depth_mm: 0.2,
+            angle_deg: 90.0,
+            edge_slope_deg: 90.0,
+        }
     }
 }
 

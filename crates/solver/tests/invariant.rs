@@ -25,7 +25,7 @@ fn everything() -> Model {
         groove: None,
     };
     // Wide enough for several tiles, cut across its rows.
-    let groove = Some(Groove { centre_angle: 0.3, length: 0.02, depth: 1e-3 });
+    let groove = Some(Groove::rectangular(0.3, 0.02, 1e-3));
     let wide = Annulus { inner_radius: 0.2, outer_radius: 0.21, facets: 700, layers: 12, groove, ..ring };
     mesh.add("wide ring", &wide.part().expect("a ring").translated(0.8, 0.0));
     let ring = mesh.add("ring", &ring.part().expect("a ring").translated(0.3, 0.3));

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Family;
 use crate::families::FamilyFinding;
@@ -40,6 +41,11 @@ fn defect(run: &Run, summary: &Summary) -> String {
         return format!("The raceway is sound, so there is none to see.{level}");
     }
     let events = &summary.events;
+    if run.scene.defect.as_ref().is_some_and(|d| d.ring == DefectRing::Inner) {
+        return "It lies on the inner raceway and turns with the shaft; entries and exits are picked on outer raceways only. Look \
+                for its family, BPFI, in the spectra."
+            .into();
+    }
     if events.is_empty() {
         return "No roller reaches it on this record.".into();
     }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::DefectRing;
 
 use super::figures::spoken;
 use super::tables::cell;
@@ -220,8 +221,12 @@ pub(super) fn envelope(summary: &Summary) -> Markup {
 
 /// Length of the defect from the event times, beside the truth.
 pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
-    let Some(truth) = run.scene.defect.as_ref().map(|d| d.length_mm) else {
-        return html! { p { "The raceway is sound." } };
+    let truth = match &run.scene.defect {
+        None => return html! { p { "The raceways are sound." } },
+        Some(defect) if defect.ring == DefectRing::Inner => {
+            return html! { p { "Entries and exits are picked on outer raceways only." } };
+        }
+        Some(defect) => defect.length_mm,
     };
     let off = |found: Option<f64>, truth: f64| found.map(|t| format!("{:+.3}", t - truth).replace('-', "−"));
     html! {

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
 use crate::geometry::CageGeometry;
-use crate::scene::{CageScene, PocketWalls, Scene};
+use crate::scene::{CageScene, DefectRing, PocketWalls, Scene};
 
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
 const OUTER_RING: &str = "bearing.outer_ring_thickness_mm";
@@ -21,6 +21,9 @@ const MAX_CLEARANCE_RATIO: f64 = 0.1;
 const USUAL_CLEARANCE_RATIO: f64 = 0.002;
 /// Below the floor of a defect this part of the ring must be left to carry the load.
 const MAX_DEFECT_DEPTH_RATIO: f64 = 0.6;
+/// Widest edge of a defect in facets, each edge being one, and as a part of the defect's length (`stribeck_mesh::Groove`).
+const WIDEST_WALL: f64 = 2.0;
+const WALL_OF_LENGTH: f64 = 0.4;
 /// Width of the paper's adapter over the outside diameter of its outer ring.
 const ADAPTER_RATIO: f64 = 0.727;
 /// How many roller counts below the limit are tried: a cage allows fewer than the pitch circle alone.
@@ -28,7 +31,18 @@ const FEWER_ROLLERS: usize = 8;
 
 /// Every impossibility of a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let groups = [rings, bore, pitch_circle, cage, pockets, places, adapter, defect_length, defect_depth];
+    let groups = [
+        rings,
+        bore,
+        pitch_circle,
+        cage,
+        pockets,
+        places,
+        adapter,
+        defect_length,
+        defect_edges,
+        defect_depth,
+    ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
@@ -392,9 +406,13 @@ fn adapter(scene: &Scene) -> Option<Finding> {
 
 /// The spall is no longer than half of the raceway.
 fn defect_length(scene: &Scene) -> Option<Finding> {
-    let length = scene.defect.as_ref()?.length_mm;
-    let b = &scene.bearing;
-    let around = PI * b.outer_race_diameter_mm;
+    let defect = scene.defect.as_ref()?;
+    let (length, b) = (defect.length_mm, &scene.bearing);
+    let (name, field, diameter) = match defect.ring {
+        DefectRing::Outer => ("outer", OUTER_RACE, b.outer_race_diameter_mm),
+        DefectRing::Inner => ("inner", INNER_RACE, b.inner_race_diameter_mm),
+    };
+    let around = PI * diameter;
     if length <= around / 2.0 {
         return None;
     }
@@ -409,25 +427,62 @@ fn defect_length(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new("defect.length_mm", at_most(around / 2.0, "mm, half of the outer raceway")).number(
+            Remedy::new(
+                "defect.length_mm",
+                at_most(around / 2.0, &format!("mm, half of the {name} raceway")),
+            )
+            .number(
                 round_down(spacing / 2.0, 2),
                 "less than the distance of two rollers, to see single impacts",
             ),
-            Remedy::new(OUTER_RACE, format!("at least {} mm", number(2.0 * length / PI))),
+            Remedy::new(field, format!("at least {} mm", number(2.0 * length / PI))),
+        ],
+    ))
+}
+
+/// Walls of the spall are single facets, and leave a floor.
+fn defect_edges(scene: &Scene) -> Option<Finding> {
+    const SLOPE: &str = "defect.edge_slope_deg";
+    let defect = scene.defect.as_ref().filter(|defect| defect.edge_slope_deg < 90.0)?;
+    let wall = defect.depth_mm / defect.edge_slope_deg.to_radians().tan();
+    let widest = (WIDEST_WALL * scene.mesh.size_mm).min(WALL_OF_LENGTH * defect.length_mm);
+    if wall <= widest {
+        return None;
+    }
+    let steep = round_up((defect.depth_mm / widest).atan().to_degrees(), 1);
+    let message = format!(
+        "the edges of the defect, {} mm deep at {}°, would be {:.3} mm wide; a mesh of {} mm and a defect of {} mm have room for {:.3} mm",
+        number(defect.depth_mm),
+        number(defect.edge_slope_deg),
+        wall,
+        number(scene.mesh.size_mm),
+        number(defect.length_mm),
+        widest
+    );
+    let shallow = round_down(widest * defect.edge_slope_deg.to_radians().tan(), 3);
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(SLOPE, format!("at least {}°", number(steep))).number(steep, ""),
+            Remedy::new("defect.depth_mm", at_most(shallow, "mm")).number(shallow, ""),
         ],
     ))
 }
 
 /// The spall leaves some of the ring below it.
 fn defect_depth(scene: &Scene) -> Option<Finding> {
-    let depth = scene.defect.as_ref()?.depth_mm;
-    let ring = scene.bearing.outer_ring_thickness_mm;
+    let defect = scene.defect.as_ref()?;
+    let depth = defect.depth_mm;
+    let (name, field, ring) = match defect.ring {
+        DefectRing::Outer => ("outer", OUTER_RING, scene.bearing.outer_ring_thickness_mm),
+        DefectRing::Inner => ("inner", INNER_RING, scene.bearing.inner_ring_thickness_mm),
+    };
     let deepest = MAX_DEFECT_DEPTH_RATIO * ring;
     if depth <= deepest {
         return None;
     }
     let message = format!(
-        "the defect, {} mm deep, is too deep for an outer ring of {} mm",
+        "the defect, {} mm deep, is too deep for an {name} ring of {} mm",
         number(depth),
         number(ring)
     );
@@ -437,8 +492,7 @@ fn defect_depth(scene: &Scene) -> Option<Finding> {
         vec![
             Remedy::new("defect.depth_mm", at_most(deepest, "mm, 60 % of the ring's thickness"))
                 .number(round_down(ring / 50.0, 2), ""),
-            Remedy::new(OUTER_RING, format!("at least {} mm", number(thinnest)))
-                .number(round_up(thinnest, 2), ""),
+            Remedy::new(field, format!("at least {} mm", number(thinnest))).number(round_up(thinnest, 2), ""),
         ],
     ))
 }

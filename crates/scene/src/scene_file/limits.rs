@@ -137,6 +137,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("defect.length_mm", defect.length_mm, positive(20_000.0), "mm");
         add("defect.depth_mm", defect.depth_mm, positive(5_000.0), "mm");
         add("defect.angle_deg", defect.angle_deg, within(-360.0, 360.0), "°");
+        add("defect.edge_slope_deg", defect.edge_slope_deg, within(5.0, 90.0), "°");
     }
     add("material.youngs_modulus_gpa", material.youngs_modulus_gpa, positive(10_000.0), "GPa");
     let poisson = Range { low: 0.0, low_included: true, high: 0.5, high_included: false };

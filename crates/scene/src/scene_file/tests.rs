@@ -470,3 +470,19 @@ fn refuses_a_bearing_that_nobody_knows() {
     let why = Scene::parse("(\n  bearing: \"NU 999\",\n)", "mine").unwrap_err();
     assert!(why.to_string().contains("mine:2:12"), "{why}");
 }
+
+#[test]
+fn example_defects_on_either_ring_with_sloped_edges() {
+    let scene = parse("(defect: (ring: inner, edge_slope_deg: 30))").unwrap();
+    let defect = crate::geometry::Geometry::of(&scene).defect.unwrap();
+    assert_eq!(defect.ring, crate::scene::DefectRing::Inner);
+    assert!((defect.edge_slope.to_degrees() - 30.0).abs() < 1e-12);
+    for (text, field) in [
+        ("(defect: (edge_slope_deg: 120))", "defect.edge_slope_deg"),
+        ("(defect: (edge_slope_deg: 6))", "defect.edge_slope_deg"),
+        ("(defect: (ring: middle))", "defect.ring"),
+        ("(defect: (ring: inner, depth_mm: 7))", "defect.depth_mm"),
+    ] {
+        assert_eq!(only(parse(text)).field, field, "{text}");
+    }
+}

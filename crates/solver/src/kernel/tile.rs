@@ -327,7 +327,7 @@ mod tests {
 
     #[test]
     fn example_strips_of_a_grooved_ring_are_mostly_alike() {
-        let groove = Some(Groove { centre_angle: 0.5 * PI, length: 0.01, depth: 0.2e-3 });
+        let groove = Some(Groove::rectangular(0.5 * PI, 0.01, 0.2e-3));
         let ring = Annulus {
             inner_radius: 0.1,
             outer_radius: 0.11,

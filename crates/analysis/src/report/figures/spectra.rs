@@ -116,22 +116,24 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
     let mut figure = over_frequency("spectrum-low", "Low frequencies: the defect and the ring", (0.0, top))
         .with(density("raw", Colour::Blue, raw));
-    let split = artefacts::shows_family(raw, findings.prediction.kinematics.bpfo_hz);
-    figure = figure
-        .caption(if split {
-            "The record is long enough to separate the multiples of BPFO."
-        } else {
-            "BPFO and its multiples belong at the red lines; this record is too short to show them."
-        })
-        .note(format!("{LEGEND} {}", stated(raw)));
+    let caption = match findings.prediction.family {
+        None => "There is no defect whose lines could stand here.".to_owned(),
+        Some((name, hz)) if artefacts::shows_family(raw, hz) => {
+            format!("The record is long enough to separate the multiples of {name}.")
+        }
+        Some((name, _)) => format!(
+            "{name} and its multiples belong at the red lines; this record is too short to show them."
+        ),
+    };
+    figure = figure.caption(caption).note(format!("{LEGEND} {}", stated(raw)));
     figure.marks = physics_marks(findings, top);
     figure
 }
 
 fn envelope(findings: &Findings) -> Option<Figure> {
     let (spectrum, finding) = findings.envelope.as_ref().zip(findings.summary.envelope.as_ref())?;
-    let bpfo = findings.prediction.kinematics.bpfo_hz;
-    let top = (FAMILY as f64 + 1.0) * bpfo;
+    let (name, hz) = findings.prediction.family?;
+    let top = (FAMILY as f64 + 1.0) * hz;
     let power = Axis::plain("Squared envelope spectrum", "dB re 1 g⁴");
     let mut figure =
         Figure::new("envelope", "Envelope spectrum", Axis::si("Frequency", "Hz").over(0.0, top), power)
@@ -145,10 +147,10 @@ fn envelope(findings: &Findings) -> Option<Figure> {
     let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
     figure = figure
         .caption(format!(
-            "Knocks come at BPFO: of its multiples {seen} stand 10 dB above their surroundings."
+            "Knocks come at {name}: of its multiples {seen} stand 10 dB above their surroundings."
         ))
         .note(format!(
-            "Envelope of {:.0} to {:.0} Hz, {:.1} periods of BPFO on record. {}",
+            "Envelope of {:.0} to {:.0} Hz, {:.1} periods of {name} on record. {}",
             finding.band_hz.0,
             finding.band_hz.1,
             finding.periods,
@@ -161,10 +163,9 @@ fn envelope(findings: &Findings) -> Option<Figure> {
 /// The defect's family and the ring's modes below `top`.
 fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
     let mut marks = Vec::new();
-    if findings.prediction.defect.is_some() {
-        let bpfo = findings.prediction.kinematics.bpfo_hz;
-        let text = |n: usize| if n == 1 { format!("BPFO {bpfo:.1} Hz") } else { format!("×{n}") };
-        marks.extend((1..=FAMILY).map(|n| mark(n as f64 * bpfo, &text(n), Colour::Red, true)));
+    if let Some((name, hz)) = findings.prediction.family {
+        let text = |n: usize| if n == 1 { format!("{name} {hz:.1} Hz") } else { format!("×{n}") };
+        marks.extend((1..=FAMILY).map(|n| mark(n as f64 * hz, &text(n), Colour::Red, true)));
     }
     marks.extend(
         findings

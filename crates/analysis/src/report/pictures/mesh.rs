@@ -4,7 +4,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::{Body, RunMesh};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{DefectRing, Scene};
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
@@ -93,7 +93,11 @@ pub(super) fn whole(mesh: &RunMesh) -> Picture {
 pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let geometry = Geometry::of(scene);
     let angle = geometry.defect.map_or(FRAC_PI_2, |defect| defect.angle);
-    let radius = geometry.outer_race_radius;
+    let ring = geometry.defect.map_or(DefectRing::Outer, |defect| defect.ring);
+    let (radius, outwards) = match ring {
+        DefectRing::Outer => (geometry.outer_race_radius, 1.0),
+        DefectRing::Inner => (geometry.inner_race_radius, -1.0),
+    };
     let centre = [radius * angle.cos(), radius * angle.sin()];
     let half = [0.014, 0.0075];
     let low = [centre[0] - half[0], centre[1] - 1.25 * half[1]];
@@ -117,7 +121,7 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
             let ring: Vec<[f64; 2]> = (0..60)
                 .map(|n| {
                     let t = std::f64::consts::TAU * f64::from(n) / 60.0;
-                    let (along, out) = (1.2 * reach * t.cos(), 0.0009 * t.sin() + 0.0001);
+                    let (along, out) = (1.2 * reach * t.cos(), 0.0009 * t.sin() + outwards * 0.0001);
                     let (r, a) = (radius + out, angle + along / radius);
                     view.place([r * a.cos(), r * a.sin()])
                 })
@@ -134,8 +138,10 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let mut picture = Picture::new("mesh-defect", "Fig. 1b: the mesh about the defect", sheet);
     picture.caption = match &scene.defect {
         Some(d) => format!(
-            "The defect, {} mm long and {} mm deep, is one layer of elements whose nodes are moved outwards; its walls are single facets.",
-            d.length_mm, d.depth_mm
+            "The defect, {} mm long and {} mm deep, is one layer of elements whose nodes are moved {}; its walls are single facets.",
+            d.length_mm,
+            d.depth_mm,
+            if outwards > 0.0 { "outwards" } else { "inwards" }
         ),
         None => "The raceway is sound.".into(),
     };
