@@ -141,7 +141,7 @@ impl Annulus {
         if let Some(groove) = &self.groove {
             let facet = match groove.circle {
                 Circle::Inner => grid.inner_facet(),
-                Circle::Outer => grid.from_outside().inner_facet(),
+                Circle::Outer => grid.seen_from_outside().inner_facet(),
             };
             let finest = facet.min(grid.layer());
             groove::cut(&grid, groove, &lattice.places, enough(finest), &mut part)?;

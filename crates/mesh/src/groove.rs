@@ -89,7 +89,7 @@ pub(crate) fn cut(
         Circle::Inner => (grid, places.to_vec()),
         Circle::Outer => {
             let from_outside = |p: &Place| Place { row: layers as f64 - p.row, ..*p };
-            (&grid.from_outside(), places.iter().map(from_outside).collect())
+            (&grid.seen_from_outside(), places.iter().map(from_outside).collect())
         }
     };
     let places = &places[..];

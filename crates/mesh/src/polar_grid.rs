@@ -42,7 +42,7 @@ impl PolarGrid {
     }
 
     /// The same annulus with its rows counted from the outer circle.
-    pub(crate) fn from_outside(&self) -> Self {
+    pub(crate) fn seen_from_outside(&self) -> Self {
         Self { inner_radius: self.outer_radius, outer_radius: self.inner_radius, ..*self }
     }
 

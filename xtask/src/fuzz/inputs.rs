@@ -296,6 +296,8 @@ fn shape(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
                 centre_angle: 7.0 * dice.share(),
                 length: length(dice),
                 depth: 0.02 * dice.share(),
+                slope: 1.6 * dice.share(),
+                circle: if dice.one_in(2) { Circle::Inner } else { Circle::Outer },
             });
             let ring = Annulus {
                 inner_radius,

@@ -40,6 +40,15 @@ impl Pictures {
         };
         pictures.mesh =
             vec![mesh::whole(&mesh), mesh::defect(&run.scene, &mesh), roller::picture(&run.scene, &mesh)];
+        if findings.of_paper {
+            let numbers = ["Fig. 1a: ", "Fig. 1b: ", "Fig. 4: "];
+            for (picture, number) in pictures.mesh.iter_mut().zip(numbers) {
+                picture.title = format!("{number}{}", picture.title);
+            }
+            if let Some(roller) = pictures.mesh.last_mut() {
+                roller.note += " The paper draws a schematic of 15 edges and counts 113 in its model.";
+            }
+        }
         let frames = frames::read_all(&dir.frames())?;
         match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
             Some(window) => pictures.stress = stress::pictures(run, findings, &mesh, &window, &frames)?,

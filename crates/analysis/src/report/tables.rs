@@ -61,9 +61,11 @@ pub(super) fn notch(summary: &Summary) -> Markup {
         ("Boxcar, without the transient", db(notch.attenuation_boxcar_settled_db)),
         ("Attenuation at 4545 Hz, transfer function", db(notch.attenuation_4545_db)),
     ];
+    // The last is a frequency of the paper's.
+    let shown = if summary.paper.is_empty() { &rows[..rows.len() - 1] } else { &rows };
     html! {
         h3 id="notch" { "The notch" }
-        table class="pairs" { tbody { @for (name, value) in rows { tr { td { (name) } (cell(value)) } } } }
+        table class="pairs" { tbody { @for (name, value) in shown { tr { td { (name) } (cell(value.clone())) } } } }
     }
 }
 

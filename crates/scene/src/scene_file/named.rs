@@ -71,7 +71,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     }
     let follow = |path: &str, field: &mut f64, value: f64| {
         if !given(path) {
-            *field = tidy(value);
+            *field = to_digits(3, value);
         }
     };
     if let Some(cage) = &mut scene.cage {
@@ -193,11 +193,16 @@ fn thickness_of_balls(scene: &Scene) -> f64 {
     1e3 * g.thickness
 }
 
-/// Four digits: what a person would write into a scene.
+/// A dimension to a few micrometres.
 fn tidy(number: f64) -> f64 {
+    to_digits(5, number)
+}
+
+/// What a person would write into a scene.
+fn to_digits(digits: i32, number: f64) -> f64 {
     if number == 0.0 || !number.is_finite() {
         return number;
     }
-    let digits = 10_f64.powi(5 - number.abs().log10().ceil() as i32);
-    (number * digits).round() / digits
+    let scale = 10_f64.powi(digits - 1 - number.abs().log10().floor() as i32);
+    (number * scale).round() / scale
 }

@@ -141,10 +141,11 @@ fn transient_note(findings: &Findings) -> String {
     findings.summary.notch.as_ref().map_or(String::new(), |n| {
         format!(
             "Second-order notch at {:.1} Hz, Q = {}, one pass. In the shaded time the filter still answers to the start (60 dB \
-             of its ringing, time constant {:.2} ms). Dashed across: the paper's level.",
+             of its ringing, time constant {:.2} ms).{}",
             n.centre_hz,
             n.q,
-            1e3 * n.time_constant_s
+            1e3 * n.time_constant_s,
+            if findings.of_paper { " Dashed across: the paper's level." } else { "" }
         )
     })
 }

@@ -78,7 +78,7 @@ pub(super) fn whole(mesh: &RunMesh) -> Picture {
         sheet.text(at, 14.0, Anchor::Middle, "#000", name);
     }
     scale_bar(&mut sheet, [20.0, view.height - 20.0], 0.02, view.scale, "20 mm");
-    let mut picture = Picture::new("mesh", "Fig. 1a: the mesh", sheet);
+    let mut picture = Picture::new("mesh", "The mesh", sheet);
     picture.dense = true;
     picture.caption = format!(
         "Adapter, outer ring, {} rollers, cage and inner ring: {} elements.",
@@ -135,7 +135,7 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let words = format!("roller 1 stands {offset} ° before the middle of the defect");
     sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
     scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
-    let mut picture = Picture::new("mesh-defect", "Fig. 1b: the mesh about the defect", sheet);
+    let mut picture = Picture::new("mesh-defect", "The mesh about the defect", sheet);
     picture.caption = match &scene.defect {
         Some(d) => format!(
             "The defect, {} mm long and {} mm deep, is one layer of elements whose nodes are moved {}; its walls are single facets.",

@@ -21,12 +21,12 @@ pub(super) fn picture(scene: &Scene, mesh: &RunMesh) -> Picture {
     let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
     to_scale(&mut sheet, scene, mesh);
     magnified(&mut sheet, radius, facets, sag_um);
-    let mut picture = Picture::new("roller", "Fig. 4: a polygonised roller", sheet);
+    let mut picture = Picture::new("roller", "A polygonised roller", sheet);
     picture.caption = format!(
         "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle in its middle: that is what the contacts hear."
     );
     picture.note = format!(
-        "The paper draws a schematic of 15 edges and counts 113 in its model. Left: our mesh to scale. Right: {FACETS} facets, heights magnified {:.0} times.",
+        "Left: the mesh to scale. Right: {FACETS} facets, heights magnified {:.0} times.",
         HEIGHT_PX / (sag_um * 1e-3) / (WIDTH_PX / (FACETS as f64 * 2.0 * PI * radius / facets as f64))
     );
     picture
