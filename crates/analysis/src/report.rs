@@ -8,6 +8,7 @@ mod measured;
 mod pictures;
 mod sections;
 mod tables;
+mod trend;
 
 use std::fs;
 use std::panic::resume_unwind;
@@ -23,6 +24,7 @@ use stribeck_scene::scene::{DefectRing, Scene};
 
 pub use ensemble::write_ensemble;
 pub use measured::write_measured;
+pub use trend::{TrendEntry, write_trend};
 
 use crate::findings::Findings;
 use crate::plot;

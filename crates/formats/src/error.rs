@@ -22,7 +22,7 @@ pub enum Error {
     /// The file is none of the known formats.
     #[error(
         "`{}` is no signal that can be read: {seen}. Known are CSV, .npy, .npz, .mat (version 5), .uff/.unv (dataset 58), \
-         .tdms and .wav; export it as one of these", .path.display()
+         .tdms, .parquet and .wav; export it as one of these", .path.display()
     )]
     Unknown {
         /// The file.

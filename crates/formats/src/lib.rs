@@ -12,6 +12,7 @@
 //! | MATLAB `.mat`, version 5: deflated or not, small elements, structs and cells | [`mat5`] | yes |
 //! | Universal file, dataset 58, ASCII and binary (58b) | [`uff58`] | ASCII |
 //! | TDMS of LabVIEW | [`tdms`] | no |
+//! | Parquet: columns of numbers | [`parquet`] | yes, also of texts |
 //! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
 //!
 //! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
@@ -25,6 +26,7 @@ pub mod csv;
 pub mod mat5;
 pub mod npy;
 pub mod npz;
+pub mod parquet;
 pub mod tdms;
 pub mod uff58;
 pub mod wav;

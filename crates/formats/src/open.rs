@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::{Error, Recording, Result, csv, mat5, npy, npz, tdms, uff58, wav};
+use crate::{Error, Recording, Result, csv, mat5, npy, npz, parquet, tdms, uff58, wav};
 
 impl Recording {
     /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
@@ -34,7 +34,7 @@ impl Recording {
         } else if mat5::recognise(&start) {
             mat5::open(path)
         } else if begins(b"PAR1") {
-            unknown("it is Parquet")
+            parquet::open(path)
         } else if begins(b"TDSm") {
             tdms::open(path)
         } else if begins(b"MDF") {

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use stribeck_formats::{Channel, Recording, csv, mat5, npz, uff58, wav};
+use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
 use stribeck_testing::Noise;
 use stribeck_testing::Scratch;
 
@@ -29,6 +29,7 @@ fn write(path: &Path) {
         "npz" => npz::write(path, &channels, &notes),
         "mat" => mat5::write(path, &channels, &notes),
         "uff" => uff58::write(path, &channels, &notes),
+        "parquet" => parquet::write(path, &channels, &notes),
         "wav" => wav::write(path, &channels, &notes),
         other => panic!("{other}"),
     }
@@ -38,7 +39,7 @@ fn write(path: &Path) {
 #[test]
 fn roundtrip_every_format_keeps_samples_names_and_rate() {
     let folder = Scratch::create("formats-roundtrip");
-    for extension in ["csv", "npz", "mat", "uff", "wav"] {
+    for extension in ["csv", "npz", "mat", "uff", "parquet", "wav"] {
         let path = folder.path().join(format!("a.{extension}"));
         write(&path);
         let recording = Recording::open(&path).unwrap();
@@ -63,7 +64,7 @@ fn roundtrip_every_format_keeps_samples_names_and_rate() {
 fn survives_files_damaged_at_any_byte() {
     const EACH: u64 = 400;
     let folder = Scratch::create("formats-damaged");
-    for extension in ["csv", "npz", "mat", "uff", "wav"] {
+    for extension in ["csv", "npz", "mat", "uff", "parquet", "wav"] {
         let path = folder.path().join(format!("a.{extension}"));
         write(&path);
         let whole = std::fs::read(&path).unwrap();
@@ -92,15 +93,20 @@ fn survives_files_damaged_at_any_byte() {
 
 #[test]
 fn peer_other_programs_read_what_is_written() {
-    // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8 and soundfile 0.14.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
+    // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
     let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let folder = Scratch::create("formats-foreign");
     let expected = folder.path().join("expected.csv");
     csv::write(&expected, &channels(), &[]).unwrap();
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/read_signals.py");
-    for (extension, module) in
-        [("csv", "numpy"), ("npz", "numpy"), ("mat", "scipy.io"), ("uff", "pyuff"), ("wav", "soundfile")]
-    {
+    for (extension, module) in [
+        ("csv", "numpy"),
+        ("npz", "numpy"),
+        ("mat", "scipy.io"),
+        ("uff", "pyuff"),
+        ("parquet", "pyarrow"),
+        ("wav", "soundfile"),
+    ] {
         let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
         if !has.is_ok_and(|o| o.status.success()) {
             eprintln!("{extension} is not held against {module}: `{python}` does not have it");

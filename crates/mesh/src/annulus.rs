@@ -2,10 +2,10 @@
 
 use crate::error::{count, elements, finite, positive};
 use crate::groove::{self, Groove};
-use crate::polar_grid::{Place, PolarGrid};
+use crate::polar_grid::{Circle, Place, PolarGrid};
 use crate::rows::{self, NextRow};
 use crate::smoothing::sound;
-use crate::{Circle, Error, Part};
+use crate::{Error, Part};
 
 /// An annulus about the origin, made of quadrilaterals in circumferential rows.
 ///

@@ -5,18 +5,9 @@ use std::f64::consts::TAU;
 use crate::annulus::Annulus;
 use crate::error::{count, elements};
 use crate::groove;
-use crate::polar_grid::Place;
+use crate::polar_grid::{Circle, Place};
 use crate::smoothing::{enough, sound};
 use crate::{Error, Part};
-
-/// One of the two circles of an annulus.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Circle {
-    /// The one of the smaller radius.
-    Inner,
-    /// The one of the larger radius.
-    Outer,
-}
 
 /// How an annulus coarsens away from one of its circles.
 ///

@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use crate::error::{MOST, finite, positive};
-use crate::polar_grid::{Place, PolarGrid};
+use crate::polar_grid::{Circle, Place, PolarGrid};
 use crate::shape_optimisation::{SHARPNESS, raise_assembled_step};
 use crate::smoothing::{inside_out, raise_critical_step_to};
-use crate::{Circle, Error, Part};
+use crate::{Error, Part};
 
 /// A groove: a floor between two walls, cut into the inner or the outer surface of an annulus.
 ///

@@ -77,6 +77,7 @@
 //! | How large and how well shaped are elements? | `characteristic.rs`, `quality.rs` |
 //! | How are badly shaped cells improved? | one by one `smoothing.rs`; all at once `shape_optimisation.rs`, by the natural frequencies of a `submesh.rs` (`tridiagonal.rs`) |
 //! | How does a mesh become a file? | `vtu.rs` |
+//! | How do other programs get a mesh, or we theirs? | `vtu.rs`, `decks.rs` |
 //! | What is refused? | `error.rs` |
 
 mod mesh;
@@ -105,6 +106,7 @@ pub mod smoothing;
 mod submesh;
 mod tridiagonal;
 
+pub mod decks;
 pub mod vtu;
 
 mod error;
@@ -114,10 +116,11 @@ pub use arc_block::ArcBlock;
 pub use characteristic::characteristic_length;
 pub use disc::Disc;
 pub use error::Error;
-pub use grading::{Circle, Grading};
+pub use grading::Grading;
 pub use groove::Groove;
 pub use mesh::{Body, Mesh, Placed};
 pub use part::{Part, Surface};
+pub use polar_grid::Circle;
 pub use quality::{BodyQuality, Quality};
 pub use rectangle::Rectangle;
 pub use seated_block::SeatedBlock;

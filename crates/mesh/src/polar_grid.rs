@@ -2,6 +2,15 @@
 
 use std::f64::consts::TAU;
 
+/// One of the two circles of an annulus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Circle {
+    /// The one of the smaller radius.
+    Inner,
+    /// The one of the larger radius.
+    Outer,
+}
+
 /// The plain grid of an annulus about the origin.
 #[derive(Clone, Copy)]
 pub(crate) struct PolarGrid {

@@ -45,8 +45,10 @@
 //! | What is that in SI? | [`geometry`] |
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
+//! | Which scenes does a campaign make of one? | [`campaign`] |
 //! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
+pub mod campaign;
 pub mod catalogue;
 mod contact_formula;
 pub mod dice;
@@ -55,6 +57,7 @@ pub mod error;
 pub mod frames;
 pub mod geometry;
 pub mod kinematics;
+mod line_contact;
 pub mod lubrication;
 pub mod material;
 pub mod mesh_file;

@@ -5,7 +5,7 @@
 //! [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
 mod check;
-mod dialect;
+pub(crate) mod dialect;
 mod extent;
 mod finding;
 mod foreign;

@@ -7,6 +7,7 @@
 use crate::error::Error;
 use crate::geometry::Geometry;
 use crate::kinematics::roller_angles_deg;
+use crate::line_contact::LineContacts;
 use crate::scene::Scene;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
@@ -52,75 +53,14 @@ pub struct RigidRings {
     compliance: LineContacts,
 }
 
-/// The two contacts of one roller in series.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct LineContacts {
-    /// (1 − ν²)/(π E) [m²/N].
-    softness: f64,
-    /// E* = E/(2(1 − ν²)) [Pa].
-    modulus: f64,
-    /// Poisson's ratio [-].
-    poisson: f64,
-    /// Radius of the roller [m].
-    roller: f64,
-    /// Outer and inner contact: effective radius and ring thickness [m].
-    sides: [(f64, f64); 2],
-}
-
-impl LineContacts {
-    /// Approach of the two raceways [m] under the line load `w` [N/m], and its derivative [m²/N].
-    ///
-    /// ```text
-    /// b² = 4 w R / (π E*)
-    /// δ  = Σ w (1−ν²)/(π E) · [2 ln(4 r/b) − 1 + 2 ln(2 h/b) − ν/(1−ν)]     over both contacts
-    /// ```
-    fn approach(&self, w: f64) -> (f64, f64) {
-        let mut sum = (0.0, 0.0);
-        for (radius, depth) in self.sides {
-            let half_width = (4.0 * w * radius / (std::f64::consts::PI * self.modulus)).sqrt();
-            let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
-            let ring = 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
-            sum.0 += w * self.softness * (roller + ring);
-            // b grows with the root of w, so each logarithm loses 1/(2w).
-            sum.1 += self.softness * (roller + ring - 2.0);
-        }
-        sum
-    }
-
-    /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²].
-    fn load(&self, delta: f64) -> (f64, f64) {
-        // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real load.
-        let mut w = delta / (80.0 * self.softness);
-        for _ in 0..100 {
-            let (at, slope) = self.approach(w);
-            let step = (delta - at) / slope;
-            w = (w + step).max(0.1 * w);
-            if step.abs() <= 1e-14 * w {
-                break;
-            }
-        }
-        (w, 1.0 / self.approach(w).1)
-    }
-}
-
 impl RigidRings {
     /// Rings, rollers and material of a scene.
     pub fn new(geometry: &Geometry) -> Self {
-        let (g, m) = (geometry, &geometry.material);
-        let nu = m.poissons_ratio;
+        let g = geometry;
         Self {
             clearance_m: g.outer_race_radius - g.inner_race_radius - 2.0 * g.roller_radius,
             length_m: g.thickness,
-            compliance: LineContacts {
-                softness: (1.0 - nu * nu) / (std::f64::consts::PI * m.youngs_modulus),
-                modulus: m.contact_modulus(),
-                poisson: nu,
-                roller: g.roller_radius,
-                sides: [
-                    (g.outer_contact_radius(), g.outer_ring_thickness),
-                    (g.inner_contact_radius(), g.inner_ring_thickness),
-                ],
-            },
+            compliance: LineContacts::of(g),
         }
     }
 

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::measured::{Analysis, Machine, tacho};
+use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
 use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::{CatalogueBearing, Element};
 use stribeck_scene::scene::Scene;
@@ -14,8 +15,10 @@ use crate::place::{Place, shown};
 /// Flags of `analyse`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// A file of signals (CSV, .npy, .npz, .mat, .uff, .tdms, .wav), or the folder of a run
-    file: PathBuf,
+    /// A file of signals (CSV, .npy, .npz, .mat, .uff, .tdms, .parquet, .wav), or the folder of a run; several are set side by
+    /// side, in their order
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
     /// Samples a second [Hz], when the file does not say it
     #[arg(long)]
     rate_hz: Option<f64>,
@@ -43,10 +46,44 @@ pub struct Options {
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let mut file = place.locate(&options.file);
+    if let [file] = &options.files[..] {
+        let out = options.out.clone().unwrap_or_else(|| default_folder(file));
+        print(&analyse(file, &out, options, place)?);
+        println!("report: {}", shown(&out.join("report.html")));
+        return Ok(ExitCode::SUCCESS);
+    }
+    let out = options.out.clone().unwrap_or_else(|| PathBuf::from("trend-analysis"));
+    let digits = options.files.len().to_string().len();
+    let mut entries = Vec::new();
+    for (at, file) in options.files.iter().enumerate() {
+        // Files of one name in several folders keep apart.
+        let stem = file.file_stem().map_or_else(|| "record".into(), |n| n.to_string_lossy());
+        let folder = format!("{:0digits$}-{stem}", at + 1);
+        let done = analyse(file, &out.join(&folder), options, place);
+        let (findings, error) = match done {
+            Ok(analysis) => (Some(analysis.findings), None),
+            Err(why) => (None, Some(format!("{why:#}"))),
+        };
+        let file = file.display().to_string();
+        println!(
+            "{file}: {}",
+            findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict)
+        );
+        entries.push(TrendEntry { file, folder, findings, error });
+    }
+    std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
+    write_trend(&out, &entries)?;
+    println!("side by side: {}", shown(&out.join("trend.html")));
+    let any = entries.iter().any(|entry| entry.findings.is_some());
+    Ok(if any { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Analyses one record and writes its findings and its page into `out`.
+fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
+    let mut file = place.locate(asked);
     let mut scene = None;
     if !file.exists() {
-        file = place.locate_run(&options.file);
+        file = place.locate_run(asked);
     }
     if file.is_dir() {
         scene = Some(
@@ -66,12 +103,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scaled = channel.scaled(options.scale).in_unit(unit);
     let mut analysis = Analysis::of(&scaled, rate_hz, &machine)?;
     analysis.findings.notes.splice(0..0, notes);
-    let out = options.out.clone().unwrap_or_else(|| default_folder(&options.file));
-    let name = options.file.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    stribeck_analysis::report::write_measured(&out, &name, &analysis)?;
-    print(&analysis);
-    println!("report: {}", shown(&out.join("report.html")));
-    Ok(ExitCode::SUCCESS)
+    let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
+    write_measured(out, &name, &analysis)?;
+    Ok(analysis)
 }
 
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the longest.

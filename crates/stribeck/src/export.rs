@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::stress::{Lame, von_mises};
 use stribeck_dsp::Sensor;
-use stribeck_formats::{Channel, Recording, csv, mat5, npz, uff58, wav};
+use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
+use stribeck_mesh::decks::Deck;
 use stribeck_mesh::vtu::{self, Field};
 use stribeck_mesh::{Body, Mesh};
 use stribeck_scene::frames;
@@ -47,10 +48,18 @@ enum Format {
     Mat,
     /// Universal file, dataset 58
     Uff,
+    /// Parquet, a row a sample
+    Parquet,
     /// Sound, 64-bit floats
     Wav,
     /// ParaView: a series of grids with the stress about the defect
     Pvd,
+    /// The mesh, undeformed, for LS-DYNA
+    K,
+    /// The mesh, undeformed, for Abaqus
+    Inp,
+    /// The mesh, undeformed, for Gmsh (4.1)
+    Msh,
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -63,10 +72,13 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     for missing in run.damage() {
         eprintln!("warning: {missing}");
     }
-    let written = if options.to == Format::Pvd {
-        series(&dir, &run, options.out.clone().unwrap_or_else(|| folder.join("paraview")))?
-    } else {
-        signals(&dir, &run, options)?
+    let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
+    let written = match options.to {
+        Format::Pvd => series(&dir, &run, out("paraview"))?,
+        Format::K => mesh(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
+        Format::Inp => mesh(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
+        Format::Msh => mesh(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
+        _ => signals(&dir, &run, options)?,
     };
     println!("{}", shown(&written));
     Ok(ExitCode::SUCCESS)
@@ -113,8 +125,9 @@ fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
         Format::Npz => "npz",
         Format::Mat => "mat",
         Format::Uff => "uff",
+        Format::Parquet => "parquet",
         Format::Wav => "wav",
-        Format::Pvd => "pvd",
+        Format::Pvd | Format::K | Format::Inp | Format::Msh => "",
     };
     let path = options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{extension}")));
     let notes = provenance(run);
@@ -125,8 +138,9 @@ fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
         Format::Npz => npz::write(&path, &channels, &notes)?,
         Format::Mat => mat5::write(&path, &channels, &notes)?,
         Format::Uff => uff58::write(&path, &no_time, &notes)?,
+        Format::Parquet => parquet::write(&path, &channels, &notes)?,
         Format::Wav => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd => {}
+        Format::Pvd | Format::K | Format::Inp | Format::Msh => {}
     }
     Ok(path)
 }
@@ -189,6 +203,32 @@ fn unit(name: &str) -> Option<&'static str> {
     .into_iter()
     .find(|(end, _)| name.ends_with(end))
     .map(|(_, unit)| unit)
+}
+
+/// The mesh of the run, each body a part or set of its name.
+fn mesh(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Result<PathBuf> {
+    let whole = RunMesh::read(dir.mesh())?;
+    let nodes = |body: &stribeck_scene::mesh_file::Body| {
+        let quads = whole.quads[body.quads.clone()].iter().flatten();
+        let corners = quads.chain(whole.triangles[body.triangles.clone()].iter().flatten());
+        let (low, high) = corners.fold((u32::MAX, 0), |(low, high), &n| (low.min(n), high.max(n + 1)));
+        low.min(high) as usize..high as usize
+    };
+    let bodies = whole.bodies.iter().map(|body| Body {
+        name: body.name.clone(),
+        nodes: nodes(body),
+        quads: body.quads.clone(),
+        triangles: body.triangles.clone(),
+    });
+    let mesh = Mesh {
+        x: whole.reference.iter().map(|[x, _]| *x).collect(),
+        y: whole.reference.iter().map(|[_, y]| *y).collect(),
+        bodies: bodies.collect(),
+        quads: whole.quads.clone(),
+        triangles: whole.triangles.clone(),
+    };
+    write_atomic(&path, deck.write(&mesh, &provenance(run).join("; ")).as_bytes())?;
+    Ok(path)
 }
 
 /// A grid a frame, with displacement and von Mises stress, and the index that gives their times.

@@ -8,6 +8,8 @@ pub mod place;
 pub mod progress;
 
 mod analyse;
+mod board;
+mod campaign;
 mod export;
 mod plan;
 mod report;
@@ -25,6 +27,8 @@ pub enum Command {
     Simulate(simulate::Options),
     /// Writes the report of a run again
     Report(report::Options),
+    /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
+    Campaign(campaign::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
     /// Says what a measured record shows: which defects, how sure, and what it cannot say
@@ -42,6 +46,7 @@ impl Command {
         match self {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
+            Self::Campaign(options) => campaign::run(options, place),
             Self::Plan(options) => plan::run(options, place),
             Self::Analyse(options) => analyse::run(options, place),
             Self::Export(options) => export::run(options, place),

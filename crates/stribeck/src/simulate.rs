@@ -1,7 +1,7 @@
 //! `stribeck simulate`: scene file → run folder → report. Or the rest of a run that ended early.
 
-mod board;
 mod ensemble;
+pub(crate) use ensemble::words as run_words;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -56,7 +56,7 @@ pub struct Options {
 }
 
 /// A number of worker threads.
-fn threads(text: &str) -> Result<usize, String> {
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
     number.ok_or_else(|| {
         "the number of worker threads is a whole number from 1 to 1024; leave it out for all cores".to_owned()
@@ -64,7 +64,7 @@ fn threads(text: &str) -> Result<usize, String> {
 }
 
 /// A number of starts side by side.
-fn jobs(text: &str) -> Result<usize, String> {
+pub(crate) fn jobs(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
     number.ok_or_else(|| {
         "the number of starts side by side is a whole number from 1 to 1024; leave it out for as many as there are threads".to_owned()

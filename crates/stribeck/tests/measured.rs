@@ -129,3 +129,33 @@ fn example_a_run_is_exported_and_read_back() {
     let output = stribeck(desk.path(), &["export", "quick", "--to", "csv", "--channel", "nothing"]);
     assert!(said(&output).contains("no channel contains `nothing`"), "{}", said(&output));
 }
+
+#[test]
+fn example_several_records_are_set_side_by_side() {
+    let desk = Scratch::create("trend");
+    let mut noise = Noise::new(9);
+    let sound: Vec<f64> = (0..100_000).map(|_| noise.uniform()).collect();
+    for (name, samples) in [("before.mat", sound), ("after.mat", knocks(12_800.0))] {
+        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
+        mat5::write(&desk.join(name), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
+    }
+    let words =
+        ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
+    let output = stribeck(desk.path(), &words);
+    assert!(output.status.success(), "{}", said(&output));
+    let trend: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let claimed = |at: usize| {
+        let families = trend[at]["findings"]["families"].as_array().unwrap();
+        families
+            .iter()
+            .filter(|f| f["claimed"] == true)
+            .map(|f| f["name"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!((claimed(0), claimed(1)), (vec![], vec!["BPFO".to_owned()]));
+    assert!(trend[2]["findings"].is_null() && trend[2]["error"].as_str().unwrap().contains("none.mat"));
+    let page = std::fs::read_to_string(desk.join("T/trend.html")).unwrap();
+    assert!(page.contains("2-after/report.html"));
+    assert!(desk.join("T/1-before/findings.json").exists());
+}

@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 use super::outline::Outline;
 use crate::catalogue::{Boundary, CatalogueBearing, Element};
 use crate::geometry::Geometry;
+use crate::line_contact::LineContacts;
 use crate::point_contact;
 use crate::scene::{BearingScene, CageScene, DefectScene, FramesScene, GradingScene, Scene};
-use crate::static_load::RigidRings;
 
 /// Circumference of the pitch circle over the rolling elements side by side, where their number is not known: cages of E
 /// design leave about a quarter.
@@ -172,7 +172,7 @@ fn clearance_mm(element: Element, bore_mm: f64) -> f64 {
 
 /// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would (THEORY §6.2).
 fn thickness_of_balls(scene: &Scene) -> f64 {
-    let mut g = Geometry::of(scene);
+    let g = Geometry::of(scene);
     let load = STRIBECK * g.load / g.rollers as f64;
     let groove = 2.0 * point_contact::CONFORMITY * g.roller_radius;
     let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
@@ -180,17 +180,9 @@ fn thickness_of_balls(scene: &Scene) -> f64 {
         .iter()
         .map(|&race| point_contact::approach(g.roller_radius, race, groove, load, modulus))
         .sum();
-    // The approach falls as the length grows.
-    let (mut short, mut long): (f64, f64) = (1e-3 * g.roller_radius, 1e3 * g.roller_radius);
-    for _ in 0..60 {
-        g.thickness = (short * long).sqrt();
-        if RigidRings::new(&g).approach_m(load) > wanted {
-            short = g.thickness;
-        } else {
-            long = g.thickness;
-        }
-    }
-    1e3 * g.thickness
+    // The line load that makes as much, and how long a line has it.
+    let (line_load, _) = LineContacts::of(&g).load(wanted);
+    1e3 * load / line_load
 }
 
 /// A dimension to a few micrometres.

@@ -450,14 +450,14 @@ fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
 
 #[test]
 fn invariant_balls_are_cylinders_of_their_own_stiffness() {
-    use crate::{geometry::Geometry, point_contact, static_load::RigidRings};
+    use crate::{geometry::Geometry, line_contact::LineContacts, point_contact};
     let scene = Scene::parse("(bearing: \"6205\", operation: (load_n: 2000))", "mine").unwrap();
     let g = Geometry::of(&scene);
     let load = 4.37 * 2000.0 / 9.0;
     let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
     let ball = |race| point_contact::approach(g.roller_radius, race, 1.04 * g.roller_radius, load, modulus);
-    let ratio =
-        RigidRings::new(&g).approach_m(load) / (ball(g.inner_race_radius) + ball(-g.outer_race_radius));
+    let ratio = LineContacts::of(&g).approach(load / g.thickness).0
+        / (ball(g.inner_race_radius) + ball(-g.outer_race_radius));
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
 }
 

@@ -14,8 +14,8 @@ use stribeck_scene::run_dir::{RunDir, State};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
 
-use super::board::Board;
 use super::{Options, check_overrides, reserve, take_place};
+use crate::board::Board;
 use crate::host::{self, SharedClock};
 use crate::interrupt::{self, Interrupt};
 use crate::place::{Place, shown};
@@ -89,7 +89,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         disk_refuses: AtomicBool::new(false),
         threads: each,
         clock: SharedClock::default(),
-        board: Board::new(due.len()),
+        board: Board::new("start", due.len()),
         interrupt: &interrupt,
     };
     std::thread::scope(|scope| {
@@ -243,8 +243,8 @@ impl Shop<'_> {
     }
 }
 
-/// How a start ended, in a line.
-fn words(info: &RunInfo) -> String {
+/// How a run ended, in a line.
+pub(crate) fn words(info: &RunInfo) -> String {
     let (time, error) = (clock(info.setup_s + info.wall_s), 100.0 * info.energy.max_relative_error);
     match (info.status, &info.stop_reason) {
         (Status::Complete, _) => format!("complete after {time}, energy error {error:.3} %"),

@@ -1,4 +1,4 @@
-//! The progress of an ensemble: one bar for all starts on a terminal, lines in a log.
+//! The progress of many runs: one bar for all of them on a terminal, lines in a log.
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -14,8 +14,8 @@ const PAUSES: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(1
 /// Parts of the bar.
 const PARTS: u64 = 1000;
 
-/// Shows how far all starts have come.
-pub(super) struct Board {
+/// Shows how far all have come.
+pub(crate) struct Board {
     bar: ProgressBar,
     on_terminal: bool,
     began: Instant,
@@ -23,19 +23,21 @@ pub(super) struct Board {
 }
 
 struct State {
-    /// Starts to be run.
+    /// What one is called: `start`.
+    noun: &'static str,
+    /// How many are to be run.
     all: usize,
     done: usize,
-    /// Starts that are in their time loop: the part of each that is done.
+    /// Those that are in their time loop: the part of each that is done.
     going: BTreeMap<usize, f64>,
-    /// What continued starts had done before.
+    /// What continued ones had done before.
     earlier: f64,
     shown: Instant,
 }
 
 impl Board {
-    /// A board for so many starts.
-    pub(super) fn new(all: usize) -> Self {
+    /// A board for so many, each called a `noun`.
+    pub(crate) fn new(noun: &'static str, all: usize) -> Self {
         let on_terminal = std::io::stderr().is_terminal();
         let target = if on_terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let bar = ProgressBar::with_draw_target(Some(PARTS), target);
@@ -43,12 +45,12 @@ impl Board {
             bar.set_style(style);
         }
         let now = Instant::now();
-        let state = State { all, done: 0, going: BTreeMap::new(), earlier: 0.0, shown: now };
+        let state = State { noun, all, done: 0, going: BTreeMap::new(), earlier: 0.0, shown: now };
         Self { bar, on_terminal, began: now, state: Mutex::new(state) }
     }
 
-    /// Takes note of how far start `number` is; draws only when it is time to.
-    pub(super) fn show(&self, number: usize, progress: &Progress) {
+    /// Takes note of how far `number` is; draws only when it is time to.
+    pub(crate) fn show(&self, number: usize, progress: &Progress) {
         if progress.phase != "run" {
             return;
         }
@@ -72,43 +74,50 @@ impl Board {
         }
     }
 
-    /// Start `number` has ended, as `words` say.
-    pub(super) fn done(&self, number: usize, words: &str) {
+    /// `number` has ended, as `words` say.
+    pub(crate) fn done(&self, number: usize, words: &str) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.going.remove(&number);
         state.done += 1;
-        let line = format!("start {number} ({} of {}): {words}", state.done, state.all);
+        let line = format!("{} {number} ({} of {}): {words}", state.noun, state.done, state.all);
         drop(state);
         self.say(&line);
     }
 
     /// Says something above the bar.
-    pub(super) fn say(&self, line: &str) {
+    pub(crate) fn say(&self, line: &str) {
         self.bar.suspend(|| eprintln!("{line}"));
     }
 
     /// Takes the bar away.
-    pub(super) fn finish(&self) {
+    pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
     }
 }
 
 impl State {
-    /// Starts that are done, with the parts of those that are going.
+    /// How many are done, with the parts of those that are going.
     fn work(&self) -> f64 {
         self.done as f64 + self.going.values().sum::<f64>()
     }
 
-    /// One line, `elapsed` seconds after the first start was taken up.
+    /// One line, `elapsed` seconds after the first was taken up.
     fn line(&self, elapsed: f64) -> String {
         let left = self.all as f64 - self.work();
         let pace = (self.work() - self.earlier) / elapsed;
         let going: Vec<String> = self
             .going
             .iter()
-            .map(|(number, part)| format!("start {number} at {:.0} %", 100.0 * part))
+            .map(|(number, part)| format!("{} {number} at {:.0} %", self.noun, 100.0 * part))
             .collect();
-        format!("{} of {} starts done, {}, ETA {}", self.done, self.all, going.join(", "), clock(left / pace))
+        format!(
+            "{} of {} {}s done, {}, ETA {}",
+            self.done,
+            self.all,
+            self.noun,
+            going.join(", "),
+            clock(left / pace)
+        )
     }
 }
 
@@ -119,7 +128,7 @@ mod tests {
     #[test]
     fn example_a_line_holds_starts_parts_and_eta() {
         let going = BTreeMap::from([(5, 0.5), (6, 0.25)]);
-        let state = State { all: 12, done: 4, going, earlier: 0.75, shown: Instant::now() };
+        let state = State { noun: "start", all: 12, done: 4, going, earlier: 0.75, shown: Instant::now() };
         // Four starts of work in 40 s; 7.25 are left.
         assert_eq!(state.line(40.0), "4 of 12 starts done, start 5 at 50 %, start 6 at 25 %, ETA 1:13");
     }

@@ -1,0 +1,330 @@
+//! Apache Parquet: tables of named columns, as pandas, polars and DuckDB read them.
+
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::column::reader::ColumnReader;
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::Type;
+
+use crate::{Channel, Error, Recording, Result};
+
+const FORMAT: &str = "Parquet";
+
+/// Rows that are read at a time.
+const BATCH: usize = 1 << 16;
+
+/// The values of a column; what is missing is null.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Numbers.
+    Number(Vec<Option<f64>>),
+    /// Whole numbers.
+    Count(Vec<Option<i64>>),
+    /// True or false.
+    Flag(Vec<Option<bool>>),
+    /// Texts.
+    Text(Vec<Option<String>>),
+}
+
+/// A named column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// Its name.
+    pub name: String,
+    /// Its values, one a row.
+    pub values: Values,
+}
+
+impl Column {
+    /// Numbers, none of them missing.
+    pub fn numbers(name: impl Into<String>, values: Vec<f64>) -> Self {
+        Self { name: name.into(), values: Values::Number(values.into_iter().map(Some).collect()) }
+    }
+
+    fn rows(&self) -> usize {
+        match &self.values {
+            Values::Number(v) => v.len(),
+            Values::Count(v) => v.len(),
+            Values::Flag(v) => v.len(),
+            Values::Text(v) => v.len(),
+        }
+    }
+
+    fn schema(&self) -> std::result::Result<Type, ParquetError> {
+        let (physical, logical) = match &self.values {
+            Values::Number(_) => (Physical::DOUBLE, None),
+            Values::Count(_) => (Physical::INT64, None),
+            Values::Flag(_) => (Physical::BOOLEAN, None),
+            Values::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+        };
+        let optional = Repetition::OPTIONAL;
+        Type::primitive_type_builder(&self.name, physical)
+            .with_repetition(optional)
+            .with_logical_type(logical)
+            .build()
+    }
+}
+
+/// A table that is written group of rows by group of rows, so that it need not fit into memory. Equal tables are equal bytes.
+pub struct Writer {
+    path: std::path::PathBuf,
+    schema: Vec<Column>,
+    file: SerializedFileWriter<File>,
+}
+
+impl Writer {
+    /// Begins a file with columns of these names and kinds; their values do not matter. `notes` are written beside it, each
+    /// under its name.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::DoesNotFit`].
+    pub fn create(path: &Path, columns: &[Column], notes: &[(String, String)]) -> Result<Self> {
+        let refused = |e: ParquetError| refused(path, &e);
+        let fields: std::result::Result<Vec<_>, ParquetError> =
+            columns.iter().map(|column| column.schema().map(Arc::new)).collect();
+        let schema = Type::group_type_builder("table")
+            .with_fields(fields.map_err(refused)?)
+            .build()
+            .map_err(refused)?;
+        let notes = notes.iter().map(|(name, text)| KeyValue::new(name.clone(), text.clone())).collect();
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by("stribeck".to_owned())
+            .set_key_value_metadata(Some(notes))
+            .build();
+        let file = File::create(path).map_err(|e| Error::write(path, e))?;
+        let file =
+            SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties)).map_err(refused)?;
+        let blank = |column: &Column| Column {
+            name: column.name.clone(),
+            values: match &column.values {
+                Values::Number(_) => Values::Number(Vec::new()),
+                Values::Count(_) => Values::Count(Vec::new()),
+                Values::Flag(_) => Values::Flag(Vec::new()),
+                Values::Text(_) => Values::Text(Vec::new()),
+            },
+        };
+        Ok(Self { path: path.to_owned(), schema: columns.iter().map(blank).collect(), file })
+    }
+
+    /// Adds a group of rows: the columns of the file, equally long.
+    ///
+    /// # Errors
+    /// [`Error::DoesNotFit`] for other columns, [`Error::Io`].
+    pub fn add(&mut self, columns: &[Column]) -> Result<()> {
+        let rows = columns.first().map_or(0, Column::rows);
+        let same = |(column, known): (&Column, &Column)| {
+            column.name == known.name
+                && column.rows() == rows
+                && std::mem::discriminant(&column.values) == std::mem::discriminant(&known.values)
+        };
+        if columns.len() != self.schema.len() || !columns.iter().zip(&self.schema).all(same) {
+            let what = "its groups of rows must have the same columns, equally long".to_owned();
+            return Err(Error::DoesNotFit { path: self.path.clone(), format: FORMAT, what });
+        }
+        let path = self.path.clone();
+        let refused = |e: ParquetError| refused(&path, &e);
+        let mut group = self.file.next_row_group().map_err(refused)?;
+        for column in columns {
+            write_column(&mut group, &column.values).map_err(refused)?;
+        }
+        group.close().map_err(refused)?;
+        Ok(())
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// [`Error::Io`].
+    pub fn finish(self) -> Result<()> {
+        let Self { path, file, .. } = self;
+        file.close().map_err(|e| refused(&path, &e))?;
+        Ok(())
+    }
+}
+
+/// Writes one table.
+///
+/// # Errors
+/// As [`Writer`].
+pub fn write_table(path: &Path, columns: &[Column], notes: &[(String, String)]) -> Result<()> {
+    let mut writer = Writer::create(path, columns, notes)?;
+    writer.add(columns)?;
+    writer.finish()
+}
+
+/// Writes channels as columns, a row a sample; `notes` as one text.
+///
+/// # Errors
+/// [`Error::DoesNotFit`] when channels differ in length, [`Error::Io`].
+pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> {
+    let columns: Result<Vec<Column>> =
+        channels.iter().map(|c| Ok(Column::numbers(&c.name, c.read()?))).collect();
+    let mut texts = vec![("notes".to_owned(), notes.join("\n"))];
+    if let Some(rate_hz) = channels.first().and_then(|c| c.rate_hz) {
+        texts.push(("rate_hz".to_owned(), rate_hz.to_string()));
+    }
+    write_table(path, &columns?, &texts)
+}
+
+/// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is missing is not a
+/// number.
+///
+/// # Errors
+/// [`Error::Damaged`], [`Error::Io`].
+pub fn open(path: &Path) -> Result<Recording> {
+    let file = File::open(path).map_err(|e| Error::read(path, e))?;
+    let damaged = |e: ParquetError| Error::damaged(path, FORMAT, e.to_string());
+    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    let columns = reader.metadata().file_metadata().schema_descr().columns().to_vec();
+    let (mut channels, mut notes) = (Vec::new(), Vec::new());
+    let given = reader.metadata().file_metadata().key_value_metadata();
+    let rate_hz = given
+        .and_then(|all| all.iter().find(|note| note.key == "rate_hz"))
+        .and_then(|note| note.value.as_ref()?.parse::<f64>().ok());
+    for (number, column) in columns.iter().enumerate() {
+        let name = column.path().string();
+        if column.max_rep_level() > 0 {
+            notes.push(format!("column `{name}` is left out: it holds lists"));
+            continue;
+        }
+        let mut values = Vec::new();
+        let mut numbers = true;
+        for group in 0..reader.num_row_groups() {
+            let group = reader.get_row_group(group).map_err(damaged)?;
+            let reader = group.get_column_reader(number).map_err(damaged)?;
+            let top = column.max_def_level();
+            numbers &= match reader {
+                ColumnReader::DoubleColumnReader(mut r) => take(&mut r, top, &mut values, |v| v),
+                ColumnReader::FloatColumnReader(mut r) => take(&mut r, top, &mut values, f64::from),
+                ColumnReader::Int64ColumnReader(mut r) => take(&mut r, top, &mut values, |v| v as f64),
+                ColumnReader::Int32ColumnReader(mut r) => take(&mut r, top, &mut values, f64::from),
+                _ => Ok(false),
+            }
+            .map_err(damaged)?;
+        }
+        if numbers {
+            channels.push(Channel::held(name, values).at_rate(rate_hz));
+        } else {
+            notes.push(format!("column `{name}` is left out: it holds no numbers"));
+        }
+    }
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// Reads all values of a column of one group of rows.
+fn take<T: parquet::data_type::DataType>(
+    reader: &mut parquet::column::reader::ColumnReaderImpl<T>,
+    defined: i16,
+    values: &mut Vec<f64>,
+    number: impl Fn(T::T) -> f64,
+) -> std::result::Result<bool, ParquetError> {
+    loop {
+        let (mut batch, mut levels) = (Vec::new(), Vec::new());
+        let with_levels = (defined > 0).then_some(&mut levels);
+        let (rows, _, _) = reader.read_records(BATCH, with_levels, None, &mut batch)?;
+        if rows == 0 {
+            return Ok(true);
+        }
+        let mut found = batch.into_iter().map(&number);
+        if defined == 0 {
+            values.extend(found);
+        } else {
+            let value = |level: &i16| {
+                if *level == defined { found.next().unwrap_or(f64::NAN) } else { f64::NAN }
+            };
+            values.extend(levels.iter().map(value));
+        }
+    }
+}
+
+fn write_column(
+    group: &mut SerializedRowGroupWriter<'_, File>,
+    values: &Values,
+) -> std::result::Result<(), ParquetError> {
+    fn split<T: Clone, P>(all: &[Option<T>], to: impl Fn(T) -> P) -> (Vec<P>, Vec<i16>) {
+        (
+            all.iter().flatten().cloned().map(to).collect(),
+            all.iter().map(|v| i16::from(v.is_some())).collect(),
+        )
+    }
+    let Some(mut column) = group.next_column()? else { return Ok(()) };
+    match values {
+        Values::Number(all) => {
+            let (values, levels) = split(all, |v| v);
+            column.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
+        }
+        Values::Count(all) => {
+            let (values, levels) = split(all, |v| v);
+            column.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
+        }
+        Values::Flag(all) => {
+            let (values, levels) = split(all, |v| v);
+            column.typed::<BoolType>().write_batch(&values, Some(&levels), None)?;
+        }
+        Values::Text(all) => {
+            let (values, levels) = split(all, |v| ByteArray::from(v.into_bytes()));
+            column.typed::<ByteArrayType>().write_batch(&values, Some(&levels), None)?;
+        }
+    }
+    column.close()
+}
+
+/// What the library refuses on the way out.
+fn refused(path: &Path, error: &ParquetError) -> Error {
+    match error {
+        ParquetError::External(source) if source.downcast_ref::<std::io::Error>().is_some() => {
+            let kind = source.downcast_ref::<std::io::Error>().map(std::io::Error::kind);
+            let kind = kind.unwrap_or(std::io::ErrorKind::Other);
+            Error::write(path, std::io::Error::new(kind, source.to_string()))
+        }
+        other => Error::DoesNotFit { path: path.to_owned(), format: FORMAT, what: other.to_string() },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stribeck_testing::Scratch;
+
+    #[test]
+    fn roundtrip_numbers_and_gaps() {
+        let desk = Scratch::create("parquet");
+        let path = desk.join("a.parquet");
+        let columns = [
+            Column {
+                name: "run".into(),
+                values: Values::Text(vec![Some("a".into()), None, Some("b".into())]),
+            },
+            Column { name: "load_n".into(), values: Values::Number(vec![Some(1.5), None, Some(-0.0)]) },
+            Column { name: "count".into(), values: Values::Count(vec![Some(3), Some(4), None]) },
+            Column { name: "done".into(), values: Values::Flag(vec![Some(true), Some(false), None]) },
+        ];
+        let mut writer = Writer::create(&path, &columns, &[("rate_hz".into(), "100".into())]).unwrap();
+        writer.add(&columns).unwrap();
+        writer.add(&columns).unwrap();
+        assert!(matches!(writer.add(&columns[..1]), Err(Error::DoesNotFit { .. })));
+        writer.finish().unwrap();
+        let back = Recording::open(&path).unwrap();
+        assert_eq!(back.notes.len(), 2, "{:?}", back.notes);
+        let load = back.channel("load_n").unwrap();
+        let values = load.read().unwrap();
+        assert_eq!((values.len(), load.rate_hz), (6, Some(100.0)));
+        assert!(values[0] == 1.5 && values[1].is_nan() && values[5].to_bits() == (-0.0_f64).to_bits());
+        assert_eq!(back.channel("count").unwrap().read().unwrap()[..2], [3.0, 4.0]);
+        // Damaged ones get an answer.
+        let bytes = std::fs::read(&path).unwrap();
+        for cut in [4, bytes.len() / 2, bytes.len() - 3] {
+            std::fs::write(&path, &bytes[..cut]).unwrap();
+            assert!(matches!(Recording::open(&path), Err(Error::Damaged { .. })), "{cut}");
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Abaqus input files.
+
+use std::fmt::Write;
+
+use super::{DeckError, Gathered, ReadDeck, fault, plain, real, whole};
+use crate::Mesh;
+
+/// Numbers in a data line.
+const A_LINE: usize = 16;
+
+pub(super) fn write(mesh: &Mesh, title: &str) -> String {
+    let mut out = format!("*HEADING\n{title}\n*NODE\n");
+    for (n, (x, y)) in mesh.x.iter().zip(&mesh.y).enumerate() {
+        let _ = writeln!(out, "{}, {x:e}, {y:e}, 0.0", n + 1);
+    }
+    let mut number = 0;
+    for body in &mesh.bodies {
+        let set = plain(&body.name);
+        if !body.quads.is_empty() {
+            let _ = writeln!(out, "*ELEMENT, TYPE=CPE4R, ELSET={set}");
+            for [a, b, c, d] in &mesh.quads[body.quads.clone()] {
+                number += 1;
+                let _ = writeln!(out, "{number}, {}, {}, {}, {}", a + 1, b + 1, c + 1, d + 1);
+            }
+        }
+        if !body.triangles.is_empty() {
+            let _ = writeln!(out, "*ELEMENT, TYPE=CPE3, ELSET={set}");
+            for [a, b, c] in &mesh.triangles[body.triangles.clone()] {
+                number += 1;
+                let _ = writeln!(out, "{number}, {}, {}, {}", a + 1, b + 1, c + 1);
+            }
+        }
+        if !body.nodes.is_empty() {
+            let _ = writeln!(
+                out,
+                "*NSET, NSET=NODES_{set}, GENERATE\n{}, {}, 1",
+                body.nodes.start + 1,
+                body.nodes.end
+            );
+        }
+    }
+    out
+}
+
+pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {
+    let mut found = Gathered::default();
+    let mut card = Card::Other;
+    let mut pending: Vec<u64> = Vec::new();
+    let mut lines = 0;
+    for (at, raw) in text.lines().enumerate() {
+        let line = at + 1;
+        lines = line;
+        let raw = raw.trim();
+        if raw.is_empty() || raw.starts_with("**") {
+            continue;
+        }
+        if let Some(keyword) = raw.strip_prefix('*') {
+            if !pending.is_empty() {
+                return Err(fault(line, "an element ends in the middle of its nodes"));
+            }
+            card = Card::of(keyword, line, &mut found)?;
+            continue;
+        }
+        let cells: Vec<&str> = raw.split(',').map(str::trim).filter(|cell| !cell.is_empty()).collect();
+        match &card {
+            Card::Node => {
+                let coordinate = |n: usize| cells.get(n).map_or(Ok(0.0), |cell| real(cell, line));
+                let number = whole(cells.first().copied().unwrap_or_default(), line)?;
+                found.node(number, [coordinate(1)?, coordinate(2)?, coordinate(3)?], line)?;
+            }
+            Card::Element { corners, set } => {
+                for cell in &cells {
+                    pending.push(whole(cell, line)?);
+                }
+                // Nodes may go on in the next line.
+                if pending.len() > *corners {
+                    let all = std::mem::take(&mut pending);
+                    if all.len() != corners + 1 {
+                        return Err(fault(
+                            line,
+                            format!("an element of {corners} nodes has {} numbers", all.len()),
+                        ));
+                    }
+                    found.element(all[0], all[1..].to_vec(), line)?;
+                    if let Some(set) = set {
+                        found.set(set).push(all[0]);
+                    }
+                }
+            }
+            Card::Nset { name, generate } | Card::Elset { name, generate } => {
+                let mut numbers = Vec::new();
+                if *generate {
+                    let number =
+                        |n: usize, default: u64| cells.get(n).map_or(Ok(default), |c| whole(c, line));
+                    let (from, to, step) = (number(0, 1)?, number(1, 0)?, number(2, 1)?.max(1));
+                    if to.saturating_sub(from) / step > 100_000_000 {
+                        return Err(fault(line, "the set would have more than 10⁸ members"));
+                    }
+                    numbers.extend((from..=to).step_by(usize::try_from(step).unwrap_or(1)));
+                } else {
+                    for cell in cells.iter().take(A_LINE) {
+                        match cell.parse() {
+                            Ok(number) => numbers.push(number),
+                            Err(_) => found
+                                .notes
+                                .push(format!("line {line}: set `{cell}` within a set is left out")),
+                        }
+                    }
+                }
+                match &card {
+                    Card::Nset { .. } => found.node_sets.entry(name.clone()).or_default().extend(numbers),
+                    _ => found.set(name).extend(numbers),
+                }
+            }
+            Card::Other => {}
+        }
+    }
+    found.finish(lines)
+}
+
+enum Card {
+    Node,
+    Element { corners: usize, set: Option<String> },
+    Nset { name: String, generate: bool },
+    Elset { name: String, generate: bool },
+    Other,
+}
+
+impl Card {
+    fn of(keyword: &str, line: usize, found: &mut Gathered) -> Result<Self, DeckError> {
+        let mut parts = keyword.split(',').map(str::trim);
+        let name = parts.next().unwrap_or_default().to_ascii_uppercase();
+        let options: Vec<(String, &str)> = parts
+            .map(|part| part.split_once('=').unwrap_or((part, "")))
+            .map(|(key, value)| (key.trim().to_ascii_uppercase(), value.trim()))
+            .collect();
+        let option = |key: &str| options.iter().find(|(known, _)| known == key).map(|(_, value)| *value);
+        let named = |key: &str| {
+            option(key).map(str::to_owned).ok_or_else(|| fault(line, format!("`*{name}` lacks `{key}=`")))
+        };
+        Ok(match name.as_str() {
+            "NODE" => Self::Node,
+            "ELEMENT" => {
+                let kind = option("TYPE").unwrap_or_default().to_ascii_uppercase();
+                // The digit behind the family is the number of nodes: CPE4R, CPS3, S4R, M3D4.
+                let family =
+                    ["CPE", "CPS", "CAX", "M3D", "S", "R2D", "R3D"].iter().find(|f| kind.starts_with(**f));
+                let digit = family.and_then(|f| kind[f.len()..].chars().next()).and_then(|c| c.to_digit(10));
+                match digit {
+                    Some(corners @ (3 | 4)) => {
+                        Self::Element { corners: corners as usize, set: option("ELSET").map(str::to_owned) }
+                    }
+                    _ => {
+                        return Err(fault(
+                            line,
+                            format!(
+                                "elements of type `{kind}` are not read; plane ones of 3 or 4 nodes are (CPE4R, CPE3, CPS4 …)"
+                            ),
+                        ));
+                    }
+                }
+            }
+            "NSET" => Self::Nset { name: named("NSET")?, generate: option("GENERATE").is_some() },
+            "ELSET" => Self::Elset { name: named("ELSET")?, generate: option("GENERATE").is_some() },
+            "HEADING" => Self::Other,
+            _ => {
+                found.notes.push(format!("line {line}: `*{name}` is not read"));
+                Self::Other
+            }
+        })
+    }
+}

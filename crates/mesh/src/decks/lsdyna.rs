@@ -1,0 +1,134 @@
+//! LS-DYNA keyword files.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use super::{DeckError, Gathered, ReadDeck, fault, real, whole};
+use crate::Mesh;
+
+/// Node numbers in a line of a node set.
+const A_LINE: usize = 8;
+
+pub(super) fn write(mesh: &Mesh, title: &str) -> String {
+    // Long lines would be cut at 80 characters.
+    let title: String = title.chars().take(79).collect();
+    let mut out = format!("*KEYWORD\n*TITLE\n{title}\n*NODE\n");
+    for (n, (x, y)) in mesh.x.iter().zip(&mesh.y).enumerate() {
+        // Free format: fixed columns would leave ten digits.
+        let _ = writeln!(out, "{},{x:e},{y:e},0.0", n + 1);
+    }
+    for (n, body) in mesh.bodies.iter().enumerate() {
+        let name: String = body.name.chars().take(70).collect();
+        let _ = writeln!(out, "*PART\n{name}\n{}", n + 1);
+    }
+    out += "*ELEMENT_SHELL\n";
+    let mut number = 0;
+    for (n, body) in mesh.bodies.iter().enumerate() {
+        let quads = mesh.quads[body.quads.clone()].iter().copied();
+        let triangles = mesh.triangles[body.triangles.clone()].iter().map(|[a, b, c]| [*a, *b, *c, *c]);
+        for [a, b, c, d] in quads.chain(triangles) {
+            number += 1;
+            let _ = writeln!(out, "{number},{},{},{},{},{}", n + 1, a + 1, b + 1, c + 1, d + 1);
+        }
+    }
+    for (n, body) in mesh.bodies.iter().enumerate().filter(|(_, body)| !body.nodes.is_empty()) {
+        let _ = writeln!(out, "*SET_NODE_LIST_TITLE\n{}\n{}", body.name, n + 1);
+        let nodes: Vec<usize> = body.nodes.clone().map(|n| n + 1).collect();
+        for line in nodes.chunks(A_LINE) {
+            let words: Vec<String> = line.iter().map(usize::to_string).collect();
+            let _ = writeln!(out, "{}", words.join(","));
+        }
+    }
+    out += "*END\n";
+    out
+}
+
+pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {
+    let mut found = Gathered::default();
+    let mut parts: BTreeMap<u64, String> = BTreeMap::new();
+    let mut of_part: BTreeMap<u64, Vec<u64>> = BTreeMap::new();
+    let (mut card, mut row, mut lines) = (String::new(), 0, 0);
+    let (mut title, mut set) = (String::new(), String::new());
+    for (at, raw) in text.lines().enumerate() {
+        let line = at + 1;
+        lines = line;
+        if raw.starts_with('$') || raw.trim().is_empty() {
+            continue;
+        }
+        if let Some(keyword) = raw.strip_prefix('*') {
+            card = keyword.trim().to_ascii_uppercase();
+            row = 0;
+            match card.as_str() {
+                "END" => break,
+                "KEYWORD" | "TITLE" | "NODE" | "PART" => {}
+                name if name.starts_with("ELEMENT_SHELL") || name.starts_with("SET_NODE_LIST") => {}
+                name if name.starts_with("ELEMENT_") => {
+                    return Err(fault(line, format!("`*{name}` is not read; `*ELEMENT_SHELL` is")));
+                }
+                name => found.notes.push(format!("line {line}: `*{name}` is not read")),
+            }
+            continue;
+        }
+        row += 1;
+        match card.as_str() {
+            "NODE" => {
+                let cells = cells(raw, &[8, 16, 16, 16]);
+                let number = |n: usize| cells.get(n).map_or(Ok(0.0), |cell| real(cell, line));
+                let node = whole(cells.first().copied().unwrap_or_default(), line)?;
+                found.node(node, [number(1)?, number(2)?, number(3)?], line)?;
+            }
+            "PART" if row % 2 == 1 => raw.trim().clone_into(&mut title),
+            "PART" => {
+                let number = whole(cells(raw, &[10]).first().copied().unwrap_or_default(), line)?;
+                parts.insert(number, std::mem::take(&mut title));
+            }
+            name if name.starts_with("ELEMENT_SHELL") => {
+                let cells = cells(raw, &[8; 6]);
+                let numbers: Result<Vec<u64>, DeckError> =
+                    cells.iter().filter(|c| !c.trim().is_empty()).map(|cell| whole(cell, line)).collect();
+                let numbers = numbers?;
+                let [element, part, corners @ ..] = &numbers[..] else {
+                    return Err(fault(line, "an element lacks its part or its nodes"));
+                };
+                let corners: Vec<u64> = corners.iter().copied().filter(|n| *n != 0).take(4).collect();
+                found.element(*element, corners, line)?;
+                of_part.entry(*part).or_default().push(*element);
+            }
+            "SET_NODE_LIST_TITLE" if row == 1 => raw.trim().clone_into(&mut set),
+            "SET_NODE_LIST" if row == 1 => {
+                set = format!("set {}", cells(raw, &[10]).first().copied().unwrap_or_default().trim());
+            }
+            "SET_NODE_LIST_TITLE" if row == 2 => {}
+            name if name.starts_with("SET_NODE_LIST") => {
+                for cell in cells(raw, &[10; A_LINE]).iter().filter(|cell| !cell.trim().is_empty()) {
+                    let number = whole(cell, line)?;
+                    if number != 0 {
+                        found.node_sets.entry(set.clone()).or_default().push(number);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    for (part, elements) in of_part {
+        let name = parts.get(&part).cloned().unwrap_or_else(|| format!("part {part}"));
+        found.set(&name).extend(elements);
+    }
+    found.finish(lines)
+}
+
+/// The cells of a line: between commas, or in columns of these widths.
+fn cells<'a>(line: &'a str, widths: &[usize]) -> Vec<&'a str> {
+    if line.contains(',') {
+        return line.split(',').collect();
+    }
+    let mut rest = line;
+    let mut cells = Vec::new();
+    for &width in widths {
+        let end = rest.char_indices().nth(width).map_or(rest.len(), |(at, _)| at);
+        let (cell, after) = rest.split_at(end);
+        cells.push(cell);
+        rest = after;
+    }
+    cells
+}

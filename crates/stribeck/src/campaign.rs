@@ -1,0 +1,291 @@
+//! `stribeck campaign`: many scenes made from one, each run in a folder of its own, and a data set of them all.
+//!
+//! The truth lies in the folders of the runs, which are named by what is in their scenes. So the same command starts and goes
+//! on, parts of it may run anywhere, in any order and at once, and the tables come out the same.
+
+mod datasheet;
+mod emit;
+mod tables;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use anyhow::{Context, Result, bail, ensure};
+use stribeck_analysis::findings::Findings;
+use stribeck_bearing::error::Error;
+use stribeck_bearing::simulation::{self, Progress};
+use stribeck_scene::campaign::{Campaign, Variant};
+use stribeck_scene::run_dir::{Run, RunDir, State, write_atomic};
+use stribeck_scene::run_info::RunInfo;
+use stribeck_scene::scene::Scene;
+
+use crate::board::Board;
+use crate::host::{self, SharedClock};
+use crate::interrupt::{self, Interrupt};
+use crate::place::{Place, shown};
+use crate::simulate::{jobs, run_words, threads};
+
+/// Flags of `campaign`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Campaign file, such as fixtures/campaigns/quick64.ron
+    file: PathBuf,
+    /// Folder of the campaign [default: runs/NAME, the name of the campaign]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Runs that go side by side [default: as many as cores]
+    #[arg(long, value_name = "N", value_parser = jobs)]
+    jobs: Option<usize>,
+    /// Worker threads of all runs together [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    /// Goes on with what is there, which the command does anyway: for scripts that say so
+    #[arg(long)]
+    resume: bool,
+    /// Runs only part I of N, for several machines; whichever comes last makes the tables
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<Shard>,
+    /// Runs nothing: writes the script that has an engine run N parts, for --shards
+    #[arg(long, value_name = "ENGINE", requires = "shards")]
+    emit: Option<emit::Engine>,
+    /// Parts of an emitted script
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    shards: Option<u32>,
+}
+
+/// One part of the runs.
+#[derive(Debug, Clone, Copy)]
+struct Shard {
+    part: usize,
+    of: usize,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match numbers {
+        Some((part, of)) if part >= 1 && part <= of => Ok(Shard { part, of }),
+        _ => Err("a part is written I/N with I from 1 to N: 3/16 is the third of sixteen".to_owned()),
+    }
+}
+
+/// Where the things of a campaign are.
+struct Folder(PathBuf);
+
+impl Folder {
+    /// The folder of a run: by its scene, so that equal scenes are run once.
+    fn run(&self, scene: &Scene) -> PathBuf {
+        self.0.join("runs").join(scene.hash())
+    }
+
+    /// Why a run cannot be made, if somebody has tried.
+    fn failure(&self, scene: &Scene) -> PathBuf {
+        self.0.join("failed").join(format!("{}.txt", scene.hash()))
+    }
+
+    fn file(&self) -> PathBuf {
+        self.0.join("campaign.ron")
+    }
+}
+
+/// How far one run has come.
+enum Stage {
+    /// Its scene cannot be, or its run could not be made: the reason.
+    Refused(String),
+    Failed(String),
+    /// At its end; it may have diverged.
+    Done,
+    /// To be run or continued.
+    Due(State),
+}
+
+fn stage(folder: &Folder, variant: &Variant) -> Result<Stage> {
+    let scene = match &variant.scene {
+        Ok(scene) => scene,
+        Err(why) => return Ok(Stage::Refused(why.clone())),
+    };
+    if let Ok(why) = std::fs::read_to_string(folder.failure(scene)) {
+        return Ok(Stage::Failed(why));
+    }
+    let path = folder.run(scene);
+    Ok(match State::of(&path, scene) {
+        State::Done => Stage::Done,
+        State::Other => bail!("`{}` holds a run of another scene: move it away", shown(&path)),
+        state => Stage::Due(state),
+    })
+}
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let file = place.locate(&options.file);
+    let campaign = Campaign::read(&file).map_err(anyhow::Error::msg)?;
+    let out = options.out.clone().unwrap_or_else(|| place.runs().join(&campaign.name));
+    if let (Some(engine), Some(shards)) = (options.emit, options.shards) {
+        println!("{}", emit::script(engine, &file, &out, shards)?);
+        return Ok(ExitCode::SUCCESS);
+    }
+    let folder = Folder(out);
+    enter(&folder, &campaign)?;
+    let interrupt = Interrupt::listen()?;
+    let mine = |variant: &&Variant| {
+        options.shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1)
+    };
+    let mut due = Vec::new();
+    for variant in campaign.runs.iter().filter(mine) {
+        if let (Stage::Due(state), Ok(scene)) = (stage(&folder, variant)?, &variant.scene) {
+            due.push((variant.number, scene, state));
+        }
+    }
+    let threads = options.threads.unwrap_or_else(host::cores);
+    let jobs = options.jobs.unwrap_or(threads).clamp(1, due.len().max(1));
+    let each = (threads / jobs).max(1);
+    eprintln!(
+        "{}: {} runs, {} of them to be run here, {jobs} at a time with {each} thread{} each → {}",
+        campaign.name,
+        campaign.runs.len(),
+        due.len(),
+        if each == 1 { "" } else { "s" },
+        shown(&folder.0)
+    );
+    let shop = Shop {
+        folder: &folder,
+        due: &due,
+        next: AtomicUsize::new(0),
+        disk_refuses: AtomicBool::new(false),
+        threads: each,
+        clock: SharedClock::default(),
+        board: Board::new("run", due.len()),
+        interrupt: &interrupt,
+    };
+    std::thread::scope(|scope| {
+        (1..jobs).for_each(|_| drop(scope.spawn(|| shop.work())));
+        shop.work();
+    });
+    shop.board.finish();
+    conclude(&folder, &campaign, &interrupt)
+}
+
+/// Makes the folder, or finds the same campaign in it.
+fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
+    let path = folder.file();
+    match std::fs::read_to_string(&path) {
+        Ok(there) => ensure!(
+            there == campaign.text,
+            "`{}` holds another campaign, or an earlier text of this one: give a folder with `--out`, or compare `{}`",
+            shown(&folder.0),
+            shown(&path)
+        ),
+        Err(_) => {
+            std::fs::create_dir_all(folder.0.join("runs"))
+                .with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
+            write_atomic(&path, campaign.text.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// Makes the tables when every run has come to an end, and says how matters stand.
+fn conclude(folder: &Folder, campaign: &Campaign, interrupt: &Interrupt) -> Result<ExitCode> {
+    let mut stages = Vec::with_capacity(campaign.runs.len());
+    for variant in &campaign.runs {
+        stages.push(stage(folder, variant)?);
+    }
+    let left = stages.iter().filter(|stage| matches!(stage, Stage::Due(_))).count();
+    if left > 0 {
+        eprintln!(
+            "{left} of {} runs are not at their end; the same command goes on. Tables are made when all are",
+            campaign.runs.len()
+        );
+        return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
+    }
+    let rows = tables::rows(folder, campaign, &stages)?;
+    let written = tables::write(folder, campaign, &rows)?;
+    write_atomic(&folder.0.join("DATASHEET.md"), datasheet::text(campaign, &rows, &written).as_bytes())?;
+    let complete = rows.iter().filter(|row| row.status == "complete").count();
+    for row in rows.iter().filter(|row| row.status != "complete").take(3) {
+        let why = row.reason.as_deref().unwrap_or_default();
+        eprintln!("run {}: {}: {}", row.number, row.status, why.lines().next().unwrap_or_default());
+    }
+    println!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.0.join(tables::RUNS)));
+    Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// What the jobs share.
+struct Shop<'a> {
+    folder: &'a Folder,
+    due: &'a [(usize, &'a Scene, State)],
+    next: AtomicUsize,
+    /// The disk refused something: what comes next would be refused as well.
+    disk_refuses: AtomicBool,
+    threads: usize,
+    clock: SharedClock,
+    board: Board,
+    interrupt: &'a Interrupt,
+}
+
+impl Shop<'_> {
+    /// Runs what is due until none is left.
+    fn work(&self) {
+        while let Some(&(number, scene, state)) = self.due.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            if self.interrupt.is_pressed() || self.disk_refuses.load(Ordering::Relaxed) {
+                return;
+            }
+            let path = self.folder.run(scene);
+            let mut watch = |progress: &Progress| {
+                self.board.show(number, progress);
+                self.interrupt.flow()
+            };
+            let done = self.clock.with(self.threads, number, |host| match state {
+                State::Begun => {
+                    let dir = RunDir::reopen(&path)?;
+                    simulation::extend(&dir, scene.solver.duration_ms, host, &mut watch)
+                }
+                _ => {
+                    let dir = RunDir::create_over(&path)?;
+                    simulation::simulate(scene, &dir, host, &mut watch)
+                }
+            });
+            self.note(number, scene, done);
+        }
+    }
+
+    /// Says how a run ended, and writes down why one could not be made.
+    fn note(&self, number: usize, scene: &Scene, done: Result<RunInfo, Error>) {
+        match done {
+            Ok(info) => self.board.done(number, &run_words(&info)),
+            Err(Error::Scene(stribeck_scene::Error::FolderInUse { .. })) => {
+                self.board.done(number, "is being run by another program");
+            }
+            Err(error @ Error::Scene(_)) => {
+                // What was written is there; the rest can follow when there is space again.
+                self.disk_refuses.store(true, Ordering::Relaxed);
+                self.board.done(number, &format!("failed: {error}"));
+            }
+            Err(error) => {
+                let path = self.folder.failure(scene);
+                let kept = path
+                    .parent()
+                    .map_or(Ok(()), std::fs::create_dir_all)
+                    .map_err(anyhow::Error::from)
+                    .and_then(|()| Ok(write_atomic(&path, error.to_string().as_bytes())?));
+                if let Err(why) = kept {
+                    self.board.say(&format!("warning: {why}"));
+                }
+                self.board.done(number, &format!("failed: {error}"));
+            }
+        }
+    }
+}
+
+/// The summary of a run that has come to its end; it is made when it is not there.
+fn summary_of(path: &Path) -> Result<serde_json::Value> {
+    let dir = RunDir::open(path)?;
+    let there = std::fs::read(dir.summary()).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    if let Some(there) = there {
+        return Ok(there);
+    }
+    let findings = Findings::of(&Run::read(path)?)?;
+    let mut text = serde_json::to_vec_pretty(&findings.summary)?;
+    text.push(b'\n');
+    write_atomic(&dir.summary(), &text)?;
+    Ok(serde_json::from_slice(&text)?)
+}

@@ -1,0 +1,217 @@
+//! The data set of a campaign: one table with a row for each run, one with the sampled signals.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+use stribeck_formats::parquet::{Column, Values, Writer, write_table};
+use stribeck_formats::{Channel, Recording};
+use stribeck_scene::campaign::Campaign;
+use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::{DefectRing, Scene};
+
+use super::{Folder, Stage, summary_of};
+
+/// Names of the two tables.
+pub(super) const RUNS: &str = "runs.parquet";
+pub(super) const SIGNALS: &str = "signals.parquet";
+
+/// Channels that the table of signals holds.
+const SIGNAL: &str = "sensor.";
+
+/// One run in the table. What depends on the machine or on interruptions, such as seconds, stays in its folder.
+pub(super) struct Row {
+    pub(super) number: usize,
+    pub(super) split: &'static str,
+    pub(super) status: &'static str,
+    pub(super) reason: Option<String>,
+    variant: usize,
+    start: usize,
+    values: Vec<String>,
+    scene: Option<Scene>,
+    folder: Option<PathBuf>,
+    /// Numbers of the summary by their path.
+    numbers: BTreeMap<String, f64>,
+    samples: Option<i64>,
+}
+
+/// Reads what the runs left.
+pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Result<Vec<Row>> {
+    let row = |(variant, stage): (&stribeck_scene::campaign::Variant, &Stage)| -> Result<Row> {
+        let mut row = Row {
+            number: variant.number,
+            split: variant.split,
+            status: "complete",
+            reason: None,
+            variant: variant.variant,
+            start: variant.start,
+            values: variant.values.clone(),
+            scene: variant.scene.clone().ok(),
+            folder: None,
+            numbers: BTreeMap::new(),
+            samples: None,
+        };
+        match (stage, &variant.scene) {
+            (Stage::Done, Ok(scene)) => {
+                let path = folder.run(scene);
+                let info = RunDir::open(&path)?.read_info()?;
+                if info.status == Status::Diverged {
+                    (row.status, row.reason) = ("diverged", info.stop_reason);
+                }
+                flatten(&summary_of(&path)?, "", &mut row.numbers);
+                row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
+                row.samples = i64::try_from(info.samples).ok();
+                row.folder = Some(path);
+            }
+            (Stage::Failed(why), _) => (row.status, row.reason) = ("failed", Some(why.clone())),
+            (Stage::Refused(why), _) => (row.status, row.reason) = ("refused", Some(why.clone())),
+            _ => row.status = "not run",
+        }
+        Ok(row)
+    };
+    campaign.runs.iter().zip(stages).map(row).collect()
+}
+
+/// All numbers of a summary that stand alone, by their path; lists are left to the run's folder, clocks as well.
+fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
+    match value {
+        Value::Object(fields) => {
+            for (name, inner) in fields.iter().filter(|(name, _)| !(path.is_empty() && *name == "run")) {
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                flatten(inner, &path, to);
+            }
+        }
+        Value::Number(number) => drop(number.as_f64().map(|number| to.insert(path.to_owned(), number))),
+        _ => {}
+    }
+}
+
+/// Writes both tables, each whole or not at all; gives the columns of the first.
+pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Result<Vec<String>> {
+    let columns = columns(campaign, rows);
+    let notes = vec![
+        ("campaign".to_owned(), campaign.text.clone()),
+        ("stribeck".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+    ];
+    replace(&folder.0.join(RUNS), |path| Ok(write_table(path, &columns, &notes)?))?;
+    replace(&folder.0.join(SIGNALS), |path| signals(path, rows, &notes))?;
+    Ok(columns.into_iter().map(|column| column.name).collect())
+}
+
+/// Lets `write` make a file beside `path`, then puts it in its place.
+fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+    let beside = path.with_extension(format!("{}.new", std::process::id()));
+    write(&beside)?;
+    std::fs::rename(&beside, path).with_context(|| format!("cannot replace `{}`", path.display()))
+}
+
+fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
+    let text = |name: &str, of: &dyn Fn(&Row) -> Option<String>| Column {
+        name: name.to_owned(),
+        values: Values::Text(rows.iter().map(of).collect()),
+    };
+    let count = |name: &str, of: &dyn Fn(&Row) -> Option<i64>| Column {
+        name: name.to_owned(),
+        values: Values::Count(rows.iter().map(of).collect()),
+    };
+    let number = |name: &str, of: &dyn Fn(&Row) -> Option<f64>| Column {
+        name: name.to_owned(),
+        values: Values::Number(rows.iter().map(of).collect()),
+    };
+    let of_scene = |name: &str, of: &dyn Fn(&Scene) -> f64| number(name, &|row| row.scene.as_ref().map(of));
+    let kinematic = |name: &str, of: &dyn Fn(&Kinematics) -> f64| of_scene(name, &|s| of(&Kinematics::of(s)));
+    let as_count = |n: usize| i64::try_from(n).ok();
+    let mut columns = vec![
+        count("run", &|row| as_count(row.number)),
+        count("variant", &|row| as_count(row.variant)),
+        count("start", &|row| as_count(row.start)),
+        text("split", &|row| Some(row.split.to_owned())),
+        text("status", &|row| Some(row.status.to_owned())),
+        text("reason", &|row| row.reason.clone()),
+        text("scene_hash", &|row| row.scene.as_ref().map(Scene::hash)),
+        text("bearing", &|row| row.scene.as_ref().map(|s| s.bearing.designation.clone())),
+        text("fault_location", &|row| row.scene.as_ref().map(|s| fault(s).to_owned())),
+        number("fault_size_mm", &|row| Some(row.scene.as_ref()?.defect.as_ref()?.length_mm)),
+        of_scene("shaft_speed_rpm", &|s| s.operation.speed_rpm),
+        of_scene("load_n", &|s| s.operation.load_n),
+        of_scene("sampling_rate_hz", &|s| (1e6 / s.output.interval_us * 1e3).round() / 1e3),
+        count("n_samples", &|row| row.samples),
+        kinematic("bpfo_hz", &|k| k.bpfo_hz),
+        kinematic("bpfi_hz", &|k| k.bpfi_hz),
+        kinematic("bsf_hz", &|k| k.bsf_hz),
+        kinematic("ftf_hz", &|k| k.cage_hz),
+    ];
+    for (at, field) in campaign.fields.iter().enumerate() {
+        let name = format!("scene.{field}");
+        let numbers: Option<Vec<f64>> = rows.iter().map(|row| row.values.get(at)?.parse().ok()).collect();
+        columns.push(match numbers {
+            Some(numbers) => Column::numbers(name, numbers),
+            None => text(&name, &|row| row.values.get(at).map(|value| value.trim_matches('"').to_owned())),
+        });
+    }
+    let names: BTreeSet<&String> = rows.iter().flat_map(|row| row.numbers.keys()).collect();
+    columns.extend(names.into_iter().map(|name| {
+        number(&format!("summary.{name}"), &|row| row.numbers.get(name).copied().filter(|n| n.is_finite()))
+    }));
+    columns
+}
+
+/// Where the defect is, in the words of data sets.
+fn fault(scene: &Scene) -> &'static str {
+    match scene.defect.as_ref().map(|defect| defect.ring) {
+        None => "healthy",
+        Some(DefectRing::Outer) => "outer_race",
+        Some(DefectRing::Inner) => "inner_race",
+    }
+}
+
+/// One group of rows for each run that has signals: a row a sample.
+fn signals(path: &Path, rows: &[Row], notes: &[(String, String)]) -> Result<()> {
+    let recordings = || {
+        rows.iter().filter_map(|row| {
+            let folder = row.folder.as_ref()?;
+            Some((row, RunDir::open(folder).ok()?.trace()))
+        })
+    };
+    let mut names = BTreeSet::new();
+    for (_, trace) in recordings() {
+        let channels = Recording::open(&trace)?.channels;
+        names.extend(channels.into_iter().map(|c| c.name).filter(|name| name.starts_with(SIGNAL)));
+    }
+    let group = |row: Option<&Row>, channels: &[Channel]| -> Result<Vec<Column>> {
+        let read = |name: &str| -> Result<Option<Vec<f64>>> {
+            let channel = channels.iter().find(|c| c.name == name);
+            Ok(channel.map(Channel::read).transpose()?)
+        };
+        let time = read("time_s")?.unwrap_or_default();
+        let all = time.len();
+        let mut columns = vec![
+            Column {
+                name: "run".into(),
+                values: Values::Count(vec![row.and_then(|row| i64::try_from(row.number).ok()); all]),
+            },
+            Column {
+                name: "split".into(),
+                values: Values::Text(vec![row.map(|row| row.split.to_owned()); all]),
+            },
+            Column::numbers("time_s", time),
+        ];
+        for name in &names {
+            let values = match read(name)? {
+                Some(values) => values.into_iter().map(Some).collect(),
+                None => vec![None; all],
+            };
+            columns.push(Column { name: name.clone(), values: Values::Number(values) });
+        }
+        Ok(columns)
+    };
+    let mut writer = Writer::create(path, &group(None, &[])?, notes)?;
+    for (row, trace) in recordings() {
+        writer.add(&group(Some(row), &Recording::open(&trace)?.channels)?)?;
+    }
+    writer.finish()?;
+    Ok(())
+}

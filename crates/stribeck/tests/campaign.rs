@@ -1,0 +1,146 @@
+//! Campaigns as their users meet them: killed, split over machines, with variants that cannot be.
+
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+use stribeck_formats::Recording;
+use stribeck_testing::{Noise, Scratch, said, says};
+
+/// Eight very short runs of a very coarse bearing.
+const CAMPAIGN: &str = "(
+    name: \"eight\",
+    scene: \"quick.ron\",
+    set: [\"mesh.size_mm=4.0\", \"mesh.roller_facets=40\", \"solver.start=sudden\", \"solver.duration_ms=0.3\",
+        \"output.frames=None\"],
+    variants: latin_hypercube(count: 8, over: [
+        (field: \"operation.load_n\", from: 5000, to: 50000),
+        (field: \"defect.ring\", values: [outer, inner]),
+    ]),
+)";
+
+fn desk(name: &str, campaign: &str) -> Scratch {
+    let desk = Scratch::create(name);
+    fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron"), desk.join("quick.ron"))
+        .expect("a scene");
+    fs::write(desk.join("campaign.ron"), campaign).expect("a campaign");
+    desk
+}
+
+fn campaign(desk: &Scratch, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+    command.current_dir(desk.path()).args(["campaign", "campaign.ron"]).args(words).stdin(Stdio::null());
+    command
+}
+
+fn run(desk: &Scratch, words: &[&str]) -> Output {
+    campaign(desk, words).output().expect("it starts")
+}
+
+fn tables(folder: &Path) -> [Vec<u8>; 3] {
+    ["runs.parquet", "signals.parquet", "DATASHEET.md"]
+        .map(|name| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")))
+}
+
+#[test]
+fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
+    let desk = desk("campaign-kills", CAMPAIGN);
+    let whole = run(&desk, &["--out=A", "--jobs=2", "--threads=2"]);
+    assert!(whole.status.success(), "{}", said(&whole));
+    says(&whole, &["8 of 8 runs are complete"]);
+    let mut noise = Noise::new(3);
+    for _ in 0..10 {
+        let mut child = campaign(&desk, &["--out=B", "--jobs=2"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it starts");
+        std::thread::sleep(Duration::from_millis(200 + (400.0 * noise.uniform().abs()) as u64));
+        child.kill().expect("it can be killed");
+        child.wait().expect("it ends");
+    }
+    let last = run(&desk, &["--out=B", "--resume"]);
+    assert!(last.status.success(), "{}", said(&last));
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+    // Three parts; those that end first leave the tables to the last.
+    for part in ["--shard=2/3", "--shard=1/3"] {
+        let early = run(&desk, &["--out=C", part]);
+        says(&early, &["runs are not at their end"]);
+        assert!(!early.status.success());
+    }
+    assert!(run(&desk, &["--out=C", "--shard=3/3"]).status.success());
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("C")));
+    let table = Recording::open(desk.join("A/runs.parquet")).expect("a table");
+    let loads = table.channel("scene.operation.load_n").expect("a column").read().expect("numbers");
+    assert_eq!(loads.len(), 8);
+    // Once more: nothing is run, and the tables stay.
+    says(&run(&desk, &["--out=A"]), &["0 of them to be run", "8 of 8"]);
+}
+
+#[test]
+fn example_variants_that_cannot_be_are_rows_with_their_reason() {
+    let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
+        "(field: \"operation.load_n\", from: 5000, to: 50000),",
+        "(field: \"bearing.roller_diameter_mm\", values: [18.0, 19.0]),",
+    );
+    let desk = desk("campaign-refused", &text);
+    let done = run(&desk, &["--out=A"]);
+    assert!(done.status.success(), "{}", said(&done));
+    says(&done, &["refused", "2 of 4 runs are complete"]);
+    // When none can be, the command fails.
+    fs::write(desk.join("campaign.ron"), text.replace("[18.0, 19.0]", "[19.0]")).expect("a campaign");
+    let none = run(&desk, &["--out=B"]);
+    assert!(!none.status.success());
+    says(&none, &["0 of 2 runs are complete"]);
+    // Another campaign's folder is left alone.
+    let other = run(&desk, &["--out=A"]);
+    assert!(!other.status.success());
+    says(&other, &["holds another campaign", "--out"]);
+}
+
+#[test]
+fn example_scripts_for_engines_name_every_part() {
+    let desk = desk("campaign-emit", CAMPAIGN);
+    for (engine, words) in
+        [("slurm", ["--array=1-16", "$SLURM_ARRAY_TASK_ID/16"]), ("hq", ["--array=1-16", "$HQ_TASK_ID/16"])]
+    {
+        let output = run(&desk, &["--emit", engine, "--shards=16"]);
+        assert!(output.status.success(), "{}", said(&output));
+        says(&output, &words);
+        assert!(!desk.join("runs").exists());
+    }
+    says(&run(&desk, &["--shard=4/3"]), &["I from 1 to N"]);
+}
+
+#[test]
+fn peer_tables_open_in_pandas_polars_and_duckdb() {
+    // pandas 3.1.1, polars 2.1.0 and DuckDB 2.0.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
+    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python).args(["-c", "import pandas, pyarrow, polars, duckdb"]).output();
+    if !has.is_ok_and(|o| o.status.success()) {
+        eprintln!(
+            "tables are not opened by others: `{python}` does not have pandas, pyarrow, polars and duckdb"
+        );
+        return;
+    }
+    let desk = desk("campaign-peers", CAMPAIGN);
+    assert!(run(&desk, &["--out=A"]).status.success());
+    let script = "
+import pandas, polars, duckdb
+a = pandas.read_parquet('A/runs.parquet')
+b = polars.read_parquet('A/runs.parquet')
+n = duckdb.sql(\"select count(*), sum(load_n) from 'A/runs.parquet' where status = 'complete'\").fetchone()
+assert len(a) == len(b) == n[0] == 8 and abs(a.load_n.sum() - n[1]) < 1e-6, (len(a), n)
+assert list(a.columns) == b.columns and a.split.isin(['train', 'validation', 'test']).all()
+s = pandas.read_parquet('A/signals.parquet')
+assert s.groupby('run').size().tolist() == a.n_samples.tolist(), s.groupby('run').size()
+assert s['sensor.side.ay_m_s2'].abs().max() > 0
+print('agreed')
+";
+    let output =
+        Command::new(&python).current_dir(desk.path()).args(["-c", script]).output().expect("it starts");
+    says(&output, &["agreed"]);
+}
