@@ -274,7 +274,9 @@ fn grid(axes: &[Axis]) -> Result<Rows, String> {
         }
         rows = rows
             .iter()
-            .flat_map(|row: &Vec<String>| values.iter().map(|value| [&row[..], &[value.clone()]].concat()))
+            .flat_map(|row: &Vec<String>| {
+                values.iter().map(|value| [&row[..], std::slice::from_ref(value)].concat())
+            })
             .collect();
     }
     Ok((axes.iter().map(|axis| axis.field.clone()).collect(), rows))

@@ -102,8 +102,7 @@ pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {
     let mut lines = Lines { all: text.lines().enumerate(), last: 0 };
     let mut names: BTreeMap<(u64, u64), String> = BTreeMap::new();
     let mut of_surface: BTreeMap<u64, String> = BTreeMap::new();
-    loop {
-        let Ok((line, head)) = lines.next() else { break };
+    while let Ok((line, head)) = lines.next() {
         let Some(section) = head.strip_prefix('$') else {
             return Err(fault(line, format!("`{head}` stands outside of a section; is this a Gmsh file?")));
         };
