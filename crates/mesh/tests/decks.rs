@@ -133,8 +133,9 @@ fn peer_meshio_reads_the_same_mesh() {
     let mesh = mesh();
     let folder = Scratch::create("decks");
     for (deck, extension) in &ALL[1..] {
-        std::fs::write(folder.join(format!("a.{extension}")), deck.write(&mesh, "a bearing"))
-            .expect("it is written");
+        // It knows elements of plane stress, and none of plane strain.
+        let text = deck.write(&mesh, "a bearing").replace("CPE", "CPS");
+        std::fs::write(folder.join(format!("a.{extension}")), text).expect("it is written");
     }
     let sum = |m: &Mesh| m.x.iter().chain(&m.y).map(|v| v * v).sum::<f64>();
     let script = format!(

@@ -132,7 +132,7 @@ fn peer_tables_open_in_pandas_polars_and_duckdb() {
 import pandas, polars, duckdb
 a = pandas.read_parquet('A/runs.parquet')
 b = polars.read_parquet('A/runs.parquet')
-n = duckdb.sql(\"select count(*), sum(load_n) from 'A/runs.parquet' where status = 'complete'\").fetchone()
+n = duckdb.execute(\"select count(*), sum(load_n) from 'A/runs.parquet' where status = 'complete'\").fetchone()
 assert len(a) == len(b) == n[0] == 8 and abs(a.load_n.sum() - n[1]) < 1e-6, (len(a), n)
 assert list(a.columns) == b.columns and a.split.isin(['train', 'validation', 'test']).all()
 s = pandas.read_parquet('A/signals.parquet')
