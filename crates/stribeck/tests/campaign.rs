@@ -144,3 +144,25 @@ print('agreed')
         Command::new(&python).current_dir(desk.path()).args(["-c", script]).output().expect("it starts");
     says(&output, &["agreed"]);
 }
+
+#[test]
+fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
+    // HyperQueue 0.27.0 with a server and two workers, where the interpreter in STRIBECK_PYTHON (or python3) has it.
+    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python).args(["-c", "import hyperqueue"]).output();
+    if !has.is_ok_and(|o| o.status.success()) {
+        eprintln!("no campaign is run under HyperQueue: `{python}` does not have it");
+        return;
+    }
+    let desk = desk("campaign-hyperqueue", CAMPAIGN);
+    assert!(run(&desk, &["--out=A"]).status.success());
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/hyperqueue_campaign.py");
+    let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
+    let output = Command::new(&python).current_dir(desk.path()).args(words).output().expect("it starts");
+    says(&output, &["done"]);
+    // A part that found the others' folders taken may have left the tables to nobody: the same command makes them.
+    let last = run(&desk, &["--out=B"]);
+    assert!(last.status.success(), "{}", said(&last));
+    says(&last, &["0 of them to be run"]);
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+}
