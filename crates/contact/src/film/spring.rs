@@ -36,8 +36,7 @@ impl Spring {
     /// Depth [m] under a force of zero or more [N], and its derivative [m/N].
     pub(crate) fn depth(&self, force: f64) -> (f64, f64) {
         if force < self.bend {
-            // `cbrt` takes three times as long.
-            let root = (force / self.hardness).powf(1.0 / 3.0);
+            let root = (force / self.hardness).cbrt();
             (root * root, 1.0 / (1.5 * self.hardness * root))
         } else {
             (DEEPEST + (force - self.bend) / self.stiffest, 1.0 / self.stiffest)
