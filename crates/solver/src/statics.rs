@@ -10,9 +10,12 @@ mod graph;
 mod hold;
 mod matrix;
 mod residual;
+mod small_motions;
 mod stiffness;
 mod tangent;
 mod unknowns;
+
+pub use small_motions::{SmallMotions, Spring};
 
 use residual::Residual;
 use tangent::Tangent;

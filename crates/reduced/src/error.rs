@@ -1,0 +1,44 @@
+//! The error type of this crate.
+
+/// Everything that can go wrong between a scene and a finished reduced run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The full model, from which the reduced one is made, cannot be made or preloaded, or a run not be written.
+    #[error(transparent)]
+    Bearing(#[from] stribeck_bearing::error::Error),
+
+    /// Modes cannot be found.
+    #[error("solver: {0}")]
+    Solver(#[from] stribeck_solver::Error),
+
+    /// The iteration for natural modes did not come to its end.
+    #[error(
+        "only {found} natural modes of outer ring and adapter below {khz} kHz were found in {iterations} iterations: take a smaller \
+         `model.modes_khz`"
+    )]
+    Modes {
+        /// How many were found.
+        found: usize,
+        /// Iterations taken.
+        iterations: usize,
+        /// Upper end of the band [kHz].
+        khz: f64,
+    },
+
+    /// Contact's law has impossible numbers.
+    #[error("contact: {0}")]
+    Contact(#[from] stribeck_contact::Error),
+
+    /// Start positions in equilibrium cannot be found.
+    #[error(
+        "the reduced bearing has no equilibrium to start from: {residual_n:.2e} N are left after {iterations} iterations. Look at \
+         `operation.load_n` and the clearance, or run `model: full`"
+    )]
+    NoEquilibrium {
+        /// Unbalanced force [N].
+        residual_n: f64,
+        /// Newton iterations.
+        iterations: usize,
+    },
+}
