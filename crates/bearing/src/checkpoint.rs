@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::error::Error;
 use stribeck_scene::{run_info::RunInfo, scene::Scene};
@@ -21,7 +21,7 @@ use stribeck_scene::{run_info::RunInfo, scene::Scene};
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file; a program continues only what it understands to the last bit.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;

@@ -80,11 +80,6 @@ impl Recorder {
     pub(crate) fn memory(&self) -> &Memory {
         &self.memory
     }
-
-    /// Names of the columns.
-    pub(crate) fn names(scene: &Scene) -> Vec<String> {
-        names(scene)
-    }
 }
 
 /// Names of the columns of a trace, whatever model made it.

@@ -59,6 +59,8 @@ impl Setup {
             steps_planned: (samples * self.steps_per_sample) as u64,
             interval_s: interval,
             samples: 0,
+            simulated_s: 0.0,
+            reduced: None,
             mesh: self.mesh,
             wall_s: 0.0,
             cpu_s: 0.0,
@@ -309,6 +311,14 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
 /// Writes the mesh at the start of the run: as the preload has left it, and free of stress
 /// ([`stribeck_scene::mesh_file`]).
 fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<(), Error> {
+    Ok(write_atomic(&dir.mesh(), &mesh_file(assembly, machine)?)?)
+}
+
+/// The mesh file of the machine as it stands.
+///
+/// # Errors
+/// When the mesh cannot be written as a file.
+pub fn mesh_file(assembly: &Assembly, machine: &Machine) -> Result<Vec<u8>, Error> {
     let mut mesh = assembly.model.mesh.clone();
     let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(&x, &y)| [x, y, 0.0]).collect();
     for n in 0..mesh.x.len() {
@@ -323,5 +333,5 @@ fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<()
         [vtu::Field::vector("displacement_m", &moved), vtu::Field::exact_vector(REFERENCE, &reference)];
     let mut file = Vec::new();
     vtu::write(&mut file, &mesh, &fields, &[])?;
-    Ok(write_atomic(&dir.mesh(), &file)?)
+    Ok(file)
 }

@@ -167,6 +167,7 @@ impl<M: Motion> Run<M> {
             self.motion.picture(sample)?;
             self.info.steps = self.motion.steps();
             self.info.samples = sample;
+            self.info.simulated_s = sample as f64 * self.info.interval_s;
             // Clocks may jump; times that are written only grow.
             self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
             let cpu = (host.cpu_s)();

@@ -16,6 +16,14 @@ use crate::{
     state::State,
 };
 
+/// Most steps of Newton's method for the force of a contact in one time step.
+const NEWTON: usize = 3;
+
+/// A step of Newton's method that changes a force by less than this share, or by less than this [N], leaves an error of its
+/// square.
+const ENOUGH: f64 = 1e-2;
+const LITTLE: f64 = 1e-2;
+
 /// What does not change during a run.
 #[derive(Debug, Clone)]
 pub struct Bearing {
@@ -62,8 +70,6 @@ pub(crate) struct Track {
     pub(crate) bound: f64,
     /// Largest relative radius [m].
     pub(crate) relative: f64,
-    /// What a facet of the roller may add to the reach [m].
-    pub(crate) margin: f64,
 }
 
 /// The cage as a rigid body with corners and walls.
@@ -103,29 +109,34 @@ impl Bearing {
         let g = Geometry::of(scene);
         let [outer, inner, roller] = reduction.outlines();
         let arcs = scene.contact.surface != ContactSurface::Facet;
-        let law = Law::penalty(g.penalty_stiffness).and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass));
+        let law = Law::penalty(g.penalty_stiffness)
+            .and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass));
         let law = law?;
         let radius = g.roller_radius;
         let n = roller.len() as f64;
-        let sag = |radius: f64, facets: f64| if arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) };
+        let sag = |radius: f64, facets: f64| {
+            if arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
+        };
         let [kr, ko, ki] = [1.0 / radius, 1.0 / g.outer_race_radius, 1.0 / g.inner_race_radius];
         let sides = |along: bool, relative: f64| Sides {
             along,
             bulge: if arcs { 0.5 * relative } else { 0.0 },
             curvature: if arcs { kr } else { 0.0 },
         };
-        let radii = |outline: &Outline| outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>();
-        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min) - sag(g.outer_race_radius, outer.len() as f64);
-        let farthest = radii(&inner).into_iter().fold(0.0, f64::max);
-        let margin = 0.0;
-        let track = |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
-            sides: sides(along, relative),
-            outline,
-            compliance: compliance.clone(),
-            bound,
-            relative: 1.0 / relative,
-            margin,
+        let radii = |outline: &Outline| {
+            outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
         };
+        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min)
+            - sag(g.outer_race_radius, outer.len() as f64);
+        let farthest = radii(&inner).into_iter().fold(0.0, f64::max);
+        let track =
+            |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
+                sides: sides(along, relative),
+                outline,
+                compliance: compliance.clone(),
+                bound,
+                relative: 1.0 / relative,
+            };
         let vertex_angle = (0..g.rollers)
             .map(|i| match scene.mesh.roller_copies {
                 RollerCopies::Translated => g.roller_phase,
@@ -133,10 +144,15 @@ impl Bearing {
             })
             .collect();
         let branches = match (&scene.solver.structural_damping, g.structural_damping) {
-            (Some(chosen), Some(band)) => StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?.branches().to_vec(),
+            (Some(chosen), Some(band)) => {
+                StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
+                    .branches()
+                    .to_vec()
+            }
             _ => Vec::new(),
         };
-        let cage = reduction.cage.map(|([mass, inertia], centre)| Cage::new(&g, mass, inertia, centre, scene));
+        let cage =
+            reduction.cage.map(|([mass, inertia], centre)| Cage::new(&g, mass, inertia, centre, scene));
         Ok(Self {
             time_step,
             rollers: g.rollers,
@@ -188,7 +204,7 @@ impl Bearing {
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
         let mut force = before;
         let mut found = Overlap::default();
-        for _ in 0..3 {
+        for _ in 0..NEWTON {
             let [shift, slope] = track.compliance.approach(force);
             let depth = most - shift;
             if depth <= 0.0 {
@@ -201,11 +217,32 @@ impl Bearing {
             let next = (force + (pressed - force) / (1.0 + self.penalty * found.length * slope)).max(0.0);
             let change = (next - force).abs();
             force = next;
-            if change <= 1e-3 * force + 1e-3 {
+            if change <= ENOUGH * force + LITTLE {
                 break;
             }
         }
         Touch { normal: force, overlap: found, d }
+    }
+
+    /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the
+    /// longest contact that the local problem was solved for (own; THEORY §9.4).
+    pub fn critical_time_step(&self) -> f64 {
+        let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
+        let [mass, _] = self.reduction.roller_inertia;
+        let r = self.reduction.padded;
+        let stiffness = |track: &Track| track.compliance.stiffest(self.penalty, track.relative);
+        let [outer, inner] = [stiffness(&self.outer), stiffness(&self.inner)];
+        // A contact pulls on the roller and on the modes under it; (a − b)² ≤ (1 + c) a² + (1 + 1/c) b².
+        let under = |vertex: usize| {
+            let shape = &self.reduction.shapes[2 * r * vertex..2 * r * (vertex + 1)];
+            (0..r).map(|k| shape[k] * shape[k] + shape[r + k] * shape[r + k]).sum::<f64>()
+        };
+        let modes = (0..self.outer.outline.len()).map(under).fold(0.0, f64::max);
+        let c = (modes * mass).sqrt();
+        let of_roller = ((1.0 + c) * outer + inner) / mass;
+        // Few rollers share the modes of highest participation; each adds its own part.
+        let of_modes = highest + (1.0 + 1.0 / c) * outer * modes;
+        2.0 / of_roller.max(of_modes).sqrt()
     }
 
     /// Radius of the circle around a roller [m].
@@ -253,14 +290,17 @@ impl Bearing {
     /// Facets that rays hit, found from nothing.
     pub(crate) fn first_hints(&self, state: &State) -> [Vec<[u32; 2]>; 2] {
         let nearest = |outline: &Outline, d: [f64; 2]| {
-            let along = |i: &usize| (outline.x[*i] * d[0] + outline.y[*i] * d[1]) / outline.x[*i].hypot(outline.y[*i]);
+            let along = |i: &usize| {
+                (outline.x[*i] * d[0] + outline.y[*i] * d[1]) / outline.x[*i].hypot(outline.y[*i])
+            };
             (0..outline.len()).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0) as u32
         };
         let hints = |track: &Track, turned: f64, outwards: f64| {
             (0..state.x.len())
                 .map(|i| {
                     let at = state.y[i].atan2(state.x[i]);
-                    let own = at - state.angle[i] - self.vertex_angle[i] + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
+                    let own = at - state.angle[i] - self.vertex_angle[i]
+                        + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
                     let of = |angle: f64| [angle.cos(), angle.sin()];
                     [nearest(&self.roller, of(own)), nearest(&track.outline, of(on_race))]
@@ -276,7 +316,12 @@ impl Cage {
         let cage = g.cage.as_ref()?;
         let path = g.outer_race_radius - g.roller_radius;
         let [inner, outer] = cage.walls(path, g.roller_radius);
-        let half = stribeck_bearing::assembly::pocket_half_width(inner, outer, path, g.roller_radius + cage.pocket_clearance);
+        let half = stribeck_bearing::assembly::pocket_half_width(
+            inner,
+            outer,
+            path,
+            g.roller_radius + cage.pocket_clearance,
+        );
         let walls = (0..g.rollers)
             .map(|i| {
                 let (s, c) = g.pocket_angle(i).sin_cos();

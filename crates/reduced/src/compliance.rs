@@ -72,6 +72,13 @@ impl Compliance {
         [force * g, g + 0.5 * y * slope]
     }
 
+    /// Stiffness of penalty and compliance in series at the largest load that the curve holds [N/m].
+    pub fn stiffest(&self, penalty: f64, radius: f64) -> f64 {
+        let most = (self.spacing * (self.flexibility.len() - 2) as f64).powi(2);
+        let half = (1.5 * most * radius / penalty).cbrt();
+        1.0 / (1.0 / (2.0 * penalty * half) + self.approach(most)[1].max(0.0))
+    }
+
     /// Energy stored at a force [J]: ∫ F dC.
     pub fn energy(&self, force: f64) -> f64 {
         let (i, _, z) = self.place(force);
@@ -122,7 +129,8 @@ impl Pressed<'_> {
             let mut gives = vec![0.0; total];
             for (body, first) in [(0, 0), (1, n[0])] {
                 for i in 0..n[body] {
-                    gives[first + i] = (0..n[body]).map(|j| self.flexibility[body][i][j] * f[first + j]).sum();
+                    gives[first + i] =
+                        (0..n[body]).map(|j| self.flexibility[body][i][j] * f[first + j]).sum();
                 }
             }
             let mut load = vec![0.0; total];

@@ -42,3 +42,15 @@ pub enum Error {
         iterations: usize,
     },
 }
+
+impl From<stribeck_scene::Error> for Error {
+    fn from(error: stribeck_scene::Error) -> Self {
+        Self::Bearing(error.into())
+    }
+}
+
+impl From<stribeck_scene::scene_file::SceneError> for Error {
+    fn from(error: stribeck_scene::scene_file::SceneError) -> Self {
+        Self::Bearing(error.into())
+    }
+}

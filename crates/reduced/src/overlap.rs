@@ -139,6 +139,7 @@ struct Walk<'a> {
     /// Ends of the present facet.
     a: [f64; 2],
     b: [f64; 2],
+    slope: f64,
 }
 
 impl<'a> Walk<'a> {
@@ -156,7 +157,7 @@ impl<'a> Walk<'a> {
             first = if along { outline.before(first) } else { outline.next(first) };
             a = view.see(first);
         }
-        let mut walk = Self { view, along, vertex: first, a, b: a };
+        let mut walk = Self { view, along, vertex: first, a, b: a, slope: 0.0 };
         walk.step();
         walk
     }
@@ -165,8 +166,14 @@ impl<'a> Walk<'a> {
     #[inline(always)]
     fn step(&mut self) {
         self.a = self.b;
-        self.vertex = if self.along { self.view.outline.next(self.vertex) } else { self.view.outline.before(self.vertex) };
+        self.vertex = if self.along {
+            self.view.outline.next(self.vertex)
+        } else {
+            self.view.outline.before(self.vertex)
+        };
         self.b = self.view.see(self.vertex);
+        let width = self.b[0] - self.a[0];
+        self.slope = if width > 0.0 { (self.b[1] - self.a[1]) / width } else { 0.0 };
     }
 }
 
@@ -196,8 +203,7 @@ pub fn overlap(roller: View<'_>, raceway: View<'_>, sides: Sides, shift: f64, re
 /// Adds what lies between two places where neither boundary has a vertex.
 #[inline(always)]
 fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, sides: Sides, shift: f64) {
-    let slope = |a: [f64; 2], b: [f64; 2]| if b[0] > a[0] { (b[1] - a[1]) / (b[0] - a[0]) } else { 0.0 };
-    let [of_roller, of_raceway] = [slope(r.a, r.b), slope(w.a, w.b)];
+    let [of_roller, of_raceway] = [r.slope, w.slope];
     let base = r.a[1] - of_roller * r.a[0];
     let height = |u: f64| {
         let chords = base + of_roller * u - (w.a[1] + of_raceway * (u - w.a[0])) - shift;
@@ -211,12 +217,12 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     };
     let [p1, p2] = [height(u1), height(u2)];
     let length = u2 - u1;
-    let bulge = sides.bulge * length * length;
     // p = p1 + b τ + c τ² over τ from 0 to 1.
-    let (b, c) = (p2 - p1 + bulge, -bulge);
+    let c = -sides.bulge * length * length;
+    let b = p2 - p1 - c;
     let (from, to) = if p1 >= 0.0 && p2 >= 0.0 {
         (0.0, 1.0)
-    } else if bulge == 0.0 {
+    } else if c == 0.0 {
         if p1 <= 0.0 && p2 <= 0.0 {
             return;
         }
@@ -236,21 +242,28 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
         }
         (low, high)
     };
-    let power = |n: i32| (to.powi(n) - from.powi(n)) / f64::from(n);
-    let [t0, t1, t2, t3] = [to - from, power(2), power(3), power(4)];
-    let i0 = length * (p1 * t0 + b * t1 + c * t2);
-    let i1 = length * (p1 * t1 + b * t2 + c * t3);
-    let first = u1 * i0 + length * i1;
+    // ∫ τⁿ dτ.
+    let (f2, z2) = (from * from, to * to);
+    let (f3, z3) = (f2 * from, z2 * to);
+    let [t0, t1, t2] = [to - from, 0.5 * (z2 - f2), (z3 - f3) * (1.0 / 3.0)];
+    let mut i0 = p1 * t0 + b * t1;
+    let mut i1 = p1 * t1 + b * t2;
+    let mut square = p1 * p1 * t0 + 2.0 * p1 * b * t1 + b * b * t2;
+    if c != 0.0 {
+        let (f4, z4) = (f2 * f2, z2 * z2);
+        let [t3, t4] = [0.25 * (z4 - f4), 0.2 * (z4 * to - f4 * from)];
+        i0 += c * t2;
+        i1 += c * t3;
+        square += 2.0 * p1 * c * t2 + 2.0 * b * c * t3 + c * c * t4;
+    }
+    let first = length * (u1 * i0 + length * i1);
+    let i0 = length * i0;
     sum.area += i0;
     if sides.curvature == 0.0 {
         sum.across += of_roller * i0;
         sum.moment += base * of_roller * i0 + (1.0 + of_roller * of_roller) * first;
     } else {
         sum.across -= sides.curvature * first;
-    }
-    let mut square = p1 * p1 * t0 + 2.0 * p1 * b * t1 + b * b * t2;
-    if c != 0.0 {
-        square += 2.0 * p1 * c * t2 + 2.0 * b * c * t3 + c * c * power(5);
     }
     sum.square += length * square;
     let [a, z] = [u1 + from * length, u1 + to * length];

@@ -15,7 +15,14 @@ pub struct Memory {
     velocity: Vec<[f64; 2]>,
 }
 
-/// Velocity of each sensor before the last step, and its displacement beyond the modes.
+impl Memory {
+    /// Whether it may belong to this bearing.
+    pub(crate) fn fits(&self, bearing: &Bearing) -> bool {
+        self.velocity.len() == bearing.reduction.sensors.len()
+    }
+}
+
+/// Velocity of each sensor before the last step.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Before {
     velocity: Vec<[f64; 2]>,
@@ -54,7 +61,14 @@ impl Bearing {
     }
 
     /// The row of one sample.
-    pub(crate) fn row(&self, state: &State, scratch: &Scratch, before: &Before, memory: &mut Memory, row: &mut Vec<f64>) {
+    pub(crate) fn row(
+        &self,
+        state: &State,
+        scratch: &Scratch,
+        before: &Before,
+        memory: &mut Memory,
+        row: &mut Vec<f64>,
+    ) {
         let dt = self.time_step;
         let interval = dt * scratch.summed as f64;
         row.clear();
@@ -83,7 +97,11 @@ impl Bearing {
     }
 
     /// Force of the adapter on the outer ring [N].
-    fn seat_force(&self, _state: &State) -> [f64; 2] {
-        [0.0; 2]
+    fn seat_force(&self, state: &State) -> [f64; 2] {
+        let r = self.reduction.padded;
+        let (at_rest, shapes) = (self.reduction.seat, &self.reduction.seat_shapes);
+        std::array::from_fn(|c| {
+            at_rest[c] + shapes[c * r..(c + 1) * r].iter().zip(&state.q).map(|(s, q)| s * q).sum::<f64>()
+        })
     }
 }

@@ -1,13 +1,14 @@
 //! From the finite elements of a preloaded bearing to what a reduced run needs of them (THEORY §9.1–9.3).
 
-use std::f64::consts::TAU;
+use std::{collections::BTreeSet, f64::consts::TAU};
 
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::{
     assembly::{Assembly, Machine},
+    simulation::mesh_file,
     start::preload,
 };
-use stribeck_scene::{geometry::Geometry, scene::Scene, static_load};
+use stribeck_scene::{geometry::Geometry, run_info::MeshInfo, scene::Scene, static_load};
 use stribeck_solver::{
     Dynamics, Force,
     state::NodeForces,
@@ -71,6 +72,16 @@ pub struct Reduction {
     pub structure_mass: f64,
     /// Force of each roller on the outer raceway at the preload of the full model [N].
     pub preload: Vec<f64>,
+    /// Force of the adapter on the outer ring at the preload [N].
+    pub seat: [f64; 2],
+    /// By how much it grows with each mode [N/(√kg m)]: x of all modes, then y.
+    pub seat_shapes: Vec<f64>,
+    /// Counts of the mesh.
+    pub mesh: MeshInfo,
+    /// The mesh at the preload, as a file.
+    pub picture: Vec<u8>,
+    /// What the preload left open.
+    pub warning: Option<String>,
 }
 
 /// What a sensor hears.
@@ -94,23 +105,28 @@ struct Nodes {
 }
 
 impl Reduction {
-    /// Makes the full model of the scene, preloads it and reduces it. A second value tells what the preload left open.
+    /// Makes the full model of the scene, preloads it and reduces it.
     ///
     /// # Errors
     /// When the scene cannot be meshed or preloaded, or modes are not found.
-    pub fn new(scene: &Scene, modes_khz: f64) -> Result<(Self, Option<String>), Error> {
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
         let assembly = Assembly::new(scene)?;
         let mut machine = assembly.machine(scene, 1)?;
         let warning = preload(&mut machine, scene, &assembly.kinematics)?;
-        Ok((Self::of(scene, machine, modes_khz)?, warning))
+        let picture = mesh_file(&assembly, &machine)?;
+        let reduced = Self::of(scene, machine)?;
+        Ok(Self { mesh: assembly.mesh_info(), picture, warning, ..reduced })
     }
 
-    fn of(scene: &Scene, mut machine: Machine, modes_khz: f64) -> Result<Self, Error> {
+    fn of(scene: &Scene, mut machine: Machine) -> Result<Self, Error> {
         let g = Geometry::of(scene);
         let forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
-        let preload = (0..g.rollers).map(|i| resultants[machine.pairs.outer(i)]).map(|[x, y]| x.hypot(y)).collect();
+        let preload =
+            (0..g.rollers).map(|i| resultants[machine.pairs.outer(i)]).map(|[x, y]| x.hypot(y)).collect();
+        let seat = resultants[machine.pairs.seat()];
         let nodes = Nodes::of(&machine, &g)?;
+        let on_ring: Vec<u32> = machine.system.nodes_of(machine.outer).collect();
         let of_roller = machine.system.motion_of(machine.rollers[0].body);
         let cage = machine.cage.map(|body| machine.system.motion_of(body));
         let places: Vec<[f64; 2]> =
@@ -138,7 +154,7 @@ impl Reduction {
         let mut springs = Vec::new();
         if let Some(contacts) = &mut parts.contacts {
             contacts.accumulate(parts.dynamics.moment(), &mut all);
-            let structure: std::collections::BTreeSet<u32> = slots(&nodes.structure).into_iter().collect();
+            let structure: BTreeSet<u32> = slots(&nodes.structure).into_iter().collect();
             let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
             contacts.tangent(x, y, &mut |piece| {
                 if piece.nodes.iter().all(|slot| structure.contains(slot)) {
@@ -160,7 +176,7 @@ impl Reduction {
         }
 
         let mut motions = SmallMotions::new(&parts.dynamics, &slots(&nodes.structure), &springs, SHIFT)?;
-        let modes = modes_below(&mut motions, 1e3 * modes_khz)?;
+        let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
         let kept = modes.squares.len();
         let padded = kept.next_multiple_of(LANES);
         let shape_at = |motions: &SmallMotions, node: u32| -> Vec<f64> {
@@ -224,6 +240,26 @@ impl Reduction {
             sensors.push(Sensor { shape, residual: heard });
         }
 
+        let on_ring: BTreeSet<u32> = slots(&on_ring).into_iter().collect();
+        let mut seat_shapes = vec![0.0; 2 * padded];
+        for spring in &springs {
+            // What a unit of stretch does to the ring.
+            let mut on = [0.0; 2];
+            let ends = spring.slots.iter().zip(spring.direction.chunks_exact(2));
+            for (_, along) in ends.clone().filter(|(slot, _)| on_ring.contains(slot)) {
+                on = [on[0] - spring.stiffness * along[0], on[1] - spring.stiffness * along[1]];
+            }
+            for (k, mode) in modes.shapes.iter().enumerate() {
+                let stretch: f64 = ends
+                    .clone()
+                    .filter_map(|(slot, along)| Some((motions.equation(*slot)?, along)))
+                    .map(|(at, along)| along[0] * mode[at] + along[1] * mode[at + 1])
+                    .sum();
+                seat_shapes[k] += on[0] * stretch;
+                seat_shapes[padded + k] += on[1] * stretch;
+            }
+        }
+
         // Local compliances: one flexibility of each surface.
         let most = OVERLOAD * static_load::at_start(scene).map_or(g.load, |load| load.max_roller_n());
         let most = most.clamp(1.0, OVERLOAD * g.load.max(1.0));
@@ -259,11 +295,15 @@ impl Reduction {
             &|n| direction(place(&n)),
         );
 
-        let inner: Vec<[f64; 2]> = nodes.inner.iter().map(|&n| {
-            let mesh = &parts.dynamics.state;
-            let slot = slot_of[n as usize] as usize;
-            [mesh.x[slot], mesh.y[slot]]
-        }).collect();
+        let inner: Vec<[f64; 2]> = nodes
+            .inner
+            .iter()
+            .map(|&n| {
+                let mesh = &parts.dynamics.state;
+                let slot = slot_of[n as usize] as usize;
+                [mesh.x[slot], mesh.y[slot]]
+            })
+            .collect();
         let mut motions = SmallMotions::new(&parts.dynamics, &slots(&nodes.inner_ring), &[], SHIFT)?;
         let at = node_at(&inner, beside);
         let inner_spacing = facet(&inner, at);
@@ -292,11 +332,16 @@ impl Reduction {
         own.push(nodes.rim[nodes.rim.len() / 2]);
         let flexible = flexibility(&mut motions, Some(&rigid), &own, &|n| slot_of[n as usize], &to_centre);
         let across = flexible[middle / 2][middle];
-        let flexible_roller: Vec<Vec<f64>> = flexible[..middle].iter().map(|row| row[..middle].to_vec()).collect();
+        let flexible_roller: Vec<Vec<f64>> =
+            flexible[..middle].iter().map(|row| row[..middle].to_vec()).collect();
 
         let compliance = |flexible: &[Vec<f64>], spacing: f64, radius: f64| {
-            let pressed =
-                Pressed { spacing: [spacing, rim_facet], flexibility: [flexible, &flexible_roller], radius, penalty };
+            let pressed = Pressed {
+                spacing: [spacing, rim_facet],
+                flexibility: [flexible, &flexible_roller],
+                radius,
+                penalty,
+            };
             curve(&pressed, most, across)
         };
         let outer_compliance = compliance(&flexible_outer, outer_spacing, ro);
@@ -326,6 +371,11 @@ impl Reduction {
             cage: cage.map(|cage| ([cage.mass, cage.inertia], cage.centre)),
             structure_mass,
             preload,
+            seat,
+            seat_shapes,
+            mesh: MeshInfo::default(),
+            picture: Vec::new(),
+            warning: None,
         })
     }
 }
@@ -386,7 +436,8 @@ fn field(motions: &SmallMotions, slots: &[u32], fx: &[f64], fy: &[f64]) -> Vec<f
 /// Turns forces into the displacements that the modes do not hold: (K + σM)⁻¹ (1 − MΦΦᵀ) f.
 fn residual(motions: &mut SmallMotions, modes: &Modes, field: &mut [f64]) {
     let mass = motions.mass().to_vec();
-    let shares: Vec<f64> = modes.shapes.iter().map(|m| m.iter().zip(&*field).map(|(u, f)| u * f).sum()).collect();
+    let shares: Vec<f64> =
+        modes.shapes.iter().map(|m| m.iter().zip(&*field).map(|(u, f)| u * f).sum()).collect();
     for (mode, share) in modes.shapes.iter().zip(&shares) {
         for ((f, u), m) in field.iter_mut().zip(mode).zip(&mass) {
             *f -= share * m * u;
@@ -425,7 +476,10 @@ fn flexibility(
             Some(modes) => residual(motions, modes, &mut unit),
             None => motions.solve(&mut unit),
         }
-        let seen = at.iter().zip(&along).map(|(at, [nx, ny])| at.map_or(0.0, |at| nx * unit[at] + ny * unit[at + 1]));
+        let seen = at
+            .iter()
+            .zip(&along)
+            .map(|(at, [nx, ny])| at.map_or(0.0, |at| nx * unit[at] + ny * unit[at + 1]));
         columns.push(seen.collect::<Vec<f64>>());
     }
     (0..nodes.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
@@ -458,7 +512,9 @@ fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
 fn curve(pressed: &Pressed<'_>, most: f64, across: f64) -> Compliance {
     // Where nodes lie to each other under a contact, there is every case; a few stand for all.
     let phases = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
-    let mean = |delta: f64| phases.iter().map(|&phase| pressed.force(delta, phase)).sum::<f64>() / phases.len() as f64;
+    let mean = |delta: f64| {
+        phases.iter().map(|&phase| pressed.force(delta, phase)).sum::<f64>() / phases.len() as f64
+    };
     let mut deepest = 2.0 * pressed.rigid(most);
     for _ in 0..20 {
         if mean(deepest) >= most {

@@ -62,7 +62,11 @@ impl Bearing {
                 }
                 for _ in 0..200 {
                     at = 0.5 * (low + high);
-                    if balance(&mut state, at).0 > 0.0 { low = at } else { high = at }
+                    if balance(&mut state, at).0 > 0.0 {
+                        low = at
+                    } else {
+                        high = at
+                    }
                     if high - low <= 1e-16 {
                         break;
                     }
@@ -71,7 +75,8 @@ impl Bearing {
                 // How the force grows with the raceway's displacement, the roller following.
                 let step = 1e-9;
                 let stiffness = |outer_moves: f64, state: &mut State| {
-                    let [a, b] = self.pressed(state, i, [moved[0] + outer_moves * c, moved[1] + outer_moves * s]);
+                    let [a, b] =
+                        self.pressed(state, i, [moved[0] + outer_moves * c, moved[1] + outer_moves * s]);
                     [a, b]
                 };
                 let [a0, b0] = stiffness(0.0, &mut state);

@@ -64,12 +64,12 @@ impl Scratch {
             heard: vec![Heard::default(); n],
             ..Self::default()
         };
-        scratch.refresh(bearing, state);
+        scratch.begin(bearing, state);
         scratch
     }
 
-    /// Takes the directions from the angles again: between two samples they are turned step by step, which rounds.
-    pub(crate) fn refresh(&mut self, bearing: &Bearing, state: &State) {
+    /// Begins a sample: directions are taken from the angles again, because turning them step by step rounds.
+    pub(crate) fn begin(&mut self, bearing: &Bearing, state: &State) {
         for ((turned, angle), first) in self.turned.iter_mut().zip(&state.angle).zip(&bearing.vertex_angle) {
             let (s, c) = (angle + first).sin_cos();
             *turned = [c, s];
@@ -147,8 +147,21 @@ impl Bearing {
             let mut force = [0.0, -self.gravity * roller_mass];
             let mut moment = 0.0;
             let relative = [velocity[0] - moving[0], velocity[1] - moving[1]];
-            let rolled = Rolled { omega, race: 0.0, pace: (velocity[1] * radial[0] - velocity[0] * radial[1]).abs() * (1.0 + self.arm / distance) };
-            let pushed = self.push(&self.outer, &touch, relative, rolled, &mut state.slip[0][i], &mut heat, last, &mut energy);
+            let rolled = Rolled {
+                omega,
+                race: 0.0,
+                pace: (velocity[1] * radial[0] - velocity[0] * radial[1]).abs() * (1.0 + self.arm / distance),
+            };
+            let pushed = self.push(
+                &self.outer,
+                &touch,
+                relative,
+                rolled,
+                &mut state.slip[0][i],
+                &mut heat,
+                last,
+                &mut energy,
+            );
             let [fx, fy] = pushed.force;
             for (push, shapes) in scratch.push.chunks_exact_mut(LANES).zip(0..) {
                 let at = LANES * shapes;
@@ -177,8 +190,18 @@ impl Bearing {
                 let race = [-along * radial[1], along * radial[0]];
                 let relative = back([velocity[0] - race[0], velocity[1] - race[1]]);
                 let orbit = (velocity[1] * radial[0] - velocity[0] * radial[1]) / distance;
-                let rolled = Rolled { omega, race: rate, pace: ((orbit - rate) * (distance - self.arm)).abs() };
-                let pushed = self.push(&self.inner, &touch, relative, rolled, &mut state.slip[1][i], &mut heat, last, &mut energy);
+                let rolled =
+                    Rolled { omega, race: rate, pace: ((orbit - rate) * (distance - self.arm)).abs() };
+                let pushed = self.push(
+                    &self.inner,
+                    &touch,
+                    relative,
+                    rolled,
+                    &mut state.slip[1][i],
+                    &mut heat,
+                    last,
+                    &mut energy,
+                );
                 let [fx, fy] = pushed.force;
                 on_inner = [sc * fx - ss * fy, ss * fx + sc * fy];
                 force = [force[0] + on_inner[0], force[1] + on_inner[1]];
@@ -197,8 +220,22 @@ impl Bearing {
                 for side in 0..2 {
                     let slip = &mut state.wall_slip[i][side];
                     let wall = &cage.walls[i][side];
-                    let placed = PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
-                    let hit = self.hit(cage, wall, placed, [centre, velocity], omega, turned, slip, &mut heat, &mut energy);
+                    let placed = PlacedCage {
+                        at: [state.cage[0], state.cage[1]],
+                        turn: [cc, cs],
+                        velocity: state.cage_velocity,
+                    };
+                    let hit = self.hit(
+                        cage,
+                        wall,
+                        placed,
+                        [centre, velocity],
+                        omega,
+                        turned,
+                        slip,
+                        &mut heat,
+                        &mut energy,
+                    );
                     let Some(hit) = hit else { continue };
                     by_cage = [by_cage[0] + hit.force[0], by_cage[1] + hit.force[1]];
                     moment += hit.moment;
@@ -227,19 +264,33 @@ impl Bearing {
                     let change = kept * v + gain * a_along - v - dt * a_along;
                     let mean = v + 0.5 * (kept * v + gain * a_along - v);
                     damped += self.alpha * dt * roller_mass * mean * mean;
-                    [velocity[0] + dt * a[0] + change * radial[0], velocity[1] + dt * a[1] + change * radial[1], omega + dt * turn]
+                    [
+                        velocity[0] + dt * a[0] + change * radial[0],
+                        velocity[1] + dt * a[1] + change * radial[1],
+                        omega + dt * turn,
+                    ]
                 }
-                DampingFrame::RigidMotion => [velocity[0] + dt * a[0], velocity[1] + dt * a[1], omega + dt * turn],
+                DampingFrame::RigidMotion => {
+                    [velocity[0] + dt * a[0], velocity[1] + dt * a[1], omega + dt * turn]
+                }
                 DampingFrame::Absolute => {
-                    let new = [kept * velocity[0] + gain * a[0], kept * velocity[1] + gain * a[1], kept * omega + gain * turn];
+                    let new = [
+                        kept * velocity[0] + gain * a[0],
+                        kept * velocity[1] + gain * a[1],
+                        kept * omega + gain * turn,
+                    ];
                     let mean: [f64; 3] = std::array::from_fn(|c| 0.5 * (old[c] + new[c]));
-                    damped += self.alpha * dt * (roller_mass * (mean[0] * mean[0] + mean[1] * mean[1]) + roller_inertia * mean[2] * mean[2]);
+                    damped += self.alpha
+                        * dt
+                        * (roller_mass * (mean[0] * mean[0] + mean[1] * mean[1])
+                            + roller_inertia * mean[2] * mean[2]);
                     new
                 }
             };
             external -= 0.5 * dt * self.gravity * roller_mass * (old[1] + new[1]);
             if last {
-                energy.kinetic += 0.5 * (roller_mass * (old[0] * new[0] + old[1] * new[1]) + roller_inertia * old[2] * new[2]);
+                energy.kinetic += 0.5
+                    * (roller_mass * (old[0] * new[0] + old[1] * new[1]) + roller_inertia * old[2] * new[2]);
             }
             (state.vx[i], state.vy[i], state.spin[i]) = (new[0], new[1], new[2]);
             state.x[i] += dt * new[0];
@@ -254,11 +305,13 @@ impl Bearing {
 
         if let Some(cage) = &self.cage {
             let old = state.cage_velocity;
-            let acceleration = [on_cage[0] / cage.mass, on_cage[1] / cage.mass - self.gravity, on_cage[2] / cage.inertia];
+            let acceleration =
+                [on_cage[0] / cage.mass, on_cage[1] / cage.mass - self.gravity, on_cage[2] / cage.inertia];
             let new: [f64; 3] = std::array::from_fn(|c| old[c] + dt * acceleration[c]);
             external -= 0.5 * dt * self.gravity * cage.mass * (old[1] + new[1]);
             if last {
-                energy.kinetic += 0.5 * (cage.mass * (old[0] * new[0] + old[1] * new[1]) + cage.inertia * old[2] * new[2]);
+                energy.kinetic +=
+                    0.5 * (cage.mass * (old[0] * new[0] + old[1] * new[1]) + cage.inertia * old[2] * new[2]);
             }
             state.cage_velocity = new;
             for (place, v) in state.cage.iter_mut().zip(new) {
@@ -280,7 +333,13 @@ impl Bearing {
 
     /// Displacement and velocity of the outer raceway under a roller; leaves the shapes there in `under`.
     #[inline(always)]
-    fn raceway_motion(&self, state: &State, [a, b]: [usize; 2], share: f64, under: &mut [f64]) -> [[f64; 2]; 2] {
+    fn raceway_motion(
+        &self,
+        state: &State,
+        [a, b]: [usize; 2],
+        share: f64,
+        under: &mut [f64],
+    ) -> [[f64; 2]; 2] {
         let r = self.reduction.padded;
         let shapes = &self.reduction.shapes;
         let (a, b) = (&shapes[2 * r * a..2 * r * (a + 1)], &shapes[2 * r * b..2 * r * (b + 1)]);
@@ -360,7 +419,15 @@ impl Bearing {
 
     /// Modes move (THEORY §9.4).
     #[inline(always)]
-    fn move_modes(&self, state: &mut State, scratch: &Scratch, last: bool, energy: &mut Stored, external: &mut f64, damped: &mut f64) {
+    fn move_modes(
+        &self,
+        state: &mut State,
+        scratch: &Scratch,
+        last: bool,
+        energy: &mut Stored,
+        external: &mut f64,
+        damped: &mut f64,
+    ) {
         let dt = self.time_step;
         let r = self.reduction.padded;
         let h = match self.frame {
@@ -391,7 +458,8 @@ impl Bearing {
                 sums[0][k] += mean * self.reduction.external[n];
                 sums[1][k] += (alpha * mean + square * ahead) * mean;
                 sums[2][k] += v * new;
-                sums[3][k] += q * (0.5 * square * q + self.reduction.external[n] - self.reduction.constant[n]);
+                sums[3][k] +=
+                    q * (0.5 * square * q + self.reduction.external[n] - self.reduction.constant[n]);
                 state.v[n] = new;
                 state.q[n] = q + dt * new;
             }
@@ -431,7 +499,8 @@ impl Bearing {
         let t = t.clamp(0.0, 1.0);
         let foot = [a[0] + t * edge[0] - own[0], a[1] + t * edge[1] - own[1]];
         let distance = (foot[0] * foot[0] + foot[1] * foot[1]).sqrt();
-        if distance >= self.top() || (own[0] - a[0]) * wall.normal[0] + (own[1] - a[1]) * wall.normal[1] < 0.0 {
+        if distance >= self.top() || (own[0] - a[0]) * wall.normal[0] + (own[1] - a[1]) * wall.normal[1] < 0.0
+        {
             *slip = 0.0;
             return None;
         }
@@ -456,8 +525,14 @@ impl Bearing {
         };
         // The cage's velocity at the foot.
         let arm = [rel[0] + d[0] * distance, rel[1] + d[1] * distance];
-        let at_foot = [placed.velocity[0] - placed.velocity[2] * arm[1], placed.velocity[1] + placed.velocity[2] * arm[0]];
-        let relative = [velocity[0] - omega * d[1] * distance - at_foot[0], velocity[1] + omega * d[0] * distance - at_foot[1]];
+        let at_foot = [
+            placed.velocity[0] - placed.velocity[2] * arm[1],
+            placed.velocity[1] + placed.velocity[2] * arm[0],
+        ];
+        let relative = [
+            velocity[0] - omega * d[1] * distance - at_foot[0],
+            velocity[1] + omega * d[0] * distance - at_foot[1],
+        ];
         let closing = relative[0] * n[0] + relative[1] * n[1];
         let damping = (self.damping / self.penalty * stiffness * closing).max(-force);
         let t = [-n[1], n[0]];

@@ -217,9 +217,7 @@ fn converges_with_the_square_of_the_time_step() {
         let k2 = rate(at(k1, 0.5 * small));
         let k3 = rate(at(k2, 0.5 * small));
         let k4 = rate(at(k3, small));
-        exact = std::array::from_fn(|i| {
-            exact[i] + small / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])
-        });
+        exact = std::array::from_fn(|i| exact[i] + small / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
     }
     let errors: Vec<f64> = [100, 200, 400, 800]
         .into_iter()

@@ -56,7 +56,10 @@ impl SmallMotions {
             .iter()
             .flat_map(|s| {
                 let others = |i: usize| s.slots[..i].iter().copied();
-                s.slots.iter().enumerate().flat_map(move |(i, &a)| others(i).map(move |b| [a.max(b), a.min(b)]))
+                s.slots
+                    .iter()
+                    .enumerate()
+                    .flat_map(move |(i, &a)| others(i).map(move |b| [a.max(b), a.min(b)]))
             })
             .collect();
         let graph = unknowns.graph(dynamics, &couplings);
@@ -67,7 +70,9 @@ impl SmallMotions {
             let along = &spring.direction;
             let block = |i: usize, j: usize| {
                 let [of_row, of_column] = [&along[2 * i..2 * i + 2], &along[2 * j..2 * j + 2]];
-                [0, 1].map(|a| [spring.stiffness * of_row[a] * of_column[0], spring.stiffness * of_row[a] * of_column[1]])
+                [0, 1].map(|a| {
+                    [spring.stiffness * of_row[a] * of_column[0], spring.stiffness * of_row[a] * of_column[1]]
+                })
             };
             // Every pair of its nodes is in the pattern.
             scatter(&unknowns, &spring.slots, block, &mut stiffness, |_| ());
