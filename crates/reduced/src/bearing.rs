@@ -63,6 +63,8 @@ pub struct Bearing {
 #[derive(Debug, Clone)]
 pub(crate) struct Track {
     pub(crate) outline: Outline,
+    /// One over the angle that each facet takes [1/rad]; 0 for walls.
+    pub(crate) angle: Vec<f64>,
     pub(crate) sides: Sides,
     pub(crate) compliance: Compliance,
     /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
@@ -132,6 +134,7 @@ impl Bearing {
         let track =
             |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
                 sides: sides(along, relative),
+                angle: per_angle(&outline),
                 outline,
                 compliance: compliance.clone(),
                 bound,
@@ -271,6 +274,8 @@ impl Bearing {
             spin: vec![k.roller_rad_s; n],
             slip: [vec![0.0; n], vec![0.0; n]],
             wall_slip: vec![[0.0; 2]; n],
+            passive: [vec![[0.0; 3]; n], vec![[0.0; 3]; n]],
+            wall_passive: vec![[[0.0; 2]; 2]; n],
             force: [vec![0.0; n], vec![0.0; n]],
             hints: [vec![[0; 2]; n], vec![[0; 2]; n]],
             cage: [0.0; 3],
@@ -343,4 +348,21 @@ impl Cage {
         let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
         Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points })
     }
+}
+
+/// A facet that takes less than this share of the mean angle is a wall.
+const WALL: f64 = 0.05;
+
+/// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls.
+fn per_angle(outline: &Outline) -> Vec<f64> {
+    let n = outline.len();
+    (0..n)
+        .map(|i| {
+            let j = (i + 1) % n;
+            let sine = outline.x[i] * outline.y[j] - outline.y[i] * outline.x[j];
+            let cosine = outline.x[i] * outline.x[j] + outline.y[i] * outline.y[j];
+            let angle = sine.atan2(cosine);
+            if angle > WALL * std::f64::consts::TAU / n as f64 { 1.0 / angle } else { 0.0 }
+        })
+        .collect()
 }

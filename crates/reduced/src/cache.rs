@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
     run_dir::write_atomic,
-    scene::{CageScene, ContactScene, GuardsScene, OperationScene, OutputScene, Scene, SolverScene},
+    scene::{
+        CageScene, ContactScene, GuardsScene, ModelScene, OutputScene, ReducedScene, Scene, SolverScene,
+    },
 };
 
 use crate::{error::Error, reduction::Reduction};
@@ -38,14 +40,17 @@ pub fn reference(scene: &Scene) -> Scene {
     mesh.roller_phase_deg = 0.0;
     Scene {
         name: "reduction".to_owned(),
-        model: scene.model.clone(),
+        model: ModelScene::Reduced(ReducedScene {
+            modes_khz: Reduction::khz(scene),
+            ..ReducedScene::default()
+        }),
         bearing,
         cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
         adapter: scene.adapter.clone(),
         defect: scene.defect.clone(),
         material: scene.material.clone(),
         mesh,
-        operation: OperationScene { ..scene.operation.clone() },
+        operation: scene.operation.clone(),
         contact: ContactScene {
             method,
             surface,

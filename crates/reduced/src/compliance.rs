@@ -99,6 +99,9 @@ pub struct Pressed<'a> {
     pub penalty: f64,
 }
 
+/// The sag of the surfaces at a point [m], and its shares of two nodes of each.
+type Point = (f64, [[(usize, f64); 2]; 2]);
+
 /// Integration points on a facet.
 const POINTS: usize = 16;
 
@@ -116,7 +119,7 @@ impl Pressed<'_> {
             let t = (at - i as f64).clamp(0.0, 1.0);
             [(i, 1.0 - t), (i + 1, t)]
         };
-        let all: Vec<(f64, [[(usize, f64); 2]; 2])> = (0..points)
+        let all: Vec<Point> = (0..points)
             .map(|i| (i as f64 + 0.5) * step - half)
             .map(|x| (x * x / (2.0 * self.radius), [share(0, x), share(1, x)]))
             .collect();

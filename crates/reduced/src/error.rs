@@ -12,20 +12,6 @@ pub enum Error {
     #[error("solver: {0}")]
     Solver(#[from] stribeck_solver::Error),
 
-    /// The iteration for natural modes did not come to its end.
-    #[error(
-        "only {found} natural modes of outer ring and adapter below {khz} kHz were found in {iterations} iterations: take a smaller \
-         `model.modes_khz`"
-    )]
-    Modes {
-        /// How many were found.
-        found: usize,
-        /// Iterations taken.
-        iterations: usize,
-        /// Upper end of the band [kHz].
-        khz: f64,
-    },
-
     /// Contact's law has impossible numbers.
     #[error("contact: {0}")]
     Contact(#[from] stribeck_contact::Error),

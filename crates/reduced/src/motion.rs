@@ -46,6 +46,8 @@ impl Saved {
             [&s.x, &s.y, &s.vx, &s.vy, &s.angle, &s.spin, &s.slip[0], &s.slip[1], &s.force[0], &s.force[1]];
         of_rollers.iter().all(|v| v.len() == n)
             && s.wall_slip.len() == n
+            && s.wall_passive.len() == n
+            && s.passive.iter().all(|p| p.len() == n)
             && s.hints.iter().all(|h| h.len() == n)
             && [&s.q, &s.v].iter().all(|v| v.len() == r)
             && s.branches.len() == bearing.branches.len()
@@ -73,9 +75,9 @@ impl Motion {
             kinetic: e.kinetic,
             strain: e.strain,
             contact: e.contact,
-            friction: at_positions(w.friction) - e.sticking,
+            friction: w.friction - e.sticking,
             damping: at_positions(w.damping),
-            contact_damping: at_positions(w.contact_damping),
+            contact_damping: w.contact_damping,
             external: at_positions(w.external),
             drive: at_positions(w.drive),
             ..Ledger::default()

@@ -12,13 +12,12 @@ use stribeck_scene::{geometry::Geometry, run_info::MeshInfo, scene::Scene, stati
 use stribeck_solver::{
     Dynamics, Force,
     state::NodeForces,
-    statics::{SmallMotions, Spring},
+    statics::{Modes, SmallMotions, Spring, modes_below},
 };
 
 use crate::{
     compliance::{Compliance, Pressed},
     error::Error,
-    lanczos::{Modes, modes_below},
     overlap::Outline,
 };
 
@@ -163,7 +162,7 @@ impl Reduction {
             });
         }
         if scene.contact.seat_friction > 0.0 {
-            let sticking: Vec<Spring> = springs.iter().map(|normal| sticking(normal)).collect();
+            let sticking: Vec<Spring> = springs.iter().map(sticking).collect();
             springs.extend(sticking);
         }
         {

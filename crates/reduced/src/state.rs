@@ -27,6 +27,10 @@ pub struct State {
     pub slip: [Vec<f64>; 2],
     /// Elastic slip at the two walls of each pocket [m].
     pub wall_slip: Vec<[f64; 2]>,
+    /// Drag, damping force [N] and damping moment [N m] of the last step at both raceways: half of their work is counted then.
+    pub passive: [Vec<[f64; 3]>; 2],
+    /// Drag and damping force of the last step at the two walls of each pocket [N].
+    pub wall_passive: Vec<[[f64; 2]; 2]>,
     /// Normal forces of the last step at both raceways [N], where the next one begins its search.
     pub force: [Vec<f64>; 2],
     /// Facets of roller and raceway found last, at both raceways.
@@ -43,13 +47,13 @@ pub struct State {
     pub steps: u64,
 }
 
-/// Work since the start [J]: sums over steps, and of the last step alone, half of which lies behind the positions.
+/// Work since the start [J]. Pairs are sums over steps, and of the last step alone, half of which lies behind the positions.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Work {
     /// Against friction, in all contacts.
-    pub friction: [f64; 2],
+    pub friction: f64,
     /// Against contact damping.
-    pub contact_damping: [f64; 2],
+    pub contact_damping: f64,
     /// Against mass, stiffness and structural damping.
     pub damping: [f64; 2],
     /// Of load and gravity.

@@ -120,6 +120,7 @@ impl Bearing {
         let mut on_cage = [0.0; 3];
         let mut work = state.work;
         let shaft = state.shaft.sin_cos();
+        // Twice the work against friction and contact damping per time (2.24).
         let mut heat = [0.0; 2];
         let mut external = 0.0;
         let mut drive = 0.0;
@@ -136,7 +137,7 @@ impl Bearing {
             let share = self.outer.outline.share(facet, radial);
             let second = if facet + 1 == self.outer.outline.len() { 0 } else { facet + 1 };
             let under = &mut scratch.under[2 * r * i..2 * r * (i + 1)];
-            let [moved, moving] = self.raceway_motion(state, [facet, second], share, under);
+            let [moved, moving, tilt] = self.raceway_motion(state, [facet, second], share, under);
             state.hints[0][i][1] = facet as u32;
             let turned = scratch.turned[i];
             let mut hints = state.hints[0][i];
@@ -158,6 +159,7 @@ impl Bearing {
                 relative,
                 rolled,
                 &mut state.slip[0][i],
+                &mut state.passive[0][i],
                 &mut heat,
                 last,
                 &mut energy,
@@ -172,7 +174,10 @@ impl Bearing {
             scratch.on_roller[i][0] = pushed.force;
             scratch.heard[i] = Heard { facet: facet as u32, share, force: touch.normal };
             scratch.deepest = scratch.deepest.max(touch.overlap.deepest);
-            force = [force[0] + fx, force[1] + fy];
+            // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY §9.3).
+            let downhill = -(fx * tilt[0] + fy * tilt[1]) / distance;
+            let [ex, ey] = [fx - downhill * radial[1], fy + downhill * radial[0]];
+            force = [force[0] + ex, force[1] + ey];
             moment += pushed.moment;
 
             // The inner raceway turns about the origin: everything is turned back.
@@ -198,6 +203,7 @@ impl Bearing {
                     relative,
                     rolled,
                     &mut state.slip[1][i],
+                    &mut state.passive[1][i],
                     &mut heat,
                     last,
                     &mut energy,
@@ -210,7 +216,7 @@ impl Bearing {
                 drive += dt * rate * (centre[0] * on_inner[1] - centre[1] * on_inner[0] + pushed.moment);
                 scratch.deepest = scratch.deepest.max(touch.overlap.deepest);
             } else {
-                state.slip[1][i] = 0.0;
+                (state.slip[1][i], state.passive[1][i]) = (0.0, [0.0; 3]);
             }
             scratch.on_roller[i][1] = on_inner;
 
@@ -218,7 +224,7 @@ impl Bearing {
             let mut by_cage = [0.0; 2];
             if let Some(cage) = &self.cage {
                 for side in 0..2 {
-                    let slip = &mut state.wall_slip[i][side];
+                    let (slip, passive) = (&mut state.wall_slip[i][side], &mut state.wall_passive[i][side]);
                     let wall = &cage.walls[i][side];
                     let placed = PlacedCage {
                         at: [state.cage[0], state.cage[1]],
@@ -233,6 +239,7 @@ impl Bearing {
                         omega,
                         turned,
                         slip,
+                        passive,
                         &mut heat,
                         &mut energy,
                     );
@@ -319,8 +326,8 @@ impl Bearing {
             }
         }
         state.shaft += dt * self.kinematics.shaft_rad_s;
-        count(&mut work.friction, dt * heat[0]);
-        count(&mut work.contact_damping, dt * heat[1]);
+        work.friction += 0.5 * dt * heat[0];
+        work.contact_damping += 0.5 * dt * heat[1];
         count(&mut work.external, external);
         count(&mut work.drive, drive);
         count(&mut work.damping, damped);
@@ -331,7 +338,8 @@ impl Bearing {
         }
     }
 
-    /// Displacement and velocity of the outer raceway under a roller; leaves the shapes there in `under`.
+    /// Displacement and velocity of the outer raceway under a roller, and the change of the displacement with the angle; leaves the
+    /// shapes there in `under`.
     #[inline(always)]
     fn raceway_motion(
         &self,
@@ -339,27 +347,33 @@ impl Bearing {
         [a, b]: [usize; 2],
         share: f64,
         under: &mut [f64],
-    ) -> [[f64; 2]; 2] {
+    ) -> [[f64; 2]; 3] {
         let r = self.reduction.padded;
         let shapes = &self.reduction.shapes;
+        let angle = self.outer.angle[a];
         let (a, b) = (&shapes[2 * r * a..2 * r * (a + 1)], &shapes[2 * r * b..2 * r * (b + 1)]);
-        for ((under, a), b) in under.iter_mut().zip(a).zip(b) {
-            *under = a + share * (b - a);
-        }
-        let (x, y) = under.split_at(r);
-        let mut sums = [[0.0; LANES]; 4];
+        let (ux, uy) = under.split_at_mut(r);
+        let mut sums = [[0.0; LANES]; 6];
         for at in (0..r).step_by(LANES) {
-            let (x, y) = (&x[at..at + LANES], &y[at..at + LANES]);
+            let (ax, ay) = (&a[at..at + LANES], &a[r + at..r + at + LANES]);
+            let (bx, by) = (&b[at..at + LANES], &b[r + at..r + at + LANES]);
+            let (ux, uy) = (&mut ux[at..at + LANES], &mut uy[at..at + LANES]);
             let (q, v) = (&state.q[at..at + LANES], &state.v[at..at + LANES]);
             for k in 0..LANES {
-                sums[0][k] += x[k] * q[k];
-                sums[1][k] += y[k] * q[k];
-                sums[2][k] += x[k] * v[k];
-                sums[3][k] += y[k] * v[k];
+                let (dx, dy) = (bx[k] - ax[k], by[k] - ay[k]);
+                ux[k] = ax[k] + share * dx;
+                uy[k] = ay[k] + share * dy;
+                sums[0][k] += ux[k] * q[k];
+                sums[1][k] += uy[k] * q[k];
+                sums[2][k] += ux[k] * v[k];
+                sums[3][k] += uy[k] * v[k];
+                sums[4][k] += dx * q[k];
+                sums[5][k] += dy * q[k];
             }
         }
         let total = |s: [f64; LANES]| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
-        [[total(sums[0]), total(sums[1])], [total(sums[2]), total(sums[3])]]
+        let [dx, dy] = [total(sums[4]) * angle, total(sums[5]) * angle];
+        [[total(sums[0]), total(sums[1])], [total(sums[2]), total(sums[3])], [dx, dy]]
     }
 
     /// What a raceway does to a roller, in the frame in which it was touched. `relative` is the velocity of the roller's
@@ -373,13 +387,14 @@ impl Bearing {
         relative: [f64; 2],
         rolled: Rolled,
         slip: &mut f64,
+        passive: &mut [f64; 3],
         heat: &mut [f64; 2],
         last: bool,
         energy: &mut Stored,
     ) -> Pushed {
         let o = &touch.overlap;
         if o.area <= 0.0 {
-            *slip = 0.0;
+            (*slip, *passive) = (0.0, [0.0; 3]);
             return Pushed::default();
         }
         let d = touch.d;
@@ -402,8 +417,10 @@ impl Bearing {
         let most = self.friction * touch.normal / stiffness;
         *slip = (*slip * (1.0 - lost) + self.time_step * sliding).clamp(-most, most);
         let drag = -stiffness * *slip;
-        heat[0] -= drag * sliding;
-        heat[1] += damping * closing + about * turning;
+        let [old_drag, old_damping, old_about] = *passive;
+        heat[0] -= (old_drag + drag) * sliding;
+        heat[1] += (old_damping + damping) * closing + (old_about + about) * turning;
+        *passive = [drag, damping, about];
         if last {
             let sunk = self.penalty * o.square * 0.5;
             let stuck = 0.5 * stiffness * *slip * *slip;
@@ -485,11 +502,12 @@ impl Bearing {
         omega: f64,
         turned: [f64; 2],
         slip: &mut f64,
+        passive: &mut [f64; 2],
         heat: &mut [f64; 2],
         energy: &mut Stored,
     ) -> Option<Hit> {
         let [c, s] = placed.turn;
-        let Some(cage_centre) = self.reduction.cage.map(|cage| cage.1) else { return None };
+        let cage_centre = self.reduction.cage.map(|cage| cage.1)?;
         let rel = [centre[0] - placed.at[0] - cage_centre[0], centre[1] - placed.at[1] - cage_centre[1]];
         let own = [c * rel[0] + s * rel[1], c * rel[1] - s * rel[0]];
         let [a, b] = wall.ends;
@@ -501,7 +519,7 @@ impl Bearing {
         let distance = (foot[0] * foot[0] + foot[1] * foot[1]).sqrt();
         if distance >= self.top() || (own[0] - a[0]) * wall.normal[0] + (own[1] - a[1]) * wall.normal[1] < 0.0
         {
-            *slip = 0.0;
+            (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         }
         // From the roller's centre to the foot, in space.
@@ -510,7 +528,7 @@ impl Bearing {
         let own_d = [turned[0] * d[0] + turned[1] * d[1], turned[0] * d[1] - turned[1] * d[0]];
         let (depth, tilt) = self.roller.depth(own_d, distance);
         if depth <= 0.0 {
-            *slip = 0.0;
+            (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         }
         // The normal of the roller's facet, which leans from d by an angle of sine `tilt`.
@@ -541,8 +559,9 @@ impl Bearing {
         let most = self.friction * force / sticking;
         *slip = (*slip + self.time_step * sliding).clamp(-most, most);
         let drag = -sticking * *slip;
-        heat[0] -= drag * sliding;
-        heat[1] += damping * closing;
+        heat[0] -= (passive[0] + drag) * sliding;
+        heat[1] += (passive[1] + damping) * closing;
+        *passive = [drag, damping];
         energy.contact += stored + 0.5 * sticking * *slip * *slip;
         energy.sticking += 0.5 * sticking * *slip * *slip;
         let normal = force + damping;

@@ -14,7 +14,14 @@ fn polygon(radius: f64, facets: usize) -> Outline {
 }
 
 /// A roller in an outer raceway, its centre at (x, y), turned by an angle.
-fn pressed(roller: &Outline, raceway: &Outline, sides: Sides, [x, y]: [f64; 2], turn: f64, along: [f64; 2]) -> Overlap {
+fn pressed(
+    roller: &Outline,
+    raceway: &Outline,
+    sides: Sides,
+    [x, y]: [f64; 2],
+    turn: f64,
+    along: [f64; 2],
+) -> Overlap {
     let d = along;
     let (s, c) = turn.sin_cos();
     let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
@@ -40,10 +47,31 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
     let (roller, raceway) = (polygon(ROLLER, 112), polygon(RACEWAY, 1257));
     let found = pressed(&roller, &raceway, sides, [0.0, RACEWAY - ROLLER + depth], 0.3, [0.0, 1.0]);
     let half = (2.0 * depth / relative).sqrt();
-    compare("overlap of two arcs", "Johnson 1985, §4.2", "m²", found.area, 4.0 / 3.0 * depth * half, TOLERANCE);
-    compare("length of the overlap of two arcs", "Johnson 1985, §4.2", "m", found.length, 2.0 * half, TOLERANCE);
+    compare(
+        "overlap of two arcs",
+        "Johnson 1985, §4.2",
+        "m²",
+        found.area,
+        4.0 / 3.0 * depth * half,
+        TOLERANCE,
+    );
+    compare(
+        "length of the overlap of two arcs",
+        "Johnson 1985, §4.2",
+        "m",
+        found.length,
+        2.0 * half,
+        TOLERANCE,
+    );
     let energy = 16.0 / 15.0 * depth * depth * half;
-    compare("integral of the squared overlap of two arcs", "Johnson 1985, §4.2", "m³", found.square, energy, TOLERANCE);
+    compare(
+        "integral of the squared overlap of two arcs",
+        "Johnson 1985, §4.2",
+        "m³",
+        found.square,
+        energy,
+        TOLERANCE,
+    );
     assert!(found.across.abs() < 1e-9 * found.area && found.moment.abs() < 1e-9 * ROLLER * found.area);
 }
 
@@ -72,7 +100,15 @@ fn invariant_forces_on_polygons_are_the_gradient_of_the_energy() {
         let torque = -slope(energy(0.0, 0.0, turn + 1e-7), energy(0.0, 0.0, turn - 1e-7), 1e-7);
         let area = found.area;
         assert!((normal - area).abs() < TOLERANCE * area, "normal {normal} {area}");
-        assert!((tangential - found.across).abs() < TOLERANCE * area, "tangential {tangential} {}", found.across);
-        assert!((torque - found.moment).abs() < TOLERANCE * ROLLER * area, "torque {torque} {}", found.moment);
+        assert!(
+            (tangential - found.across).abs() < TOLERANCE * area,
+            "tangential {tangential} {}",
+            found.across
+        );
+        assert!(
+            (torque - found.moment).abs() < TOLERANCE * ROLLER * area,
+            "torque {torque} {}",
+            found.moment
+        );
     }
 }

@@ -27,7 +27,14 @@ fn coarse(duration_ms: f64) -> Scene {
 }
 
 fn host(threads: usize) -> Host<'static> {
-    Host { threads, version: "test".into(), commit: "test".into(), machine: "test".into(), wall_s: &|| 0.0, cpu_s: &|| 0.0 }
+    Host {
+        threads,
+        version: "test".into(),
+        commit: "test".into(),
+        machine: "test".into(),
+        wall_s: &|| 0.0,
+        cpu_s: &|| 0.0,
+    }
 }
 
 fn run(scene: &Scene, folder: &Scratch, name: &str, threads: usize) -> RunInfo {
@@ -97,7 +104,8 @@ fn example_the_reduced_model_starts_as_the_full_one() {
     run(&Scene { model: ModelScene::Full, ..scene }, &folder, "full", 1);
     let first = |name: &str| -> Vec<f64> {
         let trace = Trace::read(folder.join(name).join("trace.npy")).expect("a trace");
-        let channel = |i: usize, c: &str| trace.get(&format!("roller.{i}.outer_f{c}_n")).expect("a channel")[0];
+        let channel =
+            |i: usize, c: &str| trace.get(&format!("roller.{i}.outer_f{c}_n")).expect("a channel")[0];
         (1..=24).map(|i| channel(i, "x").hypot(channel(i, "y"))).collect()
     };
     let (full, reduced) = (first("full"), first("reduced"));

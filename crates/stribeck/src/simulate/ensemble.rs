@@ -232,7 +232,9 @@ impl Shop<'_> {
         }
         match done {
             // What was written is there; the rest can follow when there is space again.
-            Err(Error::Bearing(stribeck_bearing::error::Error::Scene(_))) => self.disk_refuses.store(true, Ordering::Relaxed),
+            Err(Error::Bearing(stribeck_bearing::error::Error::Scene(_))) => {
+                self.disk_refuses.store(true, Ordering::Relaxed)
+            }
             Err(error) => drop(ensemble.failed.insert(number, error.to_string())),
             Ok(_) => {}
         }

@@ -2,10 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use faer::{Mat, Side};
-use stribeck_solver::statics::SmallMotions;
-
+use super::small_motions::SmallMotions;
 use crate::error::Error;
+use faer::{Mat, Side};
 
 /// Natural modes φ with φᵀMφ = 1, ascending.
 #[derive(Debug, Clone)]
@@ -71,7 +70,7 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
                 1 => beta[i.min(j)],
                 _ => 0.0,
             });
-            let failed = |_| Error::Modes { found, iterations: m, khz: 1e-3 * hertz };
+            let failed = |_| Error::Modes { found, iterations: m, hertz };
             let eigen = t.self_adjoint_eigen(Side::Lower).map_err(failed)?;
             let (values, vectors) = (eigen.S(), eigen.U());
             // Ascending: the last value belongs to the lowest frequency.
@@ -102,5 +101,5 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
         v = w;
         v.iter_mut().for_each(|v| *v /= length);
     }
-    Err(Error::Modes { found, iterations: basis.len(), khz: 1e-3 * hertz })
+    Err(Error::Modes { found, iterations: basis.len(), hertz })
 }

@@ -4,15 +4,18 @@ use std::f64::consts::TAU;
 
 use faer::{Mat, Side};
 use stribeck_mesh::{Annulus, Mesh};
-use stribeck_reduced::lanczos::modes_below;
-use stribeck_solver::{Dynamics, Elastic, Model, statics::SmallMotions};
+use stribeck_solver::{
+    Dynamics, Elastic, Model,
+    statics::{SmallMotions, modes_below},
+};
 use stribeck_testing::ledger::compare;
 
 /// (2π · 200 Hz)².
 const SHIFT: f64 = 1.6e6;
 
 fn ring(facets: usize, layers: usize, inner: f64, outer: f64) -> (Dynamics, Elastic) {
-    let ring = Annulus { inner_radius: inner, outer_radius: outer, facets, layers, start_angle: 0.0, groove: None };
+    let ring =
+        Annulus { inner_radius: inner, outer_radius: outer, facets, layers, start_angle: 0.0, groove: None };
     let mut mesh = Mesh::new();
     mesh.add("ring", &ring.part().expect("a ring"));
     let steel = Elastic::new(208e9, 0.3, 7800.0).expect("steel");
@@ -22,7 +25,8 @@ fn ring(facets: usize, layers: usize, inner: f64, outer: f64) -> (Dynamics, Elas
 }
 
 fn motions(dynamics: &Dynamics) -> SmallMotions {
-    let slots: Vec<u32> = (0..dynamics.state.x.len() as u32).filter(|&n| dynamics.mass()[n as usize] > 0.0).collect();
+    let slots: Vec<u32> =
+        (0..dynamics.state.x.len() as u32).filter(|&n| dynamics.mass()[n as usize] > 0.0).collect();
     SmallMotions::new(dynamics, &slots, &[], SHIFT).expect("definite with the shift")
 }
 
@@ -44,7 +48,8 @@ fn invariant_modes_are_those_of_the_whole_matrix() {
     let matrix = Mat::from_fn(n, n, |i, j| columns[j][i] / root[i]);
     let values = matrix.self_adjoint_eigen(Side::Lower).expect("symmetric");
     let limit = 20e3;
-    let dense: Vec<f64> = values.S().column_vector().iter().copied().filter(|s| s.max(0.0).sqrt() < TAU * limit).collect();
+    let dense: Vec<f64> =
+        values.S().column_vector().iter().copied().filter(|s| s.max(0.0).sqrt() < TAU * limit).collect();
     let found = modes_below(&mut motions, limit).expect("modes");
     assert_eq!(found.squares.len(), dense.len());
     for (ours, theirs) in found.squares.iter().zip(&dense).skip(3) {
@@ -56,7 +61,10 @@ fn invariant_modes_are_those_of_the_whole_matrix() {
     for (i, a) in found.shapes.iter().enumerate() {
         for (j, b) in found.shapes.iter().enumerate() {
             let product: f64 = a.iter().zip(b).zip(motions.mass()).map(|((a, b), m)| a * b * m).sum();
-            assert!((product - f64::from(u8::from(i == j))).abs() < TOLERANCE, "modes {i} and {j}: {product}");
+            assert!(
+                (product - f64::from(u8::from(i == j))).abs() < TOLERANCE,
+                "modes {i} and {j}: {product}"
+            );
         }
     }
 }
