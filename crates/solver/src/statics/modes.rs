@@ -1,0 +1,105 @@
+//! Natural modes below a frequency, by shift-invert Lanczos iteration (THEORY §9.1).
+
+use std::f64::consts::TAU;
+
+use super::small_motions::SmallMotions;
+use crate::error::Error;
+use faer::{Mat, Side};
+
+/// Natural modes φ with φᵀMφ = 1, ascending.
+#[derive(Debug, Clone)]
+pub struct Modes {
+    /// Squares of the angular frequencies [rad²/s²].
+    pub squares: Vec<f64>,
+    /// Shapes [1/√kg], fields of the [`SmallMotions`] that they belong to.
+    pub shapes: Vec<Vec<f64>>,
+}
+
+/// Largest residual of a mode that counts as found, relative: the error of its frequency is the square of that.
+const RESIDUAL: f64 = 1e-7;
+
+/// Iterations between two looks at what has converged.
+const LOOK_EVERY: usize = 8;
+
+/// Most iterations.
+const ITERATIONS: usize = 1200;
+
+/// All modes below `hertz`.
+///
+/// # Errors
+/// When they are not found in [`ITERATIONS`].
+pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Error> {
+    let mass = motions.mass().to_vec();
+    let n = mass.len();
+    let limit = (TAU * hertz).powi(2) + motions.shift();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).zip(&mass).map(|((a, b), m)| a * b * m).sum::<f64>();
+    // Any start that no symmetry leaves without some mode will do; the same one always, for the same bits.
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut v: Vec<f64> = mass.iter().map(|&m| if m > 0.0 { next() } else { 0.0 }).collect();
+    motions.solve(&mut v);
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    let (mut alpha, mut beta): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let scale = 1.0 / product(&v, &v).sqrt();
+    v.iter_mut().for_each(|v| *v *= scale);
+    let mut found = 0;
+    while basis.len() < ITERATIONS.min(n) {
+        let mut w: Vec<f64> = v.iter().zip(&mass).map(|(v, m)| v * m).collect();
+        motions.solve(&mut w);
+        basis.push(std::mem::take(&mut v));
+        alpha.push(product(&w, &basis[basis.len() - 1]));
+        // Twice is enough (Parlett 1998, §6.9).
+        for _ in 0..2 {
+            let weighted: Vec<f64> = w.iter().zip(&mass).map(|(w, m)| w * m).collect();
+            for b in &basis {
+                let along: f64 = b.iter().zip(&weighted).map(|(b, w)| b * w).sum();
+                w.iter_mut().zip(b).for_each(|(w, b)| *w -= along * b);
+            }
+        }
+        let length = product(&w, &w).sqrt();
+        beta.push(length);
+        let m = basis.len();
+        if m.is_multiple_of(LOOK_EVERY) || m == n {
+            let t = Mat::from_fn(m, m, |i, j| match i.abs_diff(j) {
+                0 => alpha[i],
+                1 => beta[i.min(j)],
+                _ => 0.0,
+            });
+            let failed = |_| Error::Modes { found, iterations: m, hertz };
+            let eigen = t.self_adjoint_eigen(Side::Lower).map_err(failed)?;
+            let (values, vectors) = (eigen.S(), eigen.U());
+            // Ascending: the last value belongs to the lowest frequency.
+            let converged = |i: usize| (length * vectors[(m - 1, i)]).abs() <= RESIDUAL * values[i];
+            let wanted = (0..m).rev().take_while(|&i| values[i] * limit > 1.0).count();
+            let beyond = m.checked_sub(wanted + 1).is_some_and(converged) || m == n;
+            found = (m - wanted..m).filter(|&i| converged(i)).count();
+            if beyond && found == wanted {
+                let mut shapes = vec![vec![0.0; n]; wanted];
+                for (k, shape) in shapes.iter_mut().enumerate() {
+                    let column = m - 1 - k;
+                    for (i, b) in basis.iter().enumerate() {
+                        let share = vectors[(i, column)];
+                        shape.iter_mut().zip(b).for_each(|(s, b)| *s += share * b);
+                    }
+                    let scale = 1.0 / product(shape, shape).sqrt();
+                    shape.iter_mut().for_each(|s| *s *= scale);
+                }
+                // The quotient of Rayleigh is better than the shifted value where that is small.
+                let square = |shape: &Vec<f64>| {
+                    let force = motions.stiffness_times(shape);
+                    shape.iter().zip(&force).map(|(u, f)| u * f).sum::<f64>()
+                };
+                let squares = shapes.iter().map(square).collect();
+                return Ok(Modes { squares, shapes });
+            }
+        }
+        v = w;
+        v.iter_mut().for_each(|v| *v /= length);
+    }
+    Err(Error::Modes { found, iterations: basis.len(), hertz })
+}
