@@ -12,6 +12,12 @@ pub enum Error {
     /// A signal cannot be processed.
     #[error("a recorded signal cannot be processed: {0}")]
     Signal(#[source] stribeck_dsp::Error),
+    /// A file of signals cannot be read.
+    #[error(transparent)]
+    File(#[from] stribeck_formats::Error),
+    /// There is nothing to analyse.
+    #[error("nothing to analyse: {0}")]
+    NoSignal(String),
     /// A figure cannot be drawn.
     #[error("figure `{figure}` cannot be drawn: {why}")]
     Drawing {
@@ -24,7 +30,7 @@ pub enum Error {
     #[error("summary.json cannot be made: {0}")]
     Summary(#[source] serde_json::Error),
     /// A file of the report cannot be written.
-    #[error("{} cannot be written: {why}; check that the run directory is writable and the disk is not full", .path.display())]
+    #[error("{} cannot be written: {why}; check that the folder is writable and the disk is not full", .path.display())]
     Write {
         /// The file.
         path: PathBuf,

@@ -21,6 +21,7 @@
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
 //! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
+//! | What does a measured record show, and may one call it a defect? | [`measured`] |
 //! | What does all of it come to? | [`findings`], [`summary`], [`paper`], [`report`], [`plot`] |
 //!
 //! # A measured gearbox
@@ -72,6 +73,7 @@ pub mod spall;
 pub mod tones;
 
 pub mod artefacts;
+pub mod measured;
 pub mod stress;
 
 pub mod ensemble;

@@ -4,6 +4,7 @@
 mod answer;
 mod ensemble;
 mod figures;
+mod measured;
 mod pictures;
 mod sections;
 mod tables;
@@ -21,6 +22,7 @@ use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
 
 pub use ensemble::write_ensemble;
+pub use measured::write_measured;
 
 use crate::findings::Findings;
 use crate::plot;

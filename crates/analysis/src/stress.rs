@@ -73,12 +73,17 @@ pub fn cells(mesh: &RunMesh, frame: &Frame, lame: &Lame) -> Vec<Cell> {
                 .map(|(n, at)| place.get(n).map(|u| [at[0] + u[0], at[1] + u[1]]))
                 .collect();
             if let Some(corners) = moved {
-                let von_mises = lame.von_mises(gradient(&reference, &corners));
+                let von_mises = von_mises(&reference, &corners, lame);
                 cells.push(Cell { corners, von_mises });
             }
         }
     }
     cells
+}
+
+/// Von Mises stress [Pa] at the centre of an element with three or four corners, from their places free of stress and now [m].
+pub fn von_mises(reference: &[[f64; 2]], now: &[[f64; 2]], lame: &Lame) -> f64 {
+    lame.von_mises(gradient(reference, now))
 }
 
 /// Deformation gradient at the centre of an element with three or four corners.

@@ -82,7 +82,7 @@ fn invariant_oil_goes_on_with_the_same_bits() {
 #[test]
 fn invariant_a_dry_bearing_has_nothing_of_oil() {
     let folder = Scratch::new("film");
-    let (_, run) = run(&coarse(0.05), &folder, 1);
+    let (_, run) = run(&Scene { film: None, ..coarse(0.05) }, &folder, 1);
     let names = run.trace.names.iter().chain(&run.energy.names);
     assert!(names.clone().count() > 20 && names.clone().all(|name| !name.contains("film")));
 }

@@ -141,7 +141,7 @@ fn example_stiffness_damping_is_paid_and_counted() {
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
     // Its heat alone is seen. Loaded bodies that turn drive themselves a little with it (THEORY §2.7): it may be negative.
-    plain.solver.mass_damping_per_s = 0.0;
+    (plain.solver.mass_damping_per_s, plain.solver.structural_damping) = (0.0, None);
     let mut scene = plain.clone();
     scene.solver.stiffness_damping_ns = 100.0;
     let ((undamped, without), (info, one)) = (run(&plain, 1), run(&scene, 1));
@@ -164,7 +164,7 @@ fn example_structural_damping_is_paid_and_counted() {
     /// Of the peak strain energy: what a bearing may miss before it is warned.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
-    plain.solver.mass_damping_per_s = 0.0;
+    (plain.solver.mass_damping_per_s, plain.solver.structural_damping) = (0.0, None);
     let mut scene = plain.clone();
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
     let ((undamped, _), (info, one)) = (run(&plain, 1), run(&scene, 1));
@@ -284,6 +284,10 @@ fn golden_coarse_bearing() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/golden/coarse.csv");
     let mut scene = coarse(0.3);
     scene.solver.start = Start::Sudden;
+    // As it was blessed: dry, with mass damping, and pockets with corners.
+    scene.film = None;
+    (scene.solver.mass_damping_per_s, scene.solver.structural_damping) = (5000.0, None);
+    scene.cage = Some(CageScene { pocket: PocketWalls::Corners, ..CageScene::default() });
     let (_, run) = run(&scene, 1);
     if std::env::var_os("STRIBECK_BLESS").is_some() {
         let mut text = CHANNELS.join(",") + "\n";

@@ -32,6 +32,12 @@
 //! | what can be told apart at all | [`Resolution`] |
 //! | what is left without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
 //! | how often something knocks | [`EnvelopeSpectrum`], after [`PeriodCount`] has said that the record is long enough |
+//! | in which band it knocks | [`fast_kurtogram`], [`BandEnvelopes`] for records of any length, [`cepstral_prewhitening`] |
+//! | whether a family of harmonics is there, and how sure that is | [`CombTest`] on a [`Whitened`] spectrum |
+//! | how far apart two events are that follow each other | [`event_spacing`] |
+//! | what is locked to a shaft | [`order_track`], [`OverAngle::average`] |
+//! | a smooth density of a short record | [`multitaper`] |
+//! | what a sensor and its recorder would have made of a computed signal | [`Sensor`] |
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
 //!
 //! `examples/knocks.rs` does all of it to one signal.
@@ -83,13 +89,32 @@ mod notch;
 
 mod envelope;
 
+mod band_envelopes;
+mod comb;
+
+mod angle;
+mod cepstrum;
+mod kurtogram;
+mod multitaper;
+mod spacing;
+
+mod sensor;
+
 pub mod statistics;
 
+pub use angle::{OverAngle, order_track};
+pub use band_envelopes::{BandEnvelope, BandEnvelopes};
+pub use cepstrum::cepstral_prewhitening;
+pub use comb::{Comb, CombTest, Whitened};
 pub use envelope::{Envelope, EnvelopeSpectrum, PeriodCount, PeriodVerdict};
 pub use error::{Error, Result};
+pub use kurtogram::{KurtogramBand, fast_kurtogram};
+pub use multitaper::{dpss, multitaper};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
 pub use peak::{Peak, Sinusoid};
+pub use sensor::Sensor;
+pub use spacing::{Spacing, event_spacing};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
 pub use window::Window;

@@ -47,6 +47,7 @@
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 //! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
+pub mod catalogue;
 mod contact_formula;
 pub mod dice;
 pub mod ensemble;

@@ -7,6 +7,8 @@ pub mod interrupt;
 pub mod place;
 pub mod progress;
 
+mod analyse;
+mod export;
 mod plan;
 mod report;
 mod simulate;
@@ -25,6 +27,10 @@ pub enum Command {
     Report(report::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
+    /// Says what a measured record shows: which defects, how sure, and what it cannot say
+    Analyse(analyse::Options),
+    /// Writes the signals or the stress frames of a run in a format of other programs
+    Export(export::Options),
 }
 
 impl Command {
@@ -37,6 +43,8 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Plan(options) => plan::run(options, place),
+            Self::Analyse(options) => analyse::run(options, place),
+            Self::Export(options) => export::run(options, place),
         }
     }
 }

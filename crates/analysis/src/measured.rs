@@ -1,0 +1,285 @@
+//! A measured signal: is it sound, which defect families does it hold, and what may be concluded?
+//!
+//! [`Analysis::of`] goes once through the samples, block by block, so that a record of hours takes no more memory than one of
+//! seconds. THEORY §7.9 says what is computed.
+//!
+//! ```
+//! use stribeck_analysis::measured::{Analysis, Machine};
+//! use stribeck_formats::Channel;
+//! use stribeck_scene::catalogue::CatalogueBearing;
+//!
+//! // Knocks at 3.585 times 20 Hz that ring at 3 kHz, in noise.
+//! let rate_hz = 12_800.0;
+//! let mut seed = 1_u64;
+//! let samples: Vec<f64> = (0..65_536)
+//!     .map(|n| {
+//!         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+//!         let noise = (seed >> 40) as f64 / (1_u64 << 24) as f64 - 0.5;
+//!         let since = (n as f64 / rate_hz).rem_euclid(1.0 / 71.7);
+//!         noise + 2.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
+//!     })
+//!     .collect();
+//! let machine = Machine {
+//!     speed_rpm: Some(1200.0),
+//!     bearing: Some(CatalogueBearing::parse("6205")?),
+//! };
+//! let analysis = Analysis::of(&Channel::held("housing", samples), rate_hz, &machine)?;
+//! let claimed: Vec<&str> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+//! assert_eq!(claimed, ["BPFO"]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod length;
+mod screening;
+pub mod tacho;
+mod verdict;
+
+use serde::Serialize;
+use stribeck_dsp::{BandEnvelope, BandEnvelopes, Welch};
+use stribeck_formats::Channel;
+use stribeck_scene::catalogue::CatalogueBearing;
+
+use crate::Error;
+pub use screening::Health;
+use screening::Screening;
+pub use verdict::Family;
+
+/// What is known of the machine.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Machine {
+    /// Speed of the shaft [1/min].
+    pub speed_rpm: Option<f64>,
+    /// Its bearing.
+    pub bearing: Option<CatalogueBearing>,
+}
+
+/// What `findings.json` says. What a record cannot yield is `null`, with the reason in `notes`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Findings {
+    /// The channel.
+    pub channel: String,
+    /// Its unit, if known.
+    pub unit: Option<String>,
+    /// Sample rate [Hz].
+    pub rate_hz: f64,
+    /// Samples read.
+    pub samples: u64,
+    /// Length of the record [s].
+    pub duration_s: f64,
+    /// Speed of the shaft [1/min].
+    pub speed_rpm: Option<f64>,
+    /// The bearing, in words.
+    pub bearing: Option<String>,
+    /// What the envelope spectra resolve: one over the length of a segment [Hz].
+    pub resolution_hz: f64,
+    /// Segments averaged.
+    pub segments: usize,
+    /// Numbers that describe the signal as a whole.
+    pub health: Health,
+    /// The defect families; none without speed and bearing.
+    pub families: Vec<Family>,
+    /// What to conclude, in one sentence.
+    pub verdict: String,
+    /// Length of a spall [mm].
+    pub spall_mm: Option<Interval>,
+    /// What limits the conclusion.
+    pub notes: Vec<String>,
+}
+
+/// A value with its interval of 90 %.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    /// Best estimate.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// Findings and the curves that a report draws.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// The numbers.
+    pub findings: Findings,
+    /// The first samples, for a picture.
+    pub beginning: Vec<f64>,
+    /// Power spectral density: frequencies [Hz] and values [unit²/Hz].
+    pub density: (Vec<f64>, Vec<f64>),
+    /// Squared envelope spectra of all bands.
+    pub bands: Vec<BandEnvelope>,
+}
+
+/// Longest segment [samples]: its envelopes take about 150 MB.
+const LONGEST_SEGMENT: usize = 1 << 20;
+/// Segments of records that are longer.
+const SEGMENT: usize = 1 << 19;
+/// Levels of the dyadic tree of bands: halves, quarters, eighths.
+const LEVELS: u32 = 3;
+/// Lower end of the lowest bands as a part of half the sample rate: below lie the shaft and its multiples.
+const LOWEST: f64 = 0.02;
+/// Highest frequency of the envelope spectra [Hz]; bearings knock more slowly.
+const HIGHEST_HZ: f64 = 4_000.0;
+/// Segment of the density [samples].
+const DENSITY_SEGMENT: usize = 1 << 13;
+/// Samples kept for the picture.
+const SHOWN: usize = 1 << 16;
+/// Shortest record that is analysed [samples].
+const LEAST: usize = 1024;
+
+impl Analysis {
+    /// Analyses a channel sampled `rate_hz` times a second.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or constant,
+    /// [`Error::Signal`] when it cannot be processed.
+    pub fn of(channel: &Channel, rate_hz: f64, machine: &Machine) -> Result<Self, Error> {
+        if !rate_hz.is_finite() || rate_hz <= 0.0 {
+            return Err(Error::NoSignal(format!("a sample rate of {rate_hz} Hz; give one above 0")));
+        }
+        let len = usize::try_from(channel.len).unwrap_or(usize::MAX);
+        if len < LEAST {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` holds {len} samples; {LEAST} are the least",
+                channel.name
+            )));
+        }
+        let segment =
+            if len > LONGEST_SEGMENT { SEGMENT } else { BandEnvelopes::segment_of(len, LONGEST_SEGMENT) };
+        let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
+        let mut envelopes =
+            BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz).map_err(Error::Signal)?;
+        let mut density = Density::new(rate_hz, segment)?;
+        let mut screening = Screening::default();
+        let mut buffer: Vec<f64> = Vec::with_capacity(segment);
+        let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
+        let mut kept: Vec<f64> = Vec::with_capacity(longest_kept);
+        let mut refused = 0_usize;
+        let mut failed = None;
+        channel.for_each_block(|mut block| {
+            screening.add(block);
+            kept.extend(block.iter().take(longest_kept - kept.len()));
+            while !block.is_empty() {
+                let (now, later) = block.split_at((segment - buffer.len()).min(block.len()));
+                buffer.extend_from_slice(now);
+                block = later;
+                if buffer.len() < segment {
+                    continue;
+                }
+                if buffer.iter().all(|x| x.is_finite()) {
+                    let added = envelopes.add(&buffer).and_then(|()| density.add(&buffer));
+                    failed = added.err();
+                } else {
+                    refused += 1;
+                }
+                buffer.clear();
+                if failed.is_some() {
+                    return false;
+                }
+            }
+            true
+        })?;
+        if let Some(why) = failed {
+            return Err(Error::Signal(why));
+        }
+        let mut notes = screening.notes(rate_hz);
+        if refused > 0 {
+            notes.push(format!(
+                "{refused} segments of {segment} samples hold values that are not numbers and are left out"
+            ));
+        }
+        if envelopes.segments() == 0 {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` has no run of {segment} numbers: {}. Cut the record to its sound part",
+                channel.name,
+                notes.join("; ")
+            )));
+        }
+        let Some(health) = screening.health() else {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` is constant; is the sensor connected?",
+                channel.name
+            )));
+        };
+        if !buffer.is_empty() && buffer.len() * 20 > len {
+            notes.push(format!(
+                "the last {:.2} s fill no segment and are left out of the spectra",
+                buffer.len() as f64 / rate_hz
+            ));
+        }
+        let bands = envelopes.bands();
+        let resolution_hz = rate_hz / segment as f64;
+        let judged =
+            verdict::judge(&bands, machine, screening.count() as f64 / rate_hz, segment as f64 / rate_hz)?;
+        notes.extend(judged.notes.iter().cloned());
+        let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
+        notes.extend(why);
+        Ok(Self {
+            findings: Findings {
+                channel: channel.name.clone(),
+                unit: channel.unit.clone(),
+                rate_hz,
+                samples: screening.count(),
+                duration_s: screening.count() as f64 / rate_hz,
+                speed_rpm: machine.speed_rpm,
+                bearing: machine.bearing.as_ref().map(|b| format!("{}: {b}", b.name)),
+                resolution_hz,
+                segments: envelopes.segments(),
+                health,
+                families: judged.families,
+                verdict: judged.verdict,
+                spall_mm,
+                notes,
+            },
+            beginning: kept.into_iter().take(SHOWN).collect(),
+            density: density.finish(),
+            bands,
+        })
+    }
+
+    /// The band in which a family stands highest.
+    pub fn band_of(&self, family: &Family) -> Option<&BandEnvelope> {
+        let (low_hz, high_hz) = family.band_hz?;
+        self.bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
+    }
+}
+
+/// The whole range, its halves, quarters and eighths.
+fn bands(rate_hz: f64) -> Vec<(f64, f64)> {
+    let half = 0.5 * rate_hz;
+    let level = |level: u32| {
+        let count = 1_u32 << level;
+        let end = move |n: u32| if n == 0 { LOWEST * half } else { half * f64::from(n) / f64::from(count) };
+        (0..count).map(move |n| (end(n), end(n + 1)))
+    };
+    (0..=LEVELS).flat_map(level).collect()
+}
+
+/// Density averaged over everything that was added.
+struct Density {
+    welch: Welch,
+    segment: usize,
+    sum: Vec<f64>,
+    count: usize,
+}
+
+impl Density {
+    fn new(rate_hz: f64, segment: usize) -> Result<Self, Error> {
+        let options = stribeck_dsp::WelchOptions::new(DENSITY_SEGMENT.min(segment));
+        let welch = Welch::new(rate_hz, segment, &options).map_err(Error::Signal)?;
+        Ok(Self { sum: vec![0.0; welch.blank().values().len()], welch, segment, count: 0 })
+    }
+
+    fn add(&mut self, samples: &[f64]) -> Result<(), stribeck_dsp::Error> {
+        debug_assert_eq!(samples.len(), self.segment);
+        let spectrum = self.welch.estimate(samples)?;
+        self.sum.iter_mut().zip(spectrum.values()).for_each(|(sum, v)| *sum += v);
+        self.count += 1;
+        Ok(())
+    }
+
+    fn finish(self) -> (Vec<f64>, Vec<f64>) {
+        let count = self.count.max(1) as f64;
+        (self.welch.blank().frequencies_hz().to_vec(), self.sum.iter().map(|s| s / count).collect())
+    }
+}

@@ -1,0 +1,60 @@
+//! How long a spall is, from the time between the events at its edges (THEORY §7.9).
+
+use std::f64::consts::PI;
+
+use stribeck_dsp::event_spacing;
+use stribeck_scene::catalogue::CatalogueBearing;
+
+use super::{Family, Interval, Machine};
+use crate::Error;
+
+/// Events closer than this are not told from the ringing of one [s].
+const SHORTEST_S: f64 = 0.4e-3;
+/// Longest spall over the distance of two rolling elements: with a longer one the next element enters before one leaves.
+const LONGEST: f64 = 0.45;
+/// Ends of the interval over v Δt.
+const RANGE: (f64, f64) = (0.95, 2.0);
+
+/// The length [mm], or why there is none.
+pub(super) fn estimate(
+    samples: &[f64],
+    rate_hz: f64,
+    machine: &Machine,
+    families: &[Family],
+) -> Result<(Option<Interval>, Option<String>), Error> {
+    let claimed = families.iter().filter(|f| f.claimed).collect::<Vec<_>>();
+    let ([family], Some(bearing)) = (claimed.as_slice(), &machine.bearing) else {
+        let why = if claimed.is_empty() { "no defect is claimed" } else { "more than one defect is claimed" };
+        return Ok((None, Some(format!("no length of a spall: {why}"))));
+    };
+    let Some(passing_hz) = family.measured_hz.filter(|_| matches!(family.name, "BPFO" | "BPFI")) else {
+        return Ok((None, Some("no length of a spall: it is estimated on raceways only".to_owned())));
+    };
+    let speed = contact_speed_mm_s(bearing, family.name, passing_hz);
+    if samples.iter().any(|x| !x.is_finite()) {
+        return Ok((None, Some("no length of a spall: the first samples are not all numbers".to_owned())));
+    }
+    let found = event_spacing(samples, rate_hz, SHORTEST_S, LONGEST / passing_hz);
+    Ok(match found {
+        Ok(Some(spacing)) => {
+            let run = speed * spacing.lag_s;
+            (Some(Interval { value: run, low: RANGE.0 * run, high: RANGE.1 * run }), None)
+        }
+        Ok(None) => {
+            let why = format!(
+                "no length of a spall: no second event follows each knock; it may be shorter than {:.2} mm, or the record too noisy",
+                speed * SHORTEST_S * RANGE.1
+            );
+            (None, Some(why))
+        }
+        Err(why) => (None, Some(format!("no length of a spall: {why}"))),
+    })
+}
+
+/// Speed of the contact along the damaged raceway [mm/s].
+fn contact_speed_mm_s(bearing: &CatalogueBearing, family: &str, passing_hz: f64) -> f64 {
+    let elements = f64::from(bearing.elements.unwrap_or(1));
+    let across = bearing.diameter_mm * bearing.angle_deg.to_radians().cos();
+    let diameter = if family == "BPFO" { bearing.pitch_mm + across } else { bearing.pitch_mm - across };
+    PI * diameter * passing_hz / elements
+}

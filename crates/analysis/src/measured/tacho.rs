@@ -1,0 +1,93 @@
+//! The speed of a shaft from the pulses of a tachometer, one a turn.
+
+use stribeck_formats::Channel;
+
+use crate::Error;
+
+/// What a tachometer says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turns {
+    /// Mean speed [1/min].
+    pub rpm: f64,
+    /// Whole turns counted.
+    pub count: usize,
+    /// Largest less smallest speed of single turns, over the mean.
+    pub variation: f64,
+}
+
+/// Part of the range that a pulse must fall by before the next one counts.
+const HYSTERESIS: f64 = 0.2;
+
+/// Counts the pulses of a channel sampled `rate_hz` times a second: rising edges through the middle of its range, their
+/// times interpolated between samples.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when it holds fewer than three pulses.
+pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    channel.for_each_block(|block| {
+        for &x in block {
+            low = low.min(x);
+            high = high.max(x);
+        }
+        true
+    })?;
+    let (middle, reset) = (0.5 * (low + high), (0.5 - HYSTERESIS) * (high - low) + low);
+    let (mut edges, mut armed, mut before, mut n) = (Vec::new(), false, f64::NAN, 0_u64);
+    channel.for_each_block(|block| {
+        for &x in block {
+            armed |= x < reset;
+            if armed && x >= middle && before < middle {
+                edges.push((n as f64 - (x - middle) / (x - before)) / rate_hz);
+                armed = false;
+            }
+            before = x;
+            n += 1;
+        }
+        true
+    })?;
+    let (Some(first), Some(last)) = (edges.first(), edges.last()) else {
+        return Err(Error::NoSignal(format!(
+            "tachometer `{}` holds no pulse; is it the right channel?",
+            channel.name
+        )));
+    };
+    if edges.len() < 3 {
+        return Err(Error::NoSignal(format!(
+            "tachometer `{}` holds {} pulses, three are the least",
+            channel.name,
+            edges.len()
+        )));
+    }
+    let mean_s = (last - first) / (edges.len() - 1) as f64;
+    let (mut shortest, mut longest) = (f64::INFINITY, 0.0_f64);
+    for pair in edges.windows(2) {
+        shortest = shortest.min(pair[1] - pair[0]);
+        longest = longest.max(pair[1] - pair[0]);
+    }
+    Ok(Turns { rpm: 60.0 / mean_s, count: edges.len() - 1, variation: mean_s / shortest - mean_s / longest })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn example_pulses_give_the_speed_between_samples() {
+        // 1234 rpm, pulses of a tenth of a turn, sampled 1000 times a second.
+        let pulse = |n: usize| (1234.0 / 60.0 * n as f64 / 1e3).fract();
+        let samples = (0..10_000).map(|n| if pulse(n) < 0.1 { 5.0 } else { 0.1 }).collect();
+        let found = turns(&Channel::held("tacho", samples), 1e3).unwrap();
+        // Each edge is off by half a sample at most: 1 ms over 9.9 s.
+        assert!((found.rpm / 1234.0 - 1.0).abs() < 1.1e-4, "{found:?}");
+        assert_eq!(found.count, 204);
+        assert!(found.variation < 0.05, "{found:?}");
+    }
+
+    #[test]
+    fn refuses_a_channel_without_pulses() {
+        assert!(
+            turns(&Channel::held("tacho", vec![1.0; 100]), 1e3).unwrap_err().to_string().contains("no pulse")
+        );
+    }
+}

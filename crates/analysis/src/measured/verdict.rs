@@ -1,0 +1,289 @@
+//! Which defect families a record holds, and which of them may be called a defect.
+//!
+//! Three questions, all of which must be answered with yes (THEORY §7.9):
+//!
+//! 1. Is it more than noise? The comb test of [`stribeck_dsp::CombTest`] over all bands, with the probability of a false
+//!    alarm under noise of the record's own colour.
+//! 2. Is it more than the record's other lines? Machines are full of lines; the family must stand higher than
+//!    combs of unrelated fundamentals in the same spectrum.
+//! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
+//!    of the band must swing by half of its mean.
+
+use serde::Serialize;
+use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
+
+use super::Machine;
+use crate::Error;
+
+/// One defect family.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Family {
+    /// `BPFO`, `BPFI`, `BSF` or `FTF`.
+    pub name: &'static str,
+    /// Frequency without slip [Hz].
+    pub expected_hz: f64,
+    /// Frequency at which the family stands highest [Hz]; `null` when it is not there.
+    pub measured_hz: Option<f64>,
+    /// Harmonics of five that noise would not make.
+    pub harmonics: usize,
+    /// Height of its first harmonic above the background of the envelope spectrum [dB].
+    pub level_db: Option<f64>,
+    /// Probability that noise of the record's own colour makes a family as high; an upper bound.
+    pub p_value: f64,
+    /// Part of unrelated combs in the same spectrum that stand as high.
+    pub rank: Option<f64>,
+    /// How deep the power of the band is modulated: 0 not at all, 1 to zero, 2 short knocks.
+    pub depth: Option<f64>,
+    /// Band in which it stands highest [Hz].
+    pub band_hz: Option<(f64, f64)>,
+    /// Whether this is called a defect.
+    pub claimed: bool,
+    /// Why, or why not.
+    pub reason: String,
+    /// Height of the family [dB], for comparison with others.
+    #[serde(skip)]
+    height_db: f64,
+}
+
+/// Families and conclusion.
+pub(super) struct Judged {
+    pub(super) families: Vec<Family>,
+    pub(super) verdict: String,
+    pub(super) notes: Vec<String>,
+}
+
+/// Slip that moves a family from its place, either way.
+const SLIP: f64 = 0.02;
+/// Largest probability of a false alarm at which a family is there.
+const ALPHA: f64 = 1e-3;
+/// Largest part of unrelated combs that may stand as high.
+const MOST_AS_HIGH: f64 = 0.1;
+/// Least modulation of the power of a band that is called a knock.
+const KNOCK: f64 = 0.5;
+/// A second defect may be this much lower than the first; weaker families are taken for its sidebands [dB].
+const SECOND_DB: f64 = 6.0;
+/// Periods that a segment must hold.
+const PERIODS: f64 = 10.0;
+/// Unrelated fundamentals tried, from 0.4 to 2.5 times that of the family.
+const CONTROLS: usize = 160;
+
+/// What is looked for: the name, and the order of the comb over that of the name.
+const FAMILIES: [(&str, &str, f64); 4] = [
+    ("BPFO", "the outer raceway", 1.0),
+    ("BPFI", "the inner raceway", 1.0),
+    // A spot on a rolling element strikes both raceways once a turn.
+    ("BSF", "a rolling element", 2.0),
+    ("FTF", "the cage", 1.0),
+];
+
+pub(super) fn judge(
+    bands: &[BandEnvelope],
+    machine: &Machine,
+    record_s: f64,
+    segment_s: f64,
+) -> Result<Judged, Error> {
+    let mut notes = Vec::new();
+    let nothing = |notes: Vec<String>| {
+        let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
+        Ok(Judged { families: Vec::new(), verdict, notes })
+    };
+    let Some(bearing) = &machine.bearing else {
+        notes.push("no bearing was given: `--bearing \"6205\"`, or its numbers".to_owned());
+        return nothing(notes);
+    };
+    let Some(shaft_hz) = machine.speed_rpm.map(|rpm| rpm / 60.0).filter(|hz| *hz > 0.0 && hz.is_finite())
+    else {
+        notes.push(
+            "no speed was given: `--speed-rpm`, or `--tacho` with the channel of a tachometer".to_owned(),
+        );
+        return nothing(notes);
+    };
+    let orders = match bearing.orders() {
+        Ok(orders) => orders,
+        Err(why) => {
+            notes.push(why);
+            return nothing(notes);
+        }
+    };
+    // A band without noise (a simulated record, a filter) has no background to stand above.
+    let whitened: Vec<(&BandEnvelope, Whitened)> = bands
+        .iter()
+        .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
+        .collect();
+    let mut families = Vec::new();
+    for ((name, _, times), order) in
+        FAMILIES.into_iter().zip([orders.bpfo, orders.bpfi, orders.bsf, orders.ftf])
+    {
+        families.push(look(name, order * shaft_hz, times, &whitened, record_s, segment_s));
+    }
+    decide(&mut families);
+    let verdict = conclude(&families);
+    Ok(Judged { families, verdict, notes })
+}
+
+/// Looks for one family in all bands.
+fn look(
+    name: &'static str,
+    expected_hz: f64,
+    times: f64,
+    bands: &[(&BandEnvelope, Whitened)],
+    record_s: f64,
+    segment_s: f64,
+) -> Family {
+    let comb_hz = times * expected_hz;
+    let mut family = Family {
+        name,
+        expected_hz,
+        measured_hz: None,
+        harmonics: 0,
+        level_db: None,
+        p_value: 1.0,
+        rank: None,
+        depth: None,
+        band_hz: None,
+        claimed: false,
+        reason: String::new(),
+        height_db: f64::NEG_INFINITY,
+    };
+    if segment_s * comb_hz < PERIODS {
+        family.reason = format!(
+            "the record of {record_s:.2} s holds {:.1} periods; {:.1} s would hold the ten that are needed",
+            record_s * comb_hz,
+            PERIODS / comb_hz
+        );
+        return family;
+    }
+    let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
+    let found: Vec<(usize, Comb)> = bands
+        .iter()
+        .enumerate()
+        .filter_map(|(n, (_, spectrum))| Some((n, CombTest::FOUR_OF_FIVE.search(spectrum, low, high).ok()?)))
+        .collect();
+    let Some((n, comb)) = found.iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
+        family.reason =
+            format!("no band is wide enough for four harmonics of {comb_hz:.1} Hz: sample faster");
+        return family;
+    };
+    let (band, spectrum) = &bands[*n];
+    family.p_value = (comb.p_value * found.len() as f64).min(1.0);
+    family.band_hz = Some((band.low_hz, band.high_hz));
+    family.height_db = decibel(comb.height);
+    family.level_db = Some(decibel(comb.ratios[0]));
+    family.harmonics = comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count();
+    family.depth = Some(band.depth(comb.fundamental_hz));
+    family.rank = rank(comb, comb_hz, spectrum);
+    if family.is_there() {
+        family.measured_hz = Some(comb.fundamental_hz / times);
+    }
+    family
+}
+
+/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried.
+fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened) -> Option<f64> {
+    let related = |ratio: f64| {
+        let fractions = (1..=5).flat_map(|p| (1..=5).map(move |q| f64::from(p) / f64::from(q)));
+        fractions.into_iter().any(|fraction| (ratio / fraction - 1.0).abs() < 2.25 * SLIP)
+    };
+    let ratios = (0..CONTROLS).map(|n| 0.4 * 6.25_f64.powf(n as f64 / (CONTROLS - 1) as f64));
+    let heights: Vec<f64> = ratios
+        .filter(|ratio| !related(*ratio))
+        .filter_map(|ratio| {
+            let hz = ratio * comb_hz;
+            let control =
+                CombTest::FOUR_OF_FIVE.search(spectrum, (1.0 - SLIP) * hz, (1.0 + SLIP) * hz).ok()?;
+            Some(control.height)
+        })
+        .collect();
+    let as_high = heights.iter().filter(|height| **height >= comb.height).count();
+    (!heights.is_empty()).then(|| as_high as f64 / heights.len() as f64)
+}
+
+/// Which of the families that are there are defects.
+fn decide(families: &mut [Family]) {
+    // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that stands lower
+    // than another is not the first, even if the other one is not believed.
+    let first_db = families
+        .iter()
+        .filter(|f| f.name != "FTF" && f.knocks())
+        .map(|f| f.height_db)
+        .fold(f64::NEG_INFINITY, f64::max);
+    for family in families.iter_mut().filter(|f| f.reason.is_empty()) {
+        let (p, depth, rank) = (family.p_value, family.depth.unwrap_or(0.0), family.rank.unwrap_or(1.0));
+        family.reason = if p >= ALPHA {
+            format!("noise of this colour makes as much with a probability of {}", probability(p))
+        } else if rank > MOST_AS_HIGH {
+            format!("{:.0} % of unrelated combs in this record stand as high", 100.0 * rank)
+        } else if depth < KNOCK {
+            format!(
+                "it is there, but the power of the band swings by {:.0} % only, as sound bearings do",
+                100.0 * depth
+            )
+        } else if first_db.is_finite() && family.name == "FTF" {
+            "it is there, as the cage's share in a family that stands for itself".to_owned()
+        } else if family.height_db < first_db && (family.height_db < first_db - SECOND_DB || rank > 0.0) {
+            "it is there, but another family stands higher, of which it may be sidebands".to_owned()
+        } else {
+            family.claimed = true;
+            format!("{} harmonics stand, the power swings by {:.0} %", family.harmonics, 100.0 * depth)
+        };
+    }
+}
+
+fn conclude(families: &[Family]) -> String {
+    let part = |family: &Family| FAMILIES.iter().find(|f| f.0 == family.name).map_or("", |f| f.1);
+    let claimed: Vec<String> = families
+        .iter()
+        .filter(|f| f.claimed)
+        .map(|f| {
+            let hz = f.measured_hz.unwrap_or(f.expected_hz);
+            format!(
+                "a defect of {} ({} at {hz:.2} Hz, {:+.1} % from its place)",
+                part(f),
+                f.name,
+                100.0 * (hz / f.expected_hz - 1.0)
+            )
+        })
+        .collect();
+    if !claimed.is_empty() {
+        return format!("The record shows {}.", claimed.join(" and "));
+    }
+    let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
+    if let Some(highest) = highest {
+        return format!(
+            "The record knocks, and does not say where: {} stands highest, but unrelated combs stand as high. A longer record, or one \
+             nearer to the bearing, may tell.",
+            highest.name
+        );
+    }
+    let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name).collect();
+    let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name).collect();
+    let mut verdict = "The record shows no defect.".to_owned();
+    if !weak.is_empty() {
+        verdict += &format!(" {} can be seen, without knocks: watch the trend.", weak.join(" and "));
+    }
+    if !unheard.is_empty() {
+        verdict += &format!(" It cannot speak of {}.", unheard.join(" and "));
+    }
+    verdict
+}
+
+impl Family {
+    /// Whether the family is there, defect or not.
+    pub fn is_there(&self) -> bool {
+        self.p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
+    }
+
+    /// Whether it is more than noise and as deep as knocks, whoever makes them.
+    fn knocks(&self) -> bool {
+        self.p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)
+    }
+}
+
+/// A probability in words: one that is 1 says no more than that.
+fn probability(p: f64) -> String {
+    if p >= 0.1 { format!("{p:.1}") } else { format!("{p:.3}") }
+}
+
+fn decibel(power: f64) -> f64 {
+    10.0 * power.max(1e-30).log10()
+}

@@ -1,0 +1,181 @@
+//! The page of a measured record: verdict, families, the spectra that they stand in.
+
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, html};
+use stribeck_dsp::BandEnvelope;
+use stribeck_scene::run_dir::write_atomic;
+
+use super::{head, json, sentence};
+use crate::Error;
+use crate::measured::{Analysis, Family};
+use crate::plot::{Axis, Colour, Figure, Mark, Series};
+
+/// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made.
+///
+/// # Errors
+/// [`Error::Write`] and [`Error::Run`] when the folder or its files cannot be written, [`Error::Drawing`].
+pub fn write_measured(folder: &Path, file: &str, analysis: &Analysis) -> Result<(), Error> {
+    std::fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
+    write_atomic(&folder.join("findings.json"), json(&analysis.findings)?.as_bytes())?;
+    let page = page(file, analysis)?.into_string();
+    write_atomic(&folder.join("report.html"), page.as_bytes())?;
+    Ok(())
+}
+
+fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
+    let findings = &analysis.findings;
+    let unit = findings.unit.as_deref().unwrap_or("unit");
+    let figures = figures(analysis, unit).iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+    let title = format!("{file}, {}", findings.channel);
+    let number = |x: f64| format!("{x:.4}");
+    let health = &findings.health;
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&title))
+            body {
+                h1 { (title) }
+                p class="lead" {
+                    (format!("{:.2} s at {} Hz", findings.duration_s, findings.rate_hz))
+                    @if let Some(rpm) = findings.speed_rpm { (format!("; the shaft turns at {rpm:.1} rpm")) }
+                    @if let Some(bearing) = &findings.bearing { "; " (bearing) }
+                    "."
+                }
+                p { strong { (findings.verdict) } }
+                h2 #families { "Defect families" }
+                @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
+                h2 #signal { "Signal" }
+                table {
+                    tr { th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } }
+                    tr {
+                        td { (number(health.mean)) } td { (number(health.rms)) } td { (number(health.peak)) } td { (number(health.crest_factor)) }
+                        td { (number(health.kurtosis)) } td { (number(health.skewness)) } td { (number(health.impulse_factor)) }
+                    }
+                }
+                @for figure in figures { (figure) }
+                h2 #notes { "Notes" }
+                ul class="notes" { @for note in &findings.notes { li { (sentence(note)) } } }
+            }
+        }
+    })
+}
+
+fn families(families: &[Family]) -> Markup {
+    let hz = |value: Option<f64>| value.map_or("–".to_owned(), |hz| format!("{hz:.2}"));
+    html! {
+        table {
+            tr {
+                th { "Family" } th { "Expected (Hz)" } th { "Measured (Hz)" } th { "Harmonics of 5" } th { "Level (dB)" }
+                th { "Depth" } th { "False alarm" } th { "Band (Hz)" } th { "Defect" } th { "Why" }
+            }
+            @for f in families {
+                tr {
+                    td { (f.name) }
+                    td { (format!("{:.2}", f.expected_hz)) }
+                    td { (hz(f.measured_hz)) }
+                    td { (f.harmonics) }
+                    td { (f.level_db.map_or("–".to_owned(), |db| format!("{db:.1}"))) }
+                    td { (f.depth.map_or("–".to_owned(), |d| format!("{d:.2}"))) }
+                    td { (format!("{:.1e}", f.p_value)) }
+                    td { (f.band_hz.map_or("–".to_owned(), |(low, high)| format!("{low:.0}–{high:.0}"))) }
+                    td { @if f.claimed { strong { "yes" } } @else { "no" } }
+                    td { (f.reason) }
+                }
+            }
+        }
+    }
+}
+
+fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
+    let findings = &analysis.findings;
+    let waveform = Figure::new("waveform", "Signal", Axis::si("Time", "s"), Axis::plain("Level", unit))
+        .caption("The beginning of the record.")
+        .with(Series::sampled(
+            "signal",
+            Colour::Blue,
+            0.0,
+            1.0 / findings.rate_hz,
+            analysis.beginning.clone(),
+        ));
+    let (frequencies, density) = &analysis.density;
+    let step = frequencies.get(1).copied().unwrap_or(1.0);
+    let spectrum = Figure::new(
+        "density",
+        "Power spectral density",
+        Axis::si("Frequency", "Hz"),
+        Axis::plain("Density", &format!("dB re 1 {unit}²/Hz")),
+    )
+    .caption("Welch's average over the whole record, Hann window.")
+    .with(Series::sampled(
+        "density",
+        Colour::Blue,
+        0.0,
+        step,
+        density.iter().map(|p| decibel(*p)).collect(),
+    ));
+    let mut figures = vec![waveform, spectrum];
+    let shown: Vec<&Family> = findings.families.iter().filter(|f| f.claimed).collect();
+    let there: Vec<&Family> = findings.families.iter().filter(|f| f.is_there()).collect();
+    for family in if shown.is_empty() { there } else { shown } {
+        figures.extend(analysis.band_of(family).map(|band| envelope(band, family, findings)));
+    }
+    if figures.len() == 2 {
+        // Nothing to show: the band that knocks most.
+        let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
+        figures.extend(most.map(|band| spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0)));
+    }
+    figures
+}
+
+/// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its sidebands.
+fn envelope(band: &BandEnvelope, family: &Family, findings: &crate::measured::Findings) -> Figure {
+    let twice = if family.name == "BSF" { 2.0 } else { 1.0 };
+    let hz = twice * family.measured_hz.unwrap_or(family.expected_hz);
+    let id = format!("envelope-{}", family.name.to_lowercase());
+    let mut figure =
+        spectrum_of(band, &id, &format!("Squared envelope spectrum about {}", family.name), 5.6 * hz)
+            .caption(format!("{}. {}", family.name, sentence(&family.reason)));
+    let shaft_hz = findings.speed_rpm.unwrap_or(0.0) / 60.0;
+    let cage_hz = findings
+        .families
+        .iter()
+        .find(|f| f.name == "FTF")
+        .map_or(0.0, |f| f.measured_hz.unwrap_or(f.expected_hz));
+    // A defect that turns with the shaft, or with the cage, comes and goes under the load.
+    let side_hz = match family.name {
+        "BPFI" => shaft_hz,
+        "BSF" => cage_hz,
+        _ => 0.0,
+    };
+    for n in 1..=5 {
+        let at = f64::from(n) * hz;
+        figure.marks.push(Mark { x: at, label: format!("{n}×"), colour: Colour::Red, dashed: false });
+        if side_hz > 0.0 && n <= 2 {
+            for side in [at - side_hz, at + side_hz] {
+                figure.marks.push(Mark {
+                    x: side,
+                    label: String::new(),
+                    colour: Colour::Orange,
+                    dashed: true,
+                });
+            }
+        }
+    }
+    figure
+}
+
+fn spectrum_of(band: &BandEnvelope, id: &str, title: &str, to_hz: f64) -> Figure {
+    let lines = ((to_hz / band.grid_hz) as usize + 1).min(band.values.len());
+    let values = band.values.iter().take(lines).skip(1).map(|v| decibel(*v)).collect();
+    Figure::new(id, title, Axis::si("Frequency", "Hz"), Axis::plain("Power over the mean power²", "dB"))
+        .note(format!(
+            "Band {:.0} to {:.0} Hz, {} segments, resolution {:.3} Hz, Hann window.",
+            band.low_hz, band.high_hz, band.segments, band.grid_hz
+        ))
+        .with(Series::sampled("envelope", Colour::Blue, band.grid_hz, band.grid_hz, values))
+}
+
+fn decibel(power: f64) -> f64 {
+    10.0 * power.max(1e-30).log10()
+}

@@ -1,0 +1,250 @@
+//! Verdicts on records whose truth is known: made ones, and measured ones where their folder is there.
+
+use std::f64::consts::TAU;
+use std::path::PathBuf;
+
+use stribeck_formats::{Channel, Recording};
+use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_testing::Noise;
+
+use stribeck_analysis::measured::{Analysis, Family, Findings, Machine};
+
+const RATE_HZ: f64 = 12_800.0;
+const SAMPLES: usize = 65_536;
+
+fn machine(rpm: f64) -> Machine {
+    Machine { speed_rpm: Some(rpm), bearing: CatalogueBearing::parse("6205").ok() }
+}
+
+fn gaussian(noise: &mut Noise) -> f64 {
+    // Twelve even numbers of variance 1/3: their sum over 2 is close to a unit Gaussian one.
+    (0..12).map(|_| noise.uniform()).sum::<f64>() / 2.0
+}
+
+/// Noise through a resonance at 3 kHz: a colour with 20 dB in it.
+fn coloured(seed: u64, samples: usize) -> Vec<f64> {
+    let mut noise = Noise::new(seed);
+    let (radius, turn) = (0.93, TAU * 3_000.0 / RATE_HZ);
+    let (mut last, mut before) = (0.0, 0.0);
+    (0..samples)
+        .map(|_| {
+            let now = gaussian(&mut noise) + 2.0 * radius * f64::cos(turn) * last - radius * radius * before;
+            (before, last) = (last, now);
+            now
+        })
+        .collect()
+}
+
+/// Knocks `hz` times a second that ring at 3 kHz, as strong as `strength` says at their time, each late or early by up to
+/// 1 % of a period.
+fn knocks(hz: f64, samples: usize, strength: impl Fn(f64) -> f64) -> Vec<f64> {
+    let mut noise = Noise::new(99);
+    let mut signal = vec![0.0; samples];
+    let mut k = 0.0;
+    while k / hz < samples as f64 / RATE_HZ {
+        let at = (k + 0.01 * noise.uniform()) / hz;
+        let first = (at * RATE_HZ).ceil().max(0.0) as usize;
+        for (n, x) in signal.iter_mut().enumerate().skip(first).take(150) {
+            let since = n as f64 / RATE_HZ - at;
+            *x += 12.0 * strength(at) * (-since / 1e-3).exp() * (TAU * 3_000.0 * since).sin();
+        }
+        k += 1.0;
+    }
+    signal
+}
+
+fn analysed(samples: Vec<f64>, rpm: f64) -> Findings {
+    Analysis::of(&Channel::held("test", samples), RATE_HZ, &machine(rpm)).unwrap().findings
+}
+
+fn claimed(findings: &Findings) -> Vec<&'static str> {
+    findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect()
+}
+
+#[test]
+fn invariant_noise_is_no_defect_and_false_alarms_are_as_rare_as_stated() {
+    const RECORDS: usize = 150;
+    let mut below = 0;
+    for seed in 0..RECORDS as u64 {
+        let findings = analysed(coloured(seed, 16_384), 1500.0);
+        assert!(claimed(&findings).is_empty(), "{findings:?}");
+        below += findings.families.iter().filter(|f| f.p_value < 0.05).count();
+    }
+    // Four families a record, 30 of 600 expected at most; three standard deviations of a binomial above that.
+    assert!(below <= 30 + 16, "{below}");
+}
+
+#[test]
+fn example_each_defect_is_told_from_the_others_with_slip() {
+    let shaft_hz = 20.0;
+    let always = |_| 1.0;
+    let with_the_shaft = move |t: f64| 1.0 + (TAU * shaft_hz * t).cos();
+    let with_the_cage = move |t: f64| 1.0 + (TAU * 0.394 * shaft_hz * t).cos();
+    let cases: [(&str, f64, Vec<f64>); 3] = [
+        ("BPFO", 3.585 * 0.99, knocks(3.585 * 0.99 * shaft_hz, SAMPLES, always)),
+        ("BPFI", 5.415 * 1.01, knocks(5.415 * 1.01 * shaft_hz, SAMPLES, with_the_shaft)),
+        ("BSF", 2.357 * 0.985, knocks(2.0 * 2.357 * 0.985 * shaft_hz, SAMPLES, with_the_cage)),
+    ];
+    for (name, order, knocks) in cases {
+        let signal = knocks.iter().zip(coloured(5, SAMPLES)).map(|(a, b)| a + b).collect();
+        let findings = analysed(signal, 60.0 * shaft_hz);
+        assert_eq!(claimed(&findings), [name], "{findings:#?}");
+        let family = findings.families.iter().find(|f| f.name == name).unwrap();
+        // Half a line of 0.2 Hz.
+        assert!((family.measured_hz.unwrap() - order * shaft_hz).abs() < 0.1, "{family:?}");
+        assert!(family.depth.unwrap() > 0.5 && family.p_value < 1e-3);
+        assert!(findings.verdict.contains("shows a defect"), "{}", findings.verdict);
+    }
+}
+
+#[test]
+fn example_a_shallow_modulation_is_seen_and_not_called_a_defect() {
+    // What elements passing under the load do in a sound bearing: the noise swells by a fifth, not quite evenly.
+    let swell = |t: f64| 1.0 + 0.2 * (0..4).map(|h| (TAU * 71.7 * f64::from(h + 1) * t).cos()).sum::<f64>();
+    let signal = coloured(8, 4 * SAMPLES)
+        .iter()
+        .enumerate()
+        .map(|(n, x)| x * swell(n as f64 / RATE_HZ).abs().sqrt())
+        .collect();
+    let findings = analysed(signal, 1200.0);
+    assert!(claimed(&findings).is_empty(), "{findings:#?}");
+    assert!(
+        findings.families[0].is_there() && findings.verdict.contains("BPFO can be seen"),
+        "{findings:#?}"
+    );
+}
+
+#[test]
+fn example_a_short_record_says_how_long_it_should_be() {
+    let findings = analysed(coloured(1, 12_800), 300.0);
+    let cage = findings.families.iter().find(|f| f.name == "FTF").unwrap();
+    // The cage turns 1.99 times a second: ten periods take 5.0 s.
+    assert!(cage.reason.contains("holds 2.0 periods; 5.0 s"), "{}", cage.reason);
+    assert!(findings.verdict.contains("It cannot speak of FTF"), "{}", findings.verdict);
+}
+
+#[test]
+fn example_gaps_and_clipping_are_said() {
+    let mut signal = coloured(2, SAMPLES);
+    // A slow swing beyond the range: many samples in a row stand at its end.
+    let swing = |n: usize| 30.0 * (TAU * 20.0 * n as f64 / RATE_HZ).sin();
+    signal.iter_mut().enumerate().for_each(|(n, x)| *x = (*x + swing(n)).clamp(-20.0, 20.0));
+    let clipped = analysed(signal.clone(), 1200.0);
+    assert!(clipped.notes.iter().any(|n| n.contains("clipped")), "{:?}", clipped.notes);
+    signal[10] = f64::NAN;
+    let why = Analysis::of(&Channel::held("a", signal), RATE_HZ, &machine(1200.0)).unwrap_err().to_string();
+    assert!(why.contains("1 of 65536 samples are not numbers, the first at 10"), "{why}");
+}
+
+#[test]
+fn refuses_what_holds_no_signal() {
+    let of = |samples, rate| {
+        Analysis::of(&Channel::held("a", samples), rate, &Machine::default()).unwrap_err().to_string()
+    };
+    assert!(of(vec![1.0; 10], 1e3).contains("1024 are the least"));
+    assert!(of(vec![1.0; 5000], 1e3).contains("constant"));
+    assert!(of(vec![1.0; 5000], f64::NAN).contains("sample rate"));
+    let unknown =
+        Analysis::of(&Channel::held("a", coloured(1, 5000)), RATE_HZ, &Machine::default()).unwrap().findings;
+    assert!(unknown.families.is_empty() && unknown.verdict.starts_with("No verdict"));
+}
+
+/// Folder of measured records that are not part of the project: the variable STRIBECK_MEASURED.
+fn measured(folder: &str) -> Option<PathBuf> {
+    let found = std::env::var_os("STRIBECK_MEASURED")
+        .map(|root| PathBuf::from(root).join(folder))
+        .filter(|f| f.is_dir());
+    if found.is_none() {
+        eprintln!(
+            "measured records `{folder}` are not there: set STRIBECK_MEASURED to their folder to hold the verdict against them"
+        );
+    }
+    found
+}
+
+/// Findings of a record; the channel whose name contains `part`.
+fn of_file(file: &std::path::Path, part: &str, rate_hz: f64, rpm: f64) -> Findings {
+    let recording = Recording::open(file).unwrap();
+    let channel = recording.channels.iter().find(|c| c.name.contains(part) && c.len > 1000).unwrap();
+    let found = Analysis::of(channel, rate_hz, &machine(rpm)).unwrap().findings;
+    let line = |f: &Family| {
+        format!(
+            "{}{} {:+.2} % {:.0} dB depth {:.2} rank {:.2} p {:.0e}",
+            f.name,
+            if f.claimed { "!" } else { "" },
+            100.0 * (f.measured_hz.unwrap_or(f.expected_hz) / f.expected_hz - 1.0),
+            f.level_db.unwrap_or(0.0),
+            f.depth.unwrap_or(0.0),
+            f.rank.unwrap_or(1.0),
+            f.p_value
+        )
+    };
+    let families: Vec<String> = found.families.iter().map(line).collect();
+    let length = found
+        .spall_mm
+        .map_or("no length".to_owned(), |l| format!("{:.2} mm ({:.2} to {:.2})", l.value, l.low, l.high));
+    println!("{:16} {length} | {}", file.file_stem().unwrap().to_string_lossy(), families.join(" | "));
+    found
+}
+
+#[test]
+fn peer_verdicts_on_the_records_of_hit_sm() {
+    // HIT-SM (2020), a self-built rig of Harbin Institute of Technology: bearing 6205, defects over 2, 5 and 8° of arc.
+    let Some(folder) = measured("hit-sm") else { return };
+    let mut hits = [0, 0];
+    let (mut errors, mut covered) = (Vec::new(), 0);
+    for speed in [600.0, 900.0, 1200.0] {
+        for (at, (fault, name)) in [("OR", "BPFO"), ("IR", "BPFI")].into_iter().enumerate() {
+            for size in [2, 5, 8] {
+                let found = of_file(&folder.join(format!("{fault}{size}_{speed}.mat")), "", 51_200.0, speed);
+                let family = found.families.iter().find(|f| f.name == name).unwrap();
+                let near = (family.measured_hz.unwrap_or(0.0) / family.expected_hz - 1.0).abs() < 0.0105;
+                // Raceways of 46.98 and 31.10 mm.
+                let truth = f64::from(size) / 360.0 * std::f64::consts::PI * [46.98, 31.10][at];
+                if let Some(length) = found.spall_mm {
+                    errors.push((length.value / truth - 1.0).abs());
+                    covered += u32::from(length.low <= truth && truth <= length.high);
+                }
+                // Whatever is claimed is what is there.
+                assert!(claimed(&found).iter().all(|c| *c == name), "{found:#?}");
+                hits[at] += u32::from(claimed(&found) == [name] && near && family.level_db.unwrap() > 20.0);
+            }
+        }
+        // The shaft's line stands at 20.1 Hz in all three, whatever their name says.
+        for rpm in [speed, 1204.0] {
+            let found = of_file(&folder.join(format!("Normal_{speed}.mat")), "", 51_200.0, rpm);
+            assert!(claimed(&found).is_empty(), "{found:#?}");
+        }
+    }
+    errors.sort_by(f64::total_cmp);
+    let median = errors[errors.len() / 2];
+    println!(
+        "outer {} of 9, inner {} of 9; {} lengths, median error {:.0} %, {covered} in their interval",
+        hits[0],
+        hits[1],
+        errors.len(),
+        100.0 * median
+    );
+    // The spalls of 2° are not resolved; all others are, and no interval misses more than one in ten.
+    assert!(
+        errors.len() >= 10 && median <= 0.2 && 10 * covered as usize >= 9 * errors.len(),
+        "{errors:?} {covered}"
+    );
+    assert!(hits[0] >= 8 && hits[1] >= 7, "{hits:?}");
+}
+
+#[test]
+fn peer_verdicts_on_records_of_case_western_reserve() {
+    // Case Western Reserve University Bearing Data Center (2000), drive end, 12 kHz.
+    let Some(folder) = measured("cwru") else { return };
+    for (file, rpm, expected) in [
+        ("106_1", 1772.0, vec!["BPFI"]),
+        ("210_1", 1772.0, vec!["BPFI"]),
+        ("131@6_1", 1772.0, vec!["BPFO"]),
+        ("119_1", 1772.0, vec![]),
+        ("97_Normal_0", 1796.0, vec![]),
+    ] {
+        let found = of_file(&folder.join(format!("{file}.mat")), "DE", 12_000.0, rpm);
+        assert_eq!(claimed(&found), expected, "{file}: {found:#?}");
+    }
+}

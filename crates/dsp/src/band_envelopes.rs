@@ -1,0 +1,308 @@
+//! Squared envelope spectra of many bands at once, averaged over the segments of a record of any length.
+//!
+//! Each segment is transformed once; the lines of a band, moved down to zero, give its envelope at twice the rate that the
+//! band is wide, which holds all of the squared envelope.
+//!
+//! Source: R. B. Randall and J. Antoni, Mech. Syst. Signal Process. 25 (2011) 485–520; bands as in the dyadic tree of
+//! J. Antoni, Mech. Syst. Signal Process. 21 (2007) 108–124.
+
+use std::sync::Arc;
+
+use realfft::{RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+
+use crate::error::{check_band, check_len, check_positive, check_signal};
+use crate::{Error, Result};
+
+/// Planned envelopes of several bands. [`BandEnvelopes::add`] does not allocate.
+pub struct BandEnvelopes {
+    sample_rate_hz: f64,
+    segment: usize,
+    segments: usize,
+    forward: Arc<dyn RealToComplex<f64>>,
+    input: Vec<f64>,
+    spectrum: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+    bands: Vec<Band>,
+}
+
+struct Band {
+    /// First line of the segment's transform, and the one after the last.
+    lines: (usize, usize),
+    inverse: Arc<dyn Fft<f64>>,
+    transform: Arc<dyn RealToComplex<f64>>,
+    analytic: Vec<Complex<f64>>,
+    squared: Vec<f64>,
+    window: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    /// Sum of the power of each line of the squared envelope.
+    power: Vec<f64>,
+    /// Sums of the squared envelope and of its square.
+    sums: [f64; 2],
+    scratch: Vec<Complex<f64>>,
+}
+
+/// What one band of a record shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BandEnvelope {
+    /// Lower end [Hz].
+    pub low_hz: f64,
+    /// Upper end [Hz].
+    pub high_hz: f64,
+    /// Root mean square of the band [unit].
+    pub rms: f64,
+    /// Kurtosis of the complex envelope, `⟨|a|⁴⟩/⟨|a|²⟩² − 2`: 0 for Gaussian noise, −1 for a steady tone.
+    pub kurtosis: f64,
+    /// Distance of the lines of the spectrum [Hz]; the first is at zero.
+    pub grid_hz: f64,
+    /// Squared envelope spectrum with a Hann window, one-sided, over the square of the mean: a modulation of the power by
+    /// `1 + d cos` has lines that add up to `1.5 d²/4 · 2`. See [`BandEnvelope::depth`].
+    pub values: Vec<f64>,
+    /// Segments averaged.
+    pub segments: usize,
+}
+
+impl BandEnvelopes {
+    /// Plans for segments of `segment` samples and `bands_hz` (low and high end), whose spectra are kept up to
+    /// `highest_hz`.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`] for the rate, [`Error::TooShort`] for a segment below 16 samples, [`Error::Band`] for a band
+    /// that leaves 0 to half the sample rate, [`Error::BandTooNarrow`] for one with fewer than four lines.
+    pub fn new(
+        sample_rate_hz: f64,
+        segment: usize,
+        bands_hz: &[(f64, f64)],
+        highest_hz: f64,
+    ) -> Result<Self> {
+        const LEAST: usize = 4;
+        check_positive("sample_rate_hz", sample_rate_hz)?;
+        check_positive("highest_hz", highest_hz)?;
+        if segment < 16 {
+            return Err(Error::TooShort {
+                field: "segment",
+                len: segment,
+                least: 16,
+                purpose: "envelopes of bands",
+            });
+        }
+        let grid_hz = sample_rate_hz / segment as f64;
+        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
+        let forward = real.plan_fft_forward(segment);
+        let mut bands = Vec::with_capacity(bands_hz.len());
+        for &(low_hz, high_hz) in bands_hz {
+            check_band(low_hz, high_hz, sample_rate_hz)?;
+            // The lines at zero and half the sample rate have no partner to make an envelope with.
+            let first = ((low_hz / grid_hz).round() as usize).max(1);
+            let end = ((high_hz / grid_hz).round() as usize).min(segment.div_ceil(2));
+            let lines = end.saturating_sub(first);
+            if lines < LEAST {
+                return Err(Error::BandTooNarrow { low_hz, high_hz, bins: lines, least: LEAST, grid_hz });
+            }
+            let len = smooth(2 * lines);
+            let inverse = complex.plan_fft_inverse(len);
+            let transform = real.plan_fft_forward(len);
+            let kept = ((highest_hz / grid_hz).ceil() as usize + 2).min(lines);
+            let turn = std::f64::consts::TAU / len as f64;
+            bands.push(Band {
+                lines: (first, end),
+                analytic: vec![Complex::default(); len],
+                squared: vec![0.0; len],
+                window: (0..len).map(|n| 0.5 - 0.5 * (turn * n as f64).cos()).collect(),
+                output: transform.make_output_vec(),
+                power: vec![0.0; kept],
+                sums: [0.0; 2],
+                scratch: vec![
+                    Complex::default();
+                    inverse.get_inplace_scratch_len().max(transform.get_scratch_len())
+                ],
+                inverse,
+                transform,
+            });
+        }
+        Ok(Self {
+            sample_rate_hz,
+            segment,
+            segments: 0,
+            input: forward.make_input_vec(),
+            spectrum: forward.make_output_vec(),
+            scratch: forward.make_scratch_vec(),
+            forward,
+            bands,
+        })
+    }
+
+    /// A length of at most `record` samples whose transform is fast, and at most `longest`.
+    pub fn segment_of(record: usize, longest: usize) -> usize {
+        let most = record.min(longest);
+        // The largest 2ᵃ·3ᵇ·5ᶜ that fits; every other line would cost time or samples.
+        let mut best = 1;
+        for five in std::iter::successors(Some(1_usize), |n| n.checked_mul(5)).take_while(|n| *n <= most) {
+            for three in std::iter::successors(Some(five), |n| n.checked_mul(3)).take_while(|n| *n <= most) {
+                best = best.max(three << (most / three).ilog2());
+            }
+        }
+        best
+    }
+
+    /// Samples of a segment.
+    pub fn segment(&self) -> usize {
+        self.segment
+    }
+
+    /// Segments added so far.
+    pub fn segments(&self) -> usize {
+        self.segments
+    }
+
+    /// Adds a segment.
+    ///
+    /// # Errors
+    /// [`Error::WrongLength`], [`Error::NotFinite`].
+    pub fn add(&mut self, segment: &[f64]) -> Result<()> {
+        check_len("segment", segment.len(), self.segment)?;
+        check_signal(segment, 1, "an envelope")?;
+        self.input.copy_from_slice(segment);
+        self.forward
+            .process_with_scratch(&mut self.input, &mut self.spectrum, &mut self.scratch)
+            .expect("all three buffers have the plan's lengths");
+        let scale = 2.0 / self.segment as f64;
+        self.bands.iter_mut().for_each(|band| band.add(&self.spectrum, scale));
+        self.segments += 1;
+        Ok(())
+    }
+
+    /// What the bands show, in the order of the plan; nothing before a segment was added. A band without signal is left
+    /// out.
+    pub fn bands(&self) -> Vec<BandEnvelope> {
+        let grid_hz = self.sample_rate_hz / self.segment as f64;
+        self.bands.iter().filter_map(|band| band.finish(grid_hz, self.segments)).collect()
+    }
+}
+
+impl Band {
+    fn add(&mut self, spectrum: &[Complex<f64>], scale: f64) {
+        let (first, end) = self.lines;
+        let (held, rest) = self.analytic.split_at_mut(end - first);
+        held.iter_mut().zip(&spectrum[first..end]).for_each(|(a, x)| *a = x * scale);
+        rest.fill(Complex::default());
+        self.inverse.process_with_scratch(&mut self.analytic, &mut self.scratch);
+        let count = self.squared.len() as f64;
+        let mut sums = [0.0; 2];
+        for (e, a) in self.squared.iter_mut().zip(&self.analytic) {
+            *e = a.norm_sqr();
+            sums[0] += *e;
+            sums[1] += *e * *e;
+        }
+        let mean = sums[0] / count;
+        self.sums.iter_mut().zip(sums).for_each(|(all, sum)| *all += sum / count);
+        self.squared.iter_mut().zip(&self.window).for_each(|(e, w)| *e = (*e - mean) * w);
+        let scratch = self.transform.get_scratch_len();
+        self.transform
+            .process_with_scratch(&mut self.squared, &mut self.output, &mut self.scratch[..scratch])
+            .expect("all three buffers have the plan's lengths");
+        // (Σw)² = count²/4 for the Hann window.
+        let scale = 8.0 / (count * count);
+        self.power.iter_mut().zip(&self.output).for_each(|(p, x)| *p += scale * x.norm_sqr());
+    }
+
+    fn finish(&self, grid_hz: f64, segments: usize) -> Option<BandEnvelope> {
+        let mean = self.sums[0] / segments as f64;
+        if mean.is_nan() || mean <= 0.0 {
+            return None;
+        }
+        let scale = 1.0 / (segments as f64 * mean * mean);
+        Some(BandEnvelope {
+            low_hz: self.lines.0 as f64 * grid_hz,
+            high_hz: self.lines.1 as f64 * grid_hz,
+            rms: (0.5 * mean).sqrt(),
+            kurtosis: self.sums[1] / segments as f64 / (mean * mean) - 2.0,
+            grid_hz,
+            values: self.power.iter().map(|p| p * scale).collect(),
+            segments,
+        })
+    }
+}
+
+impl BandEnvelope {
+    /// How deep the power of the band is modulated at `frequency_hz`, `d` of `1 + d cos`: 0 for none, 1 when it falls to
+    /// zero in between, 2 for short bursts. What stands within two lines counts.
+    pub fn depth(&self, frequency_hz: f64) -> f64 {
+        const REACH: usize = 2;
+        /// Equivalent noise bandwidth of the Hann window [lines].
+        const NOISE_BANDWIDTH: f64 = 1.5;
+        let at = (frequency_hz / self.grid_hz).round() as usize;
+        let end = (at + REACH + 1).min(self.values.len());
+        let sum: f64 = self.values[at.saturating_sub(REACH).min(end)..end].iter().sum();
+        (2.0 * sum / NOISE_BANDWIDTH).sqrt()
+    }
+}
+
+/// The smallest even 2ᵃ·3ᵇ·5ᶜ that is not below `least`.
+fn smooth(least: usize) -> usize {
+    let smooth = |mut n: usize| {
+        for factor in [2, 3, 5] {
+            while n.is_multiple_of(factor) {
+                n /= factor;
+            }
+        }
+        n == 1
+    };
+    (least.next_multiple_of(2)..).step_by(2).find(|n| smooth(*n)).unwrap_or(least)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    const RATE_HZ: f64 = 10_000.0;
+
+    fn modulated(depth: f64, samples: usize) -> Vec<f64> {
+        (0..samples)
+            .map(|n| n as f64 / RATE_HZ)
+            .map(|t| (1.0 + depth * (TAU * 37.3 * t).cos()).max(0.0).sqrt() * (TAU * 2_500.0 * t).sin())
+            .collect()
+    }
+
+    #[test]
+    fn example_the_depth_of_a_modulation_is_read_back() {
+        let mut plan = BandEnvelopes::new(RATE_HZ, 8_000, &[(1_250.0, 3_750.0)], 500.0).unwrap();
+        for segment in modulated(0.6, 24_000).chunks(8_000) {
+            plan.add(segment).unwrap();
+        }
+        let band = &plan.bands()[0];
+        assert_eq!((band.segments, band.low_hz, band.high_hz), (3, 1250.0, 3750.0));
+        // 37.3 Hz lies between lines of 1.25 Hz; five of them hold all but a thousandth of its power.
+        assert!((band.depth(37.3) - 0.6).abs() < 2e-3, "{}", band.depth(37.3));
+        assert!(band.depth(200.0) < 1e-2);
+        assert!((band.rms - 0.5_f64.sqrt()).abs() < 1e-3, "{}", band.rms);
+        // ⟨(1 + d cos)²⟩ − 2 = d²/2 − 1.
+        assert!((band.kurtosis - (0.18 - 1.0)).abs() < 2e-3, "{}", band.kurtosis);
+    }
+
+    #[test]
+    fn invariant_processing_moves_no_buffer() {
+        let mut plan = BandEnvelopes::new(RATE_HZ, 1_000, &[(0.0, 5_000.0), (100.0, 900.0)], 500.0).unwrap();
+        let places = |plan: &BandEnvelopes| {
+            plan.bands
+                .iter()
+                .map(|b| (b.analytic.as_ptr() as usize, b.power.as_ptr() as usize))
+                .collect::<Vec<_>>()
+        };
+        let before = places(&plan);
+        for _ in 0..3 {
+            plan.add(&modulated(0.3, 1_000)).unwrap();
+            assert_eq!(places(&plan), before);
+        }
+    }
+
+    #[test]
+    fn example_segments_are_smooth_and_fit() {
+        assert_eq!(BandEnvelopes::segment_of(262_144, 1 << 20), 262_144);
+        assert_eq!(BandEnvelopes::segment_of(121_991, 1 << 20), 121_500);
+        assert_eq!(BandEnvelopes::segment_of(92_160_000, 1 << 19), 1 << 19);
+        assert_eq!(BandEnvelopes::segment_of(1, 1 << 19), 1);
+    }
+}

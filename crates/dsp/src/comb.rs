@@ -1,0 +1,280 @@
+//! Does a spectrum hold a family of harmonics? A test whose false-alarm rate is known.
+//!
+//! The spectrum is divided by its own smoothed background, so that noise of any colour gives values with one known
+//! distribution: the mean of `n` unit exponential variables for `n` averaged segments. A family stands as high as the
+//! weakest of its strongest harmonics, `needed` of `harmonics`: one strong line is no evidence. The frequency is searched,
+//! so the probability that noise reaches a height is multiplied by the number of candidates (Bonferroni); neighbours are
+//! not independent, so the rate of false alarms stays below it.
+
+use crate::error::{check_positive, check_signal};
+use crate::{Error, Result};
+
+/// A spectrum over its background.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Whitened {
+    grid_hz: f64,
+    segments: usize,
+    ratios: Vec<f64>,
+}
+
+/// What makes a family.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct CombTest {
+    /// Harmonics looked at.
+    pub harmonics: usize,
+    /// How many of them must stand out.
+    pub needed: usize,
+}
+
+/// The best family of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comb {
+    /// Fundamental [Hz], from all harmonics.
+    pub fundamental_hz: f64,
+    /// Height over the background of the weakest harmonic that counts.
+    pub height: f64,
+    /// Height of each harmonic, from the first; 0 beyond the spectrum.
+    pub ratios: Vec<f64>,
+    /// Probability that noise reaches this height at any frequency of the search; at most 1.
+    pub p_value: f64,
+}
+
+/// Lines of a block whose median is the background.
+const BLOCK: usize = 101;
+/// Distance of blocks.
+const HOP: usize = 25;
+/// Lines next to zero that hold what the removal of the mean leaves.
+const SKIPPED: usize = 3;
+
+impl Whitened {
+    /// Divides `values`, a power spectrum of `segments` averaged segments on a grid from zero, by the median of the lines
+    /// around each, which noise exceeds as often as not.
+    ///
+    /// # Errors
+    /// [`Error::TooShort`] for fewer than 101 lines, [`Error::NotFinite`], [`Error::NotPositive`] for the grid,
+    /// [`Error::Undefined`] for a spectrum that is zero over a whole block.
+    pub fn new(values: &[f64], grid_hz: f64, segments: usize) -> Result<Self> {
+        check_positive("grid_hz", grid_hz)?;
+        check_signal(values, BLOCK + SKIPPED, "a background of 101 lines")?;
+        let used = &values[SKIPPED..];
+        let mut sorted = Vec::with_capacity(BLOCK);
+        let last = used.len() - BLOCK;
+        let starts: Vec<usize> =
+            (0..=last).step_by(HOP).chain((!last.is_multiple_of(HOP)).then_some(last)).collect();
+        let mut medians = Vec::with_capacity(starts.len());
+        for &start in &starts {
+            sorted.clear();
+            sorted.extend_from_slice(&used[start..start + BLOCK]);
+            let (_, median, _) = sorted.select_nth_unstable_by(BLOCK / 2, f64::total_cmp);
+            if *median <= 0.0 {
+                let why = "it is zero over many lines; the record holds no noise";
+                return Err(Error::Undefined { quantity: "background of the spectrum", why });
+            }
+            medians.push(*median);
+        }
+        let to_mean = 1.0 / median_over_mean(segments);
+        let mut block = 0;
+        let background = |n: usize| {
+            let place = |b: usize| (starts[b] + BLOCK / 2) as f64;
+            while block + 2 < starts.len() && place(block + 1) < n as f64 {
+                block += 1;
+            }
+            if starts.len() == 1 {
+                return medians[0];
+            }
+            let share = ((n as f64 - place(block)) / (place(block + 1) - place(block))).clamp(0.0, 1.0);
+            medians[block].powf(1.0 - share) * medians[block + 1].powf(share)
+        };
+        let backgrounds: Vec<f64> = (0..used.len()).map(background).collect();
+        let ratios = used.iter().zip(&backgrounds).map(|(v, b)| v / (b * to_mean));
+        Ok(Self { grid_hz, segments, ratios: std::iter::repeat_n(0.0, SKIPPED).chain(ratios).collect() })
+    }
+
+    /// Distance of the lines [Hz].
+    pub fn grid_hz(&self) -> f64 {
+        self.grid_hz
+    }
+
+    /// Values over the background, the first at zero; the lines next to zero are 0.
+    pub fn ratios(&self) -> &[f64] {
+        &self.ratios
+    }
+
+    /// The higher of the two lines about a frequency, or 0 beyond the spectrum.
+    pub fn at(&self, frequency_hz: f64) -> f64 {
+        let below = (frequency_hz / self.grid_hz) as usize;
+        self.ratios.get(below..below + 2).map_or(0.0, |two| two[0].max(two[1]))
+    }
+
+    /// Probability that noise makes one line as high as `ratio`.
+    pub fn line_p_value(&self, ratio: f64) -> f64 {
+        // Upper incomplete gamma function of whole order, Σ e^{−x} x^k/k! over k below the segments, term by term in
+        // logarithms: e^{−x} alone would vanish.
+        let x = self.segments as f64 * ratio;
+        if x.is_nan() || x <= 0.0 {
+            return 1.0;
+        }
+        let mut log = -x;
+        let mut sum = log.exp();
+        for k in 1..self.segments {
+            log += (x / k as f64).ln();
+            sum += log.exp();
+        }
+        sum.min(1.0)
+    }
+}
+
+impl CombTest {
+    /// Five harmonics, of which four must stand.
+    pub const FOUR_OF_FIVE: Self = Self { harmonics: 5, needed: 4 };
+
+    /// The highest family whose fundamental lies between two frequencies [Hz].
+    ///
+    /// # Errors
+    /// [`Error::Band`] when the frequencies are not ordered or so high that fewer than `needed` harmonics are held.
+    pub fn search(&self, spectrum: &Whitened, low_hz: f64, high_hz: f64) -> Result<Comb> {
+        let limit_hz = (spectrum.ratios.len().saturating_sub(2)) as f64 * spectrum.grid_hz;
+        let ordered = low_hz > 0.0 && low_hz <= high_hz;
+        if !ordered || self.needed as f64 * high_hz > limit_hz {
+            return Err(Error::Band { low_hz, high_hz, limit_hz: limit_hz / self.needed as f64 });
+        }
+        // Half a line at the highest harmonic.
+        let step = spectrum.grid_hz / (2 * self.harmonics) as f64;
+        let candidates = ((high_hz - low_hz) / step).floor() as usize + 1;
+        let mut best = (f64::NEG_INFINITY, low_hz);
+        let mut ratios = vec![0.0; self.harmonics];
+        for n in 0..candidates {
+            let hz = low_hz + n as f64 * step;
+            ratios.iter_mut().enumerate().for_each(|(h, r)| *r = spectrum.at((h + 1) as f64 * hz));
+            let (_, height, _) = ratios.select_nth_unstable_by(self.harmonics - self.needed, f64::total_cmp);
+            if *height > best.0 {
+                best = (*height, hz);
+            }
+        }
+        let (height, hz) = best;
+        let ratios: Vec<f64> = (1..=self.harmonics).map(|h| spectrum.at(h as f64 * hz)).collect();
+        // Below the smallest number a probability is still no certainty.
+        let p_value = (candidates as f64 * self.p_value(spectrum, height)).clamp(f64::MIN_POSITIVE, 1.0);
+        Ok(Comb { fundamental_hz: self.refined(spectrum, hz), height, ratios, p_value })
+    }
+
+    /// Probability that noise makes a family of this height at one frequency.
+    fn p_value(&self, spectrum: &Whitened, height: f64) -> f64 {
+        let line = spectrum.line_p_value(height);
+        // Either of two lines; neighbours under a Hann window are alike, so this is an upper bound.
+        let either = (2.0 * line - line * line).min(1.0);
+        (self.needed..=self.harmonics)
+            .map(|k| {
+                let ways: f64 = (0..k).map(|i| (self.harmonics - i) as f64 / (i + 1) as f64).product();
+                ways * either.powi(k as i32) * (1.0 - either).powi((self.harmonics - k) as i32)
+            })
+            .sum()
+    }
+
+    /// Fundamental from the centres of its harmonics; those that stand higher and those of higher order count more.
+    fn refined(&self, spectrum: &Whitened, hz: f64) -> f64 {
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for h in 1..=self.harmonics {
+            let at = (h as f64 * hz / spectrum.grid_hz).round() as usize;
+            let Some(lines) = spectrum.ratios.get(at.saturating_sub(1)..at + 2) else { continue };
+            let total: f64 = lines.iter().sum();
+            if total <= 0.0 {
+                continue;
+            }
+            let centre = at as f64 + (lines[2] - lines[0]) / total;
+            let weight = (1.0 + total).ln() * (h * h) as f64;
+            sum += weight * centre * spectrum.grid_hz / h as f64;
+            weights += weight;
+        }
+        if weights > 0.0 { sum / weights } else { hz }
+    }
+}
+
+/// Median of the mean of `n` unit exponential variables, over their mean.
+fn median_over_mean(n: usize) -> f64 {
+    match n {
+        0 | 1 => std::f64::consts::LN_2,
+        // E. B. Wilson and M. M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684–688.
+        n => (1.0 - 1.0 / (9.0 * n as f64)).powi(3),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Unit exponential numbers from a linear congruential generator.
+    struct Noise(u64);
+
+    impl Noise {
+        fn exponential(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            -(((self.0 >> 11) as f64 + 1.0) / (1u64 << 53) as f64).ln()
+        }
+
+        /// A coloured spectrum of averaged segments.
+        fn spectrum(&mut self, lines: usize, segments: usize) -> Vec<f64> {
+            (0..lines)
+                .map(|n| {
+                    let colour = 1.0 + 30.0 * (-(n as f64 - 700.0).powi(2) / 9e4).exp();
+                    colour * (0..segments).map(|_| self.exponential()).sum::<f64>() / segments as f64
+                })
+                .collect()
+        }
+    }
+
+    #[test]
+    fn invariant_false_alarms_are_no_more_frequent_than_stated() {
+        const RECORDS: usize = 2_000;
+        let mut noise = Noise(17);
+        for segments in [1, 8] {
+            let mut alarms = [0_usize; 2];
+            for _ in 0..RECORDS {
+                let values = noise.spectrum(2_000, segments);
+                let whitened = Whitened::new(&values, 0.2, segments).unwrap();
+                let found = CombTest::FOUR_OF_FIVE.search(&whitened, 49.0, 51.0).unwrap();
+                alarms[0] += usize::from(found.p_value < 0.1);
+                alarms[1] += usize::from(found.p_value < 0.01);
+            }
+            // Three standard deviations of a binomial above the stated rates; and the test is not idle.
+            assert!(alarms[0] <= 200 + 40, "{segments}: {alarms:?}");
+            assert!(alarms[1] <= 20 + 14, "{segments}: {alarms:?}");
+            assert!(alarms[0] >= 10, "{segments}: {alarms:?}");
+        }
+    }
+
+    #[test]
+    fn example_four_harmonics_are_a_family_and_one_line_is_none() {
+        let mut noise = Noise(3);
+        let mut values = noise.spectrum(2_000, 1);
+        let plain =
+            CombTest::FOUR_OF_FIVE.search(&Whitened::new(&values, 0.2, 1).unwrap(), 49.0, 51.0).unwrap();
+        assert!(plain.p_value > 0.01, "{plain:?}");
+        values[250] *= 1e4;
+        let line =
+            CombTest::FOUR_OF_FIVE.search(&Whitened::new(&values, 0.2, 1).unwrap(), 49.0, 51.0).unwrap();
+        assert!(line.p_value > 0.01, "{line:?}");
+        for h in [1, 2, 4, 5] {
+            values[(h as f64 * 50.12 / 0.2).round() as usize] = 1e3;
+        }
+        let family =
+            CombTest::FOUR_OF_FIVE.search(&Whitened::new(&values, 0.2, 1).unwrap(), 49.0, 51.0).unwrap();
+        assert!(family.p_value < 1e-6 && (family.fundamental_hz - 50.12).abs() < 0.05, "{family:?}");
+    }
+
+    #[test]
+    fn analytic_the_tail_of_averaged_exponentials() {
+        // One segment: e^{−r}. Two: e^{−2r}(1 + 2r), the Erlang distribution (A. K. Erlang, 1917).
+        let of = |segments| Whitened { grid_hz: 1.0, segments, ratios: Vec::new() };
+        assert!((of(1).line_p_value(3.0) - (-3.0_f64).exp()).abs() < 1e-15);
+        assert!((of(2).line_p_value(3.0) - (-6.0_f64).exp() * 7.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn refuses_what_it_cannot_search() {
+        let whitened = Whitened::new(&vec![1.0; 300], 1.0, 1).unwrap();
+        assert!(matches!(CombTest::FOUR_OF_FIVE.search(&whitened, 80.0, 90.0), Err(Error::Band { .. })));
+        assert!(matches!(Whitened::new(&[1.0; 20], 1.0, 1), Err(Error::TooShort { .. })));
+        assert!(matches!(Whitened::new(&[0.0; 200], 1.0, 1), Err(Error::Undefined { .. })));
+    }
+}

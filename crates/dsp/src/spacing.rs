@@ -1,0 +1,159 @@
+//! Two events that follow each other at a fixed distance, as when something enters and leaves a gap: how far apart?
+//!
+//! Pre-whitening makes both broad-banded and equally sharp; the squared envelope of what is left is correlated with itself.
+//! A distance is taken for one only if two bands agree on it: ringing has another lag in every band.
+//!
+//! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in the cepstrum of
+//! the enhanced signal; the comparison of bands is ours.
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use crate::error::{check_positive, check_signal};
+use crate::{Error, Result};
+
+/// Distance of two events.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spacing {
+    /// Distance [s].
+    pub lag_s: f64,
+    /// Correlation of the squared envelope at that lag.
+    pub correlation: f64,
+}
+
+/// Lower ends of the two bands over half the sample rate; both reach to its end.
+const BANDS: [f64; 2] = [0.02, 0.25];
+/// Length over which correlations are smoothed [s]: events are no sharper.
+const SMOOTHED_S: f64 = 0.3e-3;
+/// The envelope is cut off above this quantile, so that a few loud events do not decide.
+const LOUDEST: f64 = 0.999;
+/// Least correlation.
+const LEAST: f64 = 0.05;
+/// Another peak must be lower than this part of the highest.
+const SECOND: f64 = 0.5;
+/// Lags closer than this part of one another are one peak.
+const SAME: f64 = 0.1;
+/// Bands agree when their lags differ by less than this part.
+const AGREED: f64 = 0.05;
+
+/// The distance between `shortest_s` and `longest_s` that pairs of events keep, if there is one.
+///
+/// # Errors
+/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered,
+/// [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
+pub fn event_spacing(
+    signal: &[f64],
+    sample_rate_hz: f64,
+    shortest_s: f64,
+    longest_s: f64,
+) -> Result<Option<Spacing>> {
+    check_positive("sample_rate_hz", sample_rate_hz)?;
+    check_positive("shortest_s", shortest_s)?;
+    if longest_s.is_nan() || longest_s <= shortest_s {
+        let why = "the longest distance must exceed the shortest";
+        return Err(Error::Undefined { quantity: "distance of events", why });
+    }
+    let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
+    check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
+    let [wide, high] =
+        BANDS.map(|from| peak(&correlation(signal, from, sample_rate_hz, lags.end), lags.clone()));
+    let (Some(wide), Some(high)) = (wide, high) else { return Ok(None) };
+    let agree = (high.0 / wide.0 - 1.0).abs() < AGREED;
+    Ok(agree.then_some(Spacing { lag_s: wide.0 / sample_rate_hz, correlation: wide.1 }))
+}
+
+/// Correlation of the squared envelope of the pre-whitened signal above a frequency, smoothed, for lags up to `longest`.
+fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -> Vec<f64> {
+    let count = signal.len();
+    let mut planner = FftPlanner::new();
+    let (forward, inverse) = (planner.plan_fft_forward(count), planner.plan_fft_inverse(count));
+    let mut lines: Vec<Complex<f64>> = signal.iter().map(|x| Complex::new(*x, 0.0)).collect();
+    forward.process(&mut lines);
+    let kept = (0.5 * from * count as f64) as usize..count / 2;
+    for (n, line) in lines.iter_mut().enumerate() {
+        let magnitude = line.norm();
+        *line = if kept.contains(&n) && magnitude > 0.0 { *line / magnitude } else { Complex::default() };
+    }
+    inverse.process(&mut lines);
+    let mut squared: Vec<f64> = lines.iter().map(Complex::norm_sqr).collect();
+    let mut sorted = squared.clone();
+    let (_, limit, _) =
+        sorted.select_nth_unstable_by((LOUDEST * (count - 1) as f64) as usize, f64::total_cmp);
+    let limit = *limit;
+    squared.iter_mut().for_each(|e| *e = e.min(limit));
+    let mean = squared.iter().sum::<f64>() / count as f64;
+    lines.iter_mut().zip(&squared).for_each(|(z, e)| *z = Complex::new(e - mean, 0.0));
+    forward.process(&mut lines);
+    lines.iter_mut().for_each(|z| *z = Complex::new(z.norm_sqr(), 0.0));
+    inverse.process(&mut lines);
+    let power = lines[0].re;
+    let half = ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1);
+    let weight =
+        |k: usize| 0.5 + 0.5 * (std::f64::consts::PI * (k as f64 - half as f64) / (half + 1) as f64).cos();
+    let sum: f64 = (0..=2 * half).map(weight).sum();
+    let smooth =
+        |lag: usize| (0..=2 * half).map(|k| weight(k) * lines[(lag + k).abs_diff(half)].re).sum::<f64>();
+    (0..=longest).map(|lag| if power > 0.0 { smooth(lag) / (sum * power) } else { 0.0 }).collect()
+}
+
+/// The highest peak and its place, between samples, when no other comes near it.
+fn peak(values: &[f64], lags: std::ops::Range<usize>) -> Option<(f64, f64)> {
+    let rises = |n: usize| values[n] > values[n - 1] && values[n] >= values[n + 1];
+    let peaks: Vec<usize> = (lags.start..lags.end.min(values.len() - 1)).filter(|n| rises(*n)).collect();
+    let best = *peaks.iter().max_by(|a, b| values[**a].total_cmp(&values[**b]))?;
+    let apart = |n: &&usize| (**n as f64 / best as f64 - 1.0).abs() > SAME;
+    let second = peaks.iter().filter(apart).map(|n| values[*n]).fold(0.0, f64::max);
+    if values[best] < LEAST || second > SECOND * values[best] {
+        return None;
+    }
+    let (left, right) = (values[best - 1], values[best + 1]);
+    let bend = left - 2.0 * values[best] + right;
+    let offset = if bend < 0.0 { 0.5 * (left - right) / bend } else { 0.0 };
+    Some((best as f64 + offset, values[best]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    const RATE_HZ: f64 = 40_000.0;
+
+    /// Pairs of bursts `apart_s` from one another, 60 times a second and never quite on time, in noise.
+    fn pairs(apart_s: f64) -> Vec<f64> {
+        let mut seed = 11_u64;
+        let mut uniform = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();
+        for k in 1..170 {
+            let at = (f64::from(k) + 0.02 * uniform()) / 60.0;
+            for (start, strength, hz) in [(at, 3.0, 9_000.0), (at + apart_s, 5.0, 12_000.0)] {
+                let first = (start * RATE_HZ).ceil() as usize;
+                for n in first..(first + 80).min(signal.len()) {
+                    let since = n as f64 / RATE_HZ - start;
+                    signal[n] += strength * (-since / 0.2e-3).exp() * (TAU * hz * since).sin();
+                }
+            }
+        }
+        signal
+    }
+
+    #[test]
+    fn example_the_distance_of_pairs_is_found() {
+        for apart_s in [1.5e-3, 3.1e-3] {
+            let found = event_spacing(&pairs(apart_s), RATE_HZ, 0.5e-3, 7e-3).unwrap().unwrap();
+            // Bursts rise within a quarter of a period, and not alike: a few samples.
+            assert!((found.lag_s - apart_s).abs() < 0.1e-3, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn example_single_events_and_noise_have_no_distance() {
+        assert_eq!(event_spacing(&pairs(0.0), RATE_HZ, 0.5e-3, 7e-3).unwrap(), None);
+        let ramp: Vec<f64> = (0..4000).map(|n| f64::from(n * n % 977)).collect();
+        assert!(event_spacing(&ramp, RATE_HZ, 0.5e-3, 0.4e-3).is_err());
+        assert!(event_spacing(&ramp[..100], RATE_HZ, 0.5e-3, 7e-3).is_err());
+    }
+}

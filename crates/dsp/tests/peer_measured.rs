@@ -1,0 +1,90 @@
+//! Against scipy 1.17.1 and PySDKit 0.5.0: the vectors of `fixtures/reference/measured_dsp.json`, which the script beside it
+//! writes. The input is knocks every 61.7 samples that ring, in the noise of a linear congruential generator.
+
+use std::f64::consts::TAU;
+
+use serde_json::Value;
+use stribeck_dsp::{cepstral_prewhitening, dpss, fast_kurtogram, multitaper};
+
+/// Both sides round in a different order; tapers and filters are made on either side.
+const RELATIVE: f64 = 1e-9;
+
+fn vectors() -> Value {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/reference/measured_dsp.json");
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+}
+
+fn input(count: usize) -> Vec<f64> {
+    let mut state: u32 = 12345;
+    (0..count)
+        .map(|n| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let noise = f64::from(state) / 4_294_967_296.0 - 0.5;
+            let since = (n as f64).rem_euclid(61.7);
+            noise + 3.0 * (-since / 8.0).exp() * (TAU * 0.18 * since).sin()
+        })
+        .collect()
+}
+
+/// Equal to `RELATIVE` of the largest.
+fn assert_equal(case: &str, ours: &[f64], theirs: &[f64]) {
+    assert_eq!(ours.len(), theirs.len(), "{case}: length");
+    let largest = theirs.iter().fold(0.0_f64, |most, x| x.abs().max(most));
+    for (index, (a, b)) in ours.iter().zip(theirs).enumerate() {
+        assert!((a - b).abs() <= RELATIVE * largest, "{case}[{index}]: ours {a:e}, theirs {b:e}");
+    }
+}
+
+#[test]
+fn peer_the_input_is_the_same() {
+    assert_equal("input", &input(4), &numbers(&vectors()["x_first4"]));
+}
+
+#[test]
+fn peer_tapers_and_the_multitaper_density() {
+    let theirs = vectors();
+    for (k, (ours, theirs)) in
+        dpss(200, 3.5, 6).unwrap().iter().zip(theirs["dpss"].as_array().unwrap()).enumerate()
+    {
+        assert_equal(&format!("taper {k}"), ours, &numbers(theirs));
+    }
+    assert_equal(
+        "density",
+        &multitaper(&input(200), 1000.0, 3.5, 6).unwrap(),
+        &numbers(&theirs["multitaper"]),
+    );
+}
+
+#[test]
+fn peer_cepstral_prewhitening() {
+    assert_equal(
+        "whitened",
+        &cepstral_prewhitening(&input(200)).unwrap(),
+        &numbers(&vectors()["prewhitened"]),
+    );
+}
+
+#[test]
+fn peer_every_band_of_the_fast_kurtogram() {
+    let ours = fast_kurtogram(&input(2500), 1000.0, 4).unwrap();
+    for row in vectors()["kurtogram"].as_array().unwrap() {
+        let of = row["of"].as_u64().unwrap() as usize;
+        let bands: Vec<f64> = ours.iter().filter(|b| b.of == of).map(|b| b.kurtosis).collect();
+        assert_equal(&format!("{of} bands"), &bands, &numbers(&row["kurtosis"]));
+    }
+    let best = ours.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis)).unwrap();
+    assert_eq!((best.of, best.low_hz, best.high_hz), (1, 0.0, 500.0));
+}
+
+#[test]
+fn refuses_what_is_too_short_for_its_levels() {
+    assert!(fast_kurtogram(&input(2000), 1000.0, 4).unwrap_err().to_string().contains("2048"));
+    assert!(fast_kurtogram(&input(2000), 1000.0, 90).is_err());
+    assert!(dpss(8, 4.0, 1).is_err());
+    assert!(dpss(8, 2.0, 9).is_err());
+    assert!(cepstral_prewhitening(&[1.0]).is_err());
+}

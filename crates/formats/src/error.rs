@@ -1,0 +1,106 @@
+//! What can be wrong with a file of signals.
+
+use std::path::{Path, PathBuf};
+
+/// Result of this crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Why a file cannot be read or written. Each message names the file and what to try.
+#[non_exhaustive]
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The system refuses the file.
+    #[error("`{}` cannot be {action}: {source}", .path.display())]
+    Io {
+        /// `read` or `written`.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file is none of the known formats.
+    #[error(
+        "`{}` is no signal that can be read: {seen}. Known are CSV, .npy, .npz, .mat (version 5), .uff/.unv (dataset 58), \
+         .tdms and .wav; export it as one of these", .path.display()
+    )]
+    Unknown {
+        /// The file.
+        path: PathBuf,
+        /// What it looks like.
+        seen: String,
+    },
+    /// The file contradicts its format.
+    #[error("`{}` is damaged or cut off ({format}): {what}. Copy it again, or export it once more", .path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: &'static str,
+        /// What is wrong, and where.
+        what: String,
+    },
+    /// The file holds something that its format allows and this crate does not read.
+    #[error("`{}` holds {what}, which is not read from {format}: {advice}", .path.display())]
+    Unsupported {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        format: &'static str,
+        /// What it holds.
+        what: String,
+        /// What to try.
+        advice: &'static str,
+    },
+    /// A text that should be a number.
+    #[error(
+        "`{}`, row {row}, column {column} (`{channel}`): `{text}` is no number; \
+         mend the row, or cut the file before it", .path.display()
+    )]
+    Number {
+        /// The file.
+        path: PathBuf,
+        /// Line of the file, from 1.
+        row: u64,
+        /// Column, from 1.
+        column: usize,
+        /// Channel in that column.
+        channel: String,
+        /// What stands there.
+        text: String,
+    },
+    /// There is no such channel.
+    #[error("`{}` has no channel `{asked}`; it has {has}", .path.display())]
+    NoChannel {
+        /// The file.
+        path: PathBuf,
+        /// What was asked for.
+        asked: String,
+        /// What there is.
+        has: String,
+    },
+    /// What is to be written does not fit the format.
+    #[error("`{}` cannot be written as {format}: {what}", .path.display())]
+    DoesNotFit {
+        /// The file.
+        path: PathBuf,
+        /// The format.
+        format: &'static str,
+        /// What does not fit, and what to try.
+        what: String,
+    },
+}
+
+impl Error {
+    pub(crate) fn read(path: &Path, source: std::io::Error) -> Self {
+        Self::Io { action: "read", path: path.to_owned(), source }
+    }
+
+    pub(crate) fn write(path: &Path, source: std::io::Error) -> Self {
+        Self::Io { action: "written", path: path.to_owned(), source }
+    }
+
+    pub(crate) fn damaged(path: &Path, format: &'static str, what: impl Into<String>) -> Self {
+        Self::Damaged { path: path.to_owned(), format, what: what.into() }
+    }
+}

@@ -1,0 +1,38 @@
+//! Sampled signals in and out of files.
+//!
+//! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples of plain numbers (NumPy,
+//! uncompressed MATLAB, TDMS, WAV, CSV) stay in the file and are read in blocks; packed ones are held in memory.
+//! Each format has a module.
+//!
+//! | format | read | written |
+//! |---|---|---|
+//! | CSV, also with semicolons, tabs and decimal commas | [`csv`] | yes |
+//! | NumPy `.npy`: arrays and records | [`npy`] | through [`npz`] |
+//! | NumPy `.npz`, stored or deflated | [`npz`] | yes |
+//! | MATLAB `.mat`, version 5: deflated or not, small elements, structs and cells | [`mat5`] | yes |
+//! | Universal file, dataset 58, ASCII and binary (58b) | [`uff58`] | ASCII |
+//! | TDMS of LabVIEW | [`tdms`] | no |
+//! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
+//!
+//! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
+
+mod error;
+mod number;
+mod open;
+mod recording;
+
+pub mod csv;
+pub mod mat5;
+pub mod npy;
+pub mod npz;
+pub mod tdms;
+pub mod uff58;
+pub mod wav;
+
+pub use error::{Error, Result};
+pub use number::{Kind, Number};
+pub use recording::{Channel, Recording};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

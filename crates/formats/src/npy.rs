@@ -1,0 +1,201 @@
+//! NumPy arrays (`.npy`, NumPy Enhancement Proposal 1): vectors, tables and records of numbers.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::number::{Kind, Number};
+use crate::recording::Strided;
+use crate::{Channel, Error, Recording, Result};
+
+/// First bytes of every file.
+pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
+const FORMAT: &str = "NumPy .npy";
+/// Longest header that is read.
+const MAX_HEADER: usize = 1 << 20;
+
+/// What a header says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Layout {
+    /// Names, places in a record and kinds; a plain array has one without a name.
+    fields: Vec<(String, usize, Number)>,
+    record: usize,
+    shape: Vec<u64>,
+    fortran: bool,
+    /// Bytes before the data.
+    pub(crate) start: usize,
+}
+
+/// Opens an array; a vector takes the name of the file.
+///
+/// # Errors
+/// [`Error::Damaged`] for a header that cannot be understood or data that end early, [`Error::Io`].
+pub fn open(path: &Path) -> Result<Recording> {
+    let mut file = File::open(path).map_err(|e| Error::read(path, e))?;
+    let mut head = Vec::new();
+    file.by_ref().take(MAX_HEADER as u64).read_to_end(&mut head).map_err(|e| Error::read(path, e))?;
+    let layout = Layout::of(&head).map_err(|what| Error::damaged(path, FORMAT, what))?;
+    let size = file.metadata().map_err(|e| Error::read(path, e))?.len();
+    let held = size.saturating_sub(layout.start as u64);
+    let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    let channels = layout
+        .channels(&name, path, layout.start as u64, held)
+        .map_err(|what| Error::damaged(path, FORMAT, what))?;
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes: Vec::new() })
+}
+
+impl Layout {
+    /// Reads a header from the first bytes of a file.
+    pub(crate) fn of(head: &[u8]) -> std::result::Result<Self, String> {
+        let cut = || "it ends inside its header".to_owned();
+        if !head.starts_with(MAGIC) {
+            return Err("it does not begin like a `.npy` file".to_owned());
+        }
+        let (prefix, length) = match *head.get(6).ok_or_else(cut)? {
+            1 => (10, head.get(8..10).ok_or_else(cut)?.iter().rev().fold(0, |n, b| n << 8 | usize::from(*b))),
+            2 | 3 => {
+                (12, head.get(8..12).ok_or_else(cut)?.iter().rev().fold(0, |n, b| n << 8 | usize::from(*b)))
+            }
+            other => return Err(format!("its version is {other}; 1 to 3 are known")),
+        };
+        let text = head.get(prefix..prefix + length).ok_or_else(cut)?;
+        let text = std::str::from_utf8(text).map_err(|_| "its header is no text".to_owned())?;
+        let after = |key: &str| text.split_once(key).map(|(_, rest)| rest.trim_start());
+        let shape = after("'shape':").and_then(|s| s.strip_prefix('(')).and_then(|s| s.split_once(')'));
+        let shape = shape.ok_or("its header has no shape")?.0;
+        let sizes = shape.split(',').map(str::trim).filter(|s| !s.is_empty()).map(str::parse);
+        let shape = sizes
+            .collect::<std::result::Result<Vec<u64>, _>>()
+            .map_err(|_| "its shape is no list of sizes")?;
+        let fortran = after("'fortran_order':").is_some_and(|s| s.starts_with("True"));
+        let descr = after("'descr':").ok_or("its header has no `descr`")?;
+        let mut fields = Vec::new();
+        let mut record = 0;
+        if let Some(mut rest) = descr.strip_prefix('[') {
+            while let Some((field, behind)) =
+                rest.split_once(')').filter(|_| !rest.trim_start().starts_with(']'))
+            {
+                let mut quoted = field.split('\'');
+                let (name, kind) = (quoted.nth(1), quoted.nth(1));
+                let (Some(name), Some(kind)) = (name, kind) else {
+                    return Err(format!("its record `{field})` is no name with a type"));
+                };
+                let number = number(kind)
+                    .ok_or_else(|| format!("its field `{name}` has the type `{kind}`, no real number"))?;
+                fields.push((name.to_owned(), record, number));
+                record += number.kind.bytes();
+                rest = behind.trim_start_matches([',', ' ']);
+            }
+        } else {
+            let kind = descr.split('\'').nth(1).unwrap_or_default();
+            let number = number(kind).ok_or_else(|| format!("its type is `{kind}`, no real number"))?;
+            fields.push((String::new(), 0, number));
+            record = number.kind.bytes();
+        }
+        if fields.is_empty() || shape.len() > 2 {
+            return Err(format!(
+                "it has {} fields and {} dimensions; vectors, tables and records are read",
+                fields.len(),
+                shape.len()
+            ));
+        }
+        Ok(Self { fields, record, shape, fortran, start: prefix + length })
+    }
+
+    /// The channels of data that begin at byte `start` of `path` and take `held` bytes.
+    pub(crate) fn channels(
+        &self,
+        name: &str,
+        path: &Path,
+        start: u64,
+        held: u64,
+    ) -> std::result::Result<Vec<Channel>, String> {
+        let (rows, columns) = match self.shape[..] {
+            [] => (1, 1),
+            [rows] => (rows, 1),
+            [rows, columns, ..] => (rows, columns),
+        };
+        let needed = rows.checked_mul(columns).and_then(|n| n.checked_mul(self.record as u64));
+        if needed.is_none_or(|needed| needed > held) {
+            return Err(format!(
+                "its header promises {rows} × {columns} numbers of {} bytes, and {held} bytes follow",
+                self.record
+            ));
+        }
+        // Samples run along the longer side.
+        let (len, count) = if rows >= columns { (rows, columns) } else { (columns, rows) };
+        let along_rows = (rows >= columns) != self.fortran;
+        let record = self.record as u64;
+        let mut channels = Vec::new();
+        for (field, offset, number) in &self.fields {
+            for k in 0..count.min(100_000) {
+                // The samples of a channel lie `count` records apart when the file runs across them.
+                let (first, stride) =
+                    if along_rows { (k * record, count * record) } else { (k * len * record, record) };
+                let strided = Strided {
+                    path: path.to_owned(),
+                    start: start + first + *offset as u64,
+                    stride: usize::try_from(stride).map_err(|_| "its rows are too long".to_owned())?,
+                    number: *number,
+                    factor: 1.0,
+                };
+                let called = match (field.is_empty(), count) {
+                    (false, 1) => field.clone(),
+                    (true, 1) => name.to_owned(),
+                    (false, _) => format!("{field}[{k}]"),
+                    (true, _) => format!("{name}[{k}]"),
+                };
+                channels.push(Channel::strided(called, len, strided));
+            }
+        }
+        let rate_hz = rate(&channels);
+        Ok(channels.into_iter().map(|c| c.at_rate(rate_hz)).collect())
+    }
+}
+
+/// Sample rate [Hz] of records whose first field is the time.
+fn rate(channels: &[Channel]) -> Option<f64> {
+    let time = channels.first().filter(|c| c.name == "time_s" && c.len > 2)?;
+    let mut ends = (None, 0.0);
+    time.for_each_block(|block| {
+        ends = (ends.0.or(block.first().copied()), block.last().copied().unwrap_or(ends.1));
+        true
+    })
+    .ok()?;
+    let hz = (time.len - 1) as f64 / (ends.1 - ends.0?);
+    let round = (hz * 10.0).round() / 10.0;
+    (hz.is_finite() && hz > 0.0).then_some(if (hz / round - 1.0).abs() < 1e-6 { round } else { hz })
+}
+
+fn number(descr: &str) -> Option<Number> {
+    let (order, kind) = descr.split_at_checked(1)?;
+    let kind = match kind {
+        "f8" => Kind::F64,
+        "f4" => Kind::F32,
+        "i1" => Kind::I8,
+        "i2" => Kind::I16,
+        "i4" => Kind::I32,
+        "i8" => Kind::I64,
+        "u1" | "b1" => Kind::U8,
+        "u2" => Kind::U16,
+        "u4" => Kind::U32,
+        "u8" => Kind::U64,
+        _ => return None,
+    };
+    Some(Number { kind, big_endian: order == ">" })
+}
+
+/// A vector of doubles as the bytes of a `.npy` file.
+pub(crate) fn encode(samples: &[f64]) -> Vec<u8> {
+    const ALIGNMENT: usize = 64;
+    let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", samples.len());
+    let total = (10 + text.len() + 1).next_multiple_of(ALIGNMENT);
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend([1, 0]);
+    bytes.extend(((total - 10) as u16).to_le_bytes());
+    bytes.extend(text.as_bytes());
+    bytes.resize(total - 1, b' ');
+    bytes.push(b'\n');
+    bytes.extend(samples.iter().flat_map(|x| x.to_le_bytes()));
+    bytes
+}

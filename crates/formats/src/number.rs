@@ -1,0 +1,100 @@
+//! Numbers as files hold them: little-endian or big-endian, integers and floats of several widths.
+
+/// How one number is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Signed, 8 bits.
+    I8,
+    /// Unsigned, 8 bits.
+    U8,
+    /// Signed, 16 bits.
+    I16,
+    /// Unsigned, 16 bits.
+    U16,
+    /// Signed, 24 bits (WAV).
+    I24,
+    /// Signed, 32 bits.
+    I32,
+    /// Unsigned, 32 bits.
+    U32,
+    /// Signed, 64 bits; beyond 2⁵³ the last digits are lost.
+    I64,
+    /// Unsigned, 64 bits; beyond 2⁵³ the last digits are lost.
+    U64,
+    /// IEEE single.
+    F32,
+    /// IEEE double.
+    F64,
+}
+
+/// A kind with its byte order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Number {
+    /// Width and sort.
+    pub kind: Kind,
+    /// True when the most significant byte comes first.
+    pub big_endian: bool,
+}
+
+impl Kind {
+    /// Bytes that one takes.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I24 => 3,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+impl Number {
+    /// A number with its least significant byte first.
+    pub fn little(kind: Kind) -> Self {
+        Self { kind, big_endian: false }
+    }
+
+    /// The value in the first bytes of `at`; zero stands for bytes that are missing.
+    pub fn decode(self, at: &[u8]) -> f64 {
+        let width = self.kind.bytes();
+        let mut bytes = [0_u8; 8];
+        for (n, byte) in bytes.iter_mut().enumerate().take(width) {
+            let from = if self.big_endian { width - 1 - n } else { n };
+            *byte = at.get(from).copied().unwrap_or(0);
+        }
+        let whole = u64::from_le_bytes(bytes);
+        // Shifted up and down again, the sign fills the upper bits.
+        let signed = (whole << (64 - 8 * width)) as i64 >> (64 - 8 * width);
+        match self.kind {
+            Kind::I8 | Kind::I16 | Kind::I24 | Kind::I32 | Kind::I64 => signed as f64,
+            Kind::U8 | Kind::U16 | Kind::U32 | Kind::U64 => whole as f64,
+            Kind::F32 => f64::from(f32::from_bits(whole as u32)),
+            Kind::F64 => f64::from_bits(whole),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn roundtrip_every_kind_in_both_byte_orders() {
+        let cases: [(Kind, Vec<u8>, f64); 8] = [
+            (Kind::I8, (-5_i8).to_le_bytes().to_vec(), -5.0),
+            (Kind::U16, 65_000_u16.to_le_bytes().to_vec(), 65_000.0),
+            (Kind::I16, (-300_i16).to_le_bytes().to_vec(), -300.0),
+            (Kind::I24, vec![0xfe, 0xff, 0xff], -2.0),
+            (Kind::I32, (-70_000_i32).to_le_bytes().to_vec(), -70_000.0),
+            (Kind::U32, u32::MAX.to_le_bytes().to_vec(), 4_294_967_295.0),
+            (Kind::F32, 1.5_f32.to_le_bytes().to_vec(), 1.5),
+            (Kind::F64, (-0.1_f64).to_le_bytes().to_vec(), -0.1),
+        ];
+        for (kind, bytes, value) in cases {
+            assert_eq!(Number::little(kind).decode(&bytes), value, "{kind:?}");
+            let turned: Vec<u8> = bytes.iter().rev().copied().collect();
+            assert_eq!(Number { kind, big_endian: true }.decode(&turned), value, "{kind:?}");
+        }
+    }
+}

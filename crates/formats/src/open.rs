@@ -1,0 +1,52 @@
+//! A file is opened: which format it has is told by its first bytes, and then by its name.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use crate::{Error, Recording, Result, csv, mat5, npy, npz, tdms, uff58, wav};
+
+impl Recording {
+    /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`] for a file of another kind, [`Error::Damaged`] for one that contradicts its format,
+    /// [`Error::Unsupported`], [`Error::Number`], [`Error::Io`].
+    pub fn open(path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        let mut start = Vec::new();
+        let file = File::open(path).map_err(|e| Error::read(path, e))?;
+        file.take(4096).read_to_end(&mut start).map_err(|e| Error::read(path, e))?;
+        let begins = |magic: &[u8]| start.starts_with(magic);
+        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
+        let unknown = |seen: &str| Err(Error::Unknown { path: path.to_owned(), seen: seen.to_owned() });
+        if start.is_empty() {
+            return unknown("it is empty");
+        }
+        if begins(npy::MAGIC) {
+            npy::open(path)
+        } else if begins(b"PK") {
+            npz::open(path)
+        } else if begins(b"RIFF") || begins(b"RF64") {
+            wav::open(path)
+        } else if begins(b"\x89HDF") || (begins(b"MATLAB 7.3") && start.len() > 512) {
+            unknown("it is HDF5 (in MATLAB: save it again with `-v7`)")
+        } else if mat5::recognise(&start) {
+            mat5::open(path)
+        } else if begins(b"PAR1") {
+            unknown("it is Parquet")
+        } else if begins(b"TDSm") {
+            tdms::open(path)
+        } else if begins(b"MDF") {
+            unknown("it is MDF")
+        } else if begins(b"fLaC") {
+            unknown("it is FLAC (`flac -d` makes a .wav of it)")
+        } else if uff58::recognise(&start) || matches!(extension.as_str(), "uff" | "unv" | "u58") {
+            uff58::open(path)
+        } else if start.contains(&0) {
+            unknown("its first bytes belong to no known format, and it is no text")
+        } else {
+            csv::open(path)
+        }
+    }
+}

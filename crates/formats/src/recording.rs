@@ -1,0 +1,254 @@
+//! A file of signals: its channels, and their samples in blocks.
+
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::number::Number;
+use crate::{Error, Result, csv};
+
+/// Channels of one file.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// The file.
+    pub path: PathBuf,
+    /// Its format, in words.
+    pub format: &'static str,
+    /// Its channels, in the order of the file. Numbers that stand alone (a speed, a sensitivity) are channels of one
+    /// sample.
+    pub channels: Vec<Channel>,
+    /// What was odd about the file.
+    pub notes: Vec<String>,
+}
+
+/// One sampled quantity.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// Its name in the file.
+    pub name: String,
+    /// Its unit, where the file says it.
+    pub unit: Option<String>,
+    /// Samples a second [Hz], where the file says it.
+    pub rate_hz: Option<f64>,
+    /// Number of samples.
+    pub len: u64,
+    /// What stored samples are multiplied by.
+    scale: f64,
+    source: Source,
+}
+
+/// Where samples are.
+#[derive(Debug, Clone)]
+enum Source {
+    Held(Arc<Vec<f64>>),
+    Strided(Strided),
+    /// One after the other, with the number of samples in each.
+    Pieces(Arc<Vec<(Strided, u64)>>),
+    Text(csv::Column),
+}
+
+/// Numbers at equal distances in a file.
+#[derive(Debug, Clone)]
+pub(crate) struct Strided {
+    pub(crate) path: PathBuf,
+    /// First byte of the first number.
+    pub(crate) start: u64,
+    /// Bytes from one number to the next.
+    pub(crate) stride: usize,
+    pub(crate) number: Number,
+    /// What a stored number is multiplied by.
+    pub(crate) factor: f64,
+}
+
+/// Bytes read at a time.
+const PIECE: usize = 1 << 18;
+
+impl Recording {
+    /// The channel called `name`, or the only one whose name contains it.
+    ///
+    /// # Errors
+    /// [`Error::NoChannel`] with the names that there are.
+    pub fn channel(&self, name: &str) -> Result<&Channel> {
+        if let Some(channel) = self.channels.iter().find(|c| c.name == name) {
+            return Ok(channel);
+        }
+        let mut like = self.channels.iter().filter(|c| c.name.contains(name));
+        match (like.next(), like.next()) {
+            (Some(channel), None) => Ok(channel),
+            _ => Err(Error::NoChannel { path: self.path.clone(), asked: name.to_owned(), has: self.names() }),
+        }
+    }
+
+    /// Names and lengths of the channels, for messages.
+    pub fn names(&self) -> String {
+        const SHOWN: usize = 12;
+        let mut all: Vec<String> =
+            self.channels.iter().take(SHOWN).map(|c| format!("`{}` ({} samples)", c.name, c.len)).collect();
+        if self.channels.len() > SHOWN {
+            all.push(format!("{} more", self.channels.len() - SHOWN));
+        }
+        if all.is_empty() { "none".to_owned() } else { all.join(", ") }
+    }
+}
+
+impl Channel {
+    /// A channel whose samples are in memory.
+    pub fn held(name: impl Into<String>, samples: Vec<f64>) -> Self {
+        let len = samples.len() as u64;
+        Self {
+            name: name.into(),
+            unit: None,
+            rate_hz: None,
+            len,
+            scale: 1.0,
+            source: Source::Held(Arc::new(samples)),
+        }
+    }
+
+    pub(crate) fn strided(name: impl Into<String>, len: u64, strided: Strided) -> Self {
+        Self {
+            name: name.into(),
+            unit: None,
+            rate_hz: None,
+            len,
+            scale: 1.0,
+            source: Source::Strided(strided),
+        }
+    }
+
+    pub(crate) fn pieces(name: impl Into<String>, pieces: Vec<(Strided, u64)>) -> Self {
+        let len = pieces.iter().fold(0_u64, |sum, piece| sum.saturating_add(piece.1));
+        let source = Source::Pieces(Arc::new(pieces));
+        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source }
+    }
+
+    pub(crate) fn text(name: impl Into<String>, len: u64, column: csv::Column) -> Self {
+        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Text(column) }
+    }
+
+    /// The same channel with its samples taken from `bytes`, which hold what a file would.
+    pub(crate) fn held_from(&self, bytes: &[u8]) -> Self {
+        let Source::Strided(s) = &self.source else { return self.clone() };
+        let first = usize::try_from(s.start).unwrap_or(usize::MAX).min(bytes.len());
+        let samples = bytes[first..].chunks(s.stride.max(1)).take(self.len as usize);
+        let samples: Vec<f64> = samples.map(|at| s.factor * s.number.decode(at)).collect();
+        Self { len: samples.len() as u64, source: Source::Held(Arc::new(samples)), ..self.clone() }
+    }
+
+    /// The same channel with a sample rate [Hz].
+    pub fn at_rate(mut self, rate_hz: Option<f64>) -> Self {
+        self.rate_hz = rate_hz;
+        self
+    }
+
+    /// The same channel with every sample multiplied.
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self { scale: self.scale * factor, ..self.clone() }
+    }
+
+    /// The same channel in a unit.
+    pub fn in_unit(mut self, unit: Option<String>) -> Self {
+        self.unit = unit;
+        self
+    }
+
+    /// Gives all samples to `take`, a block at a time, in order; `take` returns false to stop.
+    ///
+    /// # Errors
+    /// [`Error::Io`], [`Error::Number`], [`Error::Damaged`] for a file that ends early.
+    pub fn for_each_block(&self, mut take: impl FnMut(&[f64]) -> bool) -> Result<()> {
+        if self.scale != 1.0 {
+            let mut scaled = Vec::new();
+            return self.for_each_stored(&mut |block| {
+                scaled.clear();
+                scaled.extend(block.iter().map(|x| self.scale * x));
+                take(&scaled)
+            });
+        }
+        self.for_each_stored(&mut take)
+    }
+
+    fn for_each_stored(&self, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        match &self.source {
+            Source::Held(samples) => {
+                for block in samples.chunks(PIECE / 8) {
+                    if !take(block) {
+                        break;
+                    }
+                }
+                Ok(())
+            }
+            Source::Strided(strided) => strided.for_each_block(self.len, take),
+            Source::Pieces(pieces) => {
+                let mut going = true;
+                for (strided, len) in pieces.iter() {
+                    if going {
+                        strided.for_each_block(*len, &mut |block| {
+                            going = take(block);
+                            going
+                        })?;
+                    }
+                }
+                Ok(())
+            }
+            Source::Text(column) => column.for_each_block(take),
+        }
+    }
+
+    /// All samples.
+    ///
+    /// # Errors
+    /// As [`Channel::for_each_block`].
+    pub fn read(&self) -> Result<Vec<f64>> {
+        let mut all = Vec::with_capacity(usize::try_from(self.len).unwrap_or(0).min(1 << 28));
+        self.for_each_block(|block| {
+            all.extend_from_slice(block);
+            true
+        })?;
+        Ok(all)
+    }
+}
+
+impl Strided {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let io = |e| Error::read(&self.path, e);
+        let mut file = BufReader::new(File::open(&self.path).map_err(io)?);
+        file.seek(SeekFrom::Start(self.start)).map_err(io)?;
+        let width = self.number.kind.bytes();
+        let rows = (PIECE / self.stride.max(1)).max(1) as u64;
+        let mut bytes = Vec::new();
+        let mut block = Vec::new();
+        let mut done = 0;
+        while done < len {
+            let count = rows.min(len - done) as usize;
+            // The last number of a block needs no bytes behind it.
+            bytes.resize((count - 1) * self.stride + width, 0);
+            file.read_exact(&mut bytes).map_err(io)?;
+            block.clear();
+            block.extend(bytes.chunks(self.stride).map(|at| self.factor * self.number.decode(at)));
+            if !take(&block) {
+                return Ok(());
+            }
+            done += count as u64;
+            file.seek_relative((self.stride - width) as i64).map_err(io)?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses channels of different lengths, which a table cannot hold; returns that length.
+pub(crate) fn equal_lengths(path: &Path, format: &'static str, channels: &[Channel]) -> Result<u64> {
+    let len = channels.first().map_or(0, |c| c.len);
+    match channels.iter().find(|c| c.len != len) {
+        None => Ok(len),
+        Some(other) => Err(Error::DoesNotFit {
+            path: path.to_owned(),
+            format,
+            what: format!(
+                "`{}` has {len} samples and `{}` has {}; write them to a file each",
+                channels[0].name, other.name, other.len
+            ),
+        }),
+    }
+}

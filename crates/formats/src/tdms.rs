@@ -1,0 +1,275 @@
+//! TDMS of LabVIEW and its data acquisition: numeric channels with their rate and unit.
+//!
+//! Source: *TDMS File Format Internal Structure*, National Instruments.
+
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use crate::number::{Kind, Number};
+use crate::recording::Strided;
+use crate::{Channel, Error, Recording, Result};
+
+const FORMAT: &str = "TDMS";
+/// Bytes of a segment's lead-in.
+const LEAD_IN: u64 = 28;
+/// Longest metadata of a segment [bytes].
+const MAX_METADATA: u64 = 1 << 28;
+/// Bits of the table of contents.
+const METADATA: u32 = 1 << 1;
+const RAW_DATA: u32 = 1 << 3;
+const NEW_OBJECTS: u32 = 1 << 2;
+const INTERLEAVED: u32 = 1 << 5;
+const BIG_ENDIAN: u32 = 1 << 6;
+const DAQMX: u32 = 1 << 7;
+
+/// What is known of a channel.
+#[derive(Debug, Clone, Default)]
+struct Object {
+    /// How its numbers are stored; `None` for what is no real number.
+    number: Option<Number>,
+    /// Values in a chunk, and the bytes that they take.
+    count: u64,
+    bytes: u64,
+    increment_s: Option<f64>,
+    unit: Option<String>,
+    pieces: Vec<(Strided, u64)>,
+    /// A file may change the type of a channel: then it is left out.
+    mixed: bool,
+}
+
+/// Opens a file; a channel is called `group/channel`. Samples stay in the file.
+///
+/// # Errors
+/// [`Error::Damaged`], [`Error::Unsupported`] for raw data of DAQmx, [`Error::Io`].
+pub fn open(path: &Path) -> Result<Recording> {
+    let io = |e| Error::read(path, e);
+    let mut file = BufReader::new(File::open(path).map_err(io)?);
+    let size = file.get_ref().metadata().map_err(io)?.len();
+    let mut objects: HashMap<String, Object> = HashMap::new();
+    // Objects in the order of the file, and those with data in the segment.
+    let (mut known, mut active): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut notes = Vec::new();
+    let mut at = 0;
+    while at + LEAD_IN <= size {
+        let damaged = |what: String| Error::damaged(path, FORMAT, format!("segment at byte {at}: {what}"));
+        file.seek(SeekFrom::Start(at)).map_err(io)?;
+        let mut lead = [0; LEAD_IN as usize];
+        file.read_exact(&mut lead).map_err(io)?;
+        if &lead[..4] != b"TDSm" {
+            return Err(damaged("it does not begin with `TDSm`".to_owned()));
+        }
+        let contents = u32::from_le_bytes([lead[4], lead[5], lead[6], lead[7]]);
+        if contents & DAQMX != 0 && contents & RAW_DATA != 0 {
+            let what = "unscaled data of DAQmx".to_owned();
+            let advice = "let LabVIEW convert it (TDMS Defragment), or save scaled values";
+            return Err(Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice });
+        }
+        let long = |from: usize| lead[from..from + 8].try_into().map_or(0, u64::from_le_bytes);
+        // The last segment of a file that was not closed says that its length is unknown.
+        let behind = size - at - LEAD_IN;
+        let (next, raw) = (long(12).min(behind), long(20));
+        if long(12) > behind {
+            notes.push("the file was not closed, or is cut off: its last samples may be missing".to_owned());
+        }
+        if raw > next || raw > MAX_METADATA {
+            return Err(damaged(format!("its metadata take {raw} of {next} bytes")));
+        }
+        if contents & METADATA != 0 {
+            let mut bytes = vec![0; raw as usize];
+            file.read_exact(&mut bytes).map_err(io)?;
+            if contents & NEW_OBJECTS != 0 {
+                active.clear();
+            }
+            let mut text = Metadata { bytes: &bytes, at: 0, big_endian: contents & BIG_ENDIAN != 0 };
+            text.read(&mut objects, &mut known, &mut active)
+                .ok_or_else(|| damaged("its metadata end early or hold an unknown type".to_owned()))?;
+        }
+        if contents & RAW_DATA != 0 {
+            let data = (at + LEAD_IN + raw, next - raw);
+            place(path, data, contents & INTERLEAVED != 0, &active, &mut objects);
+        }
+        at += LEAD_IN + next;
+    }
+    let mut channels = Vec::new();
+    for name in known {
+        let Some(object) = objects.remove(&name).filter(|o| o.count > 0 || !o.pieces.is_empty()) else {
+            continue;
+        };
+        let name = spoken(&name);
+        if object.number.is_none() || object.mixed {
+            notes.push(format!("`{name}` is left out: its values are no real numbers of one type"));
+            continue;
+        }
+        let rate_hz = object.increment_s.filter(|s| *s > 0.0).map(|s| 1.0 / s).map(rounded);
+        channels.push(Channel::pieces(name, object.pieces).at_rate(rate_hz).in_unit(object.unit));
+    }
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value by value.
+fn place(
+    path: &Path,
+    (start, held): (u64, u64),
+    interleaved: bool,
+    active: &[String],
+    objects: &mut HashMap<String, Object>,
+) {
+    let chunk: u64 = active.iter().filter_map(|name| objects.get(name)).map(|o| o.bytes).sum();
+    if chunk == 0 {
+        return;
+    }
+    // A chunk that is not whole is dropped.
+    let chunks = held / chunk;
+    let widths = active.iter().filter_map(|name| objects.get(name)?.number).map(|n| n.kind.bytes());
+    let row: usize = widths.sum();
+    let mut offset = 0;
+    for name in active {
+        let Some(object) = objects.get_mut(name) else { continue };
+        let (bytes, count) = (object.bytes, object.count);
+        let Some(number) = object.number else {
+            offset += bytes;
+            continue;
+        };
+        let width = number.kind.bytes();
+        let piece = |start, stride| Strided { path: path.to_owned(), start, stride, number, factor: 1.0 };
+        if interleaved {
+            object.pieces.push((piece(start + offset, row), chunks * count));
+            offset += width as u64;
+        } else {
+            // Far more chunks than any recorder writes would be a damaged count.
+            const MOST: u64 = 10_000_000;
+            for k in 0..chunks.min(MOST) {
+                object.pieces.push((piece(start + k * chunk + offset, width), count));
+            }
+            offset += bytes;
+        }
+    }
+}
+
+struct Metadata<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    big_endian: bool,
+}
+
+impl Metadata<'_> {
+    fn take(&mut self, count: usize) -> Option<&[u8]> {
+        let end = self.at.checked_add(count)?;
+        let taken = self.bytes.get(self.at..end)?;
+        self.at = end;
+        Some(taken)
+    }
+
+    fn word(&mut self) -> Option<u32> {
+        let big = self.big_endian;
+        let four = self.take(4)?.try_into().ok()?;
+        Some(if big { u32::from_be_bytes(four) } else { u32::from_le_bytes(four) })
+    }
+
+    fn long(&mut self) -> Option<u64> {
+        let big = self.big_endian;
+        let eight = self.take(8)?.try_into().ok()?;
+        Some(if big { u64::from_be_bytes(eight) } else { u64::from_le_bytes(eight) })
+    }
+
+    fn text(&mut self) -> Option<String> {
+        let length = self.word()? as usize;
+        Some(String::from_utf8_lossy(self.take(length)?).into_owned())
+    }
+
+    fn read(
+        &mut self,
+        objects: &mut HashMap<String, Object>,
+        known: &mut Vec<String>,
+        active: &mut Vec<String>,
+    ) -> Option<()> {
+        const NONE: u32 = u32::MAX;
+        for _ in 0..self.word()? {
+            let name = self.text()?;
+            if !objects.contains_key(&name) {
+                known.push(name.clone());
+            }
+            let object = objects.entry(name.clone()).or_default();
+            let index = self.word()?;
+            if index != NONE {
+                if index != 0 {
+                    let (kind, _, count) = (self.word()?, self.word()?, self.long()?);
+                    let number = number(kind, self.big_endian);
+                    object.mixed |= object.number.is_some() && object.number != number;
+                    object.number = number;
+                    object.count = count;
+                    object.bytes = match number {
+                        Some(number) => count.checked_mul(number.kind.bytes() as u64)?,
+                        // Texts say how many bytes they take; times take 16 each, single bits one.
+                        None if kind == TEXT => self.long()?,
+                        None => count.checked_mul(width(kind)? as u64)?,
+                    };
+                }
+                if !active.contains(&name) {
+                    active.push(name.clone());
+                }
+            }
+            for _ in 0..self.word()? {
+                let property = self.text()?;
+                let kind = self.word()?;
+                let object = objects.get_mut(&name)?;
+                if kind == TEXT {
+                    let value = self.text()?;
+                    if property == "unit_string" && !value.is_empty() {
+                        object.unit = Some(value);
+                    }
+                } else {
+                    let number = number(kind, self.big_endian);
+                    let bytes = self.take(width(kind)?)?;
+                    if property == "wf_increment" {
+                        object.increment_s = number.map(|n| n.decode(bytes));
+                    }
+                }
+            }
+        }
+        Some(())
+    }
+}
+
+const TEXT: u32 = 0x20;
+
+fn number(kind: u32, big_endian: bool) -> Option<Number> {
+    let kind = match kind {
+        1 => Kind::I8,
+        2 => Kind::I16,
+        3 => Kind::I32,
+        4 => Kind::I64,
+        5 => Kind::U8,
+        6 => Kind::U16,
+        7 => Kind::U32,
+        8 => Kind::U64,
+        9 | 0x19 => Kind::F32,
+        10 | 0x1a => Kind::F64,
+        _ => return None,
+    };
+    Some(Number { kind, big_endian })
+}
+
+/// Bytes of a value.
+fn width(kind: u32) -> Option<usize> {
+    Some(match kind {
+        0 => 0,
+        0x21 => 1,
+        0x44 | 0x10_000d => 16,
+        0x08_000c => 8,
+        other => number(other, false)?.kind.bytes(),
+    })
+}
+
+/// `/'group'/'channel'` as `group/channel`.
+fn spoken(path: &str) -> String {
+    path.trim_start_matches('/').trim_matches('\'').replace("'/'", "/").replace("''", "'")
+}
+
+/// A rate is a round number more often than the digits of an increment are exact.
+fn rounded(hz: f64) -> f64 {
+    let round = (hz * 10.0).round() / 10.0;
+    if (hz / round - 1.0).abs() < 1e-9 { round } else { hz }
+}

@@ -1,0 +1,288 @@
+//! Universal files, dataset 58 (function at nodal degree of freedom): ASCII, and binary as 58b.
+//!
+//! Source: *Universal File Datasets*, Structural Dynamics Research Laboratory, University of Cincinnati.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use crate::number::{Kind, Number};
+use crate::{Channel, Error, Recording, Result};
+
+const FORMAT: &str = "UFF 58";
+/// Lines of a dataset before its data: five of text, six of numbers.
+const HEAD: usize = 11;
+
+/// Whether a file begins with a delimiter, `-1` in columns 5 and 6.
+pub(crate) fn recognise(start: &[u8]) -> bool {
+    let mut lines = start.split(|b| *b == b'\n').map(<[u8]>::trim_ascii).filter(|line| !line.is_empty());
+    lines.next() == Some(b"-1")
+}
+
+/// Opens a file: each evenly sampled real function is a channel, held in memory.
+///
+/// # Errors
+/// [`Error::Damaged`], [`Error::Io`].
+pub fn open(path: &Path) -> Result<Recording> {
+    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
+    let mut lines = Lines { bytes: &bytes, at: 0, line: 0 };
+    let (mut channels, mut notes): (Vec<Channel>, Vec<String>) = (Vec::new(), Vec::new());
+    while let Some(line) = lines.next() {
+        if line.trim() != "-1" {
+            continue;
+        }
+        let Some(kind) = lines.next() else { break };
+        let begins = lines.line;
+        if kind.trim() == "58" || kind.trim_start().starts_with("58b") {
+            let function = lines.function(&kind).map_err(|what| {
+                Error::damaged(
+                    path,
+                    FORMAT,
+                    format!("dataset of line {begins}, near line {}: {what}", lines.line),
+                )
+            })?;
+            match function {
+                Ok(mut channel) => {
+                    let twins =
+                        channels.iter().filter(|c| c.name.split(" #").next() == Some(&channel.name)).count();
+                    if twins > 0 {
+                        channel.name += &format!(" #{}", twins + 1);
+                    }
+                    channels.push(channel);
+                }
+                Err(why) => notes.push(format!("the dataset of line {begins} is left out: {why}")),
+            }
+        } else {
+            notes.push(format!(
+                "the dataset of line {begins} has the number {}, not 58",
+                kind.trim().chars().take(20).collect::<String>()
+            ));
+        }
+        // To the delimiter that ends the dataset.
+        while lines.next().is_some_and(|line| line.trim() != "-1") {}
+    }
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// Writes each channel as an ASCII dataset of doubles, thirteen digits each; `notes` takes the first lines of text.
+///
+/// # Errors
+/// [`Error::DoesNotFit`] for a channel without a rate, [`Error::Io`].
+pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> {
+    let io = |e| Error::write(path, e);
+    let mut file = BufWriter::new(File::create(path).map_err(io)?);
+    for channel in channels {
+        let Some(rate_hz) = channel.rate_hz else {
+            let what = format!("`{}` has no sample rate", channel.name);
+            return Err(Error::DoesNotFit { path: path.to_owned(), format: FORMAT, what });
+        };
+        let cut = |text: &str, width: usize| {
+            text.chars().map(|c| if c.is_ascii() { c } else { '?' }).take(width).collect::<String>()
+        };
+        let unit = channel.unit.as_deref().unwrap_or("NONE");
+        // Specific data types of the format: 12 acceleration, 9 force, 8 displacement, 11 velocity, 0 unknown.
+        let sort = match unit {
+            "m/s^2" | "g" => 12,
+            "N" => 9,
+            "m" => 8,
+            "m/s" => 11,
+            _ => 0,
+        };
+        let mut text = format!("{:>6}\n{:>6}{:74}\n", -1, 58, "");
+        text += &format!("{:<80}\n", cut(&channel.name, 80));
+        for n in 0..4 {
+            text += &format!("{:<80}\n", cut(notes.get(n).map_or("NONE", String::as_str), 80));
+        }
+        text += &format!(
+            "{:5}{:10}{:5}{:10} {:<10}{:10}{:4} {:<10}{:10}{:4}\n",
+            1, 0, 1, 0, "NONE", 0, 0, "NONE", 0, 0
+        );
+        text +=
+            &format!("{:10}{:10}{:10}{}{}{}\n", 4, channel.len, 1, e13(0.0), e13(1.0 / rate_hz), e13(0.0));
+        text += &format!("{:10}{:5}{:5}{:5} {:<20} {:<20}\n", 17, 0, 0, 0, "Time", "s");
+        text += &format!(
+            "{:10}{:5}{:5}{:5} {:<20} {:<20}\n",
+            sort,
+            0,
+            0,
+            0,
+            cut(&channel.name, 20),
+            cut(unit, 20)
+        );
+        for _ in 0..2 {
+            text += &format!("{:10}{:5}{:5}{:5} {:<20} {:<20}\n", 0, 0, 0, 0, "NONE", "NONE");
+        }
+        file.write_all(text.as_bytes()).map_err(io)?;
+        for row in channel.read()?.chunks(4) {
+            let line: String = row.iter().map(|x| format!("{:>20}", exponent(*x, 12))).collect();
+            writeln!(file, "{line}").map_err(io)?;
+        }
+        writeln!(file, "{:>6}", -1).map_err(io)?;
+    }
+    file.flush().map_err(io)
+}
+
+/// A number as FORTRAN's E13.5 has it.
+fn e13(x: f64) -> String {
+    format!("{:>13}", exponent(x, 5))
+}
+
+/// `1.25E+02`: FORTRAN wants a sign and two digits.
+fn exponent(x: f64, digits: usize) -> String {
+    if !x.is_finite() {
+        return "NaN".to_owned();
+    }
+    let text = format!("{x:.digits$E}");
+    let (mantissa, power) = text.split_once('E').unwrap_or((&text, "0"));
+    let power: i32 = power.parse().unwrap_or(0);
+    format!("{mantissa}E{}{:02}", if power < 0 { '-' } else { '+' }, power.abs())
+}
+
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    line: usize,
+}
+
+impl Lines<'_> {
+    fn next(&mut self) -> Option<String> {
+        let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let end = rest.iter().position(|b| *b == b'\n').unwrap_or(rest.len());
+        self.at += end + 1;
+        self.line += 1;
+        Some(String::from_utf8_lossy(&rest[..end]).trim_end_matches('\r').to_owned())
+    }
+
+    /// The dataset behind its first line: a channel, or why it is none.
+    #[allow(clippy::type_complexity)]
+    fn function(&mut self, kind: &str) -> std::result::Result<std::result::Result<Channel, String>, String> {
+        let head: Vec<String> = (0..HEAD).filter_map(|_| self.next()).collect();
+        if head.len() < HEAD {
+            return Err("it ends inside its head".to_owned());
+        }
+        let integers = |line: &str| {
+            line.split_whitespace().map(|w| w.parse::<f64>().unwrap_or(f64::NAN)).collect::<Vec<_>>()
+        };
+        let form = integers(&head[6]);
+        let [ordinate, count, spacing, _, increment, ..] = form[..] else {
+            return Err(format!("its data form `{}` is not six numbers", head[6].trim()));
+        };
+        let count = if (0.0..1e10).contains(&count) {
+            count as usize
+        } else {
+            return Err("it has no number of values".to_owned());
+        };
+        let (double, complex) = (ordinate == 4.0 || ordinate == 6.0, ordinate > 4.5);
+        let even = spacing == 1.0;
+        let width = match (complex, even) {
+            (false, true) => 1,
+            (true, true) | (false, false) => 2,
+            (true, false) => 3,
+        };
+        let values = if kind.trim_start().starts_with("58b") {
+            self.binary(kind, double, even)?
+        } else {
+            self.text(count * width, double, even)?
+        };
+        if values.len() < count * width {
+            return Err(format!(
+                "it promises {count} values of {width} numbers, and {} numbers follow",
+                values.len()
+            ));
+        }
+        if complex {
+            return Ok(Err("its values are complex: it is no signal in time".to_owned()));
+        }
+        let axis = integers(&head[7]);
+        let time = matches!(axis.first(), Some(17.0 | 0.0));
+        if !time {
+            return Ok(Err(format!("its abscissa is `{}`, not the time", head[7].trim())));
+        }
+        let name = [head[0].trim(), head[1].trim()]
+            .into_iter()
+            .find(|n| !n.is_empty() && *n != "NONE")
+            .unwrap_or("function");
+        let unit =
+            head[8].get(47..67).map(str::trim).filter(|u| !u.is_empty() && *u != "NONE").map(str::to_owned);
+        let (samples, rate_hz) = if even {
+            (values[..count].to_vec(), 1.0 / increment)
+        } else {
+            let times: Vec<f64> = values.chunks(2).take(count).map(|pair| pair[0]).collect();
+            let step =
+                (times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0)) / (count.max(2) - 1) as f64;
+            let off = |(n, t): (usize, &f64)| (t - times[0] - n as f64 * step).abs() > 0.01 * step;
+            if times.iter().enumerate().any(off) {
+                return Ok(Err("its samples are not evenly spaced; resample it first".to_owned()));
+            }
+            (values.chunks(2).take(count).map(|pair| pair[1]).collect(), 1.0 / step)
+        };
+        // The increment has six digits: a rate is a round number more often than not.
+        let round = (rate_hz * 10.0).round() / 10.0;
+        let rate_hz = if (rate_hz / round - 1.0).abs() < 5e-6 { round } else { rate_hz };
+        let rate_hz = Some(rate_hz).filter(|hz| hz.is_finite() && *hz > 0.0);
+        Ok(Ok(Channel::held(name, samples).at_rate(rate_hz).in_unit(unit)))
+    }
+
+    /// Numbers in columns: 13 wide, 20 wide for doubles; uneven doubles have their abscissae 13 wide.
+    fn text(&mut self, wanted: usize, double: bool, even: bool) -> std::result::Result<Vec<f64>, String> {
+        let mut values = Vec::with_capacity(wanted.min(self.bytes.len() / 2));
+        let parse = |word: &str| word.trim().replace(['D', 'd'], "E").parse::<f64>();
+        while values.len() < wanted {
+            let from = self.at;
+            let Some(line) = self.next() else { break };
+            if line.trim() == "-1" {
+                (self.at, self.line) = (from, self.line - 1);
+                break;
+            }
+            let widths: &[usize] = match (double, even) {
+                (false, _) => &[13],
+                (true, true) => &[20],
+                (true, false) => &[13, 20],
+            };
+            let mut rest = line.as_str();
+            let mut columns = Vec::new();
+            for width in widths.iter().cycle() {
+                if rest.trim().is_empty() {
+                    break;
+                }
+                let (word, behind) =
+                    rest.split_at_checked((*width).min(rest.len())).ok_or("its line is no text")?;
+                columns.push(word);
+                rest = behind;
+            }
+            let fixed: std::result::Result<Vec<f64>, _> = columns.into_iter().map(parse).collect();
+            // Many programs do not keep to the columns.
+            let free = || line.split_whitespace().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
+            values.extend(
+                fixed.or_else(|_| free()).map_err(|_| format!("`{}` is no row of numbers", line.trim()))?,
+            );
+        }
+        Ok(values)
+    }
+
+    /// Numbers as bytes, as many as the first line of the dataset says.
+    fn binary(&mut self, kind: &str, double: bool, even: bool) -> std::result::Result<Vec<f64>, String> {
+        let fields: Vec<u64> = kind.split_whitespace().skip(1).map(|w| w.parse().unwrap_or(0)).collect();
+        let [order, format, _, bytes, ..] = fields[..] else {
+            return Err("its first line does not say the byte order and length".to_owned());
+        };
+        if format != 2 {
+            return Err(format!("its floating point format is {format}; IEEE (2) is read"));
+        }
+        let data = self.at.checked_add(bytes as usize).and_then(|end| self.bytes.get(self.at..end));
+        let data = data.ok_or_else(|| {
+            format!("it promises {bytes} bytes, and {} follow", self.bytes.len().saturating_sub(self.at))
+        })?;
+        self.at += bytes as usize;
+        let number = |kind| Number { kind, big_endian: order == 2 };
+        let (single, ordinate) = (number(Kind::F32), number(if double { Kind::F64 } else { Kind::F32 }));
+        let width = ordinate.kind.bytes();
+        if even {
+            return Ok(data.chunks_exact(width).map(|at| ordinate.decode(at)).collect());
+        }
+        Ok(data
+            .chunks_exact(4 + width)
+            .flat_map(|at| [single.decode(at), ordinate.decode(&at[4..])])
+            .collect())
+    }
+}

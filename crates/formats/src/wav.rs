@@ -1,0 +1,166 @@
+//! WAV and RF64: whole numbers of 8 to 32 bits, which are scaled to ±1, and floats, which are taken as they are.
+
+use std::fs::File;
+use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::Path;
+
+use crate::number::{Kind, Number};
+use crate::recording::{Strided, equal_lengths};
+use crate::{Channel, Error, Recording, Result};
+
+const FORMAT: &str = "WAV";
+const PCM: u16 = 1;
+const FLOAT: u16 = 3;
+const EXTENSIBLE: u16 = 0xfffe;
+
+/// Opens a file; channels are called `1`, `2`, … and their samples stay in the file.
+///
+/// # Errors
+/// [`Error::Damaged`], [`Error::Unsupported`] for compressed sound, [`Error::Io`].
+pub fn open(path: &Path) -> Result<Recording> {
+    let io = |e| Error::read(path, e);
+    let damaged = |what: &str| Error::damaged(path, FORMAT, what);
+    let mut file = BufReader::new(File::open(path).map_err(io)?);
+    let size = file.get_ref().metadata().map_err(io)?.len();
+    let mut at = 12;
+    let (mut format, mut long_data) = (None, None);
+    while at + 8 <= size {
+        file.seek(SeekFrom::Start(at)).map_err(io)?;
+        let mut tag = [0; 8];
+        file.read_exact(&mut tag).map_err(io)?;
+        let length = u64::from(u32::from_le_bytes([tag[4], tag[5], tag[6], tag[7]]));
+        let mut bytes = Vec::new();
+        match &tag[..4] {
+            b"fmt " | b"ds64" => {
+                (&mut file).take(length.min(64)).read_to_end(&mut bytes).map_err(io)?;
+                let half = |n: usize| {
+                    u16::from_le_bytes([
+                        bytes.get(n).copied().unwrap_or(0),
+                        bytes.get(n + 1).copied().unwrap_or(0),
+                    ])
+                };
+                if &tag[..4] == b"ds64" {
+                    long_data = bytes.get(8..16).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes);
+                } else {
+                    let sort = if half(0) == EXTENSIBLE { half(24) } else { half(0) };
+                    let rate = u32::from(half(4)) | u32::from(half(6)) << 16;
+                    format = Some((sort, half(2), rate, half(14)));
+                }
+            }
+            b"data" => {
+                let (sort, channels, rate, bits) =
+                    format.ok_or_else(|| damaged("the samples come before their format"))?;
+                let (kind, factor) = match (sort, bits) {
+                    (PCM, 8) => (Kind::U8, 1.0 / 128.0),
+                    (PCM, 16) => (Kind::I16, 1.0 / 32_768.0),
+                    (PCM, 24) => (Kind::I24, 1.0 / 8_388_608.0),
+                    (PCM, 32) => (Kind::I32, 1.0 / 2_147_483_648.0),
+                    (FLOAT, 32) => (Kind::F32, 1.0),
+                    (FLOAT, 64) => (Kind::F64, 1.0),
+                    _ => {
+                        let what = format!("sound of format {sort} with {bits} bits");
+                        let advice = "save it as PCM or floating point";
+                        return Err(Error::Unsupported {
+                            path: path.to_owned(),
+                            format: FORMAT,
+                            what,
+                            advice,
+                        });
+                    }
+                };
+                if channels == 0 || rate == 0 {
+                    return Err(damaged("it has no channels or no sample rate"));
+                }
+                let promised = if length == u64::from(u32::MAX) { long_data.unwrap_or(size) } else { length };
+                let held = promised.min(size - at - 8);
+                let mut notes = Vec::new();
+                if held < promised {
+                    notes.push(format!(
+                        "its header promises {promised} bytes of samples, and {held} are there"
+                    ));
+                }
+                if kind == Kind::U8 {
+                    notes.push("samples of 8 bits count from 0: their mean is not zero".to_owned());
+                }
+                let stride = usize::from(channels) * kind.bytes();
+                let all = (0..usize::from(channels)).map(|n| {
+                    let start = at + 8 + (n * kind.bytes()) as u64;
+                    let strided = Strided {
+                        path: path.to_owned(),
+                        start,
+                        stride,
+                        number: Number::little(kind),
+                        factor,
+                    };
+                    Channel::strided((n + 1).to_string(), held / stride as u64, strided)
+                        .at_rate(Some(f64::from(rate)))
+                });
+                return Ok(Recording {
+                    path: path.to_owned(),
+                    format: FORMAT,
+                    channels: all.collect(),
+                    notes,
+                });
+            }
+            _ => {}
+        }
+        // Pieces begin at even bytes.
+        at += 8 + length.next_multiple_of(2);
+    }
+    Err(damaged("it ends before its samples"))
+}
+
+/// Writes channels of one length and rate as 64-bit floats, in their own unit; `notes` goes into the comment.
+///
+/// # Errors
+/// [`Error::DoesNotFit`] for channels of different lengths, a rate that is no whole number of hertz, or more than 4 GiB;
+/// [`Error::Io`].
+pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> {
+    let rows = equal_lengths(path, FORMAT, channels)?;
+    let misfit = |what: String| Error::DoesNotFit { path: path.to_owned(), format: FORMAT, what };
+    let rate = channels
+        .first()
+        .and_then(|c| c.rate_hz)
+        .ok_or_else(|| misfit("the channels have no sample rate".to_owned()))?;
+    if rate.fract() != 0.0 || !(1.0..=f64::from(u32::MAX)).contains(&rate) {
+        return Err(misfit(format!("a sample rate of {rate} Hz; WAV holds whole numbers of hertz")));
+    }
+    let count = u16::try_from(channels.len()).map_err(|_| misfit(format!("{} channels", channels.len())))?;
+    let mut comment = notes.join("\n").into_bytes();
+    comment.push(0);
+    comment.resize(comment.len().next_multiple_of(2), 0);
+    let data = rows
+        .checked_mul(8 * u64::from(count))
+        .and_then(|n| u32::try_from(n).ok())
+        .filter(|n| *n < u32::MAX - (1 << 20));
+    let data = data.ok_or_else(|| misfit("more than 4 GiB of samples; use npz".to_owned()))?;
+    let io = |e| Error::write(path, e);
+    let mut file = BufWriter::new(File::create(path).map_err(io)?);
+    let word = |n: usize| (n as u32).to_le_bytes();
+    let (rate, frame) = (rate as usize, 8 * channels.len());
+    let mut head = b"RIFF".to_vec();
+    head.extend(word(4 + 8 + 16 + 8 + 4 + 8 + comment.len() + 8 + data as usize));
+    head.extend(b"WAVEfmt ");
+    head.extend(word(16));
+    head.extend(FLOAT.to_le_bytes());
+    head.extend(count.to_le_bytes());
+    head.extend(word(rate));
+    head.extend(word(rate * frame));
+    head.extend((frame as u16).to_le_bytes());
+    head.extend(64_u16.to_le_bytes());
+    head.extend(b"LIST");
+    head.extend(word(4 + 8 + comment.len()));
+    head.extend(b"INFOICMT");
+    head.extend(word(comment.len()));
+    head.extend(&comment);
+    head.extend(b"data");
+    head.extend(data.to_le_bytes());
+    file.write_all(&head).map_err(io)?;
+    let columns: Vec<Vec<f64>> = channels.iter().map(Channel::read).collect::<Result<_>>()?;
+    for row in 0..rows as usize {
+        for column in &columns {
+            file.write_all(&column[row].to_le_bytes()).map_err(io)?;
+        }
+    }
+    file.flush().map_err(io)
+}

@@ -1,0 +1,155 @@
+//! What is written is read back, by us and by the programs that the formats belong to.
+
+use std::path::Path;
+use std::process::Command;
+
+use stribeck_formats::{Channel, Recording, csv, mat5, npz, uff58, wav};
+use stribeck_testing::Noise;
+use stribeck_testing::Scratch;
+
+const RATE_HZ: f64 = 12_800.0;
+
+fn channels() -> Vec<Channel> {
+    let mut noise = Noise::new(4);
+    let mut channel = |name: &str| {
+        let samples = (0..1003).map(|n| noise.uniform() * 10_f64.powi(n % 7 - 3)).collect();
+        Channel::held(name, samples).at_rate(Some(RATE_HZ)).in_unit(Some("m/s^2".to_owned()))
+    };
+    vec![channel("housing_x"), channel("housing_y")]
+}
+
+fn notes() -> Vec<String> {
+    vec!["scene a".to_owned(), "commit b".to_owned()]
+}
+
+fn write(path: &Path) {
+    let (channels, notes) = (channels(), notes());
+    match path.extension().unwrap().to_str().unwrap() {
+        "csv" => csv::write(path, &channels, &notes),
+        "npz" => npz::write(path, &channels, &notes),
+        "mat" => mat5::write(path, &channels, &notes),
+        "uff" => uff58::write(path, &channels, &notes),
+        "wav" => wav::write(path, &channels, &notes),
+        other => panic!("{other}"),
+    }
+    .unwrap();
+}
+
+#[test]
+fn roundtrip_every_format_keeps_samples_names_and_rate() {
+    let folder = Scratch::create("formats-roundtrip");
+    for extension in ["csv", "npz", "mat", "uff", "wav"] {
+        let path = folder.path().join(format!("a.{extension}"));
+        write(&path);
+        let recording = Recording::open(&path).unwrap();
+        for (n, channel) in channels().iter().enumerate() {
+            // WAV has no names; MATLAB takes no rate beside a variable.
+            let name = if extension == "wav" { (n + 1).to_string() } else { channel.name.clone() };
+            let read = recording.channel(&name).unwrap();
+            if extension != "mat" {
+                assert_eq!(read.rate_hz, Some(RATE_HZ), "{extension}");
+            }
+            let (ours, theirs) = (read.read().unwrap(), channel.read().unwrap());
+            assert_eq!(ours.len(), theirs.len(), "{extension}");
+            // Thirteen digits in a universal file.
+            let tolerance = if extension == "uff" { 5e-13 } else { 0.0 };
+            let near = ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= tolerance * b.abs());
+            assert!(near, "{extension} {name}");
+        }
+    }
+}
+
+#[test]
+fn survives_files_damaged_at_any_byte() {
+    const EACH: u64 = 400;
+    let folder = Scratch::create("formats-damaged");
+    for extension in ["csv", "npz", "mat", "uff", "wav"] {
+        let path = folder.path().join(format!("a.{extension}"));
+        write(&path);
+        let whole = std::fs::read(&path).unwrap();
+        let mut noise = Noise::new(7);
+        for n in 0..EACH {
+            let mut bytes = whole.clone();
+            let mut place =
+                || (((noise.uniform() + 1.0) / 2.0 * whole.len() as f64) as usize).min(whole.len() - 1);
+            // Heads hold the structure: half of the damage is there.
+            for k in 0..4 {
+                let at = if k % 2 == 0 { place() % 400 } else { place() };
+                bytes[at] = (n.wrapping_mul(37).wrapping_add(at as u64) & 0xff) as u8;
+            }
+            if n % 3 == 0 {
+                bytes.truncate(place());
+            }
+            std::fs::write(&path, &bytes).unwrap();
+            // An answer, whatever it is; a message when it is an error.
+            match Recording::open(&path) {
+                Ok(recording) => recording.channels.iter().for_each(|c| drop(c.read())),
+                Err(why) => assert!(why.to_string().contains("a."), "{why}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn peer_other_programs_read_what_is_written() {
+    // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8 and soundfile 0.14.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
+    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let folder = Scratch::create("formats-foreign");
+    let expected = folder.path().join("expected.csv");
+    csv::write(&expected, &channels(), &[]).unwrap();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/read_signals.py");
+    for (extension, module) in
+        [("csv", "numpy"), ("npz", "numpy"), ("mat", "scipy.io"), ("uff", "pyuff"), ("wav", "soundfile")]
+    {
+        let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
+        if !has.is_ok_and(|o| o.status.success()) {
+            eprintln!("{extension} is not held against {module}: `{python}` does not have it");
+            continue;
+        }
+        let path = folder.path().join(format!("a.{extension}"));
+        write(&path);
+        let run = Command::new(&python).arg(script).args([&path, &expected]).output().unwrap();
+        let said = String::from_utf8_lossy(&run.stdout);
+        assert!(run.status.success(), "{extension}: {said}{}", String::from_utf8_lossy(&run.stderr));
+        assert!(said.contains("2 channels agree"), "{extension}: {said}");
+    }
+}
+
+#[test]
+fn peer_files_of_other_programs_are_read() {
+    // npTDMS 1.13.0 and scipy.io 1.17.1 write what the formats allow and we do not: other types, byte orders, structs, segments.
+    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let folder = Scratch::create("formats-theirs");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/write_signals.py");
+    for (kind, module) in
+        [("tdms", "nptdms"), ("mat", "scipy.io"), ("npz", "numpy"), ("uff", "pyuff"), ("wav", "soundfile")]
+    {
+        let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
+        if !has.is_ok_and(|o| o.status.success()) {
+            eprintln!("{kind} is not read from {module}: `{python}` does not have it");
+            continue;
+        }
+        let path = folder.path().join(format!("theirs.{kind}"));
+        let run = Command::new(&python).args([script, path.to_str().unwrap()]).output().unwrap();
+        assert!(run.status.success(), "{kind}: {}", String::from_utf8_lossy(&run.stderr));
+        // One line a channel: its name, its tolerance, and what its samples are a multiple of, sample n being k·(n mod 50).
+        let said = String::from_utf8_lossy(&run.stdout).into_owned();
+        assert!(said.lines().count() >= 2, "{kind}: {said}");
+        let recording = Recording::open(&path).unwrap();
+        for line in said.lines() {
+            let [name, rate, k] = line.split('|').collect::<Vec<_>>()[..] else { panic!("{line}") };
+            let channel =
+                recording.channel(name).unwrap_or_else(|why| panic!("{kind}: {why} {:?}", recording.notes));
+            assert_eq!(channel.rate_hz, rate.parse().ok(), "{kind} {name}");
+            let k: f64 = k.parse().unwrap();
+            let samples = channel.read().unwrap();
+            assert_eq!(samples.len(), 1000, "{kind} {name}");
+            for (n, x) in samples.iter().enumerate() {
+                assert!(
+                    (x - k * (n % 50) as f64).abs() <= 1e-6 * (1.0 + x.abs()),
+                    "{kind} {name} [{n}]: {x}"
+                );
+            }
+        }
+    }
+}

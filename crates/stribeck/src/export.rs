@@ -1,0 +1,307 @@
+//! `stribeck export`: the results of a run in the formats of other programs.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use stribeck_analysis::stress::{Lame, von_mises};
+use stribeck_dsp::Sensor;
+use stribeck_formats::{Channel, Recording, csv, mat5, npz, uff58, wav};
+use stribeck_mesh::vtu::{self, Field};
+use stribeck_mesh::{Body, Mesh};
+use stribeck_scene::frames;
+use stribeck_scene::geometry::Geometry;
+use stribeck_scene::mesh_file::RunMesh;
+use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
+
+use crate::place::{Place, shown};
+
+/// Flags of `export`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Folder of the run, or its name below runs/ [default: the newest run]
+    run: Option<PathBuf>,
+    /// Format
+    #[arg(long)]
+    to: Format,
+    /// Only channels whose name contains this, for example `sensor.`; may be repeated
+    #[arg(long = "channel", value_name = "PART")]
+    channels: Vec<String>,
+    /// Records the accelerations through a sensor instead: any of "rate_hz=25600, resonance_hz=30000, quality=30,
+    /// noise_density=0.002, range=500, bits=24, seed=1", in m/s²
+    #[arg(long)]
+    sensor: Option<String>,
+    /// File to write, for pvd a folder [default: in the run's folder]
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Formats that are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// Text table
+    Csv,
+    /// NumPy archive
+    Npz,
+    /// MATLAB, version 5
+    Mat,
+    /// Universal file, dataset 58
+    Uff,
+    /// Sound, 64-bit floats
+    Wav,
+    /// ParaView: a series of grids with the stress about the defect
+    Pvd,
+}
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let folder = match &options.run {
+        Some(run) => place.locate_run(run),
+        None => place.newest_run()?,
+    };
+    let dir = RunDir::open(&folder)?;
+    let run = Run::read(dir.path())?;
+    for missing in run.damage() {
+        eprintln!("warning: {missing}");
+    }
+    let written = if options.to == Format::Pvd {
+        series(&dir, &run, options.out.clone().unwrap_or_else(|| folder.join("paraview")))?
+    } else {
+        signals(&dir, &run, options)?
+    };
+    println!("{}", shown(&written));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What stands beside the numbers where the format can hold it.
+fn provenance(run: &Run) -> Vec<String> {
+    let info = &run.info;
+    let duration_s = info.interval_s * info.samples as f64;
+    vec![
+        format!("{}: Stribeck {} ({}), scene {}", run.scene.name, info.version, info.commit, info.scene_hash),
+        format!(
+            "run {:?}, {} samples at {} Hz, {:.6} s resolve {:.3} Hz",
+            info.status,
+            info.samples,
+            (10.0 / info.interval_s).round() / 10.0,
+            duration_s,
+            1.0 / duration_s
+        ),
+        format!("time step {:e} s, {} elements", info.time_step_s, info.mesh.quads + info.mesh.triangles),
+    ]
+}
+
+fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
+    let recording = Recording::open(dir.trace())?;
+    let wanted = |c: &&Channel| {
+        options.channels.is_empty() || options.channels.iter().any(|part| c.name.contains(part))
+    };
+    let channels: Vec<Channel> = recording
+        .channels
+        .iter()
+        .filter(wanted)
+        .map(|c| c.clone().in_unit(unit(&c.name).map(str::to_owned)))
+        .collect();
+    let channels = match &options.sensor {
+        Some(text) => recorded(&channels, text)?,
+        None => channels,
+    };
+    if channels.is_empty() {
+        bail!("no channel contains `{}`; the run has {}", options.channels.join("` or `"), recording.names());
+    }
+    let extension = match options.to {
+        Format::Csv => "csv",
+        Format::Npz => "npz",
+        Format::Mat => "mat",
+        Format::Uff => "uff",
+        Format::Wav => "wav",
+        Format::Pvd => "pvd",
+    };
+    let path = options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{extension}")));
+    let notes = provenance(run);
+    // A wave has no place for the time.
+    let no_time: Vec<Channel> = channels.iter().filter(|c| c.name != "time_s").cloned().collect();
+    match options.to {
+        Format::Csv => csv::write(&path, &channels, &notes)?,
+        Format::Npz => npz::write(&path, &channels, &notes)?,
+        Format::Mat => mat5::write(&path, &channels, &notes)?,
+        Format::Uff => uff58::write(&path, &no_time, &notes)?,
+        Format::Wav => wav::write(&path, &no_time, &notes)?,
+        Format::Pvd => {}
+    }
+    Ok(path)
+}
+
+/// The accelerations among the channels as a sensor records them.
+fn recorded(channels: &[Channel], text: &str) -> Result<Vec<Channel>> {
+    let accelerations = channels.iter().filter(|c| c.name.ends_with("_m_s2"));
+    accelerations
+        .map(|channel| {
+            let rate_hz = channel.rate_hz.context("the run has no sample rate")?;
+            let sensor = sensor(text, rate_hz)?;
+            let samples = sensor.record(&channel.read()?, rate_hz)?;
+            Ok(Channel::held(&channel.name, samples)
+                .at_rate(Some(sensor.rate_hz))
+                .in_unit(channel.unit.clone()))
+        })
+        .collect()
+}
+
+/// A sensor from its numbers; what is not given adds nothing.
+fn sensor(text: &str, rate_hz: f64) -> Result<Sensor> {
+    let mut sensor = Sensor::ideal(rate_hz);
+    let (mut resonance_hz, mut quality) = (None, 30.0);
+    for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
+        let (key, value) =
+            part.split_once('=').with_context(|| format!("`{part}` of the sensor is no `name=number`"))?;
+        let number: f64 =
+            value.trim().parse().with_context(|| format!("`{}` of the sensor is no number", value.trim()))?;
+        match key.trim() {
+            "rate_hz" => sensor.rate_hz = number,
+            "resonance_hz" => resonance_hz = Some(number),
+            "quality" => quality = number,
+            "noise_density" if number >= 0.0 => sensor.noise_density = number,
+            "range" => sensor.range = number,
+            "bits" if (2.0..=32.0).contains(&number) => sensor.bits = Some(number as u32),
+            "seed" if number >= 0.0 => sensor.seed = number as u64,
+            other => bail!(
+                "`{other}={number}` of the sensor: known are rate_hz, resonance_hz, quality, noise_density (not negative), range, \
+                 bits (2 to 32) and seed"
+            ),
+        }
+    }
+    sensor.resonance = resonance_hz.map(|hz| (hz, quality));
+    Ok(sensor)
+}
+
+/// Unit of a channel of ours, by the end of its name.
+fn unit(name: &str) -> Option<&'static str> {
+    [
+        ("_m_s2", "m/s^2"),
+        ("_m_s", "m/s"),
+        ("_rad_s", "rad/s"),
+        ("_rad", "rad"),
+        ("_n", "N"),
+        ("_j", "J"),
+        ("_um", "um"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ]
+    .into_iter()
+    .find(|(end, _)| name.ends_with(end))
+    .map(|(_, unit)| unit)
+}
+
+/// A grid a frame, with displacement and von Mises stress, and the index that gives their times.
+fn series(dir: &RunDir, run: &Run, folder: PathBuf) -> Result<PathBuf> {
+    let frames = frames::read_all(&dir.frames())?;
+    if frames.is_empty() {
+        bail!(
+            "`{}` holds no frames; give its scene `output: (frames: ())` and run it again",
+            dir.path().display()
+        );
+    }
+    let whole = RunMesh::read(dir.mesh())?;
+    let lame = Lame::of(&Geometry::of(&run.scene).material);
+    std::fs::create_dir_all(&folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
+    let mut index = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    for note in provenance(run) {
+        index += &format!("<!-- {} -->\n", note.replace("--", "- -"));
+    }
+    for (number, frame) in frames.iter().enumerate() {
+        let part = Part::of(&whole, frame);
+        let stress: Vec<f64> = part
+            .elements()
+            .map(|corners| von_mises(&part.reference(corners), &part.moved(corners), &lame))
+            .collect();
+        let name = format!("frame-{number:05}.vtu");
+        let mut bytes = Vec::new();
+        let moved: Vec<[f64; 3]> = part.displacement.iter().map(|u| [u[0], u[1], 0.0]).collect();
+        let rigid = |n: usize| {
+            part.mesh
+                .bodies
+                .iter()
+                .any(|b| b.name == "cage" && (b.quads.contains(&n) || part.is_triangle_of(b, n)))
+        };
+        // The cage is rigid: it has no stress.
+        let stress: Vec<f64> =
+            stress.iter().enumerate().map(|(n, s)| if rigid(n) { 0.0 } else { *s }).collect();
+        vtu::write(
+            &mut bytes,
+            &part.mesh,
+            &[Field::vector("displacement_m", &moved)],
+            &[Field::scalar("von_mises_pa", &stress)],
+        )?;
+        write_atomic(&folder.join(&name), &bytes)?;
+        index +=
+            &format!("<DataSet timestep=\"{:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n", frame.time_s);
+    }
+    index += "</Collection>\n</VTKFile>\n";
+    let path = folder.join("frames.pvd");
+    write_atomic(&path, index.as_bytes())?;
+    Ok(path)
+}
+
+/// The elements whose corners are all in a frame, in place.
+struct Part {
+    /// With the nodes where they are now.
+    mesh: Mesh,
+    displacement: Vec<[f64; 2]>,
+}
+
+impl Part {
+    fn of(whole: &RunMesh, frame: &frames::Frame) -> Self {
+        const ABSENT: u32 = u32::MAX;
+        let mut place = vec![ABSENT; whole.reference.len()];
+        let mut mesh = Mesh::default();
+        let mut displacement = Vec::new();
+        for (&node, &u) in frame.nodes.iter().zip(&frame.displacement) {
+            let (Some(at), Some(slot)) = (whole.reference.get(node as usize), place.get_mut(node as usize))
+            else {
+                continue;
+            };
+            *slot = mesh.x.len() as u32;
+            mesh.x.push(at[0] + u[0]);
+            mesh.y.push(at[1] + u[1]);
+            displacement.push(u);
+        }
+        let there = |corners: &[u32]| corners.iter().all(|n| place[*n as usize] != ABSENT);
+        for body in &whole.bodies {
+            let (quads, triangles) = (mesh.quads.len(), mesh.triangles.len());
+            let own = whole.quads[body.quads.clone()].iter().filter(|q| there(*q));
+            mesh.quads.extend(own.map(|q| q.map(|n| place[n as usize])));
+            let own = whole.triangles[body.triangles.clone()].iter().filter(|t| there(*t));
+            mesh.triangles.extend(own.map(|t| t.map(|n| place[n as usize])));
+            mesh.bodies.push(Body {
+                name: body.name.clone(),
+                nodes: 0..0,
+                quads: quads..mesh.quads.len(),
+                triangles: triangles..mesh.triangles.len(),
+            });
+        }
+        Self { mesh, displacement }
+    }
+
+    /// Corners of the elements in the order of the file: quadrilaterals, then triangles.
+    fn elements(&self) -> impl Iterator<Item = &[u32]> {
+        let quads = self.mesh.quads.iter().map(|q| q.as_slice());
+        quads.chain(self.mesh.triangles.iter().map(|t| t.as_slice()))
+    }
+
+    fn is_triangle_of(&self, body: &Body, element: usize) -> bool {
+        element.checked_sub(self.mesh.quads.len()).is_some_and(|n| body.triangles.contains(&n))
+    }
+
+    fn moved(&self, corners: &[u32]) -> Vec<[f64; 2]> {
+        corners.iter().map(|n| [self.mesh.x[*n as usize], self.mesh.y[*n as usize]]).collect()
+    }
+
+    fn reference(&self, corners: &[u32]) -> Vec<[f64; 2]> {
+        let back = |n: &u32| {
+            let u = self.displacement[*n as usize];
+            [self.mesh.x[*n as usize] - u[0], self.mesh.y[*n as usize] - u[1]]
+        };
+        corners.iter().map(back).collect()
+    }
+}
