@@ -72,7 +72,9 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
         energy,
         TOLERANCE,
     );
-    assert!(found.across.abs() < 1e-9 * found.area && found.moment.abs() < 1e-9 * ROLLER * found.area);
+    // Nothing across in the middle, but for what parabolas between vertices leave out.
+    let across = found.across / found.area;
+    assert!(across.abs() < 1e-4 && found.moment == 0.0, "{across} {}", found.moment);
 }
 
 /// ½∫p² falls by the forces along the normal, the tangent and the turn, wherever vertices of polygons lie.

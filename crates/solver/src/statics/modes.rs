@@ -53,15 +53,7 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
         motions.solve(&mut w);
         basis.push(std::mem::take(&mut v));
         alpha.push(product(&w, &basis[basis.len() - 1]));
-        // Twice is enough (Parlett 1998, §6.9).
-        for _ in 0..2 {
-            let weighted: Vec<f64> = w.iter().zip(&mass).map(|(w, m)| w * m).collect();
-            for b in &basis {
-                let along: f64 = b.iter().zip(&weighted).map(|(b, w)| b * w).sum();
-                w.iter_mut().zip(b).for_each(|(w, b)| *w -= along * b);
-            }
-        }
-        let length = product(&w, &w).sqrt();
+        let length = make_orthogonal(&mut w, &basis, &product);
         beta.push(length);
         let m = basis.len();
         if m.is_multiple_of(LOOK_EVERY) || m == n {
@@ -99,7 +91,29 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
             }
         }
         v = w;
-        v.iter_mut().for_each(|v| *v /= length);
     }
     Err(Error::Modes { found, iterations: basis.len(), hertz })
+}
+
+/// Takes all vectors of the basis out of `w` and makes it one of length one; the length that it had beside them.
+///
+/// Where next to nothing is left, as with natural frequencies that come in pairs, rounding has parts along the basis again: it
+/// goes on until hardly anything is taken out any more.
+fn make_orthogonal(w: &mut [f64], basis: &[Vec<f64>], product: &dyn Fn(&[f64], &[f64]) -> f64) -> f64 {
+    let mut length = 1.0;
+    // Twice is enough (Parlett 1998, §6.9) but for the case above.
+    for round in 0..10 {
+        let before = product(w, w).sqrt();
+        for b in basis {
+            let along = product(b, w);
+            w.iter_mut().zip(b).for_each(|(w, b)| *w -= along * b);
+        }
+        let left = product(w, w).sqrt();
+        w.iter_mut().for_each(|w| *w /= left);
+        length *= left;
+        if round > 0 && left > 0.7 * before {
+            break;
+        }
+    }
+    length
 }
