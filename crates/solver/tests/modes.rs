@@ -46,17 +46,17 @@ fn invariant_modes_are_those_of_the_whole_matrix() {
         })
         .collect();
     let matrix = Mat::from_fn(n, n, |i, j| columns[j][i] / root[i]);
-    let values = matrix.self_adjoint_eigen(Side::Lower).expect("symmetric");
+    // Values alone: with vectors faer 0.24.4 misses one of each pair of this matrix by up to 4e-4, and the matrix itself by 2e-4.
+    let values = matrix.self_adjoint_eigenvalues(Side::Lower).expect("symmetric");
     let limit = 20e3;
-    let dense: Vec<f64> =
-        values.S().column_vector().iter().copied().filter(|s| s.max(0.0).sqrt() < TAU * limit).collect();
+    let dense: Vec<f64> = values.iter().copied().filter(|s| s.max(0.0).sqrt() < TAU * limit).collect();
     let found = modes_below(&mut motions, limit).expect("modes");
     assert_eq!(found.squares.len(), dense.len());
     for (ours, theirs) in found.squares.iter().zip(&dense).skip(3) {
         assert!((ours / theirs - 1.0).abs() < TOLERANCE, "{ours} {theirs}");
     }
     // The rigid motions have none, but for rounding against the highest.
-    let highest = values.S().column_vector().iter().copied().fold(0.0, f64::max);
+    let highest = values.iter().copied().fold(0.0, f64::max);
     assert!(found.squares[..3].iter().all(|s| s.abs() < 1e-12 * highest), "{:?}", &found.squares[..3]);
     for (i, a) in found.shapes.iter().enumerate() {
         for (j, b) in found.shapes.iter().enumerate() {

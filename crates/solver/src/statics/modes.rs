@@ -81,6 +81,11 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
                     let scale = 1.0 / product(shape, shape).sqrt();
                     shape.iter_mut().for_each(|s| *s *= scale);
                 }
+                // A decomposition may be wrong where values are repeated, so the matrix has the last word.
+                if !shapes.iter().all(|shape| is_mode(motions, shape, &product)) {
+                    v = w;
+                    continue;
+                }
                 // The quotient of Rayleigh is better than the shifted value where that is small.
                 let square = |shape: &Vec<f64>| {
                     let force = motions.stiffness_times(shape);
@@ -93,6 +98,15 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
         v = w;
     }
     Err(Error::Modes { found, iterations: basis.len(), hertz })
+}
+
+/// Whether (K + σM)⁻¹M turns a shape of length one into a multiple of itself.
+fn is_mode(motions: &mut SmallMotions, shape: &[f64], product: &dyn Fn(&[f64], &[f64]) -> f64) -> bool {
+    let mut turned: Vec<f64> = shape.iter().zip(motions.mass()).map(|(s, m)| s * m).collect();
+    motions.solve(&mut turned);
+    let value = product(shape, &turned);
+    turned.iter_mut().zip(shape).for_each(|(t, s)| *t -= value * s);
+    product(&turned, &turned).sqrt() <= 10.0 * RESIDUAL * value
 }
 
 /// Takes all vectors of the basis out of `w` and makes it one of length one; the length that it had beside them.
