@@ -72,9 +72,14 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
         energy,
         TOLERANCE,
     );
-    // Nothing across in the middle, but for what parabolas between vertices leave out.
+    // Nothing across in the middle, but for what parabolas of one curvature leave out between vertices on a circle: of
+    // u⁴/8R³ the part between the ends of a facet of the width w, at most (3u²/2R³) w²/8. Its first moment over the area:
+    let width = TAU * ROLLER / 112.0;
+    let left_out = 1.5 * half.powi(2) / ROLLER.powi(3) * width.powi(2) / 8.0;
+    let bound = left_out * half.powi(2) / (ROLLER * found.area);
     let across = found.across / found.area;
-    assert!(across.abs() < 1e-4 && found.moment == 0.0, "{across} {}", found.moment);
+    assert!(across.abs() < bound && found.moment == 0.0, "{across} of {bound}, {}", found.moment);
+    assert!(bound < 1e-4, "{bound}");
 }
 
 /// ½∫p² falls by the forces along the normal, the tangent and the turn, wherever vertices of polygons lie.
