@@ -16,12 +16,13 @@ use crate::{
     state::State,
 };
 
-/// Most steps of Newton's method for the force of a contact in one time step.
-const NEWTON: usize = 3;
+/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
+const SEARCHES: usize = 4;
+const NEWTON: usize = 2;
 
-/// A step of Newton's method that changes a force by less than this share, or by less than this [N], leaves an error of its
-/// square.
-const ENOUGH: f64 = 1e-2;
+/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap was integrated, its
+/// series leaves an error of the third power.
+const ENOUGH: f64 = 3e-2;
 const LITTLE: f64 = 1e-2;
 
 /// What does not change during a run.
@@ -97,7 +98,9 @@ pub(crate) struct Wall {
 pub(crate) struct Touch {
     /// Normal force of penalty and compliance [N].
     pub(crate) normal: f64,
-    /// Penalty alone at the shift that the compliance had [N], and the overlap.
+    /// Derivative of the compliance's approach there [m/N].
+    pub(crate) give: f64,
+    /// What overlaps at that force.
     pub(crate) overlap: Overlap,
     pub(crate) d: [f64; 2],
 }
@@ -156,6 +159,8 @@ impl Bearing {
         };
         let cage =
             reduction.cage.map(|([mass, inertia], centre)| Cage::new(&g, mass, inertia, centre, scene));
+        let mut reduction = reduction;
+        level_walls(&mut reduction, &per_angle(&outer));
         Ok(Self {
             time_step,
             rollers: g.rollers,
@@ -207,24 +212,34 @@ impl Bearing {
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
         let mut force = before;
         let mut found = Overlap::default();
-        for _ in 0..NEWTON {
+        let mut give = 0.0;
+        for _ in 0..SEARCHES {
             let [shift, slope] = track.compliance.approach(force);
+            give = slope;
             let depth = most - shift;
             if depth <= 0.0 {
-                found = Overlap::default();
-            } else {
-                let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
-                found = overlap(roller, raceway, track.sides, shift, reach);
+                (found, force) = (Overlap::default(), 0.0);
+                continue;
             }
-            let pressed = self.penalty * found.area;
-            let next = (force + (pressed - force) / (1.0 + self.penalty * found.length * slope)).max(0.0);
-            let change = (next - force).abs();
-            force = next;
-            if change <= ENOUGH * force + LITTLE {
+            let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
+            found = overlap(roller, raceway, track.sides, shift, reach);
+            // Newton's method with what the overlap becomes by a further shift.
+            let start = force;
+            let (mut further, mut now) = (0.0, [found.area, found.length]);
+            for _ in 0..NEWTON {
+                let [area, length] = now;
+                let left = self.penalty * area - force;
+                force = (force + left / (1.0 + self.penalty * length * give)).max(0.0);
+                let [there, slope] = track.compliance.approach(force);
+                (further, give) = (there - shift, slope);
+                now = found.shifted_area(further);
+            }
+            found = found.shifted(further, now);
+            if (force - start).abs() <= ENOUGH * force + LITTLE {
                 break;
             }
         }
-        Touch { normal: force, overlap: found, d }
+        Touch { normal: force, give, overlap: found, d }
     }
 
     /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the
@@ -347,6 +362,18 @@ impl Cage {
         };
         let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
         Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points })
+    }
+}
+
+/// Gives both ends of a wall their mean shape: a roller that passes over it has no height to tell them apart by.
+fn level_walls(reduction: &mut Reduction, per_angle: &[f64]) {
+    let (n, width) = (per_angle.len(), 2 * reduction.padded);
+    for (a, _) in per_angle.iter().enumerate().filter(|(_, angle)| **angle == 0.0) {
+        let b = (a + 1) % n;
+        for k in 0..width {
+            let mean = 0.5 * (reduction.shapes[a * width + k] + reduction.shapes[b * width + k]);
+            (reduction.shapes[a * width + k], reduction.shapes[b * width + k]) = (mean, mean);
+        }
     }
 }
 

@@ -105,8 +105,48 @@ pub struct Overlap {
     pub first: f64,
     /// ∫ u² du over the overlap [m³].
     pub second: f64,
+    /// ∫ h′ du over the overlap [m].
+    pub slope: f64,
+    /// ∫ (u + h h′) du over the overlap [m²].
+    pub arm: f64,
+    /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
+    pub ends: f64,
     /// Deepest penetration [m].
     pub deepest: f64,
+}
+
+impl Overlap {
+    /// ∫ p du [m²] and the length [m] after a further small shift, to its second power.
+    #[inline(always)]
+    pub fn shifted_area(&self, shift: f64) -> [f64; 2] {
+        let length = self.length - self.ends * shift;
+        if length <= 0.0 {
+            return [0.0; 2];
+        }
+        [(self.area - 0.5 * shift * (self.length + length)).max(0.0), length]
+    }
+
+    /// The overlap after a further small shift, whose area [m²] and length [m] are known.
+    #[inline(always)]
+    pub fn shifted(&self, shift: f64, [area, length]: [f64; 2]) -> Self {
+        // p² falls by 2 ∫ p ds, and ∫ p ds holds two thirds of a step of the curvature (Simpson's rule on a parabola).
+        let mean = self.area - shift * (0.5 * self.length - self.ends * shift / 6.0);
+        let share = if self.length > 0.0 { length / self.length } else { 0.0 };
+        let about = if self.length > 0.0 { self.first * self.first / self.length } else { 0.0 };
+        Self {
+            area,
+            length,
+            square: (self.square - 2.0 * shift * mean).max(0.0),
+            across: self.across - 0.5 * (1.0 + share) * shift * self.slope,
+            moment: self.moment - 0.5 * (1.0 + share) * shift * self.arm,
+            first: share * self.first,
+            second: share * about + share.powi(3) * (self.second - about),
+            slope: share * self.slope,
+            arm: share * self.arm,
+            ends: self.ends,
+            deepest: self.deepest - shift,
+        }
+    }
 }
 
 /// A roller or a raceway, seen from the roller's centre.
@@ -227,6 +267,7 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
             return;
         }
         let root = p1 / (p1 - p2);
+        sum.ends += length / b.abs();
         if p1 > 0.0 { (0.0, root) } else { (root, 1.0) }
     } else {
         let discriminant = b * b - 4.0 * c * p1;
@@ -236,11 +277,13 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
         // c < 0: the parabola is positive between its roots.
         let root = discriminant.sqrt();
         let [low, high] = [(-b + root) / (2.0 * c), (-b - root) / (2.0 * c)];
-        let [low, high] = [low.max(0.0), high.min(1.0)];
-        if low >= high {
+        let [from, to] = [low.max(0.0), high.min(1.0)];
+        if from >= to {
             return;
         }
-        (low, high)
+        let cut = usize::from(low > 0.0) + usize::from(high < 1.0);
+        sum.ends += cut as f64 * length / root;
+        (from, to)
     };
     // ∫ τⁿ dτ.
     let (f2, z2) = (from * from, to * to);
@@ -267,8 +310,15 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     }
     sum.square += length * square;
     let [a, z] = [u1 + from * length, u1 + to * length];
-    sum.length += z - a;
-    sum.first += 0.5 * (z * z - a * a);
+    let [width, middle] = [z - a, 0.5 * (z + a)];
+    sum.length += width;
+    sum.first += width * middle;
+    if sides.curvature == 0.0 {
+        sum.slope += of_roller * width;
+        sum.arm += width * (base * of_roller + (1.0 + of_roller * of_roller) * middle);
+    } else {
+        sum.slope -= sides.curvature * width * middle;
+    }
     sum.second += (z * z * z - a * a * a) / 3.0;
     sum.deepest = sum.deepest.max(p1).max(p2);
 }

@@ -189,7 +189,7 @@ impl Bearing {
             state.hints[1][i] = hints;
             state.force[1][i] = touch.normal;
             let mut on_inner = [0.0; 2];
-            if touch.normal > 0.0 {
+            if touch.normal > 0.0 || state.passive[1][i] != [0.0; 3] {
                 // Where the raceway is touched, it moves across the radius.
                 let along = rate * (distance - self.arm);
                 let race = [-along * radial[1], along * radial[0]];
@@ -393,33 +393,34 @@ impl Bearing {
         energy: &mut Stored,
     ) -> Pushed {
         let o = &touch.overlap;
-        if o.area <= 0.0 {
-            (*slip, *passive) = (0.0, [0.0; 3]);
-            return Pushed::default();
-        }
         let d = touch.d;
         let t = [-d[1], d[0]];
         let closing = relative[0] * d[0] + relative[1] * d[1];
         let turning = rolled.omega - rolled.race;
+        let sliding = relative[0] * t[0] + relative[1] * t[1] + rolled.omega * self.arm;
+        let [old_drag, old_damping, old_about] = *passive;
+        heat[0] -= old_drag * sliding;
+        heat[1] += old_damping * closing + old_about * turning;
+        if touch.normal <= 0.0 || o.area <= 0.0 {
+            (*slip, *passive) = (0.0, [0.0; 3]);
+            return Pushed::default();
+        }
         // The compliance behind the penalty takes its part of the approach.
-        let [_, slope] = track.compliance.approach(touch.normal);
-        let part = 1.0 / (1.0 + self.penalty * o.length * slope);
+        let part = 1.0 / (1.0 + self.penalty * o.length * touch.give);
         let damping = (self.damping * (part * closing * o.length - turning * o.first)).max(-touch.normal);
         let normal = touch.normal + damping;
         let scale = touch.normal / o.area;
         let across = scale * o.across;
         let about = 0.5 * self.damping * turning * (o.second - o.first * o.first / o.length).max(0.0);
         // Friction: a spring that what leaves the contact takes along (THEORY §9.4).
-        let sliding = relative[0] * t[0] + relative[1] * t[1] + rolled.omega * self.arm;
         let half = 0.5 * o.length;
         let lost = (rolled.pace * self.time_step / half).min(1.0);
         let stiffness = self.sticking * o.length;
         let most = self.friction * touch.normal / stiffness;
         *slip = (*slip * (1.0 - lost) + self.time_step * sliding).clamp(-most, most);
         let drag = -stiffness * *slip;
-        let [old_drag, old_damping, old_about] = *passive;
-        heat[0] -= (old_drag + drag) * sliding;
-        heat[1] += (old_damping + damping) * closing + (old_about + about) * turning;
+        heat[0] -= drag * sliding;
+        heat[1] += damping * closing + about * turning;
         *passive = [drag, damping, about];
         if last {
             let sunk = self.penalty * o.square * 0.5;
