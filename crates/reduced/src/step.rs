@@ -540,7 +540,7 @@ impl Bearing {
             let force = self.penalty * depth * reach * (4.0 / 3.0);
             (force, self.penalty * 2.0 * reach, 0.4 * force * depth)
         } else {
-            self.corner(cage, wall, n, [c, s], depth)
+            self.corner(cage, wall, d, [c, s], depth)
         };
         // The cage's velocity at the foot.
         let arm = [rel[0] + d[0] * distance, rel[1] + d[1] * distance];
@@ -571,13 +571,14 @@ impl Bearing {
         Some(Hit { force: on_roller, moment: cross([d[0] * distance, d[1] * distance]), on_cage: cross(arm) })
     }
 
-    /// Force, stiffness and stored energy of a corner of the cage that is `depth` deep in a facet of the normal n: its own points, and those
-    /// of the roller in the wedge.
+    /// Force, stiffness and stored energy of a corner of the cage that is `depth` deep in a facet: its own points, and those of the
+    /// roller in the wedge. The wedge stands to the direction d from the roller's centre: the normal of the facet jumps where facets
+    /// meet, and the energy would jump with it.
     #[inline(always)]
-    fn corner(&self, cage: &Cage, wall: &Wall, n: [f64; 2], [c, s]: [f64; 2], depth: f64) -> (f64, f64, f64) {
+    fn corner(&self, cage: &Cage, wall: &Wall, d: [f64; 2], [c, s]: [f64; 2], depth: f64) -> (f64, f64, f64) {
         let normal = [c * wall.normal[0] - s * wall.normal[1], s * wall.normal[0] + c * wall.normal[1]];
-        // Sine of the angle between facet and wall; the other side of the corner stands at a right angle to the wall.
-        let cosine = -(n[0] * normal[0] + n[1] * normal[1]);
+        // Sine of the angle between d and the wall's normal; the other side of the corner stands at a right angle to the wall.
+        let cosine = -(d[0] * normal[0] + d[1] * normal[1]);
         let sine = (1.0 - cosine * cosine).max(1e-6).sqrt();
         let cosine = cosine.abs().max(1e-3);
         let own = 0.5 * self.penalty * cage.corner;
