@@ -98,6 +98,8 @@ pub(crate) struct Wall {
 pub(crate) struct Touch {
     /// Normal force of penalty and compliance [N].
     pub(crate) normal: f64,
+    /// Force of the same along t [N].
+    pub(crate) across: f64,
     /// Derivative of the compliance's approach there [m/N].
     pub(crate) give: f64,
     /// What overlaps at that force.
@@ -239,7 +241,9 @@ impl Bearing {
                 break;
             }
         }
-        Touch { normal: force, give, overlap: found, d }
+        // d turns as the roller moves along.
+        let across = self.penalty * (found.across - 0.5 * outwards * found.skew / distance);
+        Touch { normal: force, across, give, overlap: found, d }
     }
 
     /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the

@@ -109,6 +109,8 @@ pub struct Overlap {
     pub slope: f64,
     /// ∫ (u + h h′) du over the overlap [m²].
     pub arm: f64,
+    /// ∫ p² h′ du [m³]: by how much the square grows with a turn of d by one towards t.
+    pub skew: f64,
     /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
     pub ends: f64,
     /// Deepest penetration [m].
@@ -143,6 +145,7 @@ impl Overlap {
             second: share * about + share.powi(3) * (self.second - about),
             slope: share * self.slope,
             arm: share * self.arm,
+            skew: self.skew,
             ends: self.ends,
             deepest: self.deepest - shift,
         }
@@ -308,15 +311,19 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     } else {
         sum.across -= sides.curvature * first;
     }
-    sum.square += length * square;
     let [a, z] = [u1 + from * length, u1 + to * length];
     let [width, middle] = [z - a, 0.5 * (z + a)];
+    let square = length * square;
+    sum.square += square;
     sum.length += width;
     sum.first += width * middle;
     if sides.curvature == 0.0 {
+        sum.skew += of_roller * square;
         sum.slope += of_roller * width;
         sum.arm += width * (base * of_roller + (1.0 + of_roller * of_roller) * middle);
     } else {
+        // The slope in the middle: the part is short.
+        sum.skew -= sides.curvature * middle * square;
         sum.slope -= sides.curvature * width * middle;
     }
     sum.second += (z * z * z - a * a * a) / 3.0;

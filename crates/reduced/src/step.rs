@@ -147,11 +147,16 @@ impl Bearing {
             state.force[0][i] = touch.normal;
             let mut force = [0.0, -self.gravity * roller_mass];
             let mut moment = 0.0;
-            let relative = [velocity[0] - moving[0], velocity[1] - moving[1]];
+            // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
+            let orbit = (velocity[1] * radial[0] - velocity[0] * radial[1]) / distance;
+            let relative = [
+                velocity[0] - moving[0] - orbit * tilt[0],
+                velocity[1] - moving[1] - orbit * tilt[1],
+            ];
             let rolled = Rolled {
                 omega,
                 race: 0.0,
-                pace: (velocity[1] * radial[0] - velocity[0] * radial[1]).abs() * (1.0 + self.arm / distance),
+                pace: orbit.abs() * (distance + self.arm),
             };
             let pushed = self.push(
                 &self.outer,
@@ -194,7 +199,6 @@ impl Bearing {
                 let along = rate * (distance - self.arm);
                 let race = [-along * radial[1], along * radial[0]];
                 let relative = back([velocity[0] - race[0], velocity[1] - race[1]]);
-                let orbit = (velocity[1] * radial[0] - velocity[0] * radial[1]) / distance;
                 let rolled =
                     Rolled { omega, race: rate, pace: ((orbit - rate) * (distance - self.arm)).abs() };
                 let pushed = self.push(
@@ -410,7 +414,6 @@ impl Bearing {
         let damping = (self.damping * (part * closing * o.length - turning * o.first)).max(-touch.normal);
         let normal = touch.normal + damping;
         let scale = touch.normal / o.area;
-        let across = scale * o.across;
         let about = 0.5 * self.damping * turning * (o.second - o.first * o.first / o.length).max(0.0);
         // Friction: a spring that what leaves the contact takes along (THEORY §9.4).
         let half = 0.5 * o.length;
@@ -428,7 +431,7 @@ impl Bearing {
             energy.contact += sunk + track.compliance.energy(touch.normal) + stuck;
             energy.sticking += stuck;
         }
-        let along = across + drag;
+        let along = touch.across + drag;
         Pushed {
             force: [along * t[0] - normal * d[0], along * t[1] - normal * d[1]],
             moment: scale * o.moment + self.arm * drag - about,
