@@ -214,7 +214,7 @@ impl Bearing {
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
         let mut force = before;
         let mut found = Overlap::default();
-        let mut give = 0.0;
+        let (mut give, mut given) = (0.0, 0.0);
         for _ in 0..SEARCHES {
             let [shift, slope] = track.compliance.approach(force);
             give = slope;
@@ -237,12 +237,14 @@ impl Bearing {
                 now = found.shifted_area(further);
             }
             found = found.shifted(further, now);
+            given = shift + further;
             if (force - start).abs() <= ENOUGH * force + LITTLE {
                 break;
             }
         }
-        // d turns as the roller moves along.
-        let across = self.penalty * (found.across - 0.5 * outwards * found.skew / distance);
+        // d turns as the roller moves along, and what the bodies have given way by with it.
+        let turning = outwards * (0.5 * found.skew + given * found.across) / distance;
+        let across = self.penalty * (found.across - turning);
         Touch { normal: force, across, give, overlap: found, d }
     }
 

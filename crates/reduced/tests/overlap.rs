@@ -119,3 +119,48 @@ fn invariant_forces_on_polygons_are_the_gradient_of_the_energy() {
         );
     }
 }
+
+/// The same at the edge of a groove, with d turning as the roller goes along: the energy of a path closes.
+#[test]
+fn conserves_energy_along_a_path_over_an_edge() {
+    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
+    let roller = polygon(ROLLER, 112);
+    // 10 mm long and 0.2 mm deep about the y axis, walls upright.
+    let ideal = polygon(RACEWAY, 1257);
+    let mut vertices = Vec::new();
+    for i in 0..ideal.len() {
+        let [x, y] = [ideal.x[i], ideal.y[i]];
+        let in_groove = x.abs() < 5e-3 && y > 0.0;
+        let before = vertices.last().is_some_and(|v: &[f64; 2]| v[0] > 5e-3) && in_groove;
+        if before {
+            vertices.push([5e-3, (RACEWAY.powi(2) - 2.5e-5).sqrt()]);
+            vertices.push([5e-3, (RACEWAY.powi(2) - 2.5e-5).sqrt() + 2e-4]);
+        }
+        let after = vertices.last().is_some_and(|v: &[f64; 2]| v[0].abs() < 5e-3 && v[1] > 0.0) && !in_groove;
+        if after {
+            vertices.push([-5e-3, (RACEWAY.powi(2) - 2.5e-5).sqrt() + 2e-4]);
+            vertices.push([-5e-3, (RACEWAY.powi(2) - 2.5e-5).sqrt()]);
+        }
+        vertices.push([x, y + if in_groove { 2e-4 } else { 0.0 }]);
+    }
+    let raceway = Outline::new(&vertices);
+    let path = RACEWAY - ROLLER + 2e-5;
+    let seen = |angle: f64, turn: f64| {
+        let (s, c) = angle.sin_cos();
+        pressed(&roller, &raceway, chords, [path * c, path * s], turn, [c, s])
+    };
+    // From before the edge, where it is all there, until nothing overlaps.
+    const TOLERANCE: f64 = 1e-5;
+    let (from, to, steps) = (1.64, 1.605, 20_000);
+    let by = (to - from) / f64::from(steps);
+    let rolls = -by * RACEWAY / ROLLER;
+    let first = 0.5 * seen(from, 0.3).square;
+    let mut work = 0.0;
+    for i in 0..steps {
+        let at = f64::from(i) + 0.5;
+        let o = seen(from + at * by, 0.3 + at * rolls);
+        work += by * path * (o.across - 0.5 * o.skew / path) + rolls * o.moment;
+    }
+    assert_eq!(seen(to, 0.3).square, 0.0);
+    assert!((work / first - 1.0).abs() < TOLERANCE, "{work} of {first}");
+}
