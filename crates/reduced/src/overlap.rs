@@ -179,10 +179,13 @@ struct Walk<'a> {
     along: bool,
     /// The vertex that comes next.
     vertex: usize,
-    /// Ends of the present facet.
+    /// Ends of the present facet, and where the next one ends.
     a: [f64; 2],
     b: [f64; 2],
+    next: [f64; 2],
     slope: f64,
+    /// How far the facet is seen: a wall behind it may lean over it.
+    end: f64,
 }
 
 impl<'a> Walk<'a> {
@@ -200,23 +203,32 @@ impl<'a> Walk<'a> {
             first = if along { outline.before(first) } else { outline.next(first) };
             a = view.see(first);
         }
-        let mut walk = Self { view, along, vertex: first, a, b: a, slope: 0.0 };
+        let mut walk = Self { view, along, vertex: first, a, b: a, next: a, slope: 0.0, end: a[0] };
+        walk.look();
         walk.step();
         walk
     }
 
-    /// Goes on to the next facet.
+    /// Sees one vertex further.
     #[inline(always)]
-    fn step(&mut self) {
-        self.a = self.b;
+    fn look(&mut self) {
         self.vertex = if self.along {
             self.view.outline.next(self.vertex)
         } else {
             self.view.outline.before(self.vertex)
         };
-        self.b = self.view.see(self.vertex);
+        self.next = self.view.see(self.vertex);
+    }
+
+    /// Goes on to the next facet.
+    #[inline(always)]
+    fn step(&mut self) {
+        (self.a, self.b) = (self.b, self.next);
+        self.look();
         let width = self.b[0] - self.a[0];
         self.slope = if width > 0.0 { (self.b[1] - self.a[1]) / width } else { 0.0 };
+        let hidden = self.next[0] < self.b[0] && self.next[1] < self.b[1];
+        self.end = if hidden { self.next[0] } else { self.b[0] };
     }
 }
 
@@ -229,7 +241,7 @@ pub fn overlap(roller: View<'_>, raceway: View<'_>, sides: Sides, shift: f64, re
     let mut w = Walk::new(raceway, sides.along, u);
     let most = roller.outline.len() + raceway.outline.len();
     for _ in 0..most {
-        let end = r.b[0].min(w.b[0]).min(reach);
+        let end = r.b[0].min(w.end).min(reach);
         if end > u {
             segment(&mut sum, [u, end], &r, &w, sides, shift);
             u = end;
@@ -238,7 +250,7 @@ pub fn overlap(roller: View<'_>, raceway: View<'_>, sides: Sides, shift: f64, re
             break;
         }
         // Walls of a groove may lean over: their facets hold no u.
-        if r.b[0] <= w.b[0] { r.step() } else { w.step() }
+        if r.b[0] <= w.end { r.step() } else { w.step() }
     }
     sum
 }

@@ -149,15 +149,9 @@ impl Bearing {
             let mut moment = 0.0;
             // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
             let orbit = (velocity[1] * radial[0] - velocity[0] * radial[1]) / distance;
-            let relative = [
-                velocity[0] - moving[0] - orbit * tilt[0],
-                velocity[1] - moving[1] - orbit * tilt[1],
-            ];
-            let rolled = Rolled {
-                omega,
-                race: 0.0,
-                pace: orbit.abs() * (distance + self.arm),
-            };
+            let relative =
+                [velocity[0] - moving[0] - orbit * tilt[0], velocity[1] - moving[1] - orbit * tilt[1]];
+            let rolled = Rolled { omega, race: 0.0, pace: orbit.abs() * (distance + self.arm) };
             let pushed = self.push(
                 &self.outer,
                 &touch,
