@@ -1,4 +1,4 @@
-//! Rolling element bearings in a few modes: a simulated second in about a second.
+//! Rolling element bearings in a few modes: a simulated second in some ten seconds.
 //!
 //! Outer ring and adapter are reduced, from the very mesh and elements of the full model at its preload, to their natural
 //! modes below a frequency ([`reduction`]); what contacts press in locally is a curve from a small static problem
