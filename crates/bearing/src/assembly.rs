@@ -27,7 +27,7 @@ use stribeck_scene::{
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
-const CAGE_ELEMENT_MM: f64 = 2.0;
+pub const CAGE_ELEMENT_MM: f64 = 2.0;
 
 /// Height of the adapter's flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is
 /// narrower would set the time step.
@@ -496,7 +496,7 @@ fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: 
 }
 
 /// Half width of a pocket whose walls come within `reach` of the centre of a roller on radius `path`.
-fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
+pub fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
     if (inner..=outer).contains(&path) {
         return reach;
     }

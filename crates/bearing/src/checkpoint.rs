@@ -12,17 +12,16 @@ use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-use stribeck_system::Snapshot;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-use crate::{error::Error, recorder};
+use crate::error::Error;
 use stribeck_scene::{run_info::RunInfo, scene::Scene};
 
 /// First bytes of every checkpoint.
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file; a program continues only what it understands to the last bit.
-const VERSION: u32 = 11;
+const VERSION: u32 = 12;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;
@@ -35,14 +34,14 @@ const MAX_CONTENT: u64 = 1 << 32;
 
 /// A run between two samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Checkpoint {
+pub struct Checkpoint<S> {
     /// What `run.json` would say.
-    pub(crate) info: RunInfo,
-    pub(crate) system: Snapshot,
-    pub(crate) recorder: recorder::Memory,
+    pub info: RunInfo,
+    /// What the model in motion needs to go on.
+    pub motion: S,
 }
 
-impl Checkpoint {
+impl<S: Serialize + DeserializeOwned> Checkpoint<S> {
     /// The file's bytes, for a scene of this [`identity`]; `path` is for the message.
     pub(crate) fn encode(&self, path: &Path, identity: &str) -> Result<Vec<u8>, Error> {
         let mut bytes = Vec::with_capacity(HEADER);
@@ -100,7 +99,7 @@ impl Checkpoint {
 }
 
 /// Name of what a checkpoint belongs to: the hash of its scene, whatever its duration.
-pub(crate) fn identity(scene: &Scene) -> String {
+pub fn identity(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.solver.duration_ms = 0.0;
     scene.hash()

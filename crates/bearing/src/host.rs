@@ -34,7 +34,8 @@ pub struct Progress {
 }
 
 impl Progress {
-    pub(crate) fn begin() -> Self {
+    /// At the very beginning.
+    pub fn begin() -> Self {
         Self { phase: "mesh", step: 0, steps: 0, time_s: 0.0, energy_error: 0.0, elements: 0 }
     }
 }

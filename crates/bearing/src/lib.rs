@@ -1,16 +1,17 @@
 //! Rolling element bearings: from a scene to bodies in motion, and to a run.
 
 pub mod assembly;
-mod checkpoint;
+pub mod checkpoint;
 pub mod error;
 mod frames;
+mod full;
 mod grading;
 mod guards;
 mod host;
-mod recorder;
+pub mod recorder;
 pub mod simulation;
-mod start;
-mod time_loop;
+pub mod start;
+pub mod time_loop;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -83,36 +83,37 @@ impl Recorder {
     pub(crate) fn memory(&self) -> &Memory {
         &self.memory
     }
+}
 
-    /// Names of the columns.
-    pub(crate) fn names(scene: &Scene) -> Vec<String> {
-        let mut names = vec!["time_s".to_owned()];
-        for s in &scene.output.sensors {
-            for channel in ["ax_m_s2", "ay_m_s2", "ax_instant_m_s2", "ay_instant_m_s2"] {
-                names.push(format!("sensor.{}.{channel}", s.name));
-            }
+/// Names of the columns of a trace, whatever model made it.
+pub fn names(scene: &Scene) -> Vec<String> {
+    let mut names = vec!["time_s".to_owned()];
+    for s in &scene.output.sensors {
+        for channel in ["ax_m_s2", "ay_m_s2", "ax_instant_m_s2", "ay_instant_m_s2"] {
+            names.push(format!("sensor.{}.{channel}", s.name));
         }
-        let (with_cage, oiled) = (scene.cage.is_some(), scene.film.is_some());
-        for i in 1..=scene.bearing.rollers {
-            for channel in ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"]
-            {
-                names.push(format!("roller.{i}.{channel}"));
-            }
-            if with_cage {
-                names.push(format!("roller.{i}.cage_fx_n"));
-                names.push(format!("roller.{i}.cage_fy_n"));
-            }
-            if oiled {
-                names.extend(["outer", "inner"].map(|ring| format!("roller.{i}.{ring}_film_m")));
-            }
+    }
+    let (with_cage, oiled) = (scene.cage.is_some(), scene.film.is_some());
+    for i in 1..=scene.bearing.rollers {
+        for channel in ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"] {
+            names.push(format!("roller.{i}.{channel}"));
         }
         if with_cage {
-            names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad"].map(str::to_owned));
+            names.push(format!("roller.{i}.cage_fx_n"));
+            names.push(format!("roller.{i}.cage_fy_n"));
         }
-        names.extend(["seat.fx_n", "seat.fy_n"].map(str::to_owned));
-        names
+        if oiled {
+            names.extend(["outer", "inner"].map(|ring| format!("roller.{i}.{ring}_film_m")));
+        }
     }
+    if with_cage {
+        names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad"].map(str::to_owned));
+    }
+    names.extend(["seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    names
+}
 
+impl Recorder {
     /// Before every step.
     pub(crate) fn before_step(&mut self, machine: &Machine) {
         for (before, &n) in self.before_step.iter_mut().zip(&self.memory.sensors) {

@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use serde::{Serialize, de::DeserializeOwned};
 use stribeck_mesh::vtu;
 use stribeck_solver::damping::{Frame, MassDamping};
 
@@ -10,6 +11,7 @@ use crate::{
     assembly::{Assembly, Machine},
     checkpoint::{Checkpoint, identity},
     error::Error,
+    full::{Full, Saved},
     guards::Guards,
     start::{launch, preload},
     time_loop::Run,
@@ -18,9 +20,60 @@ use stribeck_scene::{
     geometry::Geometry,
     mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},
-    run_info::{EnergyInfo, GuardInfo, RunInfo, Status},
+    run_info::{EnergyInfo, GuardInfo, MeshInfo, RunInfo, Status},
     scene::{DampingFrame, Scene, Start},
 };
+
+/// What is known of a run before its first step.
+pub struct Setup {
+    /// Time step [s].
+    pub time_step: f64,
+    /// Critical time step [s].
+    pub critical_time_step: f64,
+    /// Steps in a sampling interval.
+    pub steps_per_sample: usize,
+    /// The mesh.
+    pub mesh: MeshInfo,
+    /// How long it took so far [s].
+    pub wall_s: f64,
+    /// Vertical force that the rollers must carry [N].
+    pub expected_support: f64,
+}
+
+impl Setup {
+    /// What `run.json` says at the start.
+    pub fn info(self, scene: &Scene, host: &Host<'_>) -> RunInfo {
+        let Geometry { interval, duration, .. } = Geometry::of(scene);
+        let samples = (duration / interval).round().max(1.0) as usize;
+        RunInfo {
+            version: host.version.clone(),
+            commit: host.commit.clone(),
+            scene_hash: scene.hash(),
+            machine: host.machine.clone(),
+            threads: host.threads,
+            status: Status::Running,
+            stop_reason: None,
+            time_step_s: self.time_step,
+            critical_time_step_s: self.critical_time_step,
+            steps: 0,
+            steps_planned: (samples * self.steps_per_sample) as u64,
+            interval_s: interval,
+            samples: 0,
+            simulated_s: 0.0,
+            reduced: None,
+            mesh: self.mesh,
+            wall_s: 0.0,
+            cpu_s: 0.0,
+            loop_cpu_s: 0.0,
+            setup_s: self.wall_s,
+            resumed_at_s: Vec::new(),
+            energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0 },
+            guards: GuardInfo::default(),
+            expected_support_n: self.expected_support,
+            warnings: Vec::new(),
+        }
+    }
+}
 
 /// Runs a scene and leaves its results in `dir`.
 ///
@@ -50,44 +103,28 @@ pub fn simulate(
         Start::Sudden => None,
     };
     let critical = machine.system.critical_time_step();
-    let Geometry { interval, duration, .. } = Geometry::of(scene);
+    let Geometry { interval, .. } = Geometry::of(scene);
     let steps_per_sample = (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
     let dt = interval / steps_per_sample as f64;
     machine.system.set_time_step(dt, Some(critical))?;
     launch(&mut machine, &assembly.kinematics);
     damp(scene, &mut machine)?;
 
-    let samples = (duration / interval).round().max(1.0) as usize;
-    let mut info = RunInfo {
-        version: host.version.clone(),
-        commit: host.commit.clone(),
-        scene_hash: scene.hash(),
-        machine: host.machine.clone(),
-        threads: host.threads,
-        status: Status::Running,
-        stop_reason: None,
-        time_step_s: dt,
-        critical_time_step_s: critical,
-        steps: 0,
-        steps_planned: (samples * steps_per_sample) as u64,
-        interval_s: interval,
-        samples: 0,
+    let setup = Setup {
+        time_step: dt,
+        critical_time_step: critical,
+        steps_per_sample,
         mesh,
-        wall_s: 0.0,
-        cpu_s: 0.0,
-        loop_cpu_s: 0.0,
-        setup_s: (host.wall_s)() - started,
-        resumed_at_s: Vec::new(),
-        energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0 },
-        guards: GuardInfo::default(),
-        expected_support_n: expected_support(scene, &machine),
-        warnings: Vec::new(),
+        wall_s: (host.wall_s)() - started,
+        expected_support: expected_support(scene, &machine),
     };
+    let mut info = setup.info(scene, host);
     info.warnings.extend(preloaded);
     info.warnings.extend(Guards::before(scene, &assembly.model.materials[0], &info));
     dir.start(scene, &info)?;
     write_mesh(&assembly, &machine, dir)?;
-    Run::start(scene, &assembly, machine, info, dir)?.finish(dir, host, progress, watch)
+    let full = Full::start(scene, &assembly, machine, dir);
+    Run::start(scene, full, info, dir)?.finish(dir, host, progress, watch)
 }
 
 /// Continues the run in `dir` from its checkpoint. Its files become those of an unbroken run, byte for byte, whatever
@@ -131,17 +168,26 @@ fn go_on(
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<RunInfo, Error> {
     let started = (host.wall_s)();
-    let mut saved = read_saved(dir, &scene)?;
+    let Checkpoint { mut info, motion: saved } = read_saved::<Saved>(dir, &scene)?;
     let mut progress = Progress::begin();
     let _ = watch(&progress);
     let assembly = Assembly::new(&scene)?;
     let mut machine = assembly.machine(&scene, host.threads)?;
     let mesh = assembly.mesh_info();
     progress.elements = mesh.quads + mesh.triangles;
-    machine.system.set_time_step(saved.info.time_step_s, Some(saved.info.critical_time_step_s))?;
+    machine.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
     damp(&scene, &mut machine)?;
 
-    let info = &mut saved.info;
+    take_over(&mut info, &scene, host);
+    let full = Full::resume(&scene, &assembly, machine, &info, saved, dir)?;
+    let mut run = Run::resume(&scene, full, info, dir)?;
+    run.info.setup_s += (host.wall_s)() - started;
+    dir.go_on(&scene, &run.info)?;
+    run.finish(dir, host, progress, watch)
+}
+
+/// Hands the run of a checkpoint over to this program.
+pub fn take_over(info: &mut RunInfo, scene: &Scene, host: &Host<'_>) {
     if (&info.version, &info.commit) != (&host.version, &host.commit) {
         info.warnings.push(format!(
             "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those of an \
@@ -157,10 +203,6 @@ fn go_on(
     info.status = Status::Running;
     info.stop_reason = None;
     info.resumed_at_s.push(info.samples as f64 * info.interval_s);
-    let mut run = Run::resume(&scene, &assembly, machine, saved, dir)?;
-    run.info.setup_s += (host.wall_s)() - started;
-    dir.go_on(&scene, &run.info)?;
-    run.finish(dir, host, progress, watch)
 }
 
 /// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked without
@@ -169,12 +211,18 @@ fn go_on(
 /// # Errors
 /// As [`resume`].
 pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
-    let info = read_saved(dir, &Scene::read(dir.scene())?)?.info;
+    let info = read_saved::<Saved>(dir, &Scene::read(dir.scene())?)?.info;
     Ok(info.samples as f64 * info.interval_s)
 }
 
 /// The checkpoint in `dir`, to continue from under `scene`.
-fn read_saved(dir: &RunDir, scene: &Scene) -> Result<Checkpoint, Error> {
+///
+/// # Errors
+/// [`Error::Resume`] when there is nothing to continue or nothing to continue from.
+pub fn read_saved<S: Serialize + DeserializeOwned>(
+    dir: &RunDir,
+    scene: &Scene,
+) -> Result<Checkpoint<S>, Error> {
     let doubt = may_go_on(dir, scene)?;
     let mut saved = Checkpoint::read(&dir.checkpoint(), &identity(scene))?;
     saved.info.steps_planned = check_counts(dir, scene, &saved.info)?;
@@ -263,6 +311,14 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
 /// Writes the mesh at the start of the run: as the preload has left it, and free of stress
 /// ([`stribeck_scene::mesh_file`]).
 fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<(), Error> {
+    Ok(write_atomic(&dir.mesh(), &mesh_file(assembly, machine)?)?)
+}
+
+/// The mesh file of the machine as it stands.
+///
+/// # Errors
+/// When the mesh cannot be written as a file.
+pub fn mesh_file(assembly: &Assembly, machine: &Machine) -> Result<Vec<u8>, Error> {
     let mut mesh = assembly.model.mesh.clone();
     let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(&x, &y)| [x, y, 0.0]).collect();
     for n in 0..mesh.x.len() {
@@ -277,5 +333,5 @@ fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<()
         [vtu::Field::vector("displacement_m", &moved), vtu::Field::exact_vector(REFERENCE, &reference)];
     let mut file = Vec::new();
     vtu::write(&mut file, &mesh, &fields, &[])?;
-    Ok(write_atomic(&dir.mesh(), &file)?)
+    Ok(file)
 }

@@ -32,7 +32,10 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
 }
 
 /// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came only near.
-pub(crate) fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<Option<String>, Error> {
+///
+/// # Errors
+/// When there is no equilibrium to be found.
+pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<Option<String>, Error> {
     let mut undecided = vec![UndecidedMotion { body: machine.outer, along: None, rotation: true }];
     for (i, roller) in machine.rollers.iter().enumerate() {
         let (s, c) = roller_angle(scene, i).sin_cos();

@@ -2,16 +2,14 @@
 
 use std::ops::ControlFlow;
 
+use serde::{Serialize, de::DeserializeOwned};
 use stribeck_system::{Ledger, Workers};
 
 use crate::{
-    assembly::{Assembly, Machine},
     checkpoint::{Checkpoint, identity},
     error::Error,
-    frames::Frames,
-    guards::{self, Guards},
     host::{Host, Progress},
-    recorder::Recorder,
+    recorder,
 };
 use stribeck_scene::{
     run_dir::{RunDir, write_atomic},
@@ -19,6 +17,44 @@ use stribeck_scene::{
     scene::Scene,
     trace::TraceWriter,
 };
+
+/// A model of a bearing in motion: what the time loop drives from sample to sample.
+pub trait Motion: Send {
+    /// What it takes to go on from a sample.
+    type Saved: Serialize + DeserializeOwned;
+
+    /// Takes the steps of one sampling interval; the last one is accounted for.
+    ///
+    /// # Errors
+    /// When the model cannot take steps at all.
+    fn interval(&mut self, steps: usize) -> Result<Ledger, Error>;
+
+    /// The row of the trace for the interval before, in the order of [`recorder::names`].
+    fn row(&mut self) -> &[f64];
+
+    /// Steps taken.
+    fn steps(&self) -> u64;
+
+    /// Time of the positions [s].
+    fn time(&self) -> f64;
+
+    /// Peak of the strain energy so far [J], and the largest imbalance of energy over it [-].
+    fn balance(&self) -> [f64; 2];
+
+    /// Looks at the state after a sample: adds warnings to `info`; the reason to stop, if there is one.
+    fn look(&mut self, info: &mut RunInfo) -> Option<String>;
+
+    /// Writes the picture of a sample, if one is due.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    fn picture(&mut self, _sample: usize) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// What it takes to go on.
+    fn saved(&self) -> Self::Saved;
+}
 
 /// Columns of `energy.npy`; with oil, one of its heat follows.
 const COLUMNS: [&str; 11] = [
@@ -51,17 +87,16 @@ fn columns(scene: &Scene) -> Vec<&'static str> {
 }
 
 /// A run in its time loop.
-pub(crate) struct Run<'a> {
-    pub(crate) info: RunInfo,
+pub struct Run<M> {
+    /// What `run.json` says.
+    pub info: RunInfo,
     /// What its checkpoints belong to.
     identity: String,
-    assembly: &'a Assembly,
-    machine: Machine,
-    recorder: Recorder,
+    motion: M,
     trace: TraceWriter,
     energy: TraceWriter,
-    frames: Option<Frames>,
-    guards: Guards,
+    /// Whether the ledger has a column for oil.
+    oiled: bool,
 }
 
 /// When a run was last saved, and what that cost.
@@ -83,65 +118,43 @@ impl Saved {
     }
 }
 
-impl<'a> Run<'a> {
+impl<M: Motion> Run<M> {
     /// A run before its first step.
-    pub(crate) fn start(
-        scene: &Scene,
-        assembly: &'a Assembly,
-        mut machine: Machine,
-        info: RunInfo,
-        dir: &RunDir,
-    ) -> Result<Self, Error> {
-        guards::arm(scene, &mut machine.system);
+    ///
+    /// # Errors
+    /// When the traces cannot be written.
+    pub fn start(scene: &Scene, motion: M, info: RunInfo, dir: &RunDir) -> Result<Self, Error> {
         Ok(Self {
-            recorder: Recorder::new(scene, &machine),
-            trace: TraceWriter::create(dir.trace(), &Recorder::names(scene))?,
+            trace: TraceWriter::create(dir.trace(), &recorder::names(scene))?,
             energy: TraceWriter::create(dir.energy(), &columns(scene))?,
-            frames: Frames::of(scene, dir.frames()),
-            guards: Guards::new(scene, assembly, &machine),
+            oiled: scene.film.is_some(),
             identity: identity(scene),
             info,
-            assembly,
-            machine,
+            motion,
         })
     }
 
     /// A run as it was saved. Samples that were written after the checkpoint are cut off; they will come again.
-    pub(crate) fn resume(
-        scene: &Scene,
-        assembly: &'a Assembly,
-        mut machine: Machine,
-        saved: Checkpoint,
-        dir: &RunDir,
-    ) -> Result<Self, Error> {
-        let other = |what: String| Error::Resume {
-            path: dir.path().to_owned(),
-            reason: format!("{what}. Continue it with the program that began it, or start it anew"),
-        };
-        let elsewhere =
-            || other("this program makes another model of the scene than the checkpoint has".into());
-        if saved.info.mesh != assembly.mesh_info() {
-            return Err(elsewhere());
-        }
-        guards::arm(scene, &mut machine.system);
-        machine.system.restore(saved.system).map_err(|e| other(e.to_string()))?;
-        let recorder = Recorder::resume(&machine, saved.recorder).ok_or_else(elsewhere)?;
-        let rows = saved.info.samples as u64;
+    ///
+    /// # Errors
+    /// When the traces cannot be written, or hold fewer samples.
+    pub fn resume(scene: &Scene, motion: M, info: RunInfo, dir: &RunDir) -> Result<Self, Error> {
+        let rows = info.samples as u64;
         Ok(Self {
-            recorder,
-            trace: TraceWriter::resume(dir.trace(), &Recorder::names(scene), rows)?,
+            trace: TraceWriter::resume(dir.trace(), &recorder::names(scene), rows)?,
             energy: TraceWriter::resume(dir.energy(), &columns(scene), rows)?,
-            frames: Frames::of(scene, dir.frames()),
-            guards: Guards::new(scene, assembly, &machine),
+            oiled: scene.film.is_some(),
             identity: identity(scene),
-            info: saved.info,
-            assembly,
-            machine,
+            info,
+            motion,
         })
     }
 
     /// Takes all steps that are left and closes the files.
-    pub(crate) fn finish(
+    ///
+    /// # Errors
+    /// When samples cannot be written.
+    pub fn finish(
         mut self,
         dir: &RunDir,
         host: &Host<'_>,
@@ -162,23 +175,21 @@ impl<'a> Run<'a> {
         progress.steps = self.info.steps_planned;
         for sample in self.info.samples + 1..=samples {
             // The steps of an interval run inside the pool: a fork from outside costs much more than one within.
-            let ledger = workers.run(|| self.interval(steps_per_sample))?;
+            let ledger = workers.run(|| self.motion.interval(steps_per_sample))?;
             self.write(&ledger)?;
-            if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
-                frames.write(sample, self.assembly, &self.machine)?;
-            }
-            let system = &self.machine.system;
-            self.info.steps = system.steps();
+            self.motion.picture(sample)?;
+            self.info.steps = self.motion.steps();
             self.info.samples = sample;
+            self.info.simulated_s = sample as f64 * self.info.interval_s;
             // Clocks may jump; times that are written only grow.
             self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
             let cpu = (host.cpu_s)();
             self.info.cpu_s = self.info.cpu_s.max(earlier.1 + cpu);
             self.info.loop_cpu_s = self.info.loop_cpu_s.max(earlier.2 + cpu - set_up_cpu);
-            progress.step = system.steps();
-            progress.time_s = system.time();
+            progress.step = self.motion.steps();
+            progress.time_s = self.motion.time();
             progress.energy_error = ledger.relative_error;
-            let stop = self.guards.look(&mut self.info, &mut self.machine);
+            let stop = self.motion.look(&mut self.info);
             if stop.is_some() {
                 self.info.status = Status::Diverged;
                 self.info.stop_reason = stop;
@@ -225,7 +236,7 @@ impl<'a> Run<'a> {
             && !saved.failed
         {
             saved.failed = true;
-            let at = 1e3 * self.machine.system.time();
+            let at = 1e3 * self.motion.time();
             self.info.warnings.push(format!("no checkpoint at {at:.3} ms, the run went on: {error}"));
         }
         saved.sample = self.info.samples;
@@ -234,31 +245,13 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    fn checkpoint(&self) -> Checkpoint {
-        Checkpoint {
-            info: self.info.clone(),
-            system: self.machine.system.snapshot(),
-            recorder: self.recorder.memory().clone(),
-        }
-    }
-
-    /// Takes the steps of one sampling interval; the last one is accounted for.
-    fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
-        for _ in 1..steps {
-            self.machine.system.step()?;
-            self.recorder.after_step(&self.machine);
-        }
-        self.recorder.before_step(&self.machine);
-        let ledger = self.machine.system.step_with_ledger()?;
-        self.recorder.after_step(&self.machine);
-        Ok(ledger)
+    fn checkpoint(&self) -> Checkpoint<M::Saved> {
+        Checkpoint { info: self.info.clone(), motion: self.motion.saved() }
     }
 
     /// Writes one sample.
     fn write(&mut self, l: &Ledger) -> Result<(), Error> {
-        let balance = self.machine.system.balance();
-        self.info.energy.peak_strain_j = balance.peak_strain;
-        self.info.energy.max_relative_error = balance.largest_error;
+        [self.info.energy.peak_strain_j, self.info.energy.max_relative_error] = self.motion.balance();
         let mut row = vec![
             l.time,
             l.kinetic,
@@ -272,10 +265,10 @@ impl<'a> Run<'a> {
             l.drive,
             l.relative_error,
         ];
-        if self.machine.oiled {
+        if self.oiled {
             row.push(l.film);
         }
         self.energy.push(&row)?;
-        Ok(self.trace.push(self.recorder.sample(&self.machine))?)
+        Ok(self.trace.push(self.motion.row())?)
     }
 }

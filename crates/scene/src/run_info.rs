@@ -31,6 +31,9 @@ pub struct RunInfo {
     pub interval_s: f64,
     /// Samples written.
     pub samples: usize,
+    /// Simulated time [s].
+    #[serde(default)]
+    pub simulated_s: f64,
     /// Mesh counts.
     pub mesh: MeshInfo,
     /// Wall-clock time of the time loop [s].
@@ -46,6 +49,9 @@ pub struct RunInfo {
     /// version, machine and threads are those of the last one.
     #[serde(default)]
     pub resumed_at_s: Vec<f64>,
+    /// What the reduced model kept; none in the full one.
+    #[serde(default)]
+    pub reduced: Option<ReducedInfo>,
     /// Energy verdict.
     pub energy: EnergyInfo,
     /// The worst that the other guards have seen.
@@ -72,7 +78,7 @@ pub enum Status {
 }
 
 /// Mesh counts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MeshInfo {
     /// Nodes.
     pub nodes: usize,
@@ -86,6 +92,17 @@ pub struct MeshInfo {
     pub outer_facets: usize,
     /// Facets on the inner raceway.
     pub inner_facets: usize,
+}
+
+/// What the reduced model kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReducedInfo {
+    /// Modes of outer ring and adapter, the two that nothing resists among them.
+    pub modes: usize,
+    /// Highest natural frequency that was kept [Hz].
+    pub highest_hz: f64,
+    /// Whether the modes were read from an earlier run's.
+    pub from_cache: bool,
 }
 
 /// Energy verdict.

@@ -8,6 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Scene {
     /// Short name, also that of the run directory.
     pub name: String,
+    /// Which model of the bearing runs.
+    pub model: ModelScene,
     /// Rings and rolling elements.
     pub bearing: BearingScene,
     /// The rigid cage; `None` leaves the rollers unguided.
@@ -32,6 +34,28 @@ pub struct Scene {
     pub output: OutputScene,
     /// What is watched.
     pub guards: GuardsScene,
+}
+
+/// A model of the bearing.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ModelScene {
+    /// All bodies of finite elements.
+    #[default]
+    Full,
+    /// Outer ring and adapter in their modes below a frequency, rollers and cage rigid with local compliance: a second in
+    /// about a second.
+    Reduced(ReducedScene),
+}
+
+/// The reduced model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ReducedScene {
+    /// Natural frequency up to which modes of outer ring and adapter are kept [kHz].
+    pub modes_khz: f64,
+    /// Longest time step [µs]; shortened so that a whole number of steps fits into a sampling interval.
+    pub step_us: f64,
 }
 
 /// Rings and rolling elements (paper, Table 1).
@@ -438,6 +462,7 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             name: "singh2014".into(),
+            model: ModelScene::Full,
             bearing: BearingScene::default(),
             cage: Some(CageScene::default()),
             adapter: AdapterScene::default(),
@@ -451,6 +476,12 @@ impl Default for Scene {
             output: OutputScene::default(),
             guards: GuardsScene::default(),
         }
+    }
+}
+
+impl Default for ReducedScene {
+    fn default() -> Self {
+        Self { modes_khz: 30.0, step_us: 2.0 }
     }
 }
 

@@ -4,6 +4,19 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
+    /// The iteration for natural modes did not come to its end.
+    #[error(
+        "only {found} natural modes below {hertz} Hz were found in {iterations} iterations: take a lower limit"
+    )]
+    Modes {
+        /// How many were found.
+        found: usize,
+        /// Iterations taken.
+        iterations: usize,
+        /// Upper end of the band [Hz].
+        hertz: f64,
+    },
+
     /// A number is outside its range.
     #[error("{field} = {value}: must be {allowed}")]
     OutOfRange {

@@ -9,10 +9,15 @@ mod factor;
 mod graph;
 mod hold;
 mod matrix;
+mod modes;
 mod residual;
+mod small_motions;
 mod stiffness;
 mod tangent;
 mod unknowns;
+
+pub use modes::{Modes, modes_below};
+pub use small_motions::{SmallMotions, Spring};
 
 use residual::Residual;
 use tangent::Tangent;

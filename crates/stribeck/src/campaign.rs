@@ -13,8 +13,10 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::findings::Findings;
-use stribeck_bearing::error::Error;
-use stribeck_bearing::simulation::{self, Progress};
+use stribeck_bearing::error::Error as BearingError;
+use stribeck_bearing::simulation::Progress;
+use stribeck_reduced::error::Error;
+use stribeck_reduced::simulation;
 use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::run_dir::{Run, RunDir, State, write_atomic};
 use stribeck_scene::run_info::RunInfo;
@@ -252,10 +254,10 @@ impl Shop<'_> {
     fn note(&self, number: usize, scene: &Scene, done: Result<RunInfo, Error>) {
         match done {
             Ok(info) => self.board.done(number, &run_words(&info)),
-            Err(Error::Scene(stribeck_scene::Error::FolderInUse { .. })) => {
+            Err(Error::Bearing(BearingError::Scene(stribeck_scene::Error::FolderInUse { .. }))) => {
                 self.board.done(number, "is being run by another program");
             }
-            Err(error @ Error::Scene(_)) => {
+            Err(error @ Error::Bearing(BearingError::Scene(_))) => {
                 // What was written is there; the rest can follow when there is space again.
                 self.disk_refuses.store(true, Ordering::Relaxed);
                 self.board.done(number, &format!("failed: {error}"));

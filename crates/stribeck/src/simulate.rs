@@ -8,7 +8,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::report;
-use stribeck_bearing::simulation::{self, Progress};
+use stribeck_bearing::simulation::Progress;
+use stribeck_reduced::simulation;
 use stribeck_scene::Error;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status, clock};

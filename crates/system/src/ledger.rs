@@ -97,6 +97,12 @@ pub struct Balance {
 }
 
 impl Balance {
+    /// Enters a ledger, and completes it; the first one is what it counts from where nothing was entered before.
+    pub fn begin_or_enter(&mut self, ledger: &mut Ledger, scale: Scale) {
+        self.reference.get_or_insert(ledger.balance());
+        self.enter(ledger, scale);
+    }
+
     /// Enters a ledger, and completes it.
     pub(crate) fn enter(&mut self, ledger: &mut Ledger, scale: Scale) {
         self.peak_strain = self.peak_strain.max(ledger.strain);

@@ -86,6 +86,8 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
         steps_planned: 968_000,
         interval_s: INTERVAL_S,
         samples,
+        simulated_s: 0.0,
+        reduced: None,
         mesh: mesh::counts(),
         wall_s: 300.0,
         cpu_s: 590.0,

@@ -19,6 +19,8 @@ fn info(status: Status) -> RunInfo {
         steps_planned: 20,
         interval_s: 1e-5,
         samples: 2,
+        simulated_s: 0.0,
+        reduced: None,
         mesh: MeshInfo {
             nodes: 4,
             quads: 1,

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
-use crate::scene::Scene;
+use crate::scene::{DefectRing, ModelScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
@@ -33,6 +33,9 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_band,
         damped_bodies,
         damped_twice,
+        reduced_starts,
+        reduced_oil,
+        reduced_inner,
     ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
@@ -182,6 +185,54 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
             )
             .number(interval / 10.0, note)
             .number(interval / 500.0, "two samples"),
+        ],
+    ))
+}
+
+/// Films of oil are the full model's.
+fn reduced_oil(scene: &Scene) -> Option<Finding> {
+    if scene.model == ModelScene::Full || scene.film.is_none() {
+        return None;
+    }
+    let message = "`film` is there, and the reduced model has dry contacts alone".to_owned();
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new("film", "`None`".to_owned()).value("None", ""),
+            Remedy::new("model", "`full`".to_owned()).value("full", ""),
+        ],
+    ))
+}
+
+/// The reduced inner ring is a circle.
+fn reduced_inner(scene: &Scene) -> Option<Finding> {
+    if scene.model == ModelScene::Full || scene.defect.as_ref()?.ring == DefectRing::Outer {
+        return None;
+    }
+    let message =
+        "`defect.ring` is `inner`, and the reduced model knows defects of the outer raceway alone".to_owned();
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new("defect.ring", "`outer`".to_owned()).value("outer", ""),
+            Remedy::new("model", "`full`".to_owned()).value("full", ""),
+        ],
+    ))
+}
+
+/// The reduced model is made about the preload.
+fn reduced_starts(scene: &Scene) -> Option<Finding> {
+    if scene.model == ModelScene::Full || scene.solver.start == Start::Preloaded {
+        return None;
+    }
+    let message =
+        "`solver.start` is `sudden`, and the reduced model knows small motions about the preload alone"
+            .to_owned();
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new("solver.start", "`preloaded`".to_owned()).value("preloaded", ""),
+            Remedy::new("model", "`full`".to_owned()).value("full", ""),
         ],
     ))
 }

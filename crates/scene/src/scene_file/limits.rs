@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
-use crate::scene::{FilmScene, GradingScene, Scene, StructuralDampingScene};
+use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
 
 /// Longest name of a scene or sensor: they become folder and channel names.
 const MAX_NAME: usize = 64;
@@ -64,7 +64,7 @@ pub(crate) fn allowed(path: &str) -> Option<String> {
 
 /// A scene in which no optional number is absent.
 fn with_everything() -> Scene {
-    let mut scene = Scene::default();
+    let mut scene = Scene { model: ModelScene::Reduced(ReducedScene::default()), ..Scene::default() };
     scene.mesh.outer_facets = Some(1257);
     scene.mesh.inner_facets = Some(1030);
     scene.mesh.grading = Some(GradingScene::default());
@@ -115,6 +115,10 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     let mut add = |path: &str, value: f64, range: Range, unit: &'static str| {
         list.push(Number { path: path.to_owned(), value, range, unit });
     };
+    if let ModelScene::Reduced(reduced) = &scene.model {
+        add("model.modes_khz", reduced.modes_khz, within(2.0, 300.0), "kHz");
+        add("model.step_us", reduced.step_us, within(0.05, 5.0), "µs");
+    }
     add("bearing.outer_race_diameter_mm", b.outer_race_diameter_mm, positive(20_000.0), "mm");
     add("bearing.outer_ring_thickness_mm", b.outer_ring_thickness_mm, positive(5_000.0), "mm");
     add("bearing.inner_race_diameter_mm", b.inner_race_diameter_mm, positive(20_000.0), "mm");

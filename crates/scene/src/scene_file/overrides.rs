@@ -164,6 +164,8 @@ fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
         return format!("{}{value}{}", &text[..start], &text[end..]);
     }
     match path.rsplit_once('.') {
+        // The other model than the one that has such fields is a word, not a group.
+        Some(("model", name)) => write(text, outline, "model", &format!("reduced({name}: {value})")),
         Some((section, name)) => write(text, outline, section, &format!("({name}: {value})")),
         None => text.to_owned(),
     }

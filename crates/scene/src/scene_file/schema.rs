@@ -1,7 +1,7 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
 use super::outline::Outline;
-use crate::scene::{FilmScene, GradingScene, Scene, StructuralDampingScene};
+use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
 
 /// Groups that a scene may lack.
 const OPTIONAL_GROUPS: [&str; 6] =
@@ -15,7 +15,8 @@ pub(crate) struct Schema {
 
 impl Schema {
     pub(crate) fn new() -> Self {
-        let mut scene = Scene::default();
+        // A word by default, but what stands behind another one must be known.
+        let mut scene = Scene { model: ModelScene::Reduced(ReducedScene::default()), ..Scene::default() };
         // Absent by default, but its fields must be known.
         scene.mesh.grading = Some(GradingScene::default());
         scene.solver.structural_damping = Some(StructuralDampingScene::default());

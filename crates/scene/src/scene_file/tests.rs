@@ -486,3 +486,15 @@ fn example_defects_on_either_ring_with_sloped_edges() {
         assert_eq!(only(parse(text)).field, field, "{text}");
     }
 }
+
+#[test]
+fn refuses_reduced_scenes_of_what_only_the_full_model_has() {
+    for (text, field) in [
+        ("(model: reduced(modes_khz: 30))", "film"),
+        ("(model: reduced(modes_khz: 30), film: None, defect: (ring: inner))", "defect.ring"),
+        ("(model: reduced(modes_khz: 30), film: None, solver: (start: sudden))", "solver.start"),
+    ] {
+        assert_eq!(only(parse(text)).field, field, "{text}");
+    }
+    assert!(parse("(model: reduced(modes_khz: 30), film: None)").is_ok());
+}

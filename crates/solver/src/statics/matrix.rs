@@ -55,6 +55,21 @@ impl Matrix {
         true
     }
 
+    /// Adds the product with `u` to `to`.
+    pub(super) fn times(&self, u: &[f64], to: &mut [f64]) {
+        for (column, span) in self.columns.windows(2).enumerate() {
+            let mut sum = 0.0;
+            for at in span[0]..span[1] {
+                let (row, value) = (self.rows[at], self.values[at]);
+                to[row] += value * u[column];
+                if row != column {
+                    sum += value * u[row];
+                }
+            }
+            to[column] += sum;
+        }
+    }
+
     /// The pattern.
     pub(super) fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
         let n = self.columns.len() - 1;

@@ -128,7 +128,7 @@ impl LaidOut {
 }
 
 /// Adds what couples the nodes of a piece, block by block; calls `missing` for slots that have no place.
-fn scatter(
+pub(super) fn scatter(
     unknowns: &Unknowns,
     slots: &[u32],
     block: impl Fn(usize, usize) -> [[f64; 2]; 2],
@@ -155,7 +155,7 @@ fn scatter(
 }
 
 /// Adds the stiffness of all elements; a held component gets a one.
-fn elastic(unknowns: &Unknowns, d: &Dynamics, matrix: &mut Matrix) {
+pub(super) fn elastic(unknowns: &Unknowns, d: &Dynamics, matrix: &mut Matrix) {
     let (x, y) = (&d.state.x, &d.state.y);
     let corner = |n: u32| [x[n as usize], y[n as usize]];
     let elements = d.elements();

@@ -18,8 +18,14 @@ pub(super) struct Unknowns {
 
 impl Unknowns {
     pub(super) fn new(d: &Dynamics) -> Self {
-        let moves = |slot: &usize| d.free_components(*slot) != [false; 2];
-        let slots: Vec<u32> = d.elastic_slots().into_iter().filter(moves).map(|slot| slot as u32).collect();
+        let slots: Vec<u32> = d.elastic_slots().into_iter().map(|slot| slot as u32).collect();
+        Self::of_slots(d, &slots)
+    }
+
+    /// Those of these slots that may move.
+    pub(super) fn of_slots(d: &Dynamics, slots: &[u32]) -> Self {
+        let moves = |slot: &u32| d.free_components(*slot as usize) != [false; 2];
+        let slots: Vec<u32> = slots.iter().copied().filter(moves).collect();
         let free = slots.iter().map(|&slot| d.free_components(slot as usize)).collect();
         let mut unknowns = Self { slots, free, index: vec![FIXED; d.state.x.len()] };
         unknowns.number();

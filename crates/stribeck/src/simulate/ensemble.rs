@@ -7,8 +7,9 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Result, bail, ensure};
 use stribeck_analysis::report;
-use stribeck_bearing::error::Error;
-use stribeck_bearing::simulation::{self, Progress};
+use stribeck_bearing::simulation::Progress;
+use stribeck_reduced::error::Error;
+use stribeck_reduced::simulation;
 use stribeck_scene::ensemble::{Ensemble, is_start_of, start};
 use stribeck_scene::run_dir::{RunDir, State};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
@@ -231,7 +232,9 @@ impl Shop<'_> {
         }
         match done {
             // What was written is there; the rest can follow when there is space again.
-            Err(Error::Scene(_)) => self.disk_refuses.store(true, Ordering::Relaxed),
+            Err(Error::Bearing(stribeck_bearing::error::Error::Scene(_))) => {
+                self.disk_refuses.store(true, Ordering::Relaxed)
+            }
             Err(error) => drop(ensemble.failed.insert(number, error.to_string())),
             Ok(_) => {}
         }

@@ -1,0 +1,120 @@
+//! The full model in motion: elements, contact, recorder, guards and frames as the time loop drives them.
+
+use serde::{Deserialize, Serialize};
+use stribeck_system::{Ledger, Snapshot};
+
+use crate::{
+    assembly::{Assembly, Machine},
+    error::Error,
+    frames::Frames,
+    guards::{self, Guards},
+    recorder::{self, Recorder},
+    time_loop::Motion,
+};
+use stribeck_scene::{run_dir::RunDir, run_info::RunInfo, scene::Scene};
+
+/// What a checkpoint holds of the full model.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Saved {
+    system: Snapshot,
+    recorder: recorder::Memory,
+}
+
+/// The full model in motion.
+pub(crate) struct Full<'a> {
+    assembly: &'a Assembly,
+    machine: Machine,
+    recorder: Recorder,
+    frames: Option<Frames>,
+    guards: Guards,
+}
+
+impl<'a> Full<'a> {
+    /// Before its first step.
+    pub(crate) fn start(scene: &Scene, assembly: &'a Assembly, mut machine: Machine, dir: &RunDir) -> Self {
+        guards::arm(scene, &mut machine.system);
+        Self {
+            recorder: Recorder::new(scene, &machine),
+            frames: Frames::of(scene, dir.frames()),
+            guards: Guards::new(scene, assembly, &machine),
+            assembly,
+            machine,
+        }
+    }
+
+    /// As it was saved.
+    pub(crate) fn resume(
+        scene: &Scene,
+        assembly: &'a Assembly,
+        mut machine: Machine,
+        info: &RunInfo,
+        saved: Saved,
+        dir: &RunDir,
+    ) -> Result<Self, Error> {
+        let other = |what: String| Error::Resume {
+            path: dir.path().to_owned(),
+            reason: format!("{what}. Continue it with the program that began it, or start it anew"),
+        };
+        let elsewhere =
+            || other("this program makes another model of the scene than the checkpoint has".into());
+        if info.mesh != assembly.mesh_info() {
+            return Err(elsewhere());
+        }
+        guards::arm(scene, &mut machine.system);
+        machine.system.restore(saved.system).map_err(|e| other(e.to_string()))?;
+        Ok(Self {
+            recorder: Recorder::resume(&machine, saved.recorder).ok_or_else(elsewhere)?,
+            frames: Frames::of(scene, dir.frames()),
+            guards: Guards::new(scene, assembly, &machine),
+            assembly,
+            machine,
+        })
+    }
+}
+
+impl Motion for Full<'_> {
+    type Saved = Saved;
+
+    fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
+        for _ in 1..steps {
+            self.machine.system.step()?;
+            self.recorder.after_step(&self.machine);
+        }
+        self.recorder.before_step(&self.machine);
+        let ledger = self.machine.system.step_with_ledger()?;
+        self.recorder.after_step(&self.machine);
+        Ok(ledger)
+    }
+
+    fn row(&mut self) -> &[f64] {
+        self.recorder.sample(&self.machine)
+    }
+
+    fn steps(&self) -> u64 {
+        self.machine.system.steps()
+    }
+
+    fn time(&self) -> f64 {
+        self.machine.system.time()
+    }
+
+    fn balance(&self) -> [f64; 2] {
+        let balance = self.machine.system.balance();
+        [balance.peak_strain, balance.largest_error]
+    }
+
+    fn look(&mut self, info: &mut RunInfo) -> Option<String> {
+        self.guards.look(info, &mut self.machine)
+    }
+
+    fn picture(&mut self, sample: usize) -> Result<(), Error> {
+        if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
+            frames.write(sample, self.assembly, &self.machine)?;
+        }
+        Ok(())
+    }
+
+    fn saved(&self) -> Saved {
+        Saved { system: self.machine.system.snapshot(), recorder: self.recorder.memory().clone() }
+    }
+}

@@ -1,0 +1,401 @@
+//! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
+
+use stribeck_contact::Law;
+use stribeck_scene::{
+    geometry::Geometry,
+    kinematics::Kinematics,
+    scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
+};
+use stribeck_solver::structural_damping::{Branch, StructuralDamping};
+
+use crate::{
+    compliance::Compliance,
+    error::Error,
+    overlap::{Outline, Overlap, Sides, View, overlap},
+    reduction::{Reduction, STICKING},
+    state::State,
+};
+
+/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
+const SEARCHES: usize = 4;
+const NEWTON: usize = 2;
+
+/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap was integrated, its
+/// series leaves an error of the third power.
+const ENOUGH: f64 = 3e-2;
+const LITTLE: f64 = 1e-2;
+
+/// What does not change during a run.
+#[derive(Debug, Clone)]
+pub struct Bearing {
+    /// Time step [s].
+    pub time_step: f64,
+    /// Rollers.
+    pub rollers: usize,
+    /// The reduced rings.
+    pub reduction: Reduction,
+    /// Contact with the outer raceway.
+    pub(crate) outer: Track,
+    /// Contact with the inner raceway.
+    pub(crate) inner: Track,
+    pub(crate) roller: Outline,
+    /// Angle of vertex 0 of each roller at the start [rad].
+    pub(crate) vertex_angle: Vec<f64>,
+    /// Normal and tangential stiffness and damping a metre of contact: [N/m²], [N/m²], [N s/m²].
+    pub(crate) penalty: f64,
+    pub(crate) sticking: f64,
+    pub(crate) damping: f64,
+    pub(crate) friction: f64,
+    /// Radius at which friction acts [m].
+    pub(crate) arm: f64,
+    /// Mass damping [1/s] and its frame.
+    pub(crate) alpha: f64,
+    pub(crate) frame: DampingFrame,
+    /// Stiffness damping β [s].
+    pub(crate) beta: f64,
+    /// Branches of the structural damping of outer ring and adapter.
+    pub(crate) branches: Vec<Branch>,
+    pub(crate) gravity: f64,
+    pub(crate) kinematics: Kinematics,
+    pub(crate) cage: Option<Cage>,
+}
+
+/// One raceway.
+#[derive(Debug, Clone)]
+pub(crate) struct Track {
+    pub(crate) outline: Outline,
+    /// One over the angle that each facet takes [1/rad]; 0 for walls.
+    pub(crate) angle: Vec<f64>,
+    pub(crate) sides: Sides,
+    pub(crate) compliance: Compliance,
+    /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
+    /// one around.
+    pub(crate) bound: f64,
+    /// Largest relative radius [m].
+    pub(crate) relative: f64,
+}
+
+/// The cage as a rigid body with corners and walls.
+#[derive(Debug, Clone)]
+pub(crate) struct Cage {
+    pub(crate) mass: f64,
+    pub(crate) inertia: f64,
+    /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre of mass.
+    pub(crate) walls: Vec<[Wall; 2]>,
+    /// Length of cage that an end of a wall stands for in its own pass [m].
+    pub(crate) corner: f64,
+}
+
+/// A wall from its inner to its outer end, with the normal that points into the pocket.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wall {
+    pub(crate) ends: [[f64; 2]; 2],
+    pub(crate) normal: [f64; 2],
+}
+
+/// One contact of a roller with a raceway in the present step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Touch {
+    /// Normal force of penalty and compliance [N].
+    pub(crate) normal: f64,
+    /// Force of the same along t [N].
+    pub(crate) across: f64,
+    /// Derivative of the compliance's approach there [m/N].
+    pub(crate) give: f64,
+    /// What overlaps at that force.
+    pub(crate) overlap: Overlap,
+    pub(crate) d: [f64; 2],
+}
+
+impl Bearing {
+    /// The bearing of a scene whose rings have been reduced.
+    ///
+    /// # Errors
+    /// When the structural damping cannot be fitted.
+    pub fn new(scene: &Scene, reduction: Reduction, time_step: f64) -> Result<Self, Error> {
+        let g = Geometry::of(scene);
+        let [outer, inner, roller] = reduction.outlines();
+        let arcs = scene.contact.surface != ContactSurface::Facet;
+        let law = Law::penalty(g.penalty_stiffness)
+            .and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass));
+        let law = law?;
+        let radius = g.roller_radius;
+        let n = roller.len() as f64;
+        let sag = |radius: f64, facets: f64| {
+            if arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
+        };
+        let [kr, ko, ki] = [1.0 / radius, 1.0 / g.outer_race_radius, 1.0 / g.inner_race_radius];
+        let sides = |along: bool, relative: f64| Sides {
+            along,
+            bulge: if arcs { 0.5 * relative } else { 0.0 },
+            curvature: if arcs { kr } else { 0.0 },
+        };
+        let radii = |outline: &Outline| {
+            outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
+        };
+        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min)
+            - sag(g.outer_race_radius, outer.len() as f64);
+        let farthest = radii(&inner).into_iter().fold(0.0, f64::max);
+        let track =
+            |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
+                sides: sides(along, relative),
+                angle: per_angle(&outline),
+                outline,
+                compliance: compliance.clone(),
+                bound,
+                relative: 1.0 / relative,
+            };
+        let vertex_angle = (0..g.rollers)
+            .map(|i| match scene.mesh.roller_copies {
+                RollerCopies::Translated => g.roller_phase,
+                RollerCopies::Rotated => g.roller_angle(i) + g.roller_phase,
+            })
+            .collect();
+        let branches = match (&scene.solver.structural_damping, g.structural_damping) {
+            (Some(chosen), Some(band)) => {
+                StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
+                    .branches()
+                    .to_vec()
+            }
+            _ => Vec::new(),
+        };
+        let cage =
+            reduction.cage.map(|([mass, inertia], centre)| Cage::new(&g, mass, inertia, centre, scene));
+        let mut reduction = reduction;
+        level_walls(&mut reduction, &per_angle(&outer));
+        Ok(Self {
+            time_step,
+            rollers: g.rollers,
+            outer: track(outer, true, &reduction.outer_compliance, nearest, kr - ko),
+            inner: track(inner, false, &reduction.inner_compliance, farthest, kr + ki),
+            vertex_angle,
+            penalty: law.stiffness * g.thickness,
+            sticking: STICKING * law.stiffness * g.thickness,
+            damping: law.damping * g.thickness,
+            friction: scene.contact.friction,
+            arm: radius - 2.0 / 3.0 * sag(radius, n),
+            alpha: scene.solver.mass_damping_per_s,
+            frame: scene.solver.damping_frame,
+            beta: g.stiffness_damping,
+            branches,
+            gravity: g.gravity,
+            kinematics: Kinematics::of(scene),
+            cage: cage.flatten(),
+            roller,
+            reduction,
+        })
+    }
+
+    /// Contact of a roller with a raceway: everything in the frame of the raceway's outline. `hints` are the facets found
+    /// last, `before` the force of the step before.
+    #[inline(always)]
+    pub(crate) fn touch(
+        &self,
+        track: &Track,
+        centre: [f64; 2],
+        spin: [f64; 2],
+        hints: &mut [u32; 2],
+        before: f64,
+    ) -> Touch {
+        let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
+        let outwards = if track.sides.along { 1.0 } else { -1.0 };
+        let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
+        let most = outwards * (distance - track.bound) + self.top();
+        if most <= 0.0 {
+            return Touch { d, ..Touch::default() };
+        }
+        // The roller's own frame: turned back by its spin.
+        let [c, s] = spin;
+        let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
+        let facet = self.roller.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
+        let under = track.outline.facet_along(centre, d, hints[1] as usize, outwards);
+        *hints = [facet as u32, under as u32];
+        let roller = View { outline: &self.roller, from: [0.0; 2], d: own, facet };
+        let raceway = View { outline: &track.outline, from: centre, d, facet: under };
+        let mut force = before;
+        let mut found = Overlap::default();
+        let (mut give, mut given) = (0.0, 0.0);
+        for _ in 0..SEARCHES {
+            let [shift, slope] = track.compliance.approach(force);
+            give = slope;
+            let depth = most - shift;
+            if depth <= 0.0 {
+                (found, force) = (Overlap::default(), 0.0);
+                continue;
+            }
+            let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
+            found = overlap(roller, raceway, track.sides, shift, reach);
+            // Newton's method with what the overlap becomes by a further shift.
+            let start = force;
+            let (mut further, mut now) = (0.0, [found.area, found.length]);
+            for _ in 0..NEWTON {
+                let [area, length] = now;
+                let left = self.penalty * area - force;
+                force = (force + left / (1.0 + self.penalty * length * give)).max(0.0);
+                let [there, slope] = track.compliance.approach(force);
+                (further, give) = (there - shift, slope);
+                now = found.shifted_area(further);
+            }
+            found = found.shifted(further, now);
+            given = shift + further;
+            if (force - start).abs() <= ENOUGH * force + LITTLE {
+                break;
+            }
+        }
+        // d turns as the roller moves along, and what the bodies have given way by with it.
+        let turning = outwards * (0.5 * found.skew + given * found.across) / distance;
+        let across = self.penalty * (found.across - turning);
+        Touch { normal: force, across, give, overlap: found, d }
+    }
+
+    /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the
+    /// longest contact that the local problem was solved for (own; THEORY §9.4).
+    pub fn critical_time_step(&self) -> f64 {
+        let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
+        let [mass, _] = self.reduction.roller_inertia;
+        let r = self.reduction.padded;
+        let stiffness = |track: &Track| track.compliance.stiffest(self.penalty, track.relative);
+        let [outer, inner] = [stiffness(&self.outer), stiffness(&self.inner)];
+        // A contact pulls on the roller and on the modes under it; (a − b)² ≤ (1 + c) a² + (1 + 1/c) b².
+        let under = |vertex: usize| {
+            let shape = &self.reduction.shapes[2 * r * vertex..2 * r * (vertex + 1)];
+            (0..r).map(|k| shape[k] * shape[k] + shape[r + k] * shape[r + k]).sum::<f64>()
+        };
+        let modes = (0..self.outer.outline.len()).map(under).fold(0.0, f64::max);
+        let c = (modes * mass).sqrt();
+        let of_roller = ((1.0 + c) * outer + inner) / mass;
+        // Few rollers share the modes of highest participation; each adds its own part.
+        let of_modes = highest + (1.0 + 1.0 / c) * outer * modes;
+        2.0 / of_roller.max(of_modes).sqrt()
+    }
+
+    /// Radius of the circle around a roller [m].
+    #[inline(always)]
+    pub(crate) fn top(&self) -> f64 {
+        // Vertex 0 of the outline lies on the x axis.
+        self.roller.x[0]
+    }
+
+    /// A state before its first step, not in equilibrium yet.
+    pub fn rest(&self, scene: &Scene) -> State {
+        let g = Geometry::of(scene);
+        let path = g.outer_race_radius - g.roller_radius;
+        let k = &self.kinematics;
+        let r = self.reduction.padded;
+        let n = self.rollers;
+        let mut state = State {
+            q: vec![0.0; r],
+            v: vec![0.0; r],
+            branches: vec![vec![0.0; r]; self.branches.len()],
+            x: vec![0.0; n],
+            y: vec![0.0; n],
+            vx: vec![0.0; n],
+            vy: vec![0.0; n],
+            angle: vec![0.0; n],
+            spin: vec![k.roller_rad_s; n],
+            slip: [vec![0.0; n], vec![0.0; n]],
+            wall_slip: vec![[0.0; 2]; n],
+            passive: [vec![[0.0; 3]; n], vec![[0.0; 3]; n]],
+            wall_passive: vec![[[0.0; 2]; 2]; n],
+            force: [vec![0.0; n], vec![0.0; n]],
+            hints: [vec![[0; 2]; n], vec![[0; 2]; n]],
+            cage: [0.0; 3],
+            cage_velocity: [0.0, 0.0, k.cage_rad_s],
+            shaft: 0.0,
+            work: Default::default(),
+            steps: 0,
+        };
+        for i in 0..n {
+            let (s, c) = g.roller_angle(i).sin_cos();
+            (state.x[i], state.y[i]) = (path * c, path * s);
+        }
+        state.hints = self.first_hints(&state);
+        state
+    }
+
+    /// Facets that rays hit, found from nothing.
+    pub(crate) fn first_hints(&self, state: &State) -> [Vec<[u32; 2]>; 2] {
+        let nearest = |outline: &Outline, d: [f64; 2]| {
+            let along = |i: &usize| {
+                (outline.x[*i] * d[0] + outline.y[*i] * d[1]) / outline.x[*i].hypot(outline.y[*i])
+            };
+            (0..outline.len()).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0) as u32
+        };
+        let hints = |track: &Track, turned: f64, outwards: f64| {
+            (0..state.x.len())
+                .map(|i| {
+                    let at = state.y[i].atan2(state.x[i]);
+                    let own = at - state.angle[i] - self.vertex_angle[i]
+                        + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
+                    let on_race = at - turned;
+                    let of = |angle: f64| [angle.cos(), angle.sin()];
+                    [nearest(&self.roller, of(own)), nearest(&track.outline, of(on_race))]
+                })
+                .collect()
+        };
+        [hints(&self.outer, 0.0, 1.0), hints(&self.inner, state.shaft, -1.0)]
+    }
+}
+
+impl Cage {
+    fn new(g: &Geometry, mass: f64, inertia: f64, centre: [f64; 2], scene: &Scene) -> Option<Self> {
+        let cage = g.cage.as_ref()?;
+        let path = g.outer_race_radius - g.roller_radius;
+        let [inner, outer] = cage.walls(path, g.roller_radius);
+        let half = stribeck_bearing::assembly::pocket_half_width(
+            inner,
+            outer,
+            path,
+            g.roller_radius + cage.pocket_clearance,
+        );
+        let walls = (0..g.rollers)
+            .map(|i| {
+                let (s, c) = g.pocket_angle(i).sin_cos();
+                let wall = |side: f64| {
+                    let end = |radius: f64| {
+                        let along = (radius * radius - half * half).sqrt();
+                        // Ahead of the pocket's axis, counter-clockwise, with side +1.
+                        [along * c - side * half * s - centre[0], along * s + side * half * c - centre[1]]
+                    };
+                    Wall { ends: [end(inner), end(outer)], normal: [side * s, -side * c] }
+                };
+                [wall(-1.0), wall(1.0)]
+            })
+            .collect();
+        let points = match scene.contact.method {
+            stribeck_scene::scene::ContactMethod::Integrated => scene.contact.points_per_facet as f64,
+            stribeck_scene::scene::ContactMethod::Collocated => 1.0,
+        };
+        let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
+        Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points })
+    }
+}
+
+/// Gives both ends of a wall their mean shape: a roller that passes over it has no height to tell them apart by.
+fn level_walls(reduction: &mut Reduction, per_angle: &[f64]) {
+    let (n, width) = (per_angle.len(), 2 * reduction.padded);
+    for (a, _) in per_angle.iter().enumerate().filter(|(_, angle)| **angle == 0.0) {
+        let b = (a + 1) % n;
+        for k in 0..width {
+            let mean = 0.5 * (reduction.shapes[a * width + k] + reduction.shapes[b * width + k]);
+            (reduction.shapes[a * width + k], reduction.shapes[b * width + k]) = (mean, mean);
+        }
+    }
+}
+
+/// A facet that takes less than this share of the mean angle is a wall.
+const WALL: f64 = 0.05;
+
+/// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls.
+fn per_angle(outline: &Outline) -> Vec<f64> {
+    let n = outline.len();
+    (0..n)
+        .map(|i| {
+            let j = (i + 1) % n;
+            let sine = outline.x[i] * outline.y[j] - outline.y[i] * outline.x[j];
+            let cosine = outline.x[i] * outline.x[j] + outline.y[i] * outline.y[j];
+            let angle = sine.atan2(cosine);
+            if angle > WALL * std::f64::consts::TAU / n as f64 { 1.0 / angle } else { 0.0 }
+        })
+        .collect()
+}

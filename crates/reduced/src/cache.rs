@@ -1,0 +1,108 @@
+//! Reductions that earlier runs made, beside their folders: one serves every start, duration and speed of recording of the same
+//! mesh under the same load.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use stribeck_scene::{
+    run_dir::write_atomic,
+    scene::{
+        CageScene, ContactScene, GuardsScene, ModelScene, OutputScene, ReducedScene, Scene, SolverScene,
+    },
+};
+
+use crate::{error::Error, reduction::Reduction};
+
+/// Folder of the reductions, in the parent of a run's folder.
+const FOLDER: &str = ".reduced";
+
+/// First bytes of the file, with the version of its content.
+const MAGIC: &[u8; 20] = b"stribeck reduced v1\n";
+
+/// The scene that a reduction of `scene` is made from: what matters neither to mesh nor to preload has its default. Rollers
+/// stand in the middle between their places, so that none is in the defect.
+pub fn reference(scene: &Scene) -> Scene {
+    let ContactScene {
+        method,
+        surface,
+        interpolation,
+        points_per_facet,
+        passes,
+        formula,
+        penalty_scale,
+        onset_um,
+        ..
+    } = scene.contact.clone();
+    let middle = scene.defect.as_ref().map_or(90.0, |defect| defect.angle_deg);
+    let mut bearing = scene.bearing.clone();
+    bearing.first_roller_deg = middle + 180.0 / bearing.rollers as f64;
+    let mut mesh = scene.mesh.clone();
+    mesh.roller_phase_deg = 0.0;
+    Scene {
+        name: "reduction".to_owned(),
+        model: ModelScene::Reduced(ReducedScene {
+            modes_khz: Reduction::khz(scene),
+            ..ReducedScene::default()
+        }),
+        bearing,
+        cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
+        adapter: scene.adapter.clone(),
+        defect: scene.defect.clone(),
+        material: scene.material.clone(),
+        mesh,
+        operation: scene.operation.clone(),
+        contact: ContactScene {
+            method,
+            surface,
+            interpolation,
+            points_per_facet,
+            passes,
+            formula,
+            penalty_scale,
+            onset_um,
+            seat_friction: if scene.contact.seat_friction > 0.0 { 1.0 } else { 0.0 },
+            ..ContactScene::default()
+        },
+        film: None,
+        solver: SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() },
+        output: OutputScene { sensors: scene.output.sensors.clone(), frames: None, ..OutputScene::default() },
+        guards: GuardsScene::default(),
+    }
+}
+
+/// The reduction of a scene, and whether it was there already. `runs` is where the folder of the run lies.
+///
+/// # Errors
+/// When it cannot be made. One that cannot be kept is made again next time.
+pub fn reduction(scene: &Scene, runs: Option<&Path>) -> Result<(Reduction, bool), Error> {
+    let reference = reference(scene);
+    let file = runs.map(|runs| file(runs, &reference.hash()));
+    if let Some(found) = file.as_deref().and_then(read) {
+        return Ok((found, true));
+    }
+    let made = Reduction::new(&reference)?;
+    if let (Some(file), Ok(bytes)) = (&file, postcard::to_extend(&made, MAGIC.to_vec())) {
+        // What cannot be kept costs time, no result.
+        let _ = fs::create_dir_all(file.parent().unwrap_or(file));
+        let checksum = crc32fast::hash(&bytes[MAGIC.len()..]);
+        let _ = write_atomic(file, &[bytes, checksum.to_le_bytes().to_vec()].concat());
+    }
+    Ok((made, false))
+}
+
+fn file(runs: &Path, hash: &str) -> PathBuf {
+    runs.join(FOLDER).join(format!("{hash}.modes"))
+}
+
+/// What the file holds, if it is whole.
+fn read(file: &Path) -> Option<Reduction> {
+    let bytes = fs::read(file).ok()?;
+    let (content, checksum) = bytes.strip_prefix(MAGIC)?.split_last_chunk()?;
+    if crc32fast::hash(content) != u32::from_le_bytes(*checksum) {
+        return None;
+    }
+    match postcard::take_from_bytes(content) {
+        Ok((reduction, [])) => Some(reduction),
+        _ => None,
+    }
+}

@@ -1,0 +1,212 @@
+//! What bodies give way beside a contact, beyond penalty and modes: a small static contact problem at several loads, and the
+//! curve that it leaves (THEORY §9.3).
+
+use serde::{Deserialize, Serialize};
+
+/// Approach C(F) = F g(√F) of two bodies at the load F [m], beyond what modes and penalty tell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Compliance {
+    /// Distance of the knots over y = √F [√N].
+    spacing: f64,
+    /// g at the knots [m/N].
+    flexibility: Vec<f64>,
+    /// ∫ C dF up to the knots [J].
+    integral: Vec<f64>,
+}
+
+impl Compliance {
+    /// Through approaches C at ascending loads above zero.
+    pub fn through(loads: &[f64], approaches: &[f64], knots: usize) -> Self {
+        let most = loads.last().copied().unwrap_or(1.0).sqrt();
+        let spacing = most / knots as f64;
+        let g: Vec<[f64; 2]> = loads.iter().zip(approaches).map(|(f, c)| [f.sqrt(), c / f]).collect();
+        let at = |y: f64| {
+            let i = g.partition_point(|p| p[0] < y).clamp(1, g.len().max(2) - 1);
+            match (g.get(i - 1), g.get(i)) {
+                (Some(a), Some(b)) => {
+                    let t = ((y - a[0]) / (b[0] - a[0])).clamp(0.0, 1.0);
+                    a[1] + t * (b[1] - a[1])
+                }
+                (Some(a), None) => a[1],
+                _ => 0.0,
+            }
+        };
+        let flexibility: Vec<f64> = (0..=knots + 1).map(|i| at(spacing * i as f64)).collect();
+        let mut compliance = Self { spacing, flexibility, integral: vec![0.0] };
+        let mut sum = 0.0;
+        for i in 0..=knots {
+            sum += compliance.between(i, spacing);
+            compliance.integral.push(sum);
+        }
+        compliance
+    }
+
+    /// ∫ C dF = ∫ 2 y³ g dy from knot `i` over `dy`.
+    fn between(&self, i: usize, dy: f64) -> f64 {
+        let (y, g) = (self.spacing * i as f64, self.flexibility[i]);
+        let slope = (self.flexibility[i + 1] - g) / self.spacing;
+        // Gauss' rule with three points is exact: the integrand is of the fourth degree.
+        [(-0.6_f64.sqrt(), 5.0), (0.0, 8.0), (0.6_f64.sqrt(), 5.0)]
+            .into_iter()
+            .map(|(at, weight)| {
+                let z = 0.5 * dy * (1.0 + at);
+                weight / 18.0 * dy * 2.0 * (y + z).powi(3) * (g + slope * z)
+            })
+            .sum()
+    }
+
+    #[inline(always)]
+    fn place(&self, force: f64) -> (usize, f64, f64) {
+        let y = force.sqrt();
+        let last = self.flexibility.len() - 2;
+        let i = ((y / self.spacing) as usize).min(last);
+        (i, y, y - self.spacing * i as f64)
+    }
+
+    /// Approach [m] and its derivative [m/N] at a force that is not negative [N].
+    #[inline(always)]
+    pub fn approach(&self, force: f64) -> [f64; 2] {
+        let (i, y, z) = self.place(force);
+        let slope = (self.flexibility[i + 1] - self.flexibility[i]) / self.spacing;
+        let g = self.flexibility[i] + slope * z;
+        [force * g, g + 0.5 * y * slope]
+    }
+
+    /// Stiffness of penalty and compliance in series at the largest load that the curve holds [N/m].
+    pub fn stiffest(&self, penalty: f64, radius: f64) -> f64 {
+        let most = (self.spacing * (self.flexibility.len() - 2) as f64).powi(2);
+        let half = (1.5 * most * radius / penalty).cbrt();
+        1.0 / (1.0 / (2.0 * penalty * half) + self.approach(most)[1].max(0.0))
+    }
+
+    /// Energy stored at a force [J]: ∫ F dC.
+    pub fn energy(&self, force: f64) -> f64 {
+        let (i, _, z) = self.place(force);
+        force * self.approach(force)[0] - self.integral[i] - self.between(i, z)
+    }
+}
+
+/// Two surfaces that are pressed together at a place: what each gives way at its nodes.
+#[derive(Debug, Clone)]
+pub struct Pressed<'a> {
+    /// Distance of the nodes of raceway and roller [m].
+    pub spacing: [f64; 2],
+    /// Displacement of node i by a unit force at node j [m/N], square, by rows; the middle one is under the contact.
+    pub flexibility: [&'a [Vec<f64>]; 2],
+    /// Relative radius of curvature [m].
+    pub radius: f64,
+    /// Penalty stiffness times thickness [N/m²].
+    pub penalty: f64,
+}
+
+/// The sag of the surfaces at a point [m], and its shares of two nodes of each.
+type Point = (f64, [[(usize, f64); 2]; 2]);
+
+/// Integration points on a facet.
+const POINTS: usize = 16;
+
+impl Pressed<'_> {
+    /// Force [N] at the approach `delta` [m], with the middle nodes off the contact's middle by these shares of a facet.
+    pub fn force(&self, delta: f64, phase: [f64; 2]) -> f64 {
+        let n = self.flexibility.map(<[_]>::len);
+        let step = self.spacing[0].min(self.spacing[1]) / POINTS as f64;
+        let half = (2.0 * self.radius * delta).sqrt() + step;
+        let points = (2.0 * half / step).ceil() as usize;
+        // Nodes and shares of each point on both surfaces.
+        let share = |body: usize, x: f64| {
+            let at = x / self.spacing[body] - phase[body] + (n[body] / 2) as f64;
+            let i = (at.floor().max(0.0) as usize).min(n[body].saturating_sub(2));
+            let t = (at - i as f64).clamp(0.0, 1.0);
+            [(i, 1.0 - t), (i + 1, t)]
+        };
+        let all: Vec<Point> = (0..points)
+            .map(|i| (i as f64 + 0.5) * step - half)
+            .map(|x| (x * x / (2.0 * self.radius), [share(0, x), share(1, x)]))
+            .collect();
+        let weight = self.penalty * step;
+        let total = n[0] + n[1];
+        // Nodal forces f; the surfaces give way by A f, and f follows from the gaps: Newton on f.
+        let mut f = vec![0.0; total];
+        let mut result = 0.0;
+        for _ in 0..60 {
+            let mut gives = vec![0.0; total];
+            for (body, first) in [(0, 0), (1, n[0])] {
+                for i in 0..n[body] {
+                    gives[first + i] =
+                        (0..n[body]).map(|j| self.flexibility[body][i][j] * f[first + j]).sum();
+                }
+            }
+            let mut load = vec![0.0; total];
+            let mut tangent = vec![vec![0.0; total]; total];
+            result = 0.0;
+            for (sag, shares) in &all {
+                let places = [
+                    (shares[0][0].0, shares[0][0].1),
+                    (shares[0][1].0, shares[0][1].1),
+                    (n[0] + shares[1][0].0, shares[1][0].1),
+                    (n[0] + shares[1][1].0, shares[1][1].1),
+                ];
+                let given: f64 = places.iter().map(|&(i, s)| s * gives[i]).sum();
+                let depth = delta - sag - given;
+                if depth <= 0.0 {
+                    continue;
+                }
+                result += weight * depth;
+                for &(i, s) in &places {
+                    load[i] += weight * s * depth;
+                    for &(j, r) in &places {
+                        tangent[i][j] += weight * s * r;
+                    }
+                }
+            }
+            // load(f) − f = 0 with d load = −T A df: (1 + T A) df = load − f.
+            let mut matrix = vec![vec![0.0; total + 1]; total];
+            let mut worst = 0.0_f64;
+            for i in 0..total {
+                for (body, first) in [(0, 0), (1, n[0])] {
+                    for j in 0..n[body] {
+                        matrix[i][first + j] =
+                            (0..n[body]).map(|k| tangent[i][first + k] * self.flexibility[body][k][j]).sum();
+                    }
+                }
+                matrix[i][i] += 1.0;
+                matrix[i][total] = load[i] - f[i];
+                worst = worst.max(matrix[i][total].abs());
+            }
+            if worst <= 1e-10 * result.max(1e-9) {
+                break;
+            }
+            let df = eliminate(matrix);
+            f.iter_mut().zip(df).for_each(|(f, df)| *f += df);
+        }
+        result
+    }
+
+    /// Approach of rigid surfaces on the penalty alone at a force [m]: q = k ∫(δ − x²/2R) dx = (4/3) k δ √(2Rδ).
+    pub fn rigid(&self, force: f64) -> f64 {
+        (0.75 * force / (self.penalty * (2.0 * self.radius).sqrt())).powf(2.0 / 3.0)
+    }
+}
+
+/// Gauss' elimination with pivots; the last column is the right-hand side.
+fn eliminate(mut a: Vec<Vec<f64>>) -> Vec<f64> {
+    let n = a.len();
+    for c in 0..n {
+        let pivot = (c..n).max_by(|&i, &j| a[i][c].abs().total_cmp(&a[j][c].abs())).unwrap_or(c);
+        a.swap(c, pivot);
+        let (above, below) = a.split_at_mut(c + 1);
+        let row = &above[c];
+        for other in below {
+            let factor = other[c] / row[c];
+            if factor != 0.0 {
+                other[c..].iter_mut().zip(&row[c..]).for_each(|(o, r)| *o -= factor * r);
+            }
+        }
+    }
+    let mut x = vec![0.0; n];
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|j| a[i][j] * x[j]).sum();
+        x[i] = (a[i][n] - known) / a[i][i];
+    }
+    x
+}

@@ -1,0 +1,137 @@
+//! What is watched of a reduced run: energy, penetration, support and places, with the limits of the scene.
+
+use stribeck_scene::{
+    geometry::Geometry,
+    run_info::RunInfo,
+    scene::{GuardsScene, Scene},
+};
+
+use crate::state::State;
+
+/// Rollers may leave their annulus by this share of a roller's radius.
+const OUT_OF_PLACE: f64 = 0.5;
+
+/// A roller carries something above this share of the load.
+const CARRIES: f64 = 1e-3;
+
+/// The limits of one run.
+#[derive(Debug, Clone)]
+pub(crate) struct Guards {
+    limits: GuardsScene,
+    element_size: f64,
+    /// Nearest and farthest place of a roller's centre from the bearing's [m].
+    annulus: [f64; 2],
+}
+
+impl Guards {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let g = Geometry::of(scene);
+        let slack = OUT_OF_PLACE * g.roller_radius;
+        let depth = g.defect.map_or(0.0, |d| d.depth);
+        Self {
+            limits: scene.guards.clone(),
+            element_size: g.element_size,
+            annulus: [
+                g.inner_race_radius + g.roller_radius - slack,
+                g.outer_race_radius - g.roller_radius + depth + slack,
+            ],
+        }
+    }
+
+    /// What is worth a word before the first step.
+    pub(crate) fn before(scene: &Scene, info: &RunInfo) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if info.time_step_s > info.critical_time_step_s {
+            warnings.push(format!(
+                "the time step of {:.2} µs is {:.2} times the critical one: the run may diverge. Take a smaller `model.step_us` or \
+                 `model.modes_khz`",
+                1e6 * info.time_step_s,
+                info.time_step_s / info.critical_time_step_s
+            ));
+        }
+        if scene.output.frames.is_some() {
+            warnings.push(
+                "no pictures of the stress: the reduced model has no elements beside its modes. `model: full` has them".to_owned(),
+            );
+        }
+        warnings
+    }
+
+    /// Looks at a state after a sample, its energy error and the deepest penetration [m].
+    pub(crate) fn look(&self, info: &mut RunInfo, state: &State, error: f64, deepest: f64) -> Option<String> {
+        let when =
+            format!("at step {}, t = {:.5} ms", info.steps, 1e3 * info.steps as f64 * info.time_step_s);
+        let limits = &self.limits;
+        let percent = 100.0 * error;
+        if percent.is_nan() || percent > limits.energy_stop_percent {
+            return Some(format!(
+                "energy is off by {percent:.3} % of the peak strain energy {when}. Take a smaller `model.step_us`, or `model: full` to see \
+                 which of the two is wrong"
+            ));
+        }
+        if percent > limits.energy_warning_percent && !info.guards.energy_warned {
+            info.guards.energy_warned = true;
+            info.warnings.push(format!(
+                "energy was off by {percent:.3} % of the peak strain energy {when}: take a smaller `model.step_us`"
+            ));
+        }
+        self.penetration(info, deepest, &when).or_else(|| {
+            self.support(info, state, &when);
+            self.places(state, &when)
+        })
+    }
+
+    fn penetration(&self, info: &mut RunInfo, deepest: f64, when: &str) -> Option<String> {
+        let share = deepest / self.element_size;
+        let before = info.guards.penetration_share;
+        info.guards.penetration_share = before.max(share);
+        let [warning, stop] =
+            [self.limits.penetration_warning_percent, self.limits.penetration_stop_percent].map(|p| 0.01 * p);
+        if share > warning && before <= warning {
+            info.warnings.push(format!(
+                "contact has sunk in by {:.1} % of an element {when}: take a larger `contact.penalty_scale`",
+                100.0 * share
+            ));
+        }
+        (share > stop).then(|| {
+            format!(
+                "contact has sunk in by {:.0} % of an element {when}: take a larger `contact.penalty_scale` or less `operation.load_n`",
+                100.0 * share
+            )
+        })
+    }
+
+    fn support(&self, info: &mut RunInfo, state: &State, when: &str) {
+        let enough = CARRIES * info.expected_support_n;
+        let carried = state.force[0].iter().any(|&force| force > enough);
+        let unsupported = 1e-3 * self.limits.unsupported_warning_ms;
+        let seen = &mut info.guards;
+        seen.unsupported_samples = if carried { 0 } else { seen.unsupported_samples + 1 };
+        let time = seen.unsupported_samples as f64 * info.interval_s;
+        let is_new = time > unsupported && seen.longest_unsupported_s <= unsupported;
+        seen.longest_unsupported_s = seen.longest_unsupported_s.max(time);
+        if is_new {
+            info.warnings.push(format!(
+                "no roller has carried anything for {:.2} ms {when}: the load hangs in the air. Look at `bearing` for a clearance that \
+                 the load cannot close",
+                1e3 * time
+            ));
+        }
+    }
+
+    fn places(&self, state: &State, when: &str) -> Option<String> {
+        for (i, (x, y)) in state.x.iter().zip(&state.y).enumerate() {
+            let radius = x.hypot(*y);
+            if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
+                let through = if radius < self.annulus[0] { "inner" } else { "outer" };
+                return Some(format!(
+                    "roller {} has gone through the {through} raceway: its centre is {:.3} mm from that of the bearing {when}. Take a larger \
+                     `contact.penalty_scale`, less `operation.load_n` or a smaller `model.step_us`",
+                    i + 1,
+                    1e3 * radius
+                ));
+            }
+        }
+        None
+    }
+}

@@ -1,0 +1,40 @@
+//! Rolling element bearings in a few modes: a simulated second in some ten seconds.
+//!
+//! Outer ring and adapter are reduced, from the very mesh and elements of the full model at its preload, to their natural
+//! modes below a frequency ([`reduction`]); what contacts press in locally is a curve from a small static problem
+//! ([`compliance`]). Rollers and cage are rigid, with the facets that they are meshed with; what overlaps is integrated exactly
+//! ([`overlap`]). [`simulation`] runs the model that a scene asks for, into the same folder as the full one.
+//!
+//! # Where to look
+//!
+//! | Question | File |
+//! |---|---|
+//! | What does a program call? | `simulation.rs` |
+//! | What is kept of the finite elements? | `reduction.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
+//! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `start.rs` |
+//! | What changes in time? | `state.rs` |
+//! | What is one step? | `step.rs` |
+//! | How deep does a polygon sink into a raceway? | `overlap.rs` |
+//! | What is recorded, and what is watched? | `recorder.rs`, `guards.rs`; both in the time loop, `motion.rs` |
+
+pub mod simulation;
+
+pub mod cache;
+pub mod compliance;
+pub mod reduction;
+
+pub mod bearing;
+pub mod overlap;
+pub mod start;
+pub mod state;
+pub mod step;
+
+mod guards;
+pub mod motion;
+pub mod recorder;
+
+pub mod error;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,107 @@
+//! What is sampled: the channels of the full model, from modes and rigid bodies.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    bearing::Bearing,
+    state::State,
+    step::{Heard, Scratch},
+};
+
+/// What the recorder carries from sample to sample.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Memory {
+    /// Velocity of each sensor at the last sample [m/s].
+    velocity: Vec<[f64; 2]>,
+}
+
+impl Memory {
+    /// Whether it may belong to this bearing.
+    pub(crate) fn fits(&self, bearing: &Bearing) -> bool {
+        self.velocity.len() == bearing.reduction.sensors.len()
+    }
+}
+
+/// Velocity of each sensor before the last step.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Before {
+    velocity: Vec<[f64; 2]>,
+}
+
+impl Bearing {
+    /// Memory before the first step.
+    pub(crate) fn first_memory(&self, state: &State) -> Memory {
+        Memory { velocity: self.modal_velocity(state) }
+    }
+
+    /// Velocities of the sensors with the modes alone.
+    fn modal_velocity(&self, state: &State) -> Vec<[f64; 2]> {
+        let r = self.reduction.padded;
+        let of = |shape: &[f64]| shape.iter().zip(&state.v).map(|(u, v)| u * v).sum::<f64>();
+        self.reduction.sensors.iter().map(|s| [of(&s.shape[..r]), of(&s.shape[r..])]).collect()
+    }
+
+    /// Displacement of a sensor beyond the modes by what the rollers press.
+    fn residual(&self, sensor: usize, heard: &[Heard]) -> [f64; 2] {
+        let residual = &self.reduction.sensors[sensor].residual;
+        let mut sum = [0.0; 2];
+        for h in heard {
+            let a = h.facet as usize;
+            let b = if a + 1 == residual.len() { 0 } else { a + 1 };
+            for (c, sum) in sum.iter_mut().enumerate() {
+                *sum += h.force * (residual[a][c] + h.share * (residual[b][c] - residual[a][c]));
+            }
+        }
+        sum
+    }
+
+    /// Where the sensors are before the last step of a sample.
+    pub(crate) fn before_last_step(&self, state: &State) -> Before {
+        Before { velocity: self.modal_velocity(state) }
+    }
+
+    /// The row of one sample.
+    pub(crate) fn row(
+        &self,
+        state: &State,
+        scratch: &Scratch,
+        before: &Before,
+        memory: &mut Memory,
+        row: &mut Vec<f64>,
+    ) {
+        let dt = self.time_step;
+        let interval = dt * scratch.summed as f64;
+        row.clear();
+        row.push(state.steps as f64 * dt);
+        let modal = self.modal_velocity(state);
+        for (i, now) in modal.iter().enumerate() {
+            // The velocity beyond the modes is that of the last step.
+            let [new, old] = [&scratch.heard, &scratch.before].map(|heard| self.residual(i, heard));
+            let now: [f64; 2] = std::array::from_fn(|c| now[c] + (new[c] - old[c]) / dt);
+            row.extend((0..2).map(|c| (now[c] - memory.velocity[i][c]) / interval));
+            row.extend((0..2).map(|c| (modal[i][c] - before.velocity[i][c]) / dt));
+            memory.velocity[i] = now;
+        }
+        let steps = scratch.summed as f64;
+        for i in 0..self.rollers {
+            row.extend([state.x[i], state.y[i], state.angle[i]]);
+            let sums = &scratch.sums[i];
+            let kinds = if self.cage.is_some() { 3 } else { 2 };
+            row.extend(sums[..kinds].iter().flatten().map(|sum| sum / steps));
+        }
+        if self.cage.is_some() {
+            let centre = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
+            row.extend([centre[0] + state.cage[0], centre[1] + state.cage[1], state.cage[2]]);
+        }
+        row.extend(self.seat_force(state));
+    }
+
+    /// Force of the adapter on the outer ring [N].
+    fn seat_force(&self, state: &State) -> [f64; 2] {
+        let r = self.reduction.padded;
+        let (at_rest, shapes) = (self.reduction.seat, &self.reduction.seat_shapes);
+        std::array::from_fn(|c| {
+            at_rest[c] + shapes[c * r..(c + 1) * r].iter().zip(&state.q).map(|(s, q)| s * q).sum::<f64>()
+        })
+    }
+}

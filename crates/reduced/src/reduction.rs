@@ -1,0 +1,540 @@
+//! From the finite elements of a preloaded bearing to what a reduced run needs of them (THEORY §9.1–9.3).
+
+use std::{collections::BTreeSet, f64::consts::TAU};
+
+use serde::{Deserialize, Serialize};
+use stribeck_bearing::{
+    assembly::{Assembly, Machine},
+    simulation::mesh_file,
+    start::preload,
+};
+use stribeck_scene::{geometry::Geometry, run_info::MeshInfo, scene::Scene, static_load};
+use stribeck_solver::{
+    Dynamics, Force,
+    state::NodeForces,
+    statics::{Modes, SmallMotions, Spring, modes_below},
+};
+
+use crate::{
+    compliance::{Compliance, Pressed},
+    error::Error,
+    overlap::Outline,
+};
+
+/// Sums over modes run in groups of so many.
+pub(crate) const LANES: usize = 8;
+
+/// Shift of the factorised matrix K + σM [rad²/s²]: (2π · 200 Hz)², far above rounding and far below the lowest mode that bends.
+const SHIFT: f64 = 1.6e6;
+
+/// Loads of the local contact problem, up to this multiple of the largest roller load between rigid rings.
+const OVERLOAD: f64 = 4.0;
+
+/// Loads at which the local contact problem is solved, and knots of the curve through them.
+const LOADS: usize = 14;
+const KNOTS: usize = 48;
+
+/// What the elastic bodies of one mesh under one load become.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reduction {
+    /// Modes of outer ring and adapter that are kept.
+    pub modes: usize,
+    /// The same, filled up with zeros to whole groups.
+    pub padded: usize,
+    /// ω² of each mode [rad²/s²].
+    pub squares: Vec<f64>,
+    /// Vertices of the outer raceway, counter-clockwise, at the preload but for what the rollers press in locally [m].
+    pub outer: Vec<[f64; 2]>,
+    /// Shapes at these vertices [1/√kg]: x of all modes, then y, vertex by vertex.
+    pub shapes: Vec<f64>,
+    /// Vertices of the inner raceway, counter-clockwise, at the start [m].
+    pub inner: Vec<[f64; 2]>,
+    /// Vertices of a roller that is not turned, from its centre [m].
+    pub roller: Vec<[f64; 2]>,
+    /// Sensors in the order of the scene.
+    pub sensors: Vec<Sensor>,
+    /// Forces of load, weight and prestress on each mode at the preload [N/√kg].
+    pub constant: Vec<f64>,
+    /// Those of the load and of weight alone [N/√kg].
+    pub external: Vec<f64>,
+    /// Strain energy of all bodies at the preload [J].
+    pub strain: f64,
+    /// Of roller and outer raceway.
+    pub outer_compliance: Compliance,
+    /// Of roller and inner raceway.
+    pub inner_compliance: Compliance,
+    /// Mass [kg] and moment of inertia [kg m²] of a roller.
+    pub roller_inertia: [f64; 2],
+    /// The same of the cage, if there is one, with its centre of mass [m].
+    pub cage: Option<([f64; 2], [f64; 2])>,
+    /// Mass of outer ring and adapter [kg].
+    pub structure_mass: f64,
+    /// Force of each roller on the outer raceway at the preload of the full model [N].
+    pub preload: Vec<f64>,
+    /// Force of the adapter on the outer ring at the preload [N].
+    pub seat: [f64; 2],
+    /// By how much it grows with each mode [N/(√kg m)]: x of all modes, then y.
+    pub seat_shapes: Vec<f64>,
+    /// Counts of the mesh.
+    pub mesh: MeshInfo,
+    /// The mesh at the preload, as a file.
+    pub picture: Vec<u8>,
+    /// What the preload left open.
+    pub warning: Option<String>,
+}
+
+/// What a sensor hears.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sensor {
+    /// Shapes at its node [1/√kg]: x of all modes, then y.
+    pub shape: Vec<f64>,
+    /// Displacement (x, y) by a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
+    pub residual: Vec<[f64; 2]>,
+}
+
+/// Node numbers, while the system still knows them by name.
+struct Nodes {
+    outer: Vec<u32>,
+    inner: Vec<u32>,
+    rim: Vec<u32>,
+    structure: Vec<u32>,
+    inner_ring: Vec<u32>,
+    roller: Vec<u32>,
+    sensors: Vec<u32>,
+}
+
+impl Reduction {
+    /// Makes the full model of the scene, preloads it and reduces it.
+    ///
+    /// # Errors
+    /// When the scene cannot be meshed or preloaded, or modes are not found.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let assembly = Assembly::new(scene)?;
+        let mut machine = assembly.machine(scene, 1)?;
+        let warning = preload(&mut machine, scene, &assembly.kinematics)?;
+        let picture = mesh_file(&assembly, &machine)?;
+        let reduced = Self::of(scene, machine)?;
+        Ok(Self { mesh: assembly.mesh_info(), picture, warning, ..reduced })
+    }
+
+    fn of(scene: &Scene, mut machine: Machine) -> Result<Self, Error> {
+        let g = Geometry::of(scene);
+        let forces = machine.system.contact_forces();
+        let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
+        let preload =
+            (0..g.rollers).map(|i| resultants[machine.pairs.outer(i)]).map(|[x, y]| x.hypot(y)).collect();
+        let seat = resultants[machine.pairs.seat()];
+        let nodes = Nodes::of(&machine, &g)?;
+        let on_ring: Vec<u32> = machine.system.nodes_of(machine.outer).collect();
+        let of_roller = machine.system.motion_of(machine.rollers[0].body);
+        let cage = machine.cage.map(|body| machine.system.motion_of(body));
+        let places: Vec<[f64; 2]> =
+            (0..machine.system.node_count() as u32).map(|n| machine.system.position(n)).collect();
+        let place = |n: &u32| places[*n as usize];
+        let centre = place(&machine.rollers[0].centre);
+        let structure_mass = nodes.structure.iter().map(|&n| machine.system.mass(n)).sum();
+
+        let mut parts = machine.system.into_parts();
+        let strain = parts.dynamics.elastic_energy();
+        let strain = strain.strain + strain.hourglass;
+        let slot_of = parts.dynamics.layout().slot_of_node.clone();
+        let slots = |nodes: &[u32]| -> Vec<u32> { nodes.iter().map(|&n| slot_of[n as usize]).collect() };
+
+        // All forces at the preload: on the structure, and those of contact and elements alone.
+        let count = parts.dynamics.state.x.len();
+        let mut all = NodeForces::zeros(count);
+        let mut outside = NodeForces::zeros(count);
+        parts.others.accumulate(parts.dynamics.moment(), &mut outside);
+        let [gx, gy] = parts.dynamics.gravity();
+        for (n, mass) in parts.dynamics.mass().iter().enumerate() {
+            outside.fx[n] += mass * gx;
+            outside.fy[n] += mass * gy;
+        }
+        let mut springs = Vec::new();
+        if let Some(contacts) = &mut parts.contacts {
+            contacts.accumulate(parts.dynamics.moment(), &mut all);
+            let structure: BTreeSet<u32> = slots(&nodes.structure).into_iter().collect();
+            let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
+            contacts.tangent(x, y, &mut |piece| {
+                if piece.nodes.iter().all(|slot| structure.contains(slot)) {
+                    springs.push(Spring::from(piece));
+                }
+            });
+        }
+        if scene.contact.seat_friction > 0.0 {
+            let sticking: Vec<Spring> = springs.iter().map(sticking).collect();
+            springs.extend(sticking);
+        }
+        {
+            let d: &Dynamics = &parts.dynamics;
+            d.elastic_forces(&d.state.x, &d.state.y, &mut all.fx, &mut all.fy);
+        }
+        for n in 0..count {
+            all.fx[n] += outside.fx[n];
+            all.fy[n] += outside.fy[n];
+        }
+
+        let mut motions = SmallMotions::new(&parts.dynamics, &slots(&nodes.structure), &springs, SHIFT)?;
+        let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
+        let kept = modes.squares.len();
+        let padded = kept.next_multiple_of(LANES);
+        let shape_at = |motions: &SmallMotions, node: u32| -> Vec<f64> {
+            let at = motions.equation(slot_of[node as usize]);
+            let mut shape = vec![0.0; 2 * padded];
+            for (k, mode) in modes.shapes.iter().enumerate() {
+                if let Some(at) = at {
+                    (shape[k], shape[padded + k]) = (mode[at], mode[at + 1]);
+                }
+            }
+            shape
+        };
+        let generalised = |motions: &SmallMotions, fx: &[f64], fy: &[f64]| -> Vec<f64> {
+            let field = field(motions, &slots(&nodes.structure), fx, fy);
+            let mut sums = vec![0.0; padded];
+            for (sum, mode) in sums.iter_mut().zip(&modes.shapes) {
+                *sum = mode.iter().zip(&field).map(|(u, f)| u * f).sum();
+            }
+            sums
+        };
+        // What the rollers do to the outer raceway at the preload.
+        let mut pressed = NodeForces::zeros(count);
+        for &n in &nodes.outer {
+            let slot = slot_of[n as usize] as usize;
+            [pressed.fx[slot], pressed.fy[slot]] = forces[n as usize];
+        }
+        let by_rollers = generalised(&motions, &pressed.fx, &pressed.fy);
+        let unbalanced = generalised(&motions, &all.fx, &all.fy);
+        let constant = unbalanced.iter().zip(&by_rollers).map(|(all, rollers)| all - rollers).collect();
+        let external = generalised(&motions, &outside.fx, &outside.fy);
+
+        // The raceway without the dents of the rollers, which the local compliance makes anew.
+        let mut dents = field(&motions, &slots(&nodes.structure), &pressed.fx, &pressed.fy);
+        residual(&mut motions, &modes, &mut dents);
+        let without_dent = |n: &u32| {
+            let [x, y] = place(n);
+            motions.equation(slot_of[*n as usize]).map_or([x, y], |at| [x - dents[at], y - dents[at + 1]])
+        };
+        let outer: Vec<[f64; 2]> = nodes.outer.iter().map(without_dent).collect();
+        let shapes = nodes.outer.iter().flat_map(|&n| shape_at(&motions, n)).collect();
+
+        let direction = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
+        let mut sensors = Vec::new();
+        for &n in &nodes.sensors {
+            let shape = shape_at(&motions, n);
+            let mut heard = vec![[0.0; 2]; nodes.outer.len()];
+            for component in 0..2 {
+                // By reciprocity: a unit force at the sensor moves the raceway as one there moves the sensor.
+                let mut unit = vec![0.0; motions.equations()];
+                if let Some(at) = motions.equation(slot_of[n as usize]) {
+                    unit[at + component] = 1.0;
+                }
+                residual(&mut motions, &modes, &mut unit);
+                for (heard, (node, place)) in heard.iter_mut().zip(nodes.outer.iter().zip(&outer)) {
+                    let [nx, ny] = direction(*place);
+                    if let Some(at) = motions.equation(slot_of[*node as usize]) {
+                        heard[component] = nx * unit[at] + ny * unit[at + 1];
+                    }
+                }
+            }
+            sensors.push(Sensor { shape, residual: heard });
+        }
+
+        let on_ring: BTreeSet<u32> = slots(&on_ring).into_iter().collect();
+        let mut seat_shapes = vec![0.0; 2 * padded];
+        for spring in &springs {
+            // What a unit of stretch does to the ring.
+            let mut on = [0.0; 2];
+            let ends = spring.slots.iter().zip(spring.direction.chunks_exact(2));
+            for (_, along) in ends.clone().filter(|(slot, _)| on_ring.contains(slot)) {
+                on = [on[0] - spring.stiffness * along[0], on[1] - spring.stiffness * along[1]];
+            }
+            for (k, mode) in modes.shapes.iter().enumerate() {
+                let stretch: f64 = ends
+                    .clone()
+                    .filter_map(|(slot, along)| Some((motions.equation(*slot)?, along)))
+                    .map(|(at, along)| along[0] * mode[at] + along[1] * mode[at + 1])
+                    .sum();
+                seat_shapes[k] += on[0] * stretch;
+                seat_shapes[padded + k] += on[1] * stretch;
+            }
+        }
+
+        // Local compliances: one flexibility of each surface.
+        let most = OVERLOAD * static_load::at_start(scene).map_or(g.load, |load| load.max_roller_n());
+        let most = most.clamp(1.0, OVERLOAD * g.load.max(1.0));
+        let [ro, ri] = [g.outer_contact_radius(), g.inner_contact_radius()];
+        let facet = |outline: &[[f64; 2]], at: usize| {
+            let [a, b] = [outline[at], outline[(at + 1) % outline.len()]];
+            (b[0] - a[0]).hypot(b[1] - a[1])
+        };
+        let e_star = g.material.youngs_modulus / (2.0 * (1.0 - g.material.poissons_ratio.powi(2)));
+        let penalty = g.penalty_stiffness * g.thickness;
+        let half_count = |radius: f64, spacing: f64| {
+            let q = most / g.thickness;
+            let hertz = 4.0 * q * radius / (std::f64::consts::PI * e_star);
+            let winkler = (1.5 * q * radius / g.penalty_stiffness).powf(2.0 / 3.0);
+            (1.3 * (hertz + winkler).sqrt() / spacing).ceil() as usize + 2
+        };
+        // Beside the defect, or where it would be.
+        let beside = g.defect.map_or(0.5 * std::f64::consts::PI, |d| {
+            d.angle + (0.5 * d.length + 2.0 * g.outer_ring_thickness) / g.outer_race_radius
+        });
+        let node_at = |outline: &[[f64; 2]], angle: f64| {
+            let (s, c) = angle.sin_cos();
+            let along = |p: &[f64; 2]| direction(*p)[0] * c + direction(*p)[1] * s;
+            (0..outline.len()).max_by(|&a, &b| along(&outline[a]).total_cmp(&along(&outline[b]))).unwrap_or(0)
+        };
+        let at = node_at(&outer, beside);
+        let outer_spacing = facet(&outer, at);
+        let flexible_outer = flexibility(
+            &mut motions,
+            Some(&modes),
+            &patch(&nodes.outer, at, half_count(ro, outer_spacing)),
+            &|n| slot_of[n as usize],
+            &|n| direction(place(&n)),
+        );
+
+        let inner: Vec<[f64; 2]> = nodes
+            .inner
+            .iter()
+            .map(|&n| {
+                let mesh = &parts.dynamics.state;
+                let slot = slot_of[n as usize] as usize;
+                [mesh.x[slot], mesh.y[slot]]
+            })
+            .collect();
+        let mut motions = SmallMotions::new(&parts.dynamics, &slots(&nodes.inner_ring), &[], SHIFT)?;
+        let at = node_at(&inner, beside);
+        let inner_spacing = facet(&inner, at);
+        let inwards = |n: u32| {
+            let [x, y] = direction(place(&n));
+            [-x, -y]
+        };
+        let flexible_inner = flexibility(
+            &mut motions,
+            None,
+            &patch(&nodes.inner, at, half_count(ri, inner_spacing)),
+            &|n| slot_of[n as usize],
+            &inwards,
+        );
+
+        let mut motions = SmallMotions::new(&parts.dynamics, &slots(&nodes.roller), &[], SHIFT)?;
+        let rigid = rigid_modes(&parts.dynamics, &motions, &slots(&nodes.roller));
+        let to_centre = |n: u32| {
+            let [x, y] = place(&n);
+            direction([centre[0] - x, centre[1] - y])
+        };
+        let rim_facet = TAU * g.roller_radius / nodes.rim.len() as f64;
+        let mut own = patch(&nodes.rim, 0, half_count(ro.max(ri), rim_facet));
+        let middle = own.len();
+        // The node on the other side comes last.
+        own.push(nodes.rim[nodes.rim.len() / 2]);
+        let flexible = flexibility(&mut motions, Some(&rigid), &own, &|n| slot_of[n as usize], &to_centre);
+        let across = flexible[middle / 2][middle];
+        let flexible_roller: Vec<Vec<f64>> =
+            flexible[..middle].iter().map(|row| row[..middle].to_vec()).collect();
+
+        let compliance = |flexible: &[Vec<f64>], spacing: f64, radius: f64| {
+            let pressed = Pressed {
+                spacing: [spacing, rim_facet],
+                flexibility: [flexible, &flexible_roller],
+                radius,
+                penalty,
+            };
+            curve(&pressed, most, across)
+        };
+        let outer_compliance = compliance(&flexible_outer, outer_spacing, ro);
+        let inner_compliance = compliance(&flexible_inner, inner_spacing, ri);
+        let roller = (0..nodes.rim.len())
+            .map(|i| (TAU * i as f64 / nodes.rim.len() as f64).sin_cos())
+            .map(|(s, c)| [g.roller_radius * c, g.roller_radius * s])
+            .collect();
+        let inner_ideal = ideal(&inner, g.inner_race_radius);
+        let mut squares = vec![0.0; padded];
+        squares[..kept].copy_from_slice(&modes.squares);
+        Ok(Self {
+            modes: kept,
+            padded,
+            squares,
+            outer,
+            shapes,
+            inner: inner_ideal,
+            roller,
+            sensors,
+            constant,
+            external,
+            strain,
+            outer_compliance,
+            inner_compliance,
+            roller_inertia: [of_roller.mass, of_roller.inertia],
+            cage: cage.map(|cage| ([cage.mass, cage.inertia], cage.centre)),
+            structure_mass,
+            preload,
+            seat,
+            seat_shapes,
+            mesh: MeshInfo::default(),
+            picture: Vec::new(),
+            warning: None,
+        })
+    }
+}
+
+/// Vertices on their circle again, at their angles.
+fn ideal(vertices: &[[f64; 2]], radius: f64) -> Vec<[f64; 2]> {
+    vertices.iter().map(|[x, y]| [radius * x / x.hypot(*y), radius * y / x.hypot(*y)]).collect()
+}
+
+/// The spring across a normal one: the same nodes, directions turned by a right angle.
+fn sticking(normal: &Spring) -> Spring {
+    let turned = normal.direction.chunks_exact(2).flat_map(|d| [-d[1], d[0]]).collect();
+    Spring { slots: normal.slots.clone(), direction: turned, stiffness: STICKING * normal.stiffness }
+}
+
+/// Tangential over normal stiffness of contact, as in the full model (THEORY §4.3).
+pub(crate) const STICKING: f64 = 0.8;
+
+impl Nodes {
+    fn of(machine: &Machine, g: &Geometry) -> Result<Self, Error> {
+        let system = &machine.system;
+        let named = |name: &str| system.nodes(name).map_err(stribeck_bearing::error::Error::from);
+        // The outer raceway is walked clockwise, with the solid on the left.
+        let mut outer = named("outer raceway")?;
+        outer.reverse();
+        let off = |n: u32, wanted: f64| {
+            let [x, y] = system.position(n);
+            let angle = y.atan2(x) - wanted;
+            angle.sin().hypot(1.0 - angle.cos())
+        };
+        let sensors = g.sensor_angles.iter().map(|&wanted| {
+            let nearest = machine.housing.iter().min_by(|a, b| off(**a, wanted).total_cmp(&off(**b, wanted)));
+            *nearest.expect("a ring has nodes")
+        });
+        Ok(Self {
+            outer,
+            inner: named("inner raceway")?,
+            rim: named("rim of roller 1")?,
+            structure: system.nodes_of(machine.outer).chain(system.nodes_of(machine.adapter)).collect(),
+            inner_ring: system.nodes_of(machine.inner).collect(),
+            roller: system.nodes_of(machine.rollers[0].body).collect(),
+            sensors: sensors.collect(),
+        })
+    }
+}
+
+/// Forces by slot as a field.
+fn field(motions: &SmallMotions, slots: &[u32], fx: &[f64], fy: &[f64]) -> Vec<f64> {
+    let mut field = vec![0.0; motions.equations()];
+    for &slot in slots {
+        if let Some(at) = motions.equation(slot) {
+            (field[at], field[at + 1]) = (fx[slot as usize], fy[slot as usize]);
+        }
+    }
+    field
+}
+
+/// Turns forces into the displacements that the modes do not hold: (K + σM)⁻¹ (1 − MΦΦᵀ) f.
+fn residual(motions: &mut SmallMotions, modes: &Modes, field: &mut [f64]) {
+    let mass = motions.mass().to_vec();
+    let shares: Vec<f64> =
+        modes.shapes.iter().map(|m| m.iter().zip(&*field).map(|(u, f)| u * f).sum()).collect();
+    for (mode, share) in modes.shapes.iter().zip(&shares) {
+        for ((f, u), m) in field.iter_mut().zip(mode).zip(&mass) {
+            *f -= share * m * u;
+        }
+    }
+    motions.solve(field);
+    for mode in &modes.shapes {
+        let share: f64 = mode.iter().zip(&*field).zip(&mass).map(|((u, w), m)| u * w * m).sum();
+        field.iter_mut().zip(mode).for_each(|(w, u)| *w -= share * u);
+    }
+}
+
+/// Nodes from `half` before to `half` behind one of a closed surface.
+fn patch(surface: &[u32], at: usize, half: usize) -> Vec<u32> {
+    let n = surface.len();
+    (0..=2 * half).map(|i| surface[(at + n + i - half % n) % n]).collect()
+}
+
+/// Displacement of node i along its direction by a unit force on node j along its own, beyond the modes [m/N].
+fn flexibility(
+    motions: &mut SmallMotions,
+    modes: Option<&Modes>,
+    nodes: &[u32],
+    slot_of: &dyn Fn(u32) -> u32,
+    direction: &dyn Fn(u32) -> [f64; 2],
+) -> Vec<Vec<f64>> {
+    let at: Vec<Option<usize>> = nodes.iter().map(|&n| motions.equation(slot_of(n))).collect();
+    let along: Vec<[f64; 2]> = nodes.iter().map(|&n| direction(n)).collect();
+    let mut columns = Vec::new();
+    for (at_load, [nx, ny]) in at.iter().zip(&along) {
+        let mut unit = vec![0.0; motions.equations()];
+        if let Some(at) = at_load {
+            (unit[*at], unit[*at + 1]) = (*nx, *ny);
+        }
+        match modes {
+            Some(modes) => residual(motions, modes, &mut unit),
+            None => motions.solve(&mut unit),
+        }
+        let seen = at
+            .iter()
+            .zip(&along)
+            .map(|(at, [nx, ny])| at.map_or(0.0, |at| nx * unit[at] + ny * unit[at + 1]));
+        columns.push(seen.collect::<Vec<f64>>());
+    }
+    (0..nodes.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
+}
+
+/// Translations and rotation of a free body, with φᵀMφ = 1.
+fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
+    let motion = d.rigid_motion(slots);
+    let shape = |of: &dyn Fn([f64; 2]) -> [f64; 2], inertia: f64| {
+        let mut shape = vec![0.0; motions.equations()];
+        for &slot in slots {
+            let n = slot as usize;
+            let [x, y] = of([d.state.x[n] - motion.centre[0], d.state.y[n] - motion.centre[1]]);
+            if let Some(at) = motions.equation(slot) {
+                (shape[at], shape[at + 1]) = (x / inertia.sqrt(), y / inertia.sqrt());
+            }
+        }
+        shape
+    };
+    let shapes = vec![
+        shape(&|_| [1.0, 0.0], motion.mass),
+        shape(&|_| [0.0, 1.0], motion.mass),
+        shape(&|[x, y]| [-y, x], motion.inertia),
+    ];
+    Modes { squares: vec![0.0; 3], shapes }
+}
+
+/// Solves the local contact problem at several loads; `across` is what a roller gives way by an equal force on its other side
+/// [m/N].
+fn curve(pressed: &Pressed<'_>, most: f64, across: f64) -> Compliance {
+    // Where nodes lie to each other under a contact, there is every case; a few stand for all.
+    let phases = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
+    let mean = |delta: f64| {
+        phases.iter().map(|&phase| pressed.force(delta, phase)).sum::<f64>() / phases.len() as f64
+    };
+    let mut deepest = 2.0 * pressed.rigid(most);
+    for _ in 0..20 {
+        if mean(deepest) >= most {
+            break;
+        }
+        deepest *= 1.4;
+    }
+    let (mut loads, mut approaches) = (Vec::new(), Vec::new());
+    for i in 1..=LOADS {
+        // Denser at light loads.
+        let delta = deepest * (i as f64 / LOADS as f64).powi(2);
+        let force = mean(delta);
+        loads.push(force);
+        approaches.push(delta - pressed.rigid(force) + across * force);
+    }
+    Compliance::through(&loads, &approaches, KNOTS)
+}
+
+impl Reduction {
+    /// The boundaries of outer raceway, inner raceway and roller.
+    pub fn outlines(&self) -> [Outline; 3] {
+        [&self.outer, &self.inner, &self.roller].map(|vertices| Outline::new(vertices))
+    }
+}

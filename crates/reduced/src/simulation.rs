@@ -1,0 +1,157 @@
+//! One run of the model that a scene asks for: from a scene to a run directory.
+
+use std::ops::ControlFlow;
+
+use stribeck_bearing::{
+    checkpoint::Checkpoint,
+    simulation::{self as full, Host, Progress, Setup, read_saved, take_over},
+    time_loop::Run,
+};
+use stribeck_scene::{
+    geometry::Geometry,
+    run_dir::{RunDir, write_atomic},
+    run_info::{ReducedInfo, RunInfo},
+    scene::{ModelScene, ReducedScene, Scene},
+};
+
+use crate::{
+    bearing::Bearing,
+    cache,
+    error::Error,
+    guards::Guards,
+    motion::{Motion, Saved},
+    reduction::Reduction,
+};
+
+/// Is told about every sample and may break off the run.
+type Watch<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
+
+/// Runs a scene and leaves its results in `dir`, as [`stribeck_bearing::simulation::simulate`] does for the full model.
+///
+/// # Errors
+/// When the scene cannot be meshed, preloaded or reduced, or the traces cannot be written.
+pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let ModelScene::Reduced(reduced) = &scene.model else {
+        return Ok(full::simulate(scene, dir, host, watch)?);
+    };
+    let started = (host.wall_s)();
+    let mut progress = Progress::begin();
+    let _ = watch(&progress);
+    let (reduction, from_cache) = cache::reduction(scene, dir.path().parent())?;
+    progress.phase = "preload";
+    progress.elements = reduction.mesh.quads + reduction.mesh.triangles;
+    let _ = watch(&progress);
+    let steps = steps_per_sample(scene, reduced);
+    let step = Geometry::of(scene).interval / steps as f64;
+    let summary = ReducedInfo {
+        modes: reduction.modes,
+        highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / std::f64::consts::TAU,
+        from_cache,
+    };
+    let (mesh, picture) = (reduction.mesh.clone(), reduction.picture.clone());
+    let expected = scene.operation.load_n + scene.operation.gravity_m_s2 * reduction.structure_mass;
+    let bearing = Bearing::new(scene, reduction, step)?;
+    let state = bearing.at_start(scene)?;
+    let setup = Setup {
+        time_step: step,
+        critical_time_step: bearing.critical_time_step(),
+        steps_per_sample: steps,
+        mesh,
+        wall_s: (host.wall_s)() - started,
+        expected_support: expected,
+    };
+    let mut info = setup.info(scene, host);
+    info.reduced = Some(summary);
+    info.warnings.extend(bearing.reduction.warning.clone());
+    info.warnings.extend(Guards::before(scene, &info));
+    dir.start(scene, &info)?;
+    write_atomic(&dir.mesh(), &picture)?;
+    let saved = Saved::first(&bearing, state);
+    let motion = Motion::new(scene, bearing, saved);
+    Ok(Run::start(scene, motion, info, dir)?.finish(dir, host, progress, watch)?)
+}
+
+/// Continues the run in `dir` from its checkpoint, as [`stribeck_bearing::simulation::resume`].
+///
+/// # Errors
+/// When there is nothing to continue or nothing to continue from; otherwise as [`simulate`].
+pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let scene = read(dir)?;
+    match &scene.model {
+        ModelScene::Full => Ok(full::resume(dir, host, watch)?),
+        ModelScene::Reduced(_) => go_on(dir, scene, host, watch),
+    }
+}
+
+/// Continues the run in `dir` to another duration, as [`stribeck_bearing::simulation::extend`].
+///
+/// # Errors
+/// When the run is longer already; otherwise as [`resume`].
+pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let mut scene = read(dir)?;
+    if scene.model == ModelScene::Full {
+        return Ok(full::extend(dir, duration_ms, host, watch)?);
+    }
+    scene.solver.duration_ms = duration_ms;
+    scene.validate()?;
+    go_on(dir, scene, host, watch)
+}
+
+/// Simulated time [s] from which [`resume`] would continue the run in `dir`.
+///
+/// # Errors
+/// As [`resume`].
+pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
+    let scene = read(dir)?;
+    if scene.model == ModelScene::Full {
+        return Ok(full::saved_until(dir)?);
+    }
+    let info = read_saved::<Saved>(dir, &scene)?.info;
+    Ok(info.samples as f64 * info.interval_s)
+}
+
+fn read(dir: &RunDir) -> Result<Scene, Error> {
+    Ok(Scene::read(dir.scene())?)
+}
+
+fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let started = (host.wall_s)();
+    let Checkpoint { mut info, motion: saved } = read_saved::<Saved>(dir, &scene)?;
+    let mut progress = Progress::begin();
+    let _ = watch(&progress);
+    let (reduction, _) = cache::reduction(&scene, dir.path().parent())?;
+    progress.elements = reduction.mesh.quads + reduction.mesh.triangles;
+    let elsewhere = info.mesh != reduction.mesh;
+    let bearing = Bearing::new(&scene, reduction, info.time_step_s)?;
+    if elsewhere || !saved.fits(&bearing) {
+        return Err(stribeck_bearing::error::Error::Resume {
+            path: dir.path().to_owned(),
+            reason: "this program makes another model of the scene than the checkpoint has. Continue it with the program that began it, \
+                     or start it anew"
+                .to_owned(),
+        }
+        .into());
+    }
+    take_over(&mut info, &scene, host);
+    info.setup_s += (host.wall_s)() - started;
+    let motion = Motion::new(&scene, bearing, saved);
+    let run = Run::resume(&scene, motion, info, dir)?;
+    dir.go_on(&scene, &run.info)?;
+    Ok(run.finish(dir, host, progress, watch)?)
+}
+
+/// A whole number of steps, none longer than the scene allows.
+fn steps_per_sample(scene: &Scene, reduced: &ReducedScene) -> usize {
+    // A quotient of 5.000…1 is no sixth step.
+    (scene.output.interval_us / reduced.step_us - 1e-9).ceil().max(1.0) as usize
+}
+
+impl Reduction {
+    /// The modes that a scene asks for [kHz].
+    pub(crate) fn khz(scene: &Scene) -> f64 {
+        match &scene.model {
+            ModelScene::Reduced(reduced) => reduced.modes_khz,
+            ModelScene::Full => ReducedScene::default().modes_khz,
+        }
+    }
+}

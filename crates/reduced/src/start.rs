@@ -1,0 +1,164 @@
+//! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
+
+use faer::{Mat, linalg::solvers::Solve};
+use stribeck_scene::scene::Scene;
+
+use crate::{bearing::Bearing, error::Error, state::State};
+
+/// Newton iterations for modes and rollers.
+const ITERATIONS: usize = 60;
+
+/// Unbalanced force on a roller or a mode that is left, over the load.
+const TOLERANCE: f64 = 1e-9;
+
+/// Holds motions of modes that nothing resists while the iteration runs [rad²/s²].
+const HOLD: f64 = 1e4;
+
+impl Bearing {
+    /// The state of equilibrium under load, gravity and the inertia of rolling, with rolling velocities half a step earlier.
+    ///
+    /// # Errors
+    /// When the iteration does not converge.
+    pub fn at_start(&self, scene: &Scene) -> Result<State, Error> {
+        let mut state = self.rest(scene);
+        let r = self.reduction.padded;
+        let k = &self.kinematics;
+        let load = scene.operation.load_n.max(1.0);
+        let [mass, _] = self.reduction.roller_inertia;
+        let mut shapes = vec![0.0; 2 * r * self.rollers];
+        let mut residual = 0.0;
+        for iteration in 0..ITERATIONS {
+            let mut force = self.reduction.constant.clone();
+            let mut matrix = Mat::<f64>::zeros(r, r);
+            for n in 0..r {
+                force[n] -= self.reduction.squares[n] * state.q[n];
+                matrix[(n, n)] = self.reduction.squares[n] + HOLD;
+            }
+            for i in 0..self.rollers {
+                let angle = state.y[i].atan2(state.x[i]);
+                let (s, c) = angle.sin_cos();
+                let under = &mut shapes[2 * r * i..2 * r * (i + 1)];
+                let moved = self.shapes_under(&state, i, [c, s], under);
+                let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
+                // The roller's own balance: pressed outwards by the inner raceway and its orbit.
+                let inertia = |rho: f64| mass * (k.cage_rad_s * k.cage_rad_s * rho - self.gravity * s);
+                let mut at = state.x[i].hypot(state.y[i]);
+                let balance = |state: &mut State, rho: f64| {
+                    (state.x[i], state.y[i]) = (rho * c, rho * s);
+                    let [outer, inner] = self.pressed(state, i, moved);
+                    (inner + inertia(rho) - outer, outer)
+                };
+                // The balance falls with the radius: a bracket, then regula falsi.
+                let (mut low, mut high) = (at, at);
+                let mut width = 1e-7;
+                while balance(&mut state, low).0 < 0.0 && width < 1e-2 {
+                    low -= width;
+                    width *= 2.0;
+                }
+                width = 1e-7;
+                while balance(&mut state, high).0 > 0.0 && width < 1e-2 {
+                    high += width;
+                    width *= 2.0;
+                }
+                for _ in 0..200 {
+                    at = 0.5 * (low + high);
+                    if balance(&mut state, at).0 > 0.0 {
+                        low = at
+                    } else {
+                        high = at
+                    }
+                    if high - low <= 1e-16 {
+                        break;
+                    }
+                }
+                let (_, outer) = balance(&mut state, at);
+                // How the force grows with the raceway's displacement, the roller following.
+                let step = 1e-9;
+                let stiffness = |outer_moves: f64, state: &mut State| {
+                    let [a, b] =
+                        self.pressed(state, i, [moved[0] + outer_moves * c, moved[1] + outer_moves * s]);
+                    [a, b]
+                };
+                let [a0, b0] = stiffness(0.0, &mut state);
+                let [a1, _] = stiffness(-step, &mut state);
+                let outer_stiffness = (a1 - a0) / step;
+                (state.x[i], state.y[i]) = ((at - step) * c, (at - step) * s);
+                let [_, b1] = self.pressed(&mut state, i, moved);
+                let inner_stiffness = (b1 - b0) / step;
+                (state.x[i], state.y[i]) = (at * c, at * s);
+                let both = outer_stiffness + inner_stiffness;
+                let together = if both > 0.0 { outer_stiffness * inner_stiffness / both } else { 0.0 };
+                for n in 0..r {
+                    force[n] += outer * radial[n];
+                    for m in 0..r {
+                        matrix[(n, m)] += together * radial[n] * radial[m];
+                    }
+                }
+            }
+            // A motion that nothing resists, the turn of ring and adapter, is left to inertia.
+            let step = matrix.partial_piv_lu().solve(&Mat::from_fn(r, 1, |n, _| force[n]));
+            residual = (0..r).map(|n| (force[n] * step[(n, 0)]).abs()).sum::<f64>();
+            for n in 0..r {
+                state.q[n] += step[(n, 0)];
+            }
+            // Work of the unbalanced forces, against that of the load over a nanometre.
+            if iteration > 0 && residual <= TOLERANCE * load * 1e-9 {
+                break;
+            }
+            if iteration + 1 == ITERATIONS {
+                return Err(Error::NoEquilibrium { residual_n: residual, iterations: ITERATIONS });
+            }
+        }
+        let _ = residual;
+        let half = 0.5 * self.time_step;
+        for i in 0..self.rollers {
+            let [x, y] = [state.x[i], state.y[i]];
+            let (orbit, square) = (k.cage_rad_s, k.cage_rad_s * k.cage_rad_s);
+            (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
+        }
+        state.hints = self.first_hints(&state);
+        Ok(state)
+    }
+
+    /// Shapes under roller `i` in the direction of its centre, and the displacement there.
+    fn shapes_under(&self, state: &State, i: usize, radial: [f64; 2], under: &mut [f64]) -> [f64; 2] {
+        let r = self.reduction.padded;
+        let outline = &self.outer.outline;
+        let facet = outline.facet_along([0.0; 2], radial, state.hints[0][i][1] as usize, 1.0);
+        let second = if facet + 1 == outline.len() { 0 } else { facet + 1 };
+        let share = outline.share(facet, radial);
+        let shapes = &self.reduction.shapes;
+        for n in 0..2 * r {
+            let [a, b] = [shapes[2 * r * facet + n], shapes[2 * r * second + n]];
+            under[n] = a + share * (b - a);
+        }
+        let sum = |from: usize| (0..r).map(|n| under[from + n] * state.q[n]).sum();
+        [sum(0), sum(r)]
+    }
+
+    /// Normal forces on a roller by outer and inner raceway, the former displaced.
+    fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
+        let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
+        let (ss, sc) = state.shaft.sin_cos();
+        let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
+        let centre = [state.x[i], state.y[i]];
+        let seen = [centre[0] - moved[0], centre[1] - moved[1]];
+        let mut hints = [state.hints[0][i], state.hints[1][i]];
+        // A force found with steps of Newton's method: from the one before until it stands.
+        let mut forces = [state.force[0][i], state.force[1][i]];
+        for _ in 0..40 {
+            let outer = self.touch(&self.outer, seen, [c, s], &mut hints[0], forces[0]);
+            let inner = self.touch(&self.inner, back(centre), back([c, s]), &mut hints[1], forces[1]);
+            let next = [outer.normal, inner.normal];
+            let still = (0..2).all(|k| (next[k] - forces[k]).abs() <= 1e-12 * next[k].abs());
+            forces = next;
+            if still {
+                break;
+            }
+        }
+        state.hints[0][i] = hints[0];
+        state.hints[1][i] = hints[1];
+        (state.force[0][i], state.force[1][i]) = (forces[0], forces[1]);
+        forces
+    }
+}

@@ -1,0 +1,74 @@
+//! What changes during a reduced run: the checkpoint.
+
+use serde::{Deserialize, Serialize};
+
+/// Positions at one time, velocities half a step earlier.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Coordinates of the modes [√kg m] from the preload.
+    pub q: Vec<f64>,
+    /// Their velocities [√kg m/s].
+    pub v: Vec<f64>,
+    /// Stretches of the springs of each branch of the structural damping.
+    pub branches: Vec<Vec<f64>>,
+    /// Centres of the rollers [m].
+    pub x: Vec<f64>,
+    /// Centres of the rollers [m].
+    pub y: Vec<f64>,
+    /// Their velocities [m/s].
+    pub vx: Vec<f64>,
+    /// Their velocities [m/s].
+    pub vy: Vec<f64>,
+    /// By how much rollers have turned since the start [rad].
+    pub angle: Vec<f64>,
+    /// Their angular velocities [rad/s].
+    pub spin: Vec<f64>,
+    /// Elastic slip at the outer and the inner raceway [m].
+    pub slip: [Vec<f64>; 2],
+    /// Elastic slip at the two walls of each pocket [m].
+    pub wall_slip: Vec<[f64; 2]>,
+    /// Drag, damping force [N] and damping moment [N m] of the last step at both raceways: half of their work is counted then.
+    pub passive: [Vec<[f64; 3]>; 2],
+    /// Drag and damping force of the last step at the two walls of each pocket [N].
+    pub wall_passive: Vec<[[f64; 2]; 2]>,
+    /// Normal forces of the last step at both raceways [N], where the next one begins its search.
+    pub force: [Vec<f64>; 2],
+    /// Facets of roller and raceway found last, at both raceways.
+    pub hints: [Vec<[u32; 2]>; 2],
+    /// Displacement of the cage's centre of mass [m] and its angle [rad].
+    pub cage: [f64; 3],
+    /// Their velocities.
+    pub cage_velocity: [f64; 3],
+    /// Angle of the inner ring [rad].
+    pub shaft: f64,
+    /// Work since the start.
+    pub work: Work,
+    /// Steps taken.
+    pub steps: u64,
+}
+
+/// Work since the start [J]. Pairs are sums over steps, and of the last step alone, half of which lies behind the positions.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Work {
+    /// Against friction, in all contacts.
+    pub friction: f64,
+    /// Against contact damping.
+    pub contact_damping: f64,
+    /// Against mass, stiffness and structural damping.
+    pub damping: [f64; 2],
+    /// Of load and gravity.
+    pub external: [f64; 2],
+    /// Of the drive.
+    pub drive: [f64; 2],
+}
+
+/// Adds the work of a step.
+#[inline(always)]
+pub(crate) fn count(sum: &mut [f64; 2], step: f64) {
+    *sum = [sum[0] + step, step];
+}
+
+/// Work up to the positions before the last step.
+pub(crate) fn at_positions(sum: [f64; 2]) -> f64 {
+    sum[0] - 0.5 * sum[1]
+}

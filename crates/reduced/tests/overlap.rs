@@ -1,0 +1,162 @@
+//! How deep rollers sink into raceways: closed forms for arcs, and forces as the gradient of the energy for polygons.
+
+use std::f64::consts::TAU;
+
+use stribeck_reduced::overlap::{Outline, Overlap, Sides, View, overlap};
+use stribeck_testing::{Noise, ledger::compare};
+
+const ROLLER: f64 = 0.009;
+const RACEWAY: f64 = 0.1;
+
+fn polygon(radius: f64, facets: usize) -> Outline {
+    let vertex = |i: usize| (TAU * i as f64 / facets as f64).sin_cos();
+    Outline::new(&(0..facets).map(vertex).map(|(s, c)| [radius * c, radius * s]).collect::<Vec<_>>())
+}
+
+/// A roller in an outer raceway, its centre at (x, y), turned by an angle.
+fn pressed(
+    roller: &Outline,
+    raceway: &Outline,
+    sides: Sides,
+    [x, y]: [f64; 2],
+    turn: f64,
+    along: [f64; 2],
+) -> Overlap {
+    let d = along;
+    let (s, c) = turn.sin_cos();
+    let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
+    let nearest = |outline: &Outline, d: [f64; 2]| {
+        let angle = d[1].atan2(d[0]).rem_euclid(TAU);
+        (angle / TAU * outline.len() as f64) as usize
+    };
+    let facet = roller.facet_along([0.0; 2], own, nearest(roller, own), 1.0);
+    let under = raceway.facet_along([x, y], d, nearest(raceway, d), 1.0);
+    let roller = View { outline: roller, from: [0.0; 2], d: own, facet };
+    let raceway = View { outline: raceway, from: [x, y], d, facet: under };
+    overlap(roller, raceway, sides, 0.0, 2e-3)
+}
+
+/// Two arcs that approach by δ overlap by (4/3) δ √(2Rδ), with the relative radius R (Johnson 1985, §4.2, of the gap x²/2R).
+#[test]
+fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
+    // The parabola leaves out terms of δ/R.
+    const TOLERANCE: f64 = 2e-3;
+    let relative = 1.0 / ROLLER - 1.0 / RACEWAY;
+    let sides = Sides { along: true, bulge: 0.5 * relative, curvature: 1.0 / ROLLER };
+    let depth = 1e-5;
+    let (roller, raceway) = (polygon(ROLLER, 112), polygon(RACEWAY, 1257));
+    let found = pressed(&roller, &raceway, sides, [0.0, RACEWAY - ROLLER + depth], 0.3, [0.0, 1.0]);
+    let half = (2.0 * depth / relative).sqrt();
+    compare(
+        "overlap of two arcs",
+        "Johnson 1985, §4.2",
+        "m²",
+        found.area,
+        4.0 / 3.0 * depth * half,
+        TOLERANCE,
+    );
+    compare(
+        "length of the overlap of two arcs",
+        "Johnson 1985, §4.2",
+        "m",
+        found.length,
+        2.0 * half,
+        TOLERANCE,
+    );
+    let energy = 16.0 / 15.0 * depth * depth * half;
+    compare(
+        "integral of the squared overlap of two arcs",
+        "Johnson 1985, §4.2",
+        "m³",
+        found.square,
+        energy,
+        TOLERANCE,
+    );
+    // Nothing across in the middle, but for what parabolas of one curvature leave out between vertices on a circle: of
+    // u⁴/8R³ the part between the ends of a facet of the width w, at most (3u²/2R³) w²/8. Its first moment over the area:
+    let width = TAU * ROLLER / 112.0;
+    let left_out = 1.5 * half.powi(2) / ROLLER.powi(3) * width.powi(2) / 8.0;
+    let bound = left_out * half.powi(2) / (ROLLER * found.area);
+    let across = found.across / found.area;
+    assert!(across.abs() < bound && found.moment == 0.0, "{across} of {bound}, {}", found.moment);
+    assert!(bound < 1e-4, "{bound}");
+}
+
+/// ½∫p² falls by the forces along the normal, the tangent and the turn, wherever vertices of polygons lie.
+#[test]
+fn invariant_forces_on_polygons_are_the_gradient_of_the_energy() {
+    const TOLERANCE: f64 = 1e-5;
+    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
+    let (roller, raceway) = (polygon(ROLLER, 112), polygon(RACEWAY, 1257));
+    let mut noise = Noise::new(7);
+    for _ in 0..200 {
+        let depth = 2e-5 * (1.2 + noise.uniform());
+        let angle = 3.0 * noise.uniform();
+        let (s, c) = angle.sin_cos();
+        let turn = noise.uniform();
+        let path = RACEWAY - ROLLER + depth;
+        let energy = |h: f64, t: f64, turn: f64| {
+            let at = [(path + h) * c - t * s, (path + h) * s + t * c];
+            0.5 * pressed(&roller, &raceway, chords, at, turn, [c, s]).square
+        };
+        let found = pressed(&roller, &raceway, chords, [path * c, path * s], turn, [c, s]);
+        let step = 1e-9;
+        let slope = |a: f64, b: f64, step: f64| (a - b) / (2.0 * step);
+        let normal = slope(energy(step, 0.0, turn), energy(-step, 0.0, turn), step);
+        let tangential = -slope(energy(0.0, step, turn), energy(0.0, -step, turn), step);
+        let torque = -slope(energy(0.0, 0.0, turn + 1e-7), energy(0.0, 0.0, turn - 1e-7), 1e-7);
+        let area = found.area;
+        assert!((normal - area).abs() < TOLERANCE * area, "normal {normal} {area}");
+        assert!(
+            (tangential - found.across).abs() < TOLERANCE * area,
+            "tangential {tangential} {}",
+            found.across
+        );
+        assert!(
+            (torque - found.moment).abs() < TOLERANCE * ROLLER * area,
+            "torque {torque} {}",
+            found.moment
+        );
+    }
+}
+
+/// The same at the edge of a groove, with d turning as the roller goes along: the energy of a path closes.
+#[test]
+fn conserves_energy_along_a_path_over_an_edge() {
+    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
+    let roller = polygon(ROLLER, 112);
+    // About the y axis, 0.2 mm deep, with radial walls: seen from beyond an edge its wall leans over the bottom.
+    let half = 0.05;
+    let vertex = |radius: f64, angle: f64| [radius * angle.cos(), radius * angle.sin()];
+    let [first, last] = [0.25 * TAU - half, 0.25 * TAU + half];
+    let mut vertices = Vec::new();
+    for i in 0..1257 {
+        let [angle, next] = [f64::from(i), f64::from(i + 1)].map(|i| TAU * i / 1257.0);
+        let depth = |angle: f64| if first < angle && angle < last { 2e-4 } else { 0.0 };
+        vertices.push(vertex(RACEWAY + depth(angle), angle));
+        for edge in [first, last].into_iter().filter(|edge| (angle..next).contains(edge)) {
+            vertices.extend([angle, next].map(|side| vertex(RACEWAY + depth(side), edge)));
+        }
+    }
+    let raceway = Outline::new(&vertices);
+    let path = RACEWAY - ROLLER + 2e-5;
+    let seen = |angle: f64, turn: f64| {
+        let (s, c) = angle.sin_cos();
+        pressed(&roller, &raceway, chords, [path * c, path * s], turn, [c, s])
+    };
+    // From before the edge, where it is all there, until nothing overlaps. A wall that leans over cuts the overlap off along d,
+    // which turns by φ on the way: some p φ/a of the energy, the penetration p being 2e-5 m, φ 0.01 and the half-length a 5e-4 m.
+    const TOLERANCE: f64 = 1e-4;
+    let (from, to, steps) = (1.64, 1.605, 20_000);
+    let by = (to - from) / f64::from(steps);
+    let rolls = -by * RACEWAY / ROLLER;
+    let first = 0.5 * seen(from, 0.3).square;
+    let mut work = 0.0;
+    for i in 0..steps {
+        let at = f64::from(i) + 0.5;
+        let o = seen(from + at * by, 0.3 + at * rolls);
+        work += by * path * (o.across - 0.5 * o.skew / path) + rolls * o.moment;
+    }
+    assert_eq!(seen(to, 0.3).square, 0.0);
+    assert!((work / first - 1.0).abs() < TOLERANCE, "{work} of {first}");
+}
