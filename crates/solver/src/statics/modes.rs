@@ -27,7 +27,7 @@ const ITERATIONS: usize = 1200;
 /// All modes below `hertz`.
 ///
 /// # Errors
-/// When they are not found in [`ITERATIONS`].
+/// When they are not found in 1200 iterations.
 pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Error> {
     let mass = motions.mass().to_vec();
     let n = mass.len();
