@@ -44,7 +44,7 @@ pub enum ModelScene {
     #[default]
     Full,
     /// Outer ring and adapter in their modes below a frequency, rollers and cage rigid with local compliance: a second in
-    /// about a second.
+    /// some ten seconds.
     Reduced(ReducedScene),
 }
 

@@ -31,7 +31,7 @@ pub(super) fn script(engine: Engine, file: &Path, out: &Path, shards: u32) -> Re
     Ok(match engine {
         Engine::Slurm => format!(
             "#!/bin/sh\n#SBATCH --job-name=stribeck\n#SBATCH --array=1-{shards}\n#SBATCH --cpus-per-task=1\n#SBATCH --requeue\n\
-             # Submit with `sbatch`; once more after a loss. The last line makes the tables if all runs are there.\n{} --threads 1 || true\n",
+             # Submit with `sbatch`; once more after a loss. The last part that ends makes the tables.\n{} --threads 1 || true\n",
             command("$SLURM_ARRAY_TASK_ID")?
         ),
         Engine::Hq => format!(
