@@ -9,24 +9,17 @@ mod tables;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::findings::Findings;
-use stribeck_bearing::error::Error as BearingError;
-use stribeck_bearing::simulation::Progress;
-use stribeck_reduced::error::Error;
-use stribeck_reduced::simulation;
 use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::run_dir::{Run, RunDir, State, write_atomic};
-use stribeck_scene::run_info::RunInfo;
 use stribeck_scene::scene::Scene;
 
-use crate::board::Board;
-use crate::host::{self, SharedClock};
 use crate::interrupt::{self, Interrupt};
 use crate::place::{Place, shown};
-use crate::simulate::{jobs, run_words, threads};
+use crate::side_by_side::{Due, Jobs, Shop};
+use crate::simulate::{jobs, threads};
 
 /// Flags of `campaign`.
 #[derive(Debug, clap::Args)]
@@ -85,6 +78,13 @@ impl Folder {
         self.0.join("failed").join(format!("{}.txt", scene.hash()))
     }
 
+    /// Writes down why a run cannot be made.
+    fn keep_failure(&self, scene: &Scene, why: &str) -> Result<()> {
+        let path = self.failure(scene);
+        path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+        Ok(write_atomic(&path, why.as_bytes())?)
+    }
+
     fn file(&self) -> PathBuf {
         self.0.join("campaign.ron")
     }
@@ -134,35 +134,26 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let mut due = Vec::new();
     for variant in campaign.runs.iter().filter(mine) {
         if let (Stage::Due(state), Ok(scene)) = (stage(&folder, variant)?, &variant.scene) {
-            due.push((variant.number, scene, state));
+            let (number, scene) = (variant.number, scene.clone());
+            due.push(Due { number, folder: folder.run(&scene), scene, state });
         }
     }
-    let threads = options.threads.unwrap_or_else(host::cores);
-    let jobs = options.jobs.unwrap_or(threads).clamp(1, due.len().max(1));
-    let each = (threads / jobs).max(1);
+    let jobs = Jobs::of(options.jobs, options.threads, due.len());
     eprintln!(
-        "{}: {} runs, {} of them to be run here, {jobs} at a time with {each} thread{} each → {}",
+        "{}: {} runs, {} of them to be run here, {} → {}",
         campaign.name,
         campaign.runs.len(),
         due.len(),
-        if each == 1 { "" } else { "s" },
+        jobs.shown(),
         shown(&folder.0)
     );
-    let shop = Shop {
-        folder: &folder,
-        due: &due,
-        next: AtomicUsize::new(0),
-        disk_refuses: AtomicBool::new(false),
-        threads: each,
-        clock: SharedClock::default(),
-        board: Board::new("run", due.len()),
-        interrupt: &interrupt,
-    };
-    std::thread::scope(|scope| {
-        (1..jobs).for_each(|_| drop(scope.spawn(|| shop.work())));
-        shop.work();
+    let shop = Shop::new("run", &due, jobs, &interrupt);
+    shop.run(&|due, error| {
+        let Some(error) = error else { return };
+        if let Err(why) = folder.keep_failure(&due.scene, &error.to_string()) {
+            shop.say(&format!("warning: {why}"));
+        }
     });
-    shop.board.finish();
     conclude(&folder, &campaign, &interrupt)
 }
 
@@ -209,73 +200,6 @@ fn conclude(folder: &Folder, campaign: &Campaign, interrupt: &Interrupt) -> Resu
     }
     println!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.0.join(tables::RUNS)));
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
-}
-
-/// What the jobs share.
-struct Shop<'a> {
-    folder: &'a Folder,
-    due: &'a [(usize, &'a Scene, State)],
-    next: AtomicUsize,
-    /// The disk refused something: what comes next would be refused as well.
-    disk_refuses: AtomicBool,
-    threads: usize,
-    clock: SharedClock,
-    board: Board,
-    interrupt: &'a Interrupt,
-}
-
-impl Shop<'_> {
-    /// Runs what is due until none is left.
-    fn work(&self) {
-        while let Some(&(number, scene, state)) = self.due.get(self.next.fetch_add(1, Ordering::Relaxed)) {
-            if self.interrupt.is_pressed() || self.disk_refuses.load(Ordering::Relaxed) {
-                return;
-            }
-            let path = self.folder.run(scene);
-            let mut watch = |progress: &Progress| {
-                self.board.show(number, progress);
-                self.interrupt.flow()
-            };
-            let done = self.clock.with(self.threads, number, |host| match state {
-                State::Begun => {
-                    let dir = RunDir::reopen(&path)?;
-                    simulation::extend(&dir, scene.solver.duration_ms, host, &mut watch)
-                }
-                _ => {
-                    let dir = RunDir::create_over(&path)?;
-                    simulation::simulate(scene, &dir, host, &mut watch)
-                }
-            });
-            self.note(number, scene, done);
-        }
-    }
-
-    /// Says how a run ended, and writes down why one could not be made.
-    fn note(&self, number: usize, scene: &Scene, done: Result<RunInfo, Error>) {
-        match done {
-            Ok(info) => self.board.done(number, &run_words(&info)),
-            Err(Error::Bearing(BearingError::Scene(stribeck_scene::Error::FolderInUse { .. }))) => {
-                self.board.done(number, "is being run by another program");
-            }
-            Err(error @ Error::Bearing(BearingError::Scene(_))) => {
-                // What was written is there; the rest can follow when there is space again.
-                self.disk_refuses.store(true, Ordering::Relaxed);
-                self.board.done(number, &format!("failed: {error}"));
-            }
-            Err(error) => {
-                let path = self.folder.failure(scene);
-                let kept = path
-                    .parent()
-                    .map_or(Ok(()), std::fs::create_dir_all)
-                    .map_err(anyhow::Error::from)
-                    .and_then(|()| Ok(write_atomic(&path, error.to_string().as_bytes())?));
-                if let Err(why) = kept {
-                    self.board.say(&format!("warning: {why}"));
-                }
-                self.board.done(number, &format!("failed: {error}"));
-            }
-        }
-    }
 }
 
 /// The summary of a run that has come to its end; it is made when it is not there.

@@ -13,6 +13,7 @@ mod campaign;
 mod export;
 mod plan;
 mod report;
+mod side_by_side;
 mod simulate;
 
 use std::process::ExitCode;

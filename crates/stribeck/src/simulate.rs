@@ -1,7 +1,6 @@
 //! `stribeck simulate`: scene file → run folder → report. Or the rest of a run that ended early.
 
 mod ensemble;
-pub(crate) use ensemble::words as run_words;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

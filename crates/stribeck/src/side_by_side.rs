@@ -1,0 +1,138 @@
+//! Runs side by side, each in a folder of its own: what is due is taken one after the other by several jobs.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use stribeck_bearing::error::Error as BearingError;
+use stribeck_bearing::simulation::Progress;
+use stribeck_reduced::error::Error;
+use stribeck_reduced::simulation;
+use stribeck_scene::run_dir::{RunDir, State};
+use stribeck_scene::run_info::{RunInfo, Status, clock};
+use stribeck_scene::scene::Scene;
+
+use crate::board::Board;
+use crate::host::{self, SharedClock};
+use crate::interrupt::Interrupt;
+
+/// A run that is to be made or continued.
+pub(crate) struct Due {
+    pub(crate) number: usize,
+    pub(crate) scene: Scene,
+    pub(crate) folder: PathBuf,
+    pub(crate) state: State,
+}
+
+/// How many jobs there are, and how many threads each has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Jobs {
+    pub(crate) count: usize,
+    pub(crate) threads: usize,
+}
+
+impl Jobs {
+    /// For so many runs: as asked for, or as many as there are threads.
+    pub(crate) fn of(jobs: Option<usize>, threads: Option<usize>, runs: usize) -> Self {
+        let threads = threads.unwrap_or_else(host::cores);
+        let count = jobs.unwrap_or(threads).clamp(1, runs.max(1));
+        Self { count, threads: (threads / count).max(1) }
+    }
+
+    /// In words.
+    pub(crate) fn shown(self) -> String {
+        let Self { count, threads } = self;
+        format!("{count} at a time with {threads} thread{} each", if threads == 1 { "" } else { "s" })
+    }
+}
+
+/// What the jobs share.
+pub(crate) struct Shop<'a> {
+    due: &'a [Due],
+    next: AtomicUsize,
+    /// The disk refused something: what comes next would be refused as well.
+    disk_refuses: AtomicBool,
+    jobs: Jobs,
+    clock: SharedClock,
+    board: Board,
+    interrupt: &'a Interrupt,
+}
+
+impl<'a> Shop<'a> {
+    /// For what is due, each called a `noun`.
+    pub(crate) fn new(noun: &'static str, due: &'a [Due], jobs: Jobs, interrupt: &'a Interrupt) -> Self {
+        Self {
+            due,
+            next: AtomicUsize::new(0),
+            disk_refuses: AtomicBool::new(false),
+            jobs,
+            clock: SharedClock::default(),
+            board: Board::new(noun, due.len()),
+            interrupt,
+        }
+    }
+
+    /// Runs what is due until nothing is left, Ctrl-C is pressed or the disk refuses. `ended` is told of each run, with why it
+    /// could not be made; what the disk refused can follow when there is space again, and is not told.
+    pub(crate) fn run(&self, ended: &(dyn Fn(&Due, Option<&Error>) + Sync)) {
+        std::thread::scope(|scope| {
+            (1..self.jobs.count).for_each(|_| drop(scope.spawn(|| self.work(ended))));
+            self.work(ended);
+        });
+        self.board.finish();
+    }
+
+    /// Says something above the bar.
+    pub(crate) fn say(&self, line: &str) {
+        self.board.say(line);
+    }
+
+    fn work(&self, ended: &(dyn Fn(&Due, Option<&Error>) + Sync)) {
+        while let Some(due) = self.due.get(self.next.fetch_add(1, Ordering::Relaxed)) {
+            if self.interrupt.is_pressed() || self.disk_refuses.load(Ordering::Relaxed) {
+                return;
+            }
+            let mut watch = |progress: &Progress| {
+                self.board.show(due.number, progress);
+                self.interrupt.flow()
+            };
+            let done = self.clock.with(self.jobs.threads, due.number, |host| match due.state {
+                State::Begun => {
+                    let dir = RunDir::reopen(&due.folder)?;
+                    simulation::extend(&dir, due.scene.solver.duration_ms, host, &mut watch)
+                }
+                _ => {
+                    let dir = RunDir::create_over(&due.folder)?;
+                    simulation::simulate(&due.scene, &dir, host, &mut watch)
+                }
+            });
+            match &done {
+                Ok(info) => {
+                    self.board.done(due.number, &words(info));
+                    ended(due, None);
+                }
+                Err(Error::Bearing(BearingError::Scene(stribeck_scene::Error::FolderInUse { .. }))) => {
+                    self.board.done(due.number, "is being run by another program");
+                }
+                Err(error) => {
+                    self.board.done(due.number, &format!("failed: {error}"));
+                    if matches!(error, Error::Bearing(BearingError::Scene(_))) {
+                        self.disk_refuses.store(true, Ordering::Relaxed);
+                    } else {
+                        ended(due, Some(error));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How a run ended, in a line.
+fn words(info: &RunInfo) -> String {
+    let (time, error) = (clock(info.setup_s + info.wall_s), 100.0 * info.energy.max_relative_error);
+    match (info.status, &info.stop_reason) {
+        (Status::Complete, _) => format!("complete after {time}, energy error {error:.3} %"),
+        (Status::Diverged, Some(why)) => format!("diverged: {why}"),
+        (_, Some(why)) => why.clone(),
+        (_, None) => "ended early".to_owned(),
+    }
+}
