@@ -33,7 +33,7 @@ const MOST_OF_SOBOL: usize = 1 << 16;
 
 /// What lies in a campaign's file.
 #[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, rename = "campaign")]
 struct Text {
     name: String,
     #[serde(default)]

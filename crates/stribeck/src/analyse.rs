@@ -99,7 +99,8 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     };
     let mut notes = recording.notes.clone();
     let machine = machine(options, &recording, rate_hz, scene.as_ref(), &mut notes)?;
-    let unit = options.unit.clone().or_else(|| channel.unit.clone());
+    let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
+    let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
     let scaled = channel.scaled(options.scale).in_unit(unit);
     let mut analysis = Analysis::of(&scaled, rate_hz, &machine)?;
     analysis.findings.notes.splice(0..0, notes);

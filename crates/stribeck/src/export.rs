@@ -188,7 +188,7 @@ fn sensor(text: &str, rate_hz: f64) -> Result<Sensor> {
 }
 
 /// Unit of a channel of ours, by the end of its name.
-fn unit(name: &str) -> Option<&'static str> {
+pub(crate) fn unit(name: &str) -> Option<&'static str> {
     [
         ("_m_s2", "m/s^2"),
         ("_m_s", "m/s"),

@@ -257,6 +257,11 @@ fn conclude(families: &[Family]) -> String {
     }
     let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name).collect();
     let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name).collect();
+    if unheard.len() == families.len() {
+        return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, for every family. The reasons \
+                say which length or rate would do."
+            .to_owned();
+    }
     let mut verdict = "The record shows no defect.".to_owned();
     if !weak.is_empty() {
         verdict += &format!(" {} can be seen, without knocks: watch the trend.", weak.join(" and "));
