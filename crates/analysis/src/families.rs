@@ -37,6 +37,9 @@ use crate::Error;
 pub const LEAST_LEAD: f64 = 0.3;
 /// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
+/// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that grows with the square of
+/// them, and more do not change which family is there.
+pub const MOST_PERIODS: f64 = 32.0;
 /// Sidebands that are listed on either side of the carrier.
 pub const SIDEBANDS: i32 = 3;
 
@@ -56,6 +59,8 @@ pub enum Source {
 /// Recorded motion and load of one roller, one value a sample.
 #[derive(Debug, Clone)]
 pub struct RollerTrack {
+    /// Angle of its centre at the start of the run [rad].
+    pub place: f64,
     /// Angle of its centre, counter-clockwise, without jumps [rad].
     pub orbit: Vec<f64>,
     /// Accumulated rotation in space, counter-clockwise [rad].
@@ -148,7 +153,8 @@ pub struct FamilyLine {
     pub component: String,
 }
 
-/// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers.
+/// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers, over the last
+/// [`MOST_PERIODS`] of the record.
 ///
 /// # Errors
 /// [`Error::Signal`] when the spectrum of a finite channel is refused.
@@ -157,6 +163,11 @@ pub fn identify(
     candidates: &[Candidate],
     accelerations: &[Channel],
 ) -> Result<Vec<FamilyFinding>, Error> {
+    if let Some(from) = motion.too_early() {
+        let late = |channel: &Channel| Channel { values: channel.values[from..].to_vec(), ..channel.clone() };
+        let accelerations: Vec<Channel> = accelerations.iter().map(late).collect();
+        return identify(&motion.from(from), candidates, &accelerations);
+    }
     let listened = trial::listened(motion);
     let case = |candidate| Case::of(motion, candidate, &listened);
     let mut cases: Vec<Case> = candidates.iter().map(case).collect();
@@ -343,6 +354,25 @@ impl Motion {
         self.samples() as f64 * self.interval_s * self.bpfo_hz
     }
 
+    /// The sample before which there are more than [`MOST_PERIODS`] on record.
+    pub(crate) fn too_early(&self) -> Option<usize> {
+        let most = (MOST_PERIODS / (self.bpfo_hz * self.interval_s)).floor().max(1.0);
+        // A bearing that hardly turns has no such number.
+        let most = most.is_finite().then_some(most as usize)?;
+        self.samples().checked_sub(most).filter(|from| *from > 0)
+    }
+
+    /// The motion from sample `from` on.
+    fn from(&self, from: usize) -> Self {
+        let late = |roller: &RollerTrack| RollerTrack {
+            place: roller.place,
+            orbit: roller.orbit[from..].to_vec(),
+            spin: roller.spin[from..].to_vec(),
+            load_n: roller.load_n[from..].to_vec(),
+        };
+        Self { rollers: self.rollers.iter().map(late).collect(), ..self.clone() }
+    }
+
     /// One over the length of the record [Hz].
     fn resolution_hz(&self) -> f64 {
         1.0 / (self.samples().max(1) as f64 * self.interval_s)
@@ -354,7 +384,7 @@ impl Source {
     fn phase(self, motion: &Motion, roller: &RollerTrack, n: usize) -> f64 {
         let (orbit, spin) = (roller.orbit[n], roller.spin[n]);
         match self {
-            Self::RotatedVertices(count) => count * (spin - (orbit - roller.orbit[0])),
+            Self::RotatedVertices(count) => count * (spin - (orbit - roller.place)),
             Self::TranslatedVertices(count) => count * (spin - orbit),
             Self::OuterNodes(count) => -count * orbit,
             Self::InnerNodes(count) => count * (orbit - motion.shaft_rad_s * n as f64 * motion.interval_s),

@@ -136,6 +136,13 @@ impl Findings {
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
         let (tracks, channels) = heard(&record, &prediction, &motion, &sensors);
         let candidates = prediction.candidates(&run.scene, &run.info.mesh);
+        if let Some(from) = tracks.too_early() {
+            let sought_s = record.interval_s() * (time.len() - from) as f64;
+            notes.push(format!(
+                "the mesh\u{2019}s families of lines are sought in the last {sought_s:.3} s of the record, {:.0} periods of BPFO",
+                families::MOST_PERIODS
+            ));
+        }
         let families = families::identify(&tracks, &candidates, &channels)?;
         let filter = filter(&record, &prediction, &sensors, &measured, &mut notes)?;
         if let Some(filter) = &filter {
@@ -292,8 +299,11 @@ fn heard(
     motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
 ) -> (Motion, Vec<Channel>) {
-    let track =
-        |r: &Roller<'_>| RollerTrack { orbit: r.orbit(), spin: r.spin.to_vec(), load_n: r.outer_normal() };
+    let track = |r: &Roller<'_>| {
+        let orbit = r.orbit();
+        let place = orbit.first().copied().unwrap_or(0.0);
+        RollerTrack { place, orbit, spin: r.spin.to_vec(), load_n: r.outer_normal() }
+    };
     let tracks = Motion {
         interval_s: record.interval_s(),
         shaft_rad_s: prediction.kinematics.shaft_rad_s,

@@ -21,6 +21,7 @@
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
 //! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
+//! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What does a measured record show, and may one call it a defect? | [`measured`] |
 //! | What does all of it come to? | [`findings`], [`summary`], [`paper`], [`report`], [`plot`] |
 //!
@@ -76,6 +77,7 @@ pub mod artefacts;
 pub mod measured;
 pub mod stress;
 
+pub mod agreement;
 pub mod ensemble;
 pub mod findings;
 pub mod paper;

@@ -1,6 +1,7 @@
 //! From a run directory to `report.html`, `summary.json` and figures. Nothing here simulates: the same
 //! directory gives the same bytes.
 
+mod agreement;
 mod answer;
 mod ensemble;
 mod figures;
@@ -20,8 +21,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::scene::{DefectRing, ModelScene, Scene};
 
+pub use agreement::write_agreement;
 pub use ensemble::write_ensemble;
 pub use measured::write_measured;
 pub use trend::{TrendEntry, write_trend};
@@ -57,7 +59,7 @@ pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.
     let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
-    let page = page(&run, &findings, &figures, &scene)?.into_string();
+    let page = page(&run, run_dir, &findings, &figures, &scene)?.into_string();
     write_atomic(&run_dir.join("report.html"), page.as_bytes())?;
     Ok(findings.summary)
 }
@@ -95,7 +97,13 @@ fn json(summary: &impl Serialize) -> Result<String, Error> {
     Ok(text + "\n")
 }
 
-fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Result<Markup, Error> {
+fn page(
+    run: &Run,
+    run_dir: &Path,
+    findings: &Findings,
+    figures: &Figures,
+    scene: &str,
+) -> Result<Markup, Error> {
     let summary = &findings.summary;
     Ok(html! {
         (DOCTYPE)
@@ -106,7 +114,7 @@ fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Resul
                 p class="lead" { (lead(&run.scene, summary.run.simulated_ms)) }
                 (banner(run))
                 (answer::paragraphs(run, summary))
-                (contents(findings.of_paper))
+                (contents(findings.of_paper, run.scene.model != ModelScene::Full))
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
                 (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
@@ -116,6 +124,7 @@ fn page(run: &Run, findings: &Findings, figures: &Figures, scene: &str) -> Resul
                 h2 #artefacts { "All lines of the leading sensor" }
                 (sections::artefacts(summary))
                 (tables::notch(summary))
+                (agreement::of_run(&run.scene, run_dir))
                 @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
             }
@@ -138,7 +147,7 @@ fn head(name: &str) -> Markup {
     }
 }
 
-fn contents(of_paper: bool) -> Markup {
+fn contents(of_paper: bool, reduced: bool) -> Markup {
     let entries = [
         ("summary", "Summary"),
         ("acceleration", "Acceleration"),
@@ -148,11 +157,16 @@ fn contents(of_paper: bool) -> Markup {
         ("stress", "Mesh and stress"),
         ("energy", "Energy"),
         ("artefacts", "All lines"),
+        ("model", "The full model"),
         ("numbers", "Appendix: the paper"),
         ("notes", "Notes"),
         ("provenance", "Provenance"),
     ];
-    let shown = entries.into_iter().filter(|(id, _)| of_paper || *id != "numbers");
+    let shown = entries.into_iter().filter(|(id, _)| match *id {
+        "numbers" => of_paper,
+        "model" => reduced,
+        _ => true,
+    });
     html! { nav aria-label="Contents" { @for (id, name) in shown { a href={ "#" (id) } { (name) } } } }
 }
 

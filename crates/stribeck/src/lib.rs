@@ -15,6 +15,7 @@ mod plan;
 mod report;
 mod side_by_side;
 mod simulate;
+mod validate;
 
 use std::process::ExitCode;
 
@@ -30,6 +31,8 @@ pub enum Command {
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
     Campaign(campaign::Options),
+    /// Runs a scene by the full and by the reduced model, and says how far apart they are
+    Validate(validate::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
     /// Says what a measured record shows: which defects, how sure, and what it cannot say
@@ -48,6 +51,7 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Campaign(options) => campaign::run(options, place),
+            Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
             Self::Analyse(options) => analyse::run(options, place),
             Self::Export(options) => export::run(options, place),

@@ -109,13 +109,15 @@ impl Comb {
         let step_hz = motion.resolution_hz() / CARRIER_STEPS;
         let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
         let steady = vec![(1.0, 0.0); self.baseband.length(motion.samples())];
+        let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
+            .map(|m| self.baseband.band(&steady, f64::from(m) * motion.bpfo_hz))
+            .collect();
+        // Lines that are shifted together keep their angles: one basis serves all places, and columns are shifted back.
+        let mut basis = Vec::new();
+        extend_basis(&mut basis, &lines);
+        let interval_s = self.baseband.filter.step as f64 * self.baseband.interval_s;
         let explained = |hz: f64| -> f64 {
-            let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
-                .map(|m| self.baseband.band(&steady, hz + f64::from(m) * motion.bpfo_hz))
-                .collect();
-            let mut basis = Vec::new();
-            extend_basis(&mut basis, &lines);
-            columns.iter().map(|column| power(&basis, column)).sum()
+            columns.iter().map(|column| power(&basis, &turned(column, -hz, interval_s))).sum()
         };
         let all = (-reach..=reach).map(|n| f64::from(n) * step_hz).map(|hz| (hz, explained(hz)));
         all.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(hz, _)| hz)
@@ -176,8 +178,8 @@ impl Baseband {
     /// The mean of `at` over every few samples, turned back.
     fn of_samples(&self, at: impl Fn(usize) -> Complex, samples: usize) -> Vec<Complex> {
         let step_s = self.interval_s / self.thin as f64;
-        let turned = turning(-self.centre_hz, step_s).zip(0..samples).map(|(turn, n)| times(turn, at(n)));
-        let turned: Vec<Complex> = turned.collect();
+        let values: Vec<Complex> = (0..samples).map(at).collect();
+        let turned = turned(&values, -self.centre_hz, step_s);
         let mean = |part: &[Complex]| {
             let sum = part.iter().fold((0.0, 0.0), |sum, v| (sum.0 + v.0, sum.1 + v.1));
             (sum.0 / self.thin as f64, sum.1 / self.thin as f64)
@@ -192,15 +194,23 @@ impl Baseband {
 
     /// What lies in the band once `values` are shifted up by `shift_hz`.
     pub(super) fn band(&self, values: &[Complex], shift_hz: f64) -> Vec<Complex> {
-        let shifted = turning(shift_hz, self.interval_s).zip(values).map(|(turn, value)| times(turn, *value));
-        self.filter.apply(&shifted.collect::<Vec<_>>())
+        self.filter.apply(&turned(values, shift_hz, self.interval_s))
     }
 }
 
-/// exp 2πi f t, sample by sample.
-fn turning(hz: f64, interval_s: f64) -> impl Iterator<Item = Complex> {
-    let step = unit(TAU * hz * interval_s);
-    std::iter::successors(Some((1.0, 0.0)), move |turn| Some(times(*turn, step)))
+/// Values times exp 2πi f t, t from zero on.
+fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
+    const BLOCK: usize = 16;
+    let turns = |samples: usize| unit(TAU * hz * interval_s * samples as f64);
+    let table: [Complex; BLOCK] = std::array::from_fn(turns);
+    let step = turns(BLOCK);
+    let mut start = (1.0, 0.0);
+    let mut turned = Vec::with_capacity(values.len());
+    for block in values.chunks(BLOCK) {
+        turned.extend(block.iter().zip(&table).map(|(value, turn)| times(times(start, *turn), *value)));
+        start = times(start, step);
+    }
+    turned
 }
 
 /// Adds `part` to `sum`.
@@ -255,11 +265,21 @@ impl LowPass {
 
     fn apply(&self, values: &[Complex]) -> Vec<Complex> {
         let average = |part: &[Complex]| {
-            let pairs = self.taps.iter().zip(part);
-            pairs.fold((0.0, 0.0), |sum, (tap, value)| (sum.0 + tap * value.0, sum.1 + tap * value.1))
+            sum(self.taps.iter().zip(part).map(|(tap, value)| (tap * value.0, tap * value.1)))
         };
         values.windows(self.taps.len()).step_by(self.step).map(average).collect()
     }
+}
+
+/// Sum in four parts, which do not wait for each other.
+fn sum(values: impl ExactSizeIterator<Item = Complex>) -> Complex {
+    let mut parts = [(0.0, 0.0); 4];
+    for (n, value) in values.enumerate() {
+        let part: &mut Complex = &mut parts[n % 4];
+        *part = (part.0 + value.0, part.1 + value.1);
+    }
+    let [a, b, c, d] = parts;
+    ((a.0 + b.0) + (c.0 + d.0), (a.1 + b.1) + (c.1 + d.1))
 }
 
 /// Power of a signal in the span of orthonormal columns.
@@ -291,9 +311,7 @@ pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex
 
 /// Σ ā b.
 pub(super) fn dot(a: &[Complex], b: &[Complex]) -> Complex {
-    a.iter()
-        .zip(b)
-        .fold((0.0, 0.0), |sum, (a, b)| (sum.0 + a.0 * b.0 + a.1 * b.1, sum.1 + a.0 * b.1 - a.1 * b.0))
+    sum(a.iter().zip(b).map(|(a, b)| (a.0 * b.0 + a.1 * b.1, a.0 * b.1 - a.1 * b.0)))
 }
 
 fn times(a: Complex, b: Complex) -> Complex {

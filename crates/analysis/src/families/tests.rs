@@ -52,6 +52,7 @@ fn silent(samples: usize, slip: f64) -> Motion {
         let times = || (0..samples).map(|n| n as f64 * INTERVAL_S);
         let orbit: Vec<f64> = times().map(|t| start - TAU * CAGE_HZ * t).collect();
         RollerTrack {
+            place: start,
             spin: times().map(|t| TAU * spin_hz * t).collect(),
             load_n: orbit.iter().map(|a| 12e3 * a.sin().max(0.0)).collect(),
             orbit,
@@ -117,6 +118,22 @@ fn judged(
 
 fn found(families: &[FamilyFinding]) -> Vec<&str> {
     families.iter().filter(|f| f.found).map(|f| f.name.as_str()).collect()
+}
+
+#[test]
+fn example_of_a_long_record_the_last_part_is_judged() {
+    let periods = |samples: usize| samples as f64 * INTERVAL_S * CAGE_HZ * ROLLERS as f64;
+    let samples = (1.25 * MOST_PERIODS / periods(1)) as usize;
+    let record = sounding(silent(samples, 0.0), &[Sound::of(CANDIDATES[0].1)], 8.0, 5);
+    let families = judged(&CANDIDATES, &record);
+    assert_eq!(found(&families), [CANDIDATES[0].0], "{families:#?}");
+    // Copies that are turned with the pattern have a line at the rate itself, whatever the place of each roller was when the
+    // part began.
+    let from = record.0.too_early().unwrap();
+    assert!((periods(samples - from) - MOST_PERIODS).abs() < 0.1);
+    let late = (record.0.from(from), record.1.clone());
+    assert_eq!(late.0.samples(), samples - from);
+    assert_eq!(late.0.too_early(), None);
 }
 
 #[test]

@@ -1,0 +1,381 @@
+//! How far the reduced model of a scene is from the full one: the same starts by both, quantity by quantity.
+//!
+//! Each quantity has a limit, which is what a user of the reduced model may count on, and a verdict. Pairs of runs have the
+//! same start, so what differs is the model, and what chance makes of a small difference: the waveform of one impact is
+//! chaotic, which is why accelerations are compared by the power of third octaves over all starts.
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+use stribeck_dsp::{Welch, WelchOptions};
+use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::Scene;
+
+use crate::Error;
+use crate::findings::Findings;
+use crate::load::running_mean;
+use crate::record::Record;
+use crate::statistic::Statistic;
+use crate::summary::Summary;
+
+/// The record is compared from here on [s]: before, both models still settle.
+pub const FROM_S: f64 = 1e-3;
+/// Forces are means over this time [s], a low pass that is 3 dB down at 1.8 kHz.
+pub const MEAN_S: f64 = 0.25e-3;
+/// Third octaves, as steps of a third from 1 kHz: 500 Hz to 10 kHz.
+const THIRDS: std::ops::RangeInclusive<i32> = -3..=10;
+/// Bins that a third octave must hold.
+const LEAST_BINS: f64 = 3.0;
+/// Lines of BPFO that are compared, and the periods of it that a record must hold for them.
+const LINES: usize = 5;
+const PERIODS: f64 = 10.0;
+
+/// The models of one scene beside each other; contents of `validation.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Agreement {
+    /// Name of the scene.
+    pub scene: String,
+    /// Hash of the scene with the reduced model.
+    pub scene_hash: String,
+    /// Pairs of runs.
+    pub starts: usize,
+    /// Time on record [ms].
+    pub simulated_ms: f64,
+    /// Time step of the reduced model [µs].
+    pub step_us: f64,
+    /// Processor time of a simulated millisecond [s], the median over the starts: full, reduced.
+    pub cpu_s_per_ms: [f64; 2],
+    /// Every quantity.
+    pub rows: Vec<Row>,
+    /// Third octaves of every sensor.
+    pub sensors: Vec<Octaves>,
+    /// What could not be compared, and why.
+    pub notes: Vec<String>,
+}
+
+/// One quantity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Stable name, the unit at its end.
+    pub name: String,
+    /// In words.
+    pub quantity: String,
+    /// Unit of the difference.
+    pub unit: String,
+    /// The difference, reduced less full; over the starts, or for third octaves over the bands.
+    pub difference: Statistic,
+    /// Largest difference that is still agreement.
+    pub limit: f64,
+    /// Whether it is kept: by the mean of the starts, or by every band.
+    pub within: bool,
+}
+
+impl Row {
+    /// Where the difference lies: the 95 % interval of the mean of the starts, or from the least to the most of the bands; `None`
+    /// of a single value.
+    pub fn range(&self) -> Option<[f64; 2]> {
+        let d = &self.difference;
+        let interval = if self.over_bands() { None } else { d.low.zip(d.high) };
+        interval.or((d.count > 1).then_some((d.least, d.most))).map(<[f64; 2]>::from)
+    }
+
+    /// Whether values are those of bands, not of starts.
+    fn over_bands(&self) -> bool {
+        self.unit == "dB"
+    }
+}
+
+/// Power of a sensor in third octaves, both components together, mean over the starts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Octaves {
+    /// Sensor.
+    pub sensor: String,
+    /// Middles of the bands [Hz].
+    pub centres_hz: Vec<f64>,
+    /// Level by the full model [dB re 1 g].
+    pub full_db: Vec<f64>,
+    /// Level by the reduced one [dB re 1 g].
+    pub reduced_db: Vec<f64>,
+    /// Standard error of their difference by the scatter of the starts [dB]; empty for a single start.
+    pub error_db: Vec<f64>,
+}
+
+/// What one run says.
+struct Side {
+    summary: Summary,
+    /// Smoothed forces of the outer raceway on each roller, x and y.
+    forces: Vec<[Vec<f64>; 2]>,
+    /// Largest of them [N].
+    largest_n: f64,
+    support_n: f64,
+    /// Amplitudes of the first lines of BPFO at the first sensor [g].
+    lines_g: Option<Vec<f64>>,
+    /// Middles of the bands [Hz], and of each sensor the power in each band [g²].
+    centres_hz: Vec<f64>,
+    powers: Vec<(String, Vec<f64>)>,
+    cpu_s_per_ms: f64,
+}
+
+impl Agreement {
+    /// Of pairs of runs, full and reduced, of the same starts of `scene`.
+    ///
+    /// # Errors
+    /// [`Error::NoSignal`] without a pair or when records are too short, [`Error::Signal`] when one cannot be processed.
+    pub fn of(scene: &Scene, pairs: &[[Run; 2]]) -> Result<Self, Error> {
+        let Some([_, first]) = pairs.first() else {
+            return Err(Error::NoSignal("no pair of runs".to_owned()));
+        };
+        let mut sides = Vec::new();
+        for [full, reduced] in pairs {
+            sides.push([Side::of(full)?, Side::of(reduced)?]);
+        }
+        let mut notes = Vec::new();
+        let mut rows = vec![
+            forces(&sides),
+            share("load", "mean load on the rollers", 0.1, &sides, |s| Some(s.support_n)),
+        ];
+        rows.push(share("cage", "speed of the cage", 0.2, &sides, |s| s.summary.kinematics.cage_hz));
+        let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
+        rows.extend(events(&sides));
+        let sensors = octaves(&sides);
+        rows.extend(sensors.iter().filter_map(Octaves::row));
+        let lines: Vec<Row> = (0..LINES).filter_map(|n| line(n, &sides)).collect();
+        if lines.is_empty() {
+            notes.push(format!(
+                "lines of BPFO are compared on records of {PERIODS:.0} periods: {:.0} ms",
+                1e3 * PERIODS / sides[0][0].summary.kinematics.expected_bpfo_hz
+            ));
+        }
+        rows.extend(lines);
+        let cost = |which: usize| {
+            let all: Vec<f64> = sides.iter().map(|pair| pair[which].cpu_s_per_ms).collect();
+            Statistic::of(&all, all.len()).map_or(f64::NAN, |s| s.median)
+        };
+        Ok(Self {
+            scene: scene.name.clone(),
+            scene_hash: scene.hash(),
+            starts: pairs.len(),
+            simulated_ms: sides[0][1].summary.run.simulated_ms,
+            step_us: 1e6 * first.info.time_step_s,
+            cpu_s_per_ms: [cost(0), cost(1)],
+            rows,
+            sensors,
+            notes,
+        })
+    }
+
+    /// Rows that do not keep their limit.
+    pub fn failures(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !row.within)
+    }
+}
+
+impl Side {
+    fn of(run: &Run) -> Result<Self, Error> {
+        let summary = Findings::of(run)?.summary;
+        let record = Record::new(run);
+        let from = record.time_s().iter().position(|t| *t >= FROM_S).unwrap_or(record.len());
+        let width = (MEAN_S / record.interval_s()).round().max(1.0) as usize;
+        if record.len() - from < 4 * width {
+            return Err(Error::NoSignal(format!(
+                "the record of `{}` ends {:.2} ms after the start; models are compared from {:.0} ms on",
+                run.scene.name,
+                1e3 * record.interval_s() * record.len() as f64,
+                1e3 * FROM_S
+            )));
+        }
+        let mean = |values: &[f64]| running_mean(&values[from..], width);
+        let forces: Vec<[Vec<f64>; 2]> =
+            record.rollers().iter().map(|r| [mean(r.outer_fx), mean(r.outer_fy)]).collect();
+        let sizes = forces.iter().flat_map(|[x, y]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)));
+        let support: Vec<f64> = crate::load::vertical_sum(&record)[from..].to_vec();
+        let mut powers = Vec::new();
+        let mut lines_g = None;
+        for sensor in &run.scene.output.sensors {
+            let component =
+                |name: &str| record.acceleration_g(&sensor.name, name).map(|a| a[from..].to_vec());
+            let (Some(x), Some(y)) = (component("ax"), component("ay")) else { continue };
+            if lines_g.is_none() {
+                let bpfo_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
+                let periods = y.len() as f64 * record.interval_s() * bpfo_hz;
+                lines_g = (periods >= PERIODS).then(|| {
+                    (1..=LINES).map(|n| amplitude(&y, n as f64 * bpfo_hz * record.interval_s())).collect()
+                });
+            }
+            let [x, y] = [bands(&x, record.sample_rate_hz())?, bands(&y, record.sample_rate_hz())?];
+            powers.push((sensor.name.clone(), x.iter().zip(&y).map(|(x, y)| x + y).collect()));
+        }
+        Ok(Self {
+            largest_n: sizes.fold(0.0, f64::max),
+            support_n: support.iter().sum::<f64>() / support.len() as f64,
+            cpu_s_per_ms: run.info.loop_cpu_s / summary.run.simulated_ms,
+            centres_hz: centres(record.len() - from, record.sample_rate_hz()),
+            forces,
+            lines_g,
+            powers,
+            summary,
+        })
+    }
+}
+
+/// Amplitude of a line at `turns` a sample, through a Hann window.
+fn amplitude(values: &[f64], turns: f64) -> f64 {
+    let n = values.len() as f64;
+    let (mut re, mut im, mut weight) = (0.0, 0.0, 0.0);
+    for (k, value) in values.iter().enumerate() {
+        let hann = 0.5 - 0.5 * (TAU * (k as f64 + 0.5) / n).cos();
+        let (sin, cos) = (TAU * (turns * k as f64).fract()).sin_cos();
+        (re, im, weight) = (re + hann * value * cos, im - hann * value * sin, weight + hann);
+    }
+    2.0 * re.hypot(im) / weight
+}
+
+/// Middles of the third octaves [Hz] that a record of this length and rate holds.
+fn centres(samples: usize, rate_hz: f64) -> Vec<f64> {
+    let grid_hz = rate_hz / samples as f64;
+    let all = THIRDS.map(|n| 1000.0 * (f64::from(n) / 3.0).exp2());
+    all.filter(|hz| hz * 0.23 >= LEAST_BINS * grid_hz && 1.13 * hz < 0.5 * rate_hz).collect()
+}
+
+/// Mean square in each third octave.
+fn bands(values: &[f64], rate_hz: f64) -> Result<Vec<f64>, Error> {
+    let options = WelchOptions::new(values.len());
+    let mut welch = Welch::new(rate_hz, values.len(), &options).map_err(Error::Signal)?;
+    let spectrum = welch.estimate(values).map_err(Error::Signal)?;
+    let edge = (1.0_f64 / 6.0).exp2();
+    let power = |hz: f64| Ok(spectrum.band_rms(hz / edge, hz * edge).map_err(Error::Signal)?.powi(2));
+    centres(values.len(), rate_hz).into_iter().map(power).collect()
+}
+
+fn statistic(values: impl Iterator<Item = Option<f64>>, of: usize) -> Option<Statistic> {
+    let there: Vec<f64> = values.flatten().filter(|v| v.is_finite()).collect();
+    Statistic::of(&there, of)
+}
+
+/// Root mean square over rollers and time of what the forces differ by, of the largest force.
+fn forces(sides: &[[Side; 2]]) -> Option<Row> {
+    let off = |[full, reduced]: &[Side; 2]| {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (a, b) in full.forces.iter().zip(&reduced.forces) {
+            for component in 0..2 {
+                for (a, b) in a[component].iter().zip(&b[component]) {
+                    (sum, count) = (sum + (a - b).powi(2), count + 0.5);
+                }
+            }
+        }
+        Some(100.0 * (sum / f64::max(count, 1.0)).sqrt() / full.largest_n)
+    };
+    let difference = statistic(sides.iter().map(off), sides.len())?;
+    Some(Row {
+        name: "forces_percent".to_owned(),
+        quantity: format!("forces on the rollers, rms, means over {:.2} ms", 1e3 * MEAN_S),
+        unit: "% of the largest".to_owned(),
+        within: difference.mean <= 1.0,
+        difference,
+        limit: 1.0,
+    })
+}
+
+/// A relative difference [%].
+fn share(
+    name: &str,
+    quantity: &str,
+    limit: f64,
+    sides: &[[Side; 2]],
+    of: impl Fn(&Side) -> Option<f64>,
+) -> Option<Row> {
+    let off = |[full, reduced]: &[Side; 2]| Some(100.0 * (of(reduced)? / of(full)? - 1.0));
+    let difference = statistic(sides.iter().map(off), sides.len())?;
+    Some(Row {
+        name: format!("{name}_percent"),
+        quantity: quantity.to_owned(),
+        unit: "%".to_owned(),
+        within: difference.mean.abs() <= limit,
+        difference,
+        limit,
+    })
+}
+
+/// When rollers unload and reload.
+fn events(sides: &[[Side; 2]]) -> Vec<Row> {
+    const LIMIT_MS: f64 = 0.05;
+    let mut rows = Vec::new();
+    let Some([full, _]) = sides.first() else { return rows };
+    for (n, event) in full.summary.events.iter().enumerate() {
+        let twice = full.summary.events[..n].iter().filter(|e| e.roller == event.roller).count();
+        let again = if twice > 0 { format!(", passage {}", twice + 1) } else { String::new() };
+        let suffix = if twice > 0 { format!("_{}", twice + 1) } else { String::new() };
+        type Of = fn(&crate::summary::Event) -> Option<f64>;
+        let kinds: [(&str, Of); 2] = [("unloads", |e| e.entry_ms), ("reloads", |e| e.exit_ms)];
+        for (what, of) in kinds {
+            let off = |[full, reduced]: &[Side; 2]| {
+                let at =
+                    |s: &Side| of(s.summary.events.iter().filter(|e| e.roller == event.roller).nth(twice)?);
+                Some(at(reduced)? - at(full)?)
+            };
+            let Some(difference) = statistic(sides.iter().map(off), sides.len()) else { continue };
+            rows.push(Row {
+                name: format!("roller_{}{suffix}_{what}_ms", event.roller),
+                quantity: format!("roller {} {what}{again}", event.roller),
+                unit: "ms".to_owned(),
+                within: difference.mean.abs() <= LIMIT_MS,
+                difference,
+                limit: LIMIT_MS,
+            });
+        }
+    }
+    rows
+}
+
+/// A line of BPFO at the first sensor.
+fn line(number: usize, sides: &[[Side; 2]]) -> Option<Row> {
+    let of = |s: &Side| s.lines_g.as_ref()?.get(number).copied();
+    let order = number + 1;
+    share(&format!("bpfo_{order}"), &format!("line at {order} × BPFO, first sensor, y"), 10.0, sides, of)
+}
+
+fn octaves(sides: &[[Side; 2]]) -> Vec<Octaves> {
+    let Some([first, _]) = sides.first() else { return Vec::new() };
+    let n = sides.len() as f64;
+    let mut all = Vec::new();
+    for (at, (sensor, powers)) in first.powers.iter().enumerate() {
+        let of = |which: usize, band: usize| -> Vec<f64> {
+            sides.iter().filter_map(|pair| Some(*pair[which].powers.get(at)?.1.get(band)?)).collect()
+        };
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        let level = |which: usize, band: usize| 10.0 * mean(&of(which, band)).log10();
+        // Relative standard error of the mean power, in decibels.
+        let error = |which: usize, band: usize| {
+            let values = of(which, band);
+            let m = mean(&values);
+            let spread = values.iter().map(|v| (v / m - 1.0).powi(2)).sum::<f64>() / (n - 1.0);
+            10.0 / std::f64::consts::LN_10 * (spread / n).sqrt()
+        };
+        let bands = 0..powers.len();
+        let wide = bands.clone().map(|band| error(0, band).hypot(error(1, band)));
+        all.push(Octaves {
+            sensor: sensor.clone(),
+            centres_hz: first.centres_hz.clone(),
+            full_db: bands.clone().map(|band| level(0, band)).collect(),
+            reduced_db: bands.clone().map(|band| level(1, band)).collect(),
+            error_db: if sides.len() > 1 { wide.collect() } else { Vec::new() },
+        });
+    }
+    all
+}
+
+impl Octaves {
+    fn row(&self) -> Option<Row> {
+        const LIMIT_DB: f64 = 1.5;
+        let off: Vec<f64> = self.reduced_db.iter().zip(&self.full_db).map(|(r, f)| r - f).collect();
+        let difference = Statistic::of(&off, off.len())?;
+        Some(Row {
+            name: format!("octaves_{}_db", self.sensor),
+            quantity: format!("third octaves at `{}`, 0.5 to 10 kHz, over bands", self.sensor),
+            unit: "dB".to_owned(),
+            within: difference.most.max(-difference.least) <= LIMIT_DB,
+            difference,
+            limit: LIMIT_DB,
+        })
+    }
+}

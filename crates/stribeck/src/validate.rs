@@ -1,0 +1,144 @@
+//! `stribeck validate`: the same starts of a scene by the full and by the reduced model, and how far apart they are.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use stribeck_analysis::agreement::{Agreement, Row};
+use stribeck_analysis::report;
+use stribeck_scene::ensemble::{folder_name, start};
+use stribeck_scene::run_dir::{Run, State};
+use stribeck_scene::scene::{ModelScene, Scene};
+
+use crate::interrupt::{self, Interrupt};
+use crate::place::{Place, shown};
+use crate::side_by_side::{Due, Jobs, Shop};
+use crate::simulate::{jobs, threads};
+
+/// Flags of `validate`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Scene file, with either model [default: fixtures/scenes/reduced_30ms.ron]
+    scene: Option<PathBuf>,
+    /// Overrides a field of the scene, for example --set operation.load_n=30000; may be repeated
+    #[arg(long = "set", value_name = "FIELD=VALUE")]
+    set: Vec<String>,
+    /// Starts, each by both models
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    starts: u16,
+    /// What the starts are drawn from
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Runs that go side by side [default: as many as cores]
+    #[arg(long, value_name = "N", value_parser = jobs)]
+    jobs: Option<usize>,
+    /// Worker threads of all runs together [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    /// Folder of the runs and of the page [default: runs/NAME-validation]; the same command goes on with what is there
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// The scene that is validated when none is named.
+const SCENE: &str = "fixtures/scenes/reduced_30ms.ron";
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let file = options.scene.clone().unwrap_or_else(|| SCENE.into());
+    let scene = place.scene(Some(&file), &options.set)?;
+    let models = models(&scene)?;
+    let out = options.out.clone().unwrap_or_else(|| place.runs().join(format!("{}-validation", scene.name)));
+    std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
+    let due = due(&out, &models, options)?;
+    let jobs = Jobs::of(options.jobs, options.threads, due.len());
+    eprintln!(
+        "{}: {} starts of {} ms by both models, {} runs to make, {} → {}",
+        scene.name,
+        options.starts,
+        scene.solver.duration_ms,
+        due.len(),
+        jobs.shown(),
+        shown(&out)
+    );
+    let interrupt = Interrupt::listen()?;
+    let shop = Shop::new("run", &due, jobs, &interrupt);
+    shop.run(&|_, _| {});
+    let left = self::due(&out, &models, options)?.len();
+    if left > 0 {
+        eprintln!("{left} runs are not at their end; the same command goes on with them");
+        return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
+    }
+    let mut pairs = Vec::new();
+    for number in 1..=usize::from(options.starts) {
+        let read = |model: &str| -> Result<Run> { Ok(Run::read(folder(&out, model, number))?) };
+        pairs.push([read(models[0].0)?, read(models[1].0)?]);
+    }
+    let agreement = Agreement::of(&models[1].1, &pairs)?;
+    report::write_agreement(&out, &agreement)?;
+    print(&agreement);
+    println!("page: {}", shown(&out.join("report.html")));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The scene by the full and by the reduced model, with the names of their folders.
+fn models(scene: &Scene) -> Result<[(&'static str, Scene); 2]> {
+    let by = |model: ModelScene| -> Result<Scene> {
+        let scene = Scene { model, ..scene.clone() };
+        scene.validate()?;
+        Ok(scene)
+    };
+    let reduced = match &scene.model {
+        ModelScene::Reduced(reduced) => ModelScene::Reduced(reduced.clone()),
+        ModelScene::Full => ModelScene::Reduced(Default::default()),
+    };
+    Ok([("full", by(ModelScene::Full)?), ("reduced", by(reduced)?)])
+}
+
+fn folder(out: &Path, model: &str, number: usize) -> PathBuf {
+    out.join(model).join(folder_name(number))
+}
+
+/// Runs that are not at their end, a pair after the other.
+fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Result<Vec<Due>> {
+    let mut due: Vec<Due> = Vec::new();
+    for number in 1..=usize::from(options.starts) {
+        for (model, scene) in models {
+            let scene = start(scene, options.seed, number);
+            let folder = folder(out, model, number);
+            match State::of(&folder, &scene) {
+                State::Done => {}
+                State::Other => bail!(
+                    "`{}` holds a run of another scene, seed or duration: give another folder with `--out`, or move it away",
+                    shown(&folder)
+                ),
+                state => due.push(Due { number: due.len() + 1, scene, folder, state }),
+            }
+        }
+    }
+    Ok(due)
+}
+
+fn print(agreement: &Agreement) {
+    let [full, reduced] = agreement.cpu_s_per_ms;
+    println!(
+        "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval",
+        agreement.scene, agreement.starts, agreement.simulated_ms
+    );
+    for row in &agreement.rows {
+        let verdict = if row.within { "" } else { "  NOT KEPT" };
+        println!("  {:<58} {}{verdict}", row.quantity, words(row));
+    }
+    for note in &agreement.notes {
+        println!("  note: {note}");
+    }
+    println!(
+        "  processor time of a simulated millisecond: full {full:.3} s, reduced {reduced:.4} s, {:.0} times less",
+        full / reduced
+    );
+}
+
+/// The difference and its limit.
+fn words(row: &Row) -> String {
+    let range = row.range().map_or(String::new(), |[low, high]| format!(" ({low:+.3} to {high:+.3})"));
+    format!("{:+.3}{range} {}, limit {}", row.difference.mean, row.unit, row.limit)
+}
