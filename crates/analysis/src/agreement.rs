@@ -371,7 +371,7 @@ impl Octaves {
         let difference = Statistic::of(&off, off.len())?;
         Some(Row {
             name: format!("octaves_{}_db", self.sensor),
-            quantity: format!("third octaves at `{}`, 0.5 to 10 kHz, over bands", self.sensor),
+            quantity: format!("third octaves at the sensor {}, 0.5 to 10 kHz", self.sensor),
             unit: "dB".to_owned(),
             within: difference.most.max(-difference.least) <= LIMIT_DB,
             difference,

@@ -78,7 +78,7 @@ fn compare_terms(text: &str) -> Vec<String> {
     complaints
 }
 
-/// Every `cargo xtask …` in the documents is accepted by the command line, and every fixture it names exists.
+/// Every `cargo xtask …` and `stribeck …` in the documents is accepted by the command line, and every fixture it names exists.
 pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
     let mut complaints = Vec::new();
     for name in documents(root)? {
@@ -101,10 +101,10 @@ pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// README, CONTRIBUTING, what lies in `docs/` and `docs/notes/`, and the README of every crate.
+/// README, CONTRIBUTING, what lies in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of every crate.
 fn documents(root: &Path) -> Result<Vec<String>> {
     let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
-    for folder in ["docs", "docs/notes"] {
+    for folder in ["docs", "docs/notes", "docs/guide/src"] {
         let entries =
             std::fs::read_dir(root.join(folder)).with_context(|| format!("cannot read {folder}"))?;
         let files =
@@ -119,11 +119,13 @@ fn documents(root: &Path) -> Result<Vec<String>> {
 
 /// Why a command of the documents would fail; `None` when it would not, or is no command of ours.
 fn wrong_command(root: &Path, command: &str) -> Option<String> {
-    let at = command.find("cargo xtask")?;
+    // `cargo xtask` has the commands of `stribeck`.
+    let begins = |name: &str| command.starts_with(name).then_some(name.len());
+    let at =
+        command.find("cargo xtask").map(|at| at + "cargo xtask".len()).or_else(|| begins("stribeck "))?;
     // What stands behind a comment, a pipe or another command is not ours; nor is a placeholder such as `[SCENE]`.
     let ours = command[at..].split(['#', '|', ';', '&', '>']).next().unwrap_or_default();
-    let words: Vec<&str> =
-        ours.split_whitespace().skip(2).filter(|word| !word.contains(['[', '…', '<'])).collect();
+    let words: Vec<&str> = ours.split_whitespace().filter(|word| !word.contains(['[', '…', '<'])).collect();
     if words.is_empty() {
         return None;
     }

@@ -31,7 +31,11 @@ pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
     let entries = std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut names: Vec<String> = entries
         .flatten()
-        .filter(|entry| entry.path().join("Cargo.toml").exists())
+        // One with a workspace of its own, such as the Python module, is no member of this one.
+        .filter(|entry| {
+            std::fs::read_to_string(entry.path().join("Cargo.toml"))
+                .is_ok_and(|text| !text.contains("[workspace]"))
+        })
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();

@@ -1,0 +1,102 @@
+//! Both models of one scene beside each other, as their users see it.
+
+use std::fs;
+use std::process::{Command, Output, Stdio};
+
+use serde_json::Value;
+use stribeck_analysis::agreement::Agreement;
+use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::Scene;
+use stribeck_testing::{Scratch, said, says};
+
+/// The paper's bearing, coarse, dry and short.
+const SCENE: &str = "(
+    name: \"coarse\",
+    model: reduced(modes_khz: 15.0),
+    bearing: (thickness_mm: 20.0),
+    mesh: (size_mm: 4.0, roller_facets: 88),
+    cage: (pocket: corners),
+    contact: (points_per_facet: 4),
+    film: None,
+    solver: (duration_ms: 3.0, mass_damping_per_s: 5000.0, structural_damping: None),
+    output: (frames: None),
+)";
+
+fn run(desk: &Scratch, words: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+    command.current_dir(desk.path()).args(words).stdin(Stdio::null()).output().expect("it starts")
+}
+
+#[test]
+fn example_both_models_from_the_same_starts() {
+    let desk = Scratch::create("validate");
+    fs::write(desk.join("scene.ron"), SCENE).unwrap();
+    let words = ["validate", "scene.ron", "--starts=2", "--jobs=1", "--threads=2"];
+    let first = run(&desk, &words);
+    assert!(first.status.success(), "{}", said(&first));
+    says(&first, &["4 runs to make", "forces on the rollers", "mean load on the rollers", "processor time"]);
+    let folder = desk.join("runs/coarse-validation");
+    let table: Value = serde_json::from_slice(&fs::read(folder.join("validation.json")).unwrap()).unwrap();
+    let row = |name: &str| {
+        let rows = table["rows"].as_array().unwrap();
+        rows.iter().find(|row| row["name"] == name).unwrap_or_else(|| panic!("{name}: {table}")).clone()
+    };
+    // Statics bind both: the load is that of the scene.
+    assert!(row("load_percent")["difference"]["mean"].as_f64().unwrap().abs() < 1.0, "{table}");
+    assert!(row("forces_percent")["difference"]["mean"].as_f64().unwrap() < 5.0, "{table}");
+    let page = fs::read(folder.join("report.html")).unwrap();
+
+    // What is there is not run again, and comes to the same page.
+    let again = run(&desk, &words);
+    says(&again, &["0 runs to make"]);
+    assert_eq!(fs::read(folder.join("report.html")).unwrap(), page);
+
+    // Another seed makes other starts, which have no place here.
+    let other = run(&desk, &[&words[..], &["--seed=2"]].concat());
+    assert!(!other.status.success());
+    says(&other, &["holds a run of another scene, seed or duration"]);
+
+    // A reduced run beside it says what is known of its error.
+    let near = ["simulate", "scene.ron", "--set", "operation.load_n=45000", "--out=runs/near", "--threads=2"];
+    let near = run(&desk, &near);
+    assert!(near.status.success(), "{}", said(&near));
+    let page = fs::read_to_string(desk.join("runs/near/report.html")).unwrap();
+    assert!(page.contains("differs in operation.load_n (45000.0 here, 50000.0 there)"), "{page}");
+    let alone = run(&desk, &["simulate", "scene.ron", "--out=alone/run", "--threads=2"]);
+    assert!(alone.status.success(), "{}", said(&alone));
+    let page = fs::read_to_string(desk.join("alone/run/report.html")).unwrap();
+    assert!(page.contains("no validation of a scene like it"));
+
+    // A run agrees with itself, and a change of its forces is what is reported.
+    let path = folder.join("reduced/start-001");
+    let scene = Scene::read(path.join("scene.ron")).unwrap();
+    let own = || Run::read(&path).unwrap();
+    let same = Agreement::of(&scene, &[[own(), own()]]).unwrap();
+    assert!(same.failures().next().is_none() && same.rows.iter().all(|row| row.difference.most.abs() < 1e-9));
+    let mut louder = own();
+    for (name, column) in louder.trace.names.iter().zip(&mut louder.trace.columns) {
+        if name.contains("_fx_n") || name.contains("_fy_n") || name.contains("_m_s2") {
+            column.iter_mut().for_each(|value| *value *= 1.02);
+        }
+    }
+    let other = Agreement::of(&scene, &[[own(), louder]]).unwrap();
+    let of = |name: &str| other.rows.iter().find(|row| row.name == name).unwrap();
+    assert!((of("load_percent").difference.mean - 2.0).abs() < 1e-9 && !of("load_percent").within);
+    let side = of(&format!("octaves_{}_db", scene.output.sensors[0].name));
+    assert!((side.difference.mean - 20.0 * 1.02_f64.log10()).abs() < 1e-9, "{side:?}");
+    // 2 % of the root mean square of all forces.
+    assert!((0.05..2.0).contains(&of("forces_percent").difference.mean));
+}
+
+#[test]
+fn refuses_scenes_that_the_reduced_model_cannot_have() {
+    let desk = Scratch::create("validate-refused");
+    fs::write(desk.join("scene.ron"), SCENE).unwrap();
+    let oil = run(&desk, &["validate", "scene.ron", "--set", "film=Some(())"]);
+    assert!(!oil.status.success());
+    says(&oil, &["film"]);
+    assert!(!desk.join("runs").exists());
+    let short = run(&desk, &["validate", "scene.ron", "--set", "solver.duration_ms=1.0", "--starts=1"]);
+    assert!(!short.status.success());
+    says(&short, &["models are compared from 1 ms on"]);
+}
