@@ -2,6 +2,7 @@
 //! directory gives the same bytes.
 
 mod answer;
+mod course;
 mod ensemble;
 mod figures;
 mod measured;

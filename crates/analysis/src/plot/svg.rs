@@ -269,8 +269,12 @@ fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, 
     // Angles are read in twelfths of a turn, not in fifties.
     let (at, step): (Vec<f64>, f64) = match axis.unit.as_str() {
         "°" => ((0..=12).map(|n| 30.0 * f64::from(n)).filter(|a| (low..=high).contains(a)).collect(), 30.0),
-        _ => ticks(low, high, wanted),
+        _ => ticks(low, high, if axis.counted { wanted.min((high - low) as usize).max(1) } else { wanted }),
     };
+    // Between two things there is none.
+    let whole = |v: &f64| !axis.counted || v.fract() == 0.0;
+    let step = if axis.counted { step.max(1.0) } else { step };
+    let at: Vec<f64> = at.into_iter().filter(whole).collect();
     let largest = at.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let (scale, unit) =
         if axis.prefixed { (Scale::of(largest), axis.unit.as_str()) } else { (Scale::ONE, "") };
