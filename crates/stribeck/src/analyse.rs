@@ -95,8 +95,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         let analysis = analyse(file, &out, options, place)?;
         print(&analysis);
-        for judged in judge(&analysis, &options.alarms) {
-            println!("  {}", passed(&judged));
+        for limit in &options.alarms {
+            match limit.judge(&analysis.findings) {
+                Some(judged) => println!("  {}", passed(&judged)),
+                None => println!("  {}: the record does not say it", limit.quantity.name()),
+            }
         }
         println!("report: {}", shown(&out.join("report.html")));
         return Ok(ExitCode::SUCCESS);
@@ -121,6 +124,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
     }
     let limits = limits(options, &entries);
+    for limit in &limits {
+        if !entries.iter().filter_map(|e| e.findings.as_ref()).any(|f| limit.judge(f).is_some()) {
+            eprintln!("note: no record says its {}: the limit is not used", limit.quantity.name());
+        }
+    }
     for entry in &mut entries {
         let Some(findings) = &entry.findings else { continue };
         entry.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
@@ -133,10 +141,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     println!("side by side: {}", shown(&out.join("trend.html")));
     let any = entries.iter().any(|entry| entry.findings.is_some());
     Ok(if any { ExitCode::SUCCESS } else { ExitCode::FAILURE })
-}
-
-fn judge(analysis: &Analysis, limits: &[Limit]) -> Vec<Judged> {
-    limits.iter().filter_map(|limit| limit.judge(&analysis.findings)).collect()
 }
 
 /// Limits that were given, and those that follow from the reference records.
@@ -190,7 +194,15 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let scaled = channel.scaled(options.scale).in_unit(unit);
     let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
     let over_angle = match pulses {
-        Some(pulses) => over_angle(&scaled, rate_hz, &pulses)?,
+        Some(pulses) => {
+            let even = over_angle(&scaled, rate_hz, &pulses)?;
+            if even.is_none() {
+                notes.push(
+                    "the record is too long to be taken over the angle: its lines are smeared".to_owned(),
+                );
+            }
+            even
+        }
         None => None,
     };
     let mut analysis = match &over_angle {

@@ -46,7 +46,10 @@ fn example_a_record_gives_a_verdict_findings_and_a_page() {
         assert!(findings["families"][0][key].is_number(), "{key}");
     }
     let page = std::fs::read_to_string(desk.join("a-analysis/report.html")).unwrap();
-    assert!(page.contains("Squared envelope spectrum about BPFO"));
+    for shown in ["Squared envelope spectrum about BPFO", "Enhanced envelope spectrum", "id=\"spectrogram\""]
+    {
+        assert!(page.contains(shown), "{shown}");
+    }
 }
 
 #[test]

@@ -152,8 +152,9 @@ impl Limit {
     ///
     /// Source: G. J. Hahn and W. Q. Meeker, Statistical Intervals, Wiley 1991, section 4.8.
     pub fn from_reference(quantity: Quantity, reference: &[f64]) -> Option<Self> {
-        let (into, back): (fn(f64) -> f64, fn(f64) -> f64) =
-            if quantity.by_factors() { (f64::ln, f64::exp) } else { (|x| x, |x| x) };
+        let factors = quantity.by_factors();
+        let into = |x: f64| if factors { x.ln() } else { x };
+        let back = |x: f64| if factors { x.exp() } else { x };
         let values: Vec<f64> = reference.iter().map(|x| into(*x)).filter(|x| x.is_finite()).collect();
         if values.len() < LEAST_RECORDS {
             return None;

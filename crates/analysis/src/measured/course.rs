@@ -72,3 +72,31 @@ impl Tracing {
         self.course
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn example_a_tone_that_changes_stands_where_and_when_it_sounds() {
+        let rate_hz = 10_000.0;
+        let tone = |hz: f64| -> Vec<f64> {
+            (0..40_000).map(|n| (TAU * hz * f64::from(n) / rate_hz).sin()).collect()
+        };
+        let mut tracing = Tracing::new(rate_hz, 120_000).unwrap();
+        tracing.add(&tone(1_000.0)).unwrap();
+        tracing.skip(40_000);
+        tracing.add(&tone(3_000.0)).unwrap();
+        let course = tracing.finish();
+        let loudest = |t: f64| {
+            let column = &course.values[(t / course.step_s) as usize * course.lines..][..course.lines];
+            let most = (0..course.lines).max_by(|a, b| column[*a].total_cmp(&column[*b])).unwrap();
+            (column[most].is_finite()).then_some(most as f64 * course.grid_hz)
+        };
+        for (t, hz) in [(1.0, 1_000.0), (3.0, 1_000.0), (9.0, 3_000.0), (11.0, 3_000.0)] {
+            assert!((loudest(t).unwrap() - hz).abs() <= course.grid_hz, "{t} s: {:?}", loudest(t));
+        }
+        assert_eq!(loudest(6.0), None);
+    }
+}

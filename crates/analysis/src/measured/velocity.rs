@@ -49,3 +49,25 @@ impl Level {
         (self.count > 0).then(|| 1e3 * self.unit * (self.sum / self.count as f64).sqrt())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn example_one_g_at_a_hundred_hertz() {
+        let rate_hz = 5_000.0;
+        let samples: Vec<f64> = (0..20_000).map(|n| (TAU * 100.0 * f64::from(n) / rate_hz).sin()).collect();
+        let level = |unit| {
+            let mut level = Level::new(rate_hz, samples.len(), Some(unit)).unwrap()?;
+            level.add(&samples).unwrap();
+            level.finish()
+        };
+        // 9.80665/(200π) m/s peak is 11.04 mm/s RMS; the line's width of 1.5 Hz at 100 Hz, squared.
+        assert!((level("g").unwrap() / 11.036 - 1.0).abs() < 5e-4, "{:?}", level("g"));
+        assert!((level("m/s²").unwrap() * G / level("g").unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(level("V"), None);
+        assert!(Level::new(1_500.0, 20_000, Some("g")).unwrap().is_none());
+    }
+}

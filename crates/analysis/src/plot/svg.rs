@@ -325,6 +325,18 @@ mod tests {
     use crate::plot::{Band, Mark, Series};
 
     #[test]
+    fn example_ticks_of_counted_things_are_whole() {
+        for count in [1, 2, 3, 7, 40] {
+            let axis = Axis::counted("Record", count);
+            let ticks = tick_texts(&axis, axis.range.unwrap(), 8);
+            assert!(
+                !ticks.is_empty() && ticks.iter().all(|(at, text)| *text == format!("{at}")),
+                "{ticks:?}"
+            );
+        }
+    }
+
+    #[test]
     fn example_everything_asked_for_is_in_the_picture() {
         let y = (0..3000).map(|n| 100.0 * (0.3 * n as f64).sin()).collect();
         let mut figure =

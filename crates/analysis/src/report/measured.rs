@@ -110,7 +110,7 @@ fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
         "density",
         "Power spectral density",
         Axis::si("Frequency", "Hz"),
-        Axis::plain("Density", &format!("dB re 1 {unit}²/Hz")),
+        Axis::plain("Density", &format!("dB re 1 ({unit})²/Hz")),
     )
     .caption("Welch's average over the whole record, Hann window.")
     .with(Series::sampled(

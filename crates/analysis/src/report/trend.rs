@@ -27,6 +27,9 @@ pub struct TrendEntry {
     pub alarms: Vec<Judged>,
 }
 
+/// Highest limit that is drawn, over the highest value.
+const ROOM: f64 = 2.0;
+
 /// Writes `trend.json` and `trend.html` of some records, in their order, into `folder`, which must be there; `limits` are drawn
 /// beside the levels.
 ///
@@ -140,12 +143,19 @@ fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
     };
     let points = |name: &str, colour, y| Series::sampled(name, colour, 1.0, 1.0, y).as_points();
     let limited = |mut figure: Figure, quantities: &[Quantity]| {
+        // One that lies far above all values would leave them no room.
+        let values = figure.series.iter().flat_map(|s| &s.y).copied().filter(|y| y.is_finite());
+        let most = ROOM * values.fold(0.0, f64::max);
         for limit in limits.iter().filter(|limit| quantities.contains(&limit.quantity)) {
             let name = limit.quantity.name();
             for (y, what, colour) in
                 [(limit.warning, "warning", Colour::Orange), (limit.alarm, "alarm", Colour::Red)]
             {
-                figure.levels.push(Level { y, label: format!("{name} {what}"), colour });
+                if y <= most {
+                    figure.levels.push(Level { y, label: format!("{name} {what}"), colour });
+                } else {
+                    figure.note = format!("Limits above {most:.3} are in the table only.");
+                }
             }
         }
         figure
