@@ -184,7 +184,7 @@
     grid: { stroke: () => theme("--grid"), width: 1 },
     ticks: { stroke: () => theme("--grid"), width: 1, size: 5 },
     values: tickTexts(axis),
-    incrs: axis.unit === "°" ? [1, 5, 10, 15, 30, 45, 90] : STEPS,
+    incrs: axis.unit === "°" ? [1, 5, 10, 15, 30, 45, 90] : axis.counted ? STEPS.filter((step) => step >= 1) : STEPS,
   });
 
   const build = (figure) => {

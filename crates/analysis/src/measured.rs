@@ -29,9 +29,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod alarm;
+mod angular;
+mod course;
+mod enhanced;
 mod length;
+pub mod ridge;
 mod screening;
 pub mod tacho;
+mod velocity;
 mod verdict;
 
 use serde::Serialize;
@@ -40,6 +46,9 @@ use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 
 use crate::Error;
+pub use angular::over_angle;
+pub use course::Course;
+pub use enhanced::Enhanced;
 pub use screening::Health;
 use screening::Screening;
 pub use verdict::Family;
@@ -76,6 +85,8 @@ pub struct Findings {
     pub segments: usize,
     /// Numbers that describe the signal as a whole.
     pub health: Health,
+    /// Root mean square of the velocity from 10 to 1000 Hz [mm/s], for accelerations in m/s² or g.
+    pub velocity_mm_s: Option<f64>,
     /// The defect families; none without speed and bearing.
     pub families: Vec<Family>,
     /// What to conclude, in one sentence.
@@ -108,6 +119,10 @@ pub struct Analysis {
     pub density: (Vec<f64>, Vec<f64>),
     /// Squared envelope spectra of all bands.
     pub bands: Vec<BandEnvelope>,
+    /// Density over time.
+    pub course: Course,
+    /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
+    pub enhanced: Option<Enhanced>,
 }
 
 /// Longest segment [samples]: its envelopes take about 150 MB.
@@ -124,6 +139,10 @@ const HIGHEST_HZ: f64 = 4_000.0;
 const DENSITY_SEGMENT: usize = 1 << 13;
 /// Samples kept for the picture.
 const SHOWN: usize = 1 << 16;
+/// Harmonics of the fastest family in the enhanced envelope spectrum.
+const HARMONICS: f64 = 3.2;
+/// Its highest frequency when no family is known [Hz].
+const UNKNOWN_HZ: f64 = 500.0;
 /// Shortest record that is analysed [samples].
 const LEAST: usize = 1024;
 
@@ -150,6 +169,8 @@ impl Analysis {
         let mut envelopes =
             BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz).map_err(Error::Signal)?;
         let mut density = Density::new(rate_hz, segment)?;
+        let mut tracing = course::Tracing::new(rate_hz, len)?;
+        let mut velocity = velocity::Level::new(rate_hz, segment, channel.unit.as_deref())?;
         let mut screening = Screening::default();
         let mut buffer: Vec<f64> = Vec::with_capacity(segment);
         let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
@@ -167,9 +188,14 @@ impl Analysis {
                     continue;
                 }
                 if buffer.iter().all(|x| x.is_finite()) {
-                    let added = envelopes.add(&buffer).and_then(|()| density.add(&buffer));
+                    let added = envelopes
+                        .add(&buffer)
+                        .and_then(|()| density.add(&buffer))
+                        .and_then(|()| tracing.add(&buffer))
+                        .and_then(|()| velocity.as_mut().map_or(Ok(()), |level| level.add(&buffer)));
                     failed = added.err();
                 } else {
+                    tracing.skip(buffer.len());
                     refused += 1;
                 }
                 buffer.clear();
@@ -195,7 +221,8 @@ impl Analysis {
                 notes.join("; ")
             )));
         }
-        let Some(health) = screening.health() else {
+        let density = density.finish();
+        let Some(health) = screening.health(&density.1) else {
             return Err(Error::NoSignal(format!(
                 "channel `{}` is constant; is the sensor connected?",
                 channel.name
@@ -214,6 +241,9 @@ impl Analysis {
         notes.extend(judged.notes.iter().cloned());
         let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
         notes.extend(why);
+        let highest_hz = judged.families.iter().map(|f| f.expected_hz).fold(0.0, f64::max);
+        let highest_hz = if highest_hz > 0.0 { HARMONICS * highest_hz } else { UNKNOWN_HZ };
+        let enhanced = enhanced::of(&kept, rate_hz, highest_hz)?;
         Ok(Self {
             findings: Findings {
                 channel: channel.name.clone(),
@@ -226,14 +256,17 @@ impl Analysis {
                 resolution_hz,
                 segments: envelopes.segments(),
                 health,
+                velocity_mm_s: velocity.as_ref().and_then(velocity::Level::finish),
                 families: judged.families,
                 verdict: judged.verdict,
                 spall_mm,
                 notes,
             },
             beginning: kept.into_iter().take(SHOWN).collect(),
-            density: density.finish(),
+            density,
             bands,
+            course: tracing.finish(),
+            enhanced,
         })
     }
 

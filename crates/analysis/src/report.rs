@@ -3,6 +3,7 @@
 
 mod agreement;
 mod answer;
+mod course;
 mod ensemble;
 mod figures;
 mod measured;

@@ -44,44 +44,60 @@ struct Filters {
 /// [`Error::NotPositive`] for the sample rate, [`Error::TooShort`] for a signal of fewer than `2^(levels + 7)` samples,
 /// [`Error::NotFinite`].
 pub fn fast_kurtogram(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Result<Vec<KurtogramBand>> {
-    check_positive("sample_rate_hz", sample_rate_hz)?;
-    let least = 1_usize.checked_shl(levels + 7).filter(|n| *n > 0).ok_or(Error::TooShort {
-        field: "signal",
-        len: signal.len(),
-        least: usize::MAX,
-        purpose: "a kurtogram of so many levels",
-    })?;
-    check_signal(signal, least, "a kurtogram of so many levels")?;
+    check_levels(signal, sample_rate_hz, levels)?;
+    let mut bands = Vec::new();
+    for_each_band(signal, sample_rate_hz, levels, |of, low_hz, high_hz, coefficients| {
+        // The whole signal is real, and its noise has a kurtosis of three.
+        let of_noise = if of == 1 { 3.0 } else { 2.0 };
+        bands.push(KurtogramBand { of, low_hz, high_hz, kurtosis: kurtosis(coefficients, of_noise) });
+    });
+    Ok(bands)
+}
+
+/// Gives the settled coefficients of every band to `take`, with the number of such bands and its ends [Hz].
+pub(crate) fn for_each_band(
+    signal: &[f64],
+    sample_rate_hz: f64,
+    levels: u32,
+    mut take: impl FnMut(usize, f64, f64, &[Complex<f64>]),
+) {
     let mean = signal.iter().sum::<f64>() / signal.len() as f64;
     let whole: Signal = signal.iter().map(|x| Complex::new(x - mean, 0.0)).collect();
     let filters = Filters::new();
-    let band = |of: usize, n: usize, kurtosis| {
+    let mut band = |of: usize, n: usize, coefficients: &[Complex<f64>]| {
         let width = 0.5 * sample_rate_hz / of as f64;
-        KurtogramBand { of, low_hz: n as f64 * width, high_hz: (n + 1) as f64 * width, kurtosis }
+        take(of, n as f64 * width, (n + 1) as f64 * width, coefficients);
     };
-    let mut bands = vec![band(1, 0, kurtosis(&whole, 3.0))];
+    band(1, 0, &whole);
     let mut nodes = vec![whole];
     for level in 0..levels {
         let halves: Vec<Signal> = nodes.iter().flat_map(|node| filters.halve(node)).collect();
-        let of = halves.len();
         let settled = |n: usize| ORDER - n % 2;
-        bands.extend(
-            halves.iter().enumerate().map(|(n, half)| band(of, n, kurtosis(trimmed(half, settled(n)), 2.0))),
-        );
+        for (n, half) in halves.iter().enumerate() {
+            band(halves.len(), n, trimmed(half, settled(n)));
+        }
         // Thirds of this level are narrower than its halves; the last level has none.
         if level + 1 < levels {
-            let thirds: Vec<f64> = nodes
-                .iter()
-                .flat_map(|node| {
-                    filters.thirds.each_ref().map(|f| kurtosis(trimmed(&decimated(node, f, 3), ORDER), 2.0))
-                })
-                .collect();
-            let of = thirds.len();
-            bands.extend(thirds.into_iter().enumerate().map(|(n, k)| band(of, n, k)));
+            let pairs = nodes.iter().flat_map(|node| filters.thirds.iter().map(move |f| (node, f)));
+            for (n, (node, filter)) in pairs.enumerate() {
+                band(3 * nodes.len(), n, trimmed(&decimated(node, filter, 3), ORDER));
+            }
         }
         nodes = halves;
     }
-    Ok(bands)
+}
+
+/// Refuses what is too short for a tree of so many levels.
+pub(crate) fn check_levels(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Result<()> {
+    check_positive("sample_rate_hz", sample_rate_hz)?;
+    let purpose = "a tree of bands of so many levels";
+    let least = 1_usize.checked_shl(levels.saturating_add(7)).filter(|n| *n > 0).ok_or(Error::TooShort {
+        field: "signal",
+        len: signal.len(),
+        least: usize::MAX,
+        purpose,
+    })?;
+    check_signal(signal, least, purpose)
 }
 
 impl Filters {

@@ -28,11 +28,15 @@
 //! |---|---|
 //! | what frequencies a record holds, and how strong | [`Welch`]: [`Welch::for_grid`] for one record, [`Welch::new`] for averages |
 //! | the frequency and amplitude of a line, and whether it stands out | [`Spectrum::peak`], [`Spectrum::sinusoid`], [`Spectrum::stands_above_db`] |
-//! | how much there is in a band | [`Spectrum::band_rms`] |
+//! | how much there is in a band | [`Spectrum::band_rms`], [`Spectrum::velocity_rms`] |
 //! | what can be told apart at all | [`Resolution`] |
 //! | what is left without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
 //! | how often something knocks | [`EnvelopeSpectrum`], after [`PeriodCount`] has said that the record is long enough |
-//! | in which band it knocks | [`fast_kurtogram`], [`BandEnvelopes`] for records of any length, [`cepstral_prewhitening`] |
+//! | in which band it knocks | [`fast_kurtogram`], [`infogram`], [`BandEnvelopes`] for records of any length, [`cepstral_prewhitening`] |
+//! | at what rate which part of the spectrum comes and goes | [`spectral_correlation`] |
+//! | what repeats exactly, and what slips | [`separate`] |
+//! | the pulses behind a resonance | [`momeda`] |
+//! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
 //! | whether a family of harmonics is there, and how sure that is | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`] |
 //! | what is locked to a shaft | [`order_track`], [`OverAngle::average`] |
@@ -94,9 +98,16 @@ mod comb;
 
 mod angle;
 mod cepstrum;
+mod cyclic;
+mod deconvolution;
+mod infogram;
 mod kurtogram;
 mod multitaper;
+mod ridge;
+mod separation;
 mod spacing;
+mod spectrogram;
+mod velocity;
 
 mod sensor;
 
@@ -106,15 +117,21 @@ pub use angle::{OverAngle, order_track};
 pub use band_envelopes::{BandEnvelope, BandEnvelopes};
 pub use cepstrum::cepstral_prewhitening;
 pub use comb::{Comb, CombTest, Whitened};
+pub use cyclic::{Cyclic, SpectralCorrelation, spectral_correlation};
+pub use deconvolution::{Deconvolved, momeda};
 pub use envelope::{Envelope, EnvelopeSpectrum, PeriodCount, PeriodVerdict};
 pub use error::{Error, Result};
+pub use infogram::{InfogramBand, infogram};
 pub use kurtogram::{KurtogramBand, fast_kurtogram};
 pub use multitaper::{dpss, multitaper};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
 pub use peak::{Peak, Sinusoid};
+pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
+pub use separation::{Separated, separate};
 pub use spacing::{Spacing, event_spacing};
+pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
 pub use window::Window;

@@ -4,7 +4,10 @@
 use std::f64::consts::TAU;
 
 use serde_json::Value;
-use stribeck_dsp::{cepstral_prewhitening, dpss, fast_kurtogram, multitaper};
+use stribeck_dsp::{
+    Cyclic, Scaling, WelchOptions, cepstral_prewhitening, dpss, fast_kurtogram, infogram,
+    magnitude_spectrogram, momeda, multitaper, separate, spectral_correlation, spectrogram,
+};
 
 /// Both sides round in a different order; tapers and filters are made on either side.
 const RELATIVE: f64 = 1e-9;
@@ -32,10 +35,14 @@ fn input(count: usize) -> Vec<f64> {
 
 /// Equal to `RELATIVE` of the largest.
 fn assert_equal(case: &str, ours: &[f64], theirs: &[f64]) {
+    assert_near(case, ours, theirs, RELATIVE);
+}
+
+fn assert_near(case: &str, ours: &[f64], theirs: &[f64], relative: f64) {
     assert_eq!(ours.len(), theirs.len(), "{case}: length");
     let largest = theirs.iter().fold(0.0_f64, |most, x| x.abs().max(most));
     for (index, (a, b)) in ours.iter().zip(theirs).enumerate() {
-        assert!((a - b).abs() <= RELATIVE * largest, "{case}[{index}]: ours {a:e}, theirs {b:e}");
+        assert!((a - b).abs() <= relative * largest, "{case}[{index}]: ours {a:e}, theirs {b:e}");
     }
 }
 
@@ -78,6 +85,68 @@ fn peer_every_band_of_the_fast_kurtogram() {
     }
     let best = ours.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis)).unwrap();
     assert_eq!((best.of, best.low_hz, best.high_hz), (1, 0.0, 500.0));
+}
+
+#[test]
+fn peer_spectrograms_of_both_modes_and_scalings() {
+    /// One transform of scipy's own size, rounded.
+    const ROUNDED: f64 = 1e-12;
+    let theirs = vectors();
+    for (mode, scaling, kind) in [
+        ("psd", "density", Scaling::Density),
+        ("psd", "spectrum", Scaling::Spectrum),
+        ("magnitude", "density", Scaling::Density),
+        ("magnitude", "spectrum", Scaling::Spectrum),
+    ] {
+        let options = WelchOptions { overlap: 30, nfft: 64, scaling: kind, ..WelchOptions::new(48) };
+        let of = if mode == "psd" { spectrogram } else { magnitude_spectrogram };
+        let ours = of(&input(200), 1000.0, &options).unwrap();
+        let case = format!("{mode} {scaling}");
+        let theirs = &theirs["spectrogram"][&case];
+        assert_near(&case, &ours.values, &numbers(&theirs["values"]), ROUNDED);
+        assert_near(&case, &ours.times_s, &numbers(&theirs["t"]), ROUNDED);
+        assert_near(&case, &ours.frequencies_hz, &numbers(&theirs["f"]), ROUNDED);
+    }
+}
+
+#[test]
+fn peer_every_band_of_the_infogram() {
+    // Filters of PySDKit 0.5.0, negentropies by numpy.
+    let theirs: Vec<Vec<f64>> = vectors()["infogram"].as_array().unwrap().iter().map(numbers).collect();
+    let ours = infogram(&input(2500), 1000.0, 4).unwrap();
+    let column = |n: usize| theirs.iter().map(|row| row[n]).collect::<Vec<_>>();
+    assert_equal("bands", &ours.iter().map(|b| b.of as f64).collect::<Vec<_>>(), &column(0));
+    assert_equal("of envelope", &ours.iter().map(|b| b.of_envelope).collect::<Vec<_>>(), &column(1));
+    assert_equal("of spectrum", &ours.iter().map(|b| b.of_spectrum).collect::<Vec<_>>(), &column(2));
+}
+
+#[test]
+fn peer_spectral_correlation_and_coherence() {
+    // Against the definition, summed term by term by numpy 2.4.6.
+    let theirs = vectors();
+    for (name, kind) in [("correlation", Cyclic::Correlation), ("coherence", Cyclic::Coherence)] {
+        let ours = spectral_correlation(&input(200), 1000.0, 32, 100.0, kind).unwrap();
+        let theirs = &theirs["cyclic"][name];
+        let (re, im): (Vec<f64>, Vec<f64>) = ours.values.iter().map(|v| (v.re, v.im)).unzip();
+        assert_equal(name, &re, &numbers(&theirs["re"]));
+        assert_equal(name, &im, &numbers(&theirs["im"]));
+    }
+}
+
+#[test]
+fn peer_discrete_and_random_parts() {
+    // Direct convolution by numpy 2.4.6.
+    let ours = separate(&input(600), 64, 7).unwrap();
+    assert_equal("discrete", &ours.discrete, &numbers(&vectors()["separated"]));
+}
+
+#[test]
+fn peer_deconvolution_of_pulses() {
+    // Least squares of numpy 2.4.6 on the matrix itself, which squares nothing; ours goes through its square.
+    let theirs = &vectors()["momeda"];
+    let ours = momeda(&input(600), 40, &[61.7]).unwrap().remove(0);
+    assert_equal("filter", &ours.filter, &numbers(&theirs["filter"]));
+    assert_equal("kurtosis", &[ours.kurtosis], &[theirs["kurtosis"].as_f64().unwrap()]);
 }
 
 #[test]

@@ -13,6 +13,9 @@
 //! | Universal file, dataset 58, ASCII and binary (58b) | [`uff58`] | ASCII |
 //! | TDMS of LabVIEW | [`tdms`] | no |
 //! | Parquet: columns of numbers | [`parquet`] | yes, also of texts |
+//! | MATLAB `.mat`, version 7.3, and plain HDF5: numbers, in structs, too | [`mat73`] | no |
+//! | MDF 4: sorted groups, plain or deflated, linear conversions | [`mdf4`] | no |
+//! | FLAC | [`flac`] | no: it holds no floats |
 //! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
 //!
 //! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
@@ -23,7 +26,10 @@ mod open;
 mod recording;
 
 pub mod csv;
+pub mod flac;
 pub mod mat5;
+pub mod mat73;
+pub mod mdf4;
 pub mod npy;
 pub mod npz;
 pub mod parquet;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::{Error, Recording, Result, csv, mat5, npy, npz, parquet, tdms, uff58, wav};
+use crate::{Error, Recording, Result, csv, flac, mat5, mat73, mdf4, npy, npz, parquet, tdms, uff58, wav};
 
 impl Recording {
     /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
@@ -30,7 +30,7 @@ impl Recording {
         } else if begins(b"RIFF") || begins(b"RF64") {
             wav::open(path)
         } else if begins(b"\x89HDF") || (begins(b"MATLAB 7.3") && start.len() > 512) {
-            unknown("it is HDF5 (in MATLAB: save it again with `-v7`)")
+            mat73::open(path)
         } else if mat5::recognise(&start) {
             mat5::open(path)
         } else if begins(b"PAR1") {
@@ -38,9 +38,9 @@ impl Recording {
         } else if begins(b"TDSm") {
             tdms::open(path)
         } else if begins(b"MDF") {
-            unknown("it is MDF")
+            mdf4::open(path)
         } else if begins(b"fLaC") {
-            unknown("it is FLAC (`flac -d` makes a .wav of it)")
+            flac::open(path)
         } else if uff58::recognise(&start) || matches!(extension.as_str(), "uff" | "unv" | "u58") {
             uff58::open(path)
         } else if start.contains(&0) {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::number::Number;
-use crate::{Error, Result, csv};
+use crate::{Error, Result, csv, flac};
 
 /// Channels of one file.
 #[derive(Debug, Clone)]
@@ -46,6 +46,7 @@ enum Source {
     /// One after the other, with the number of samples in each.
     Pieces(Arc<Vec<(Strided, u64)>>),
     Text(csv::Column),
+    Flac(flac::Stream),
 }
 
 /// Numbers at equal distances in a file.
@@ -127,6 +128,10 @@ impl Channel {
         Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Text(column) }
     }
 
+    pub(crate) fn flac(name: impl Into<String>, len: u64, stream: flac::Stream) -> Self {
+        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Flac(stream) }
+    }
+
     /// The same channel with its samples taken from `bytes`, which hold what a file would.
     pub(crate) fn held_from(&self, bytes: &[u8]) -> Self {
         let Source::Strided(s) = &self.source else { return self.clone() };
@@ -193,6 +198,7 @@ impl Channel {
                 Ok(())
             }
             Source::Text(column) => column.for_each_block(take),
+            Source::Flac(stream) => stream.for_each_block(self.len, take),
         }
     }
 

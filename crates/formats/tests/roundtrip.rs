@@ -62,31 +62,37 @@ fn roundtrip_every_format_keeps_samples_names_and_rate() {
 
 #[test]
 fn survives_files_damaged_at_any_byte() {
-    const EACH: u64 = 400;
     let folder = Scratch::create("formats-damaged");
     for extension in ["csv", "npz", "mat", "uff", "parquet", "wav"] {
         let path = folder.path().join(format!("a.{extension}"));
         write(&path);
-        let whole = std::fs::read(&path).unwrap();
-        let mut noise = Noise::new(7);
-        for n in 0..EACH {
-            let mut bytes = whole.clone();
-            let mut place =
-                || (((noise.uniform() + 1.0) / 2.0 * whole.len() as f64) as usize).min(whole.len() - 1);
-            // Heads hold the structure: half of the damage is there.
-            for k in 0..4 {
-                let at = if k % 2 == 0 { place() % 400 } else { place() };
-                bytes[at] = (n.wrapping_mul(37).wrapping_add(at as u64) & 0xff) as u8;
-            }
-            if n % 3 == 0 {
-                bytes.truncate(place());
-            }
-            std::fs::write(&path, &bytes).unwrap();
-            // An answer, whatever it is; a message when it is an error.
-            match Recording::open(&path) {
-                Ok(recording) => recording.channels.iter().for_each(|c| drop(c.read())),
-                Err(why) => assert!(why.to_string().contains("a."), "{why}"),
-            }
+        survives_damage(&path);
+    }
+}
+
+/// An answer, whatever it is, for every file that is damaged at some bytes or cut off; a message when it is an error.
+fn survives_damage(path: &Path) {
+    const EACH: u64 = 700;
+    let whole = std::fs::read(path).unwrap();
+    let name = path.file_name().unwrap().to_str().unwrap();
+    let damaged = path.with_file_name(format!("damaged-{name}"));
+    let mut noise = Noise::new(7);
+    for n in 0..EACH {
+        let mut bytes = whole.clone();
+        let mut place =
+            || (((noise.uniform() + 1.0) / 2.0 * whole.len() as f64) as usize).min(whole.len() - 1);
+        // Heads hold the structure: half of the damage is there.
+        for k in 0..4 {
+            let at = if k % 2 == 0 { place() % 400.min(whole.len()) } else { place() };
+            bytes[at] = (n.wrapping_mul(37).wrapping_add(at as u64) & 0xff) as u8;
+        }
+        if n % 3 == 0 {
+            bytes.truncate(place());
+        }
+        std::fs::write(&damaged, &bytes).unwrap();
+        match Recording::open(&damaged) {
+            Ok(recording) => recording.channels.iter().for_each(|c| drop(c.read())),
+            Err(why) => assert!(why.to_string().contains("damaged-"), "{why}"),
         }
     }
 }
@@ -123,19 +129,28 @@ fn peer_other_programs_read_what_is_written() {
 
 #[test]
 fn peer_files_of_other_programs_are_read() {
-    // npTDMS 1.13.0 and scipy.io 1.17.1 write what the formats allow and we do not: other types, byte orders, structs, segments.
+    // npTDMS 1.10.0, scipy.io 1.17.1, soundfile 0.14.0, asammdf 8.8.28 and h5py 3.16.0 write what the formats allow and we do not: other types, byte orders, structs, segments.
     let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let folder = Scratch::create("formats-theirs");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/write_signals.py");
-    for (kind, module) in
-        [("tdms", "nptdms"), ("mat", "scipy.io"), ("npz", "numpy"), ("uff", "pyuff"), ("wav", "soundfile")]
-    {
+    for (name, module) in [
+        ("theirs.tdms", "nptdms"),
+        ("theirs.mat", "scipy.io"),
+        ("theirs.npz", "numpy"),
+        ("theirs.uff", "pyuff"),
+        ("theirs.wav", "soundfile"),
+        ("theirs.flac", "soundfile"),
+        ("plain.mf4", "asammdf"),
+        ("packed.mf4", "asammdf"),
+        ("theirs.h5", "h5py"),
+    ] {
+        let kind = name;
         let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
         if !has.is_ok_and(|o| o.status.success()) {
             eprintln!("{kind} is not read from {module}: `{python}` does not have it");
             continue;
         }
-        let path = folder.path().join(format!("theirs.{kind}"));
+        let path = folder.path().join(name);
         let run = Command::new(&python).args([script, path.to_str().unwrap()]).output().unwrap();
         assert!(run.status.success(), "{kind}: {}", String::from_utf8_lossy(&run.stderr));
         // One line a channel: its name, its tolerance, and what its samples are a multiple of, sample n being k·(n mod 50).
@@ -157,5 +172,6 @@ fn peer_files_of_other_programs_are_read() {
                 );
             }
         }
+        survives_damage(&path);
     }
 }

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::measured::{Analysis, Machine, tacho};
+use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
+use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
 use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
 use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::{CatalogueBearing, Element};
@@ -28,10 +29,11 @@ pub struct Options {
     /// Bearing: its name, or its numbers, for example "elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0"
     #[arg(long)]
     bearing: Option<String>,
-    /// Speed of the shaft [1/min]
-    #[arg(long, conflicts_with = "tacho")]
-    speed_rpm: Option<f64>,
-    /// Channel of a tachometer, one pulse a turn
+    /// Speed of the shaft [1/min], or a range such as 1400..1600: then the line of the shaft that stands out there is followed
+    /// over the record, and a record whose speed varies is analysed over the angle
+    #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse)]
+    speed_rpm: Option<Speed>,
+    /// Channel of a tachometer, one pulse a turn; a record whose speed varies is analysed over the angle
     #[arg(long)]
     tacho: Option<String>,
     /// What a sample is multiplied by, for example 1/sensitivity
@@ -40,15 +42,65 @@ pub struct Options {
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
+    /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to 1000 Hz), kurtosis,
+    /// crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
+    #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
+    alarms: Vec<Limit>,
+    /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for those given
+    #[arg(long, value_name = "N")]
+    reference: Option<usize>,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and -analysis]
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
+/// What a user knows of the speed [1/min].
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Speed {
+    Of(f64),
+    Between(f64, f64),
+}
+
+impl Speed {
+    fn parse(text: &str) -> Result<Self, String> {
+        let number = |text: &str| {
+            let rpm = text.trim().parse::<f64>().ok().filter(|rpm| rpm.is_finite() && *rpm > 0.0);
+            rpm.ok_or_else(|| {
+                format!("`{text}` is no speed above 0 in 1/min, and no range such as 1400..1600")
+            })
+        };
+        match text.split_once("..") {
+            None => Ok(Self::Of(number(text)?)),
+            Some((low, high)) => {
+                let (low, high) = (number(low)?, number(high)?);
+                if low < high {
+                    Ok(Self::Between(low, high))
+                } else {
+                    Err(format!("`{text}`: speeds must ascend"))
+                }
+            }
+        }
+    }
+}
+
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    if let Some(count) = options.reference {
+        ensure!(
+            (LEAST_RECORDS..options.files.len()).contains(&count),
+            "`--reference {count}`: {} files were given; at least {LEAST_RECORDS} must be of the sound machine, and one more",
+            options.files.len()
+        );
+    }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
-        print(&analyse(file, &out, options, place)?);
+        let analysis = analyse(file, &out, options, place)?;
+        print(&analysis);
+        for limit in &options.alarms {
+            match limit.judge(&analysis.findings) {
+                Some(judged) => println!("  {}", passed(&judged)),
+                None => println!("  {}: the record does not say it", limit.quantity.name()),
+            }
+        }
         println!("report: {}", shown(&out.join("report.html")));
         return Ok(ExitCode::SUCCESS);
     }
@@ -69,13 +121,53 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             "{file}: {}",
             findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict)
         );
-        entries.push(TrendEntry { file, folder, findings, error });
+        entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
+    }
+    let limits = limits(options, &entries);
+    for limit in &limits {
+        if !entries.iter().filter_map(|e| e.findings.as_ref()).any(|f| limit.judge(f).is_some()) {
+            eprintln!("note: no record says its {}: the limit is not used", limit.quantity.name());
+        }
+    }
+    for entry in &mut entries {
+        let Some(findings) = &entry.findings else { continue };
+        entry.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
+        for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good) {
+            println!("{}: {}", entry.file, passed(judged));
+        }
     }
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
-    write_trend(&out, &entries)?;
+    write_trend(&out, &entries, &limits)?;
     println!("side by side: {}", shown(&out.join("trend.html")));
     let any = entries.iter().any(|entry| entry.findings.is_some());
     Ok(if any { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Limits that were given, and those that follow from the reference records.
+fn limits(options: &Options, entries: &[TrendEntry]) -> Vec<Limit> {
+    let mut limits = options.alarms.clone();
+    let reference = &entries[..options.reference.unwrap_or(0)];
+    for quantity in Quantity::ALL {
+        if limits.iter().any(|limit| limit.quantity == quantity) {
+            continue;
+        }
+        let values: Vec<f64> = reference.iter().filter_map(|e| quantity.of(e.findings.as_ref()?)).collect();
+        limits.extend(Limit::from_reference(quantity, &values));
+    }
+    limits
+}
+
+/// A level and its limits in words.
+fn passed(judged: &Judged) -> String {
+    let Judged { limit, value, state } = judged;
+    let name = limit.quantity.name();
+    match state {
+        State::Good => format!("{name} {value:.4}: good, warning from {:.4}", limit.warning),
+        State::Warning => {
+            format!("{name} {value:.4}: WARNING, from {:.4}; alarm from {:.4}", limit.warning, limit.alarm)
+        }
+        State::Alarm => format!("{name} {value:.4}: ALARM, from {:.4}", limit.alarm),
+    }
 }
 
 /// Analyses one record and writes its findings and its page into `out`.
@@ -98,11 +190,32 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
         bail!("`{}` does not say how fast it was sampled: give `--rate-hz`", file.display());
     };
     let mut notes = recording.notes.clone();
-    let machine = machine(options, &recording, rate_hz, scene.as_ref(), &mut notes)?;
     let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
     let scaled = channel.scaled(options.scale).in_unit(unit);
-    let mut analysis = Analysis::of(&scaled, rate_hz, &machine)?;
+    let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
+    let over_angle = match pulses {
+        Some(pulses) => {
+            let even = over_angle(&scaled, rate_hz, &pulses)?;
+            if even.is_none() {
+                notes.push(
+                    "the record is too long to be taken over the angle: its lines are smeared".to_owned(),
+                );
+            }
+            even
+        }
+        None => None,
+    };
+    let mut analysis = match &over_angle {
+        Some((even, rate)) => {
+            notes.push(
+                "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
+                    .to_owned(),
+            );
+            Analysis::of(even, *rate, &machine)?
+        }
+        None => Analysis::of(&scaled, rate_hz, &machine)?,
+    };
     analysis.findings.notes.splice(0..0, notes);
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
     write_measured(out, &name, &analysis)?;
@@ -131,29 +244,46 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
     Ok(channel)
 }
 
+/// Speeds that vary by more than this part smear the fifth harmonic of a family over several lines.
+const STEADY: f64 = 0.01;
+
+/// What is known of the machine, and the times of whole turns, in samples, where the speed varies.
 fn machine(
     options: &Options,
     recording: &Recording,
+    channel: &Channel,
     rate_hz: f64,
     scene: Option<&Scene>,
     notes: &mut Vec<String>,
-) -> Result<Machine> {
+) -> Result<(Machine, Option<Vec<f64>>)> {
     let bearing = match (&options.bearing, scene) {
         (Some(text), _) => Some(CatalogueBearing::parse(text).map_err(anyhow::Error::msg)?),
         (None, Some(scene)) => Some(of_scene(scene)),
         (None, None) => None,
     };
     let said = recording.channels.iter().find(|c| c.len == 1 && c.name.to_lowercase().contains("rpm"));
-    let speed_rpm = if let Some(rpm) = options.speed_rpm {
-        ensure!(rpm.is_finite() && rpm > 0.0, "`--speed-rpm {rpm}`: it must be above 0");
+    let mut pulses = None;
+    let speed_rpm = if let Some(Speed::Of(rpm)) = options.speed_rpm {
         Some(rpm)
+    } else if let Some(Speed::Between(low, high)) = options.speed_rpm {
+        let found = ridge::speed(channel, rate_hz, low, high)?;
+        notes.push(format!(
+            "the speed is that of the line that stands out between {low} and {high} rpm, {:.0} dB up: it goes by {:.1} % of its mean",
+            found.height_db,
+            100.0 * found.variation()
+        ));
+        if found.variation() > STEADY {
+            let samples = usize::try_from(channel.len).unwrap_or(usize::MAX);
+            pulses = Some(
+                found.turns(rate_hz, samples, 1.0).context("the speed was found, and its turns were not")?,
+            );
+        }
+        Some(60.0 * found.mean_hz())
     } else if let Some(name) = &options.tacho {
         let turns = tacho::turns(recording.channel(name)?, rate_hz)?;
-        if turns.variation > 0.01 {
-            notes.push(format!(
-                "the speed varies by {:.1} % over the record: lines are smeared",
-                100.0 * turns.variation
-            ));
+        if turns.variation > STEADY {
+            notes.push(format!("the speed varies by {:.1} % over the record", 100.0 * turns.variation));
+            pulses = Some(turns.pulses);
         }
         Some(turns.rpm)
     } else if let Some(scene) = scene {
@@ -167,7 +297,7 @@ fn machine(
     } else {
         None
     };
-    Ok(Machine { speed_rpm, bearing })
+    Ok((Machine { speed_rpm, bearing }, pulses))
 }
 
 fn of_scene(scene: &Scene) -> CatalogueBearing {

@@ -1,5 +1,7 @@
 //! `stribeck export`: the results of a run in the formats of other programs.
 
+mod vtkhdf;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -54,6 +56,8 @@ enum Format {
     Wav,
     /// ParaView: a series of grids with the stress about the defect
     Pvd,
+    /// ParaView: the same in one file (VTKHDF)
+    Vtkhdf,
     /// The mesh, undeformed, for LS-DYNA
     K,
     /// The mesh, undeformed, for Abaqus
@@ -75,6 +79,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
     let written = match options.to {
         Format::Pvd => series(&dir, &run, out("paraview"))?,
+        Format::Vtkhdf => {
+            let path = out("frames.vtkhdf");
+            vtkhdf::write(&path, &stressed(&dir, &run)?, &provenance(&run))?;
+            path
+        }
         Format::K => mesh(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
         Format::Inp => mesh(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
         Format::Msh => mesh(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
@@ -127,7 +136,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
         Format::Uff => "uff",
         Format::Parquet => "parquet",
         Format::Wav => "wav",
-        Format::Pvd | Format::K | Format::Inp | Format::Msh => "",
+        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh => "",
     };
     let path = options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{extension}")));
     let notes = provenance(run);
@@ -140,7 +149,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
         Format::Uff => uff58::write(&path, &no_time, &notes)?,
         Format::Parquet => parquet::write(&path, &channels, &notes)?,
         Format::Wav => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd | Format::K | Format::Inp | Format::Msh => {}
+        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh => {}
     }
     Ok(path)
 }
@@ -231,8 +240,16 @@ fn mesh(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// A grid a frame, with displacement and von Mises stress, and the index that gives their times.
-fn series(dir: &RunDir, run: &Run, folder: PathBuf) -> Result<PathBuf> {
+/// What is known of one frame.
+struct Stressed {
+    time_s: f64,
+    part: Part,
+    /// Von Mises stress of each element [Pa]; none in the cage, which is rigid.
+    stress: Vec<f64>,
+}
+
+/// All frames of a run.
+fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
     let frames = frames::read_all(&dir.frames())?;
     if frames.is_empty() {
         bail!(
@@ -242,6 +259,26 @@ fn series(dir: &RunDir, run: &Run, folder: PathBuf) -> Result<PathBuf> {
     }
     let whole = RunMesh::read(dir.mesh())?;
     let lame = Lame::of(&Geometry::of(&run.scene).material);
+    let of_frame = |frame: &frames::Frame| {
+        let part = Part::of(&whole, frame);
+        let rigid = |n: usize| {
+            part.mesh
+                .bodies
+                .iter()
+                .any(|b| b.name == "cage" && (b.quads.contains(&n) || part.is_triangle_of(b, n)))
+        };
+        let of_element = |(n, corners): (usize, &[u32])| {
+            if rigid(n) { 0.0 } else { von_mises(&part.reference(corners), &part.moved(corners), &lame) }
+        };
+        let stress = part.elements().enumerate().map(of_element).collect();
+        Stressed { time_s: frame.time_s, stress, part }
+    };
+    Ok(frames.iter().map(of_frame).collect())
+}
+
+/// A grid a frame, with displacement and von Mises stress, and the index that gives their times.
+fn series(dir: &RunDir, run: &Run, folder: PathBuf) -> Result<PathBuf> {
+    let frames = stressed(dir, run)?;
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
     let mut index = String::from(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
@@ -250,32 +287,18 @@ fn series(dir: &RunDir, run: &Run, folder: PathBuf) -> Result<PathBuf> {
         index += &format!("<!-- {} -->\n", note.replace("--", "- -"));
     }
     for (number, frame) in frames.iter().enumerate() {
-        let part = Part::of(&whole, frame);
-        let stress: Vec<f64> = part
-            .elements()
-            .map(|corners| von_mises(&part.reference(corners), &part.moved(corners), &lame))
-            .collect();
+        let Stressed { time_s, part, stress } = frame;
         let name = format!("frame-{number:05}.vtu");
         let mut bytes = Vec::new();
         let moved: Vec<[f64; 3]> = part.displacement.iter().map(|u| [u[0], u[1], 0.0]).collect();
-        let rigid = |n: usize| {
-            part.mesh
-                .bodies
-                .iter()
-                .any(|b| b.name == "cage" && (b.quads.contains(&n) || part.is_triangle_of(b, n)))
-        };
-        // The cage is rigid: it has no stress.
-        let stress: Vec<f64> =
-            stress.iter().enumerate().map(|(n, s)| if rigid(n) { 0.0 } else { *s }).collect();
         vtu::write(
             &mut bytes,
             &part.mesh,
             &[Field::vector("displacement_m", &moved)],
-            &[Field::scalar("von_mises_pa", &stress)],
+            &[Field::scalar("von_mises_pa", stress)],
         )?;
         write_atomic(&folder.join(&name), &bytes)?;
-        index +=
-            &format!("<DataSet timestep=\"{:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n", frame.time_s);
+        index += &format!("<DataSet timestep=\"{time_s:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
     }
     index += "</Collection>\n</VTKFile>\n";
     let path = folder.join("frames.pvd");

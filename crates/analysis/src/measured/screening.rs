@@ -19,6 +19,8 @@ pub struct Health {
     pub skewness: f64,
     /// Largest magnitude over the mean of magnitudes, both about zero.
     pub impulse_factor: f64,
+    /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one line.
+    pub spectral_entropy: f64,
 }
 
 /// What one pass finds.
@@ -100,8 +102,8 @@ impl Screening {
         notes
     }
 
-    /// `None` for a constant signal.
-    pub(super) fn health(&self) -> Option<Health> {
+    /// With the power spectral density of the same signal; `None` for a constant one.
+    pub(super) fn health(&self, density: &[f64]) -> Option<Health> {
         let n = (self.count - self.bad) as f64;
         let [s1, s2, s3, s4, _] = self.sums.map(|s| s / n);
         let variance = s2 - s1 * s1;
@@ -122,8 +124,16 @@ impl Screening {
             kurtosis: fourth / (variance * variance),
             skewness: third / (variance * rms),
             impulse_factor: largest * n / self.sums[4],
+            spectral_entropy: spectral_entropy(density),
         })
     }
+}
+
+/// `−Σ p ln p / ln n` with p the share of each line.
+fn spectral_entropy(density: &[f64]) -> f64 {
+    let sum: f64 = density.iter().sum();
+    let entropy: f64 = density.iter().map(|d| d / sum).filter(|p| *p > 0.0).map(|p| -p * p.ln()).sum();
+    entropy / (density.len() as f64).ln()
 }
 
 impl Extreme {

@@ -5,7 +5,7 @@ use stribeck_formats::Channel;
 use crate::Error;
 
 /// What a tachometer says.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Turns {
     /// Mean speed [1/min].
     pub rpm: f64,
@@ -13,6 +13,8 @@ pub struct Turns {
     pub count: usize,
     /// Largest less smallest speed of single turns, over the mean.
     pub variation: f64,
+    /// Times of the pulses, in samples.
+    pub pulses: Vec<f64>,
 }
 
 /// Part of the range that a pulse must fall by before the next one counts.
@@ -65,7 +67,12 @@ pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
         shortest = shortest.min(pair[1] - pair[0]);
         longest = longest.max(pair[1] - pair[0]);
     }
-    Ok(Turns { rpm: 60.0 / mean_s, count: edges.len() - 1, variation: mean_s / shortest - mean_s / longest })
+    Ok(Turns {
+        rpm: 60.0 / mean_s,
+        count: edges.len() - 1,
+        variation: mean_s / shortest - mean_s / longest,
+        pulses: edges.iter().map(|at| at * rate_hz).collect(),
+    })
 }
 
 #[cfg(test)]

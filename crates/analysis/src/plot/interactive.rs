@@ -27,6 +27,7 @@ struct SentAxis<'a> {
     unit: &'a str,
     prefixed: bool,
     decades: bool,
+    counted: bool,
     range: Option<(f64, f64)>,
 }
 
@@ -124,6 +125,7 @@ impl<'a> SentAxis<'a> {
             unit: &axis.unit,
             prefixed: axis.prefixed,
             decades: axis.decades,
+            counted: axis.counted,
             range: axis.range,
         }
     }

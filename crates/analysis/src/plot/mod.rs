@@ -66,6 +66,8 @@ pub struct Axis {
     pub prefixed: bool,
     /// True when values are decimal logarithms: ticks are powers of ten.
     pub decades: bool,
+    /// True when values are numbers of things: ticks are whole.
+    pub counted: bool,
     /// Range [unit]; `None` follows the data.
     pub range: Option<(f64, f64)>,
 }
@@ -238,17 +240,29 @@ impl Figure {
 impl Axis {
     /// An axis in a coherent SI unit, whose ticks carry a prefix.
     pub fn si(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), prefixed: true, decades: false, range: None }
+        Self { prefixed: true, ..Self::plain(label, unit) }
     }
 
     /// An axis whose unit takes no prefix (g, dB, °).
     pub fn plain(label: &str, unit: &str) -> Self {
-        Self { label: label.into(), unit: unit.into(), prefixed: false, decades: false, range: None }
+        Self {
+            label: label.into(),
+            unit: unit.into(),
+            prefixed: false,
+            decades: false,
+            counted: false,
+            range: None,
+        }
     }
 
     /// A logarithmic axis: the figure holds decimal logarithms, its ticks say the numbers.
     pub fn decades(label: &str, unit: &str) -> Self {
         Self { decades: true, ..Self::plain(label, unit) }
+    }
+
+    /// An axis of numbers of things, counted from 1: records, runs.
+    pub fn counted(label: &str, count: usize) -> Self {
+        Self { counted: true, ..Self::plain(label, "") }.over(0.5, count as f64 + 0.5)
     }
 
     /// The same axis over a fixed range.

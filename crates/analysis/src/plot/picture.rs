@@ -58,6 +58,11 @@ impl Sheet {
         let _ = write!(self.body, "{}\" style=\"{paint}\"/>", if closed { "z" } else { "" });
     }
 
+    /// An outline as SVG writes it: `M0 0h5v3h-5z`.
+    pub fn outline(&mut self, data: &str, paint: &str) {
+        let _ = write!(self.body, "<path d=\"{data}\" style=\"{paint}\"/>");
+    }
+
     /// Many separate lines in one element.
     pub fn lines(&mut self, lines: impl IntoIterator<Item = [[f64; 2]; 2]>, paint: &str) {
         let _ = write!(self.body, "<path d=\"");

@@ -269,8 +269,12 @@ fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, 
     // Angles are read in twelfths of a turn, not in fifties.
     let (at, step): (Vec<f64>, f64) = match axis.unit.as_str() {
         "°" => ((0..=12).map(|n| 30.0 * f64::from(n)).filter(|a| (low..=high).contains(a)).collect(), 30.0),
-        _ => ticks(low, high, wanted),
+        _ => ticks(low, high, if axis.counted { wanted.min((high - low) as usize).max(1) } else { wanted }),
     };
+    // Between two things there is none.
+    let whole = |v: &f64| !axis.counted || v.fract() == 0.0;
+    let step = if axis.counted { step.max(1.0) } else { step };
+    let at: Vec<f64> = at.into_iter().filter(whole).collect();
     let largest = at.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let (scale, unit) =
         if axis.prefixed { (Scale::of(largest), axis.unit.as_str()) } else { (Scale::ONE, "") };
@@ -319,6 +323,18 @@ fn text(
 mod tests {
     use super::*;
     use crate::plot::{Band, Mark, Series};
+
+    #[test]
+    fn example_ticks_of_counted_things_are_whole() {
+        for count in [1, 2, 3, 7, 40] {
+            let axis = Axis::counted("Record", count);
+            let ticks = tick_texts(&axis, axis.range.unwrap(), 8);
+            assert!(
+                !ticks.is_empty() && ticks.iter().all(|(at, text)| *text == format!("{at}")),
+                "{ticks:?}"
+            );
+        }
+    }
 
     #[test]
     fn example_everything_asked_for_is_in_the_picture() {

@@ -6,10 +6,13 @@ use maud::{DOCTYPE, Markup, html};
 use stribeck_dsp::BandEnvelope;
 use stribeck_scene::run_dir::write_atomic;
 
-use super::{head, json, sentence};
+use super::{course, head, json, sentence};
 use crate::Error;
-use crate::measured::{Analysis, Family};
+use crate::measured::{Analysis, Enhanced, Family};
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
+
+/// Lowest cyclic frequency drawn [Hz].
+const LOWEST_CYCLIC_HZ: f64 = 2.0;
 
 /// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made.
 ///
@@ -27,6 +30,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
     let findings = &analysis.findings;
     let unit = findings.unit.as_deref().unwrap_or("unit");
     let figures = figures(analysis, unit).iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+    let course = course::picture(&analysis.course, unit).to_html()?;
     let title = format!("{file}, {}", findings.channel);
     let number = |x: f64| format!("{x:.4}");
     let health = &findings.health;
@@ -47,13 +51,15 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                 @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
                 h2 #signal { "Signal" }
                 table {
-                    tr { th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } }
+                    tr { th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } th { "Spectral entropy" } @if findings.velocity_mm_s.is_some() { th { "Velocity, 10–1000 Hz (mm/s)" } } }
                     tr {
                         td { (number(health.mean)) } td { (number(health.rms)) } td { (number(health.peak)) } td { (number(health.crest_factor)) }
                         td { (number(health.kurtosis)) } td { (number(health.skewness)) } td { (number(health.impulse_factor)) }
+                        td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
                     }
                 }
                 @for figure in figures { (figure) }
+                (course)
                 h2 #notes { "Notes" }
                 ul class="notes" { @for note in &findings.notes { li { (sentence(note)) } } }
             }
@@ -104,7 +110,7 @@ fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
         "density",
         "Power spectral density",
         Axis::si("Frequency", "Hz"),
-        Axis::plain("Density", &format!("dB re 1 {unit}²/Hz")),
+        Axis::plain("Density", &format!("dB re 1 ({unit})²/Hz")),
     )
     .caption("Welch's average over the whole record, Hann window.")
     .with(Series::sampled(
@@ -125,7 +131,49 @@ fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
         let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
         figures.extend(most.map(|band| spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0)));
     }
+    figures.extend(analysis.enhanced.as_ref().map(|spectrum| enhanced(spectrum, &findings.families)));
     figures
+}
+
+/// The enhanced envelope spectrum with the places of all families: dashed where they are expected, solid where found.
+fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
+    // Slow changes of level fill the beginning.
+    let first = ((LOWEST_CYCLIC_HZ / spectrum.grid_hz) as usize).clamp(1, spectrum.values.len().max(2) - 1);
+    let mut figure = Figure::new(
+        "enhanced",
+        "Enhanced envelope spectrum",
+        Axis::si("Cyclic frequency", "Hz"),
+        Axis::plain("Mean coherence", ""),
+    )
+    .caption(
+        "How surely each part of the spectrum comes and goes at a rate, averaged over all parts. It shows what knocks where the \
+         signal is weak; the verdict does not rest on it.",
+    )
+    .note(format!(
+        "From the first {:.2} s: cyclic lines {:.3} Hz apart, carriers {:.1} Hz apart. Dashed where a family is expected, solid \
+         where it was found.",
+        spectrum.duration_s, spectrum.grid_hz, spectrum.carrier_hz
+    ))
+    .with(Series::sampled(
+        "coherence",
+        Colour::Blue,
+        first as f64 * spectrum.grid_hz,
+        spectrum.grid_hz,
+        spectrum.values[first..].to_vec(),
+    ));
+    let colours = [Colour::Red, Colour::Orange, Colour::Green, Colour::Purple];
+    let end_hz = spectrum.grid_hz * spectrum.values.len() as f64;
+    for (family, colour) in families.iter().zip(colours) {
+        let found = family.measured_hz.filter(|_| family.is_there());
+        let hz = found.unwrap_or(family.expected_hz) * if family.name == "BSF" { 2.0 } else { 1.0 };
+        let name = if family.name == "BSF" { "2×BSF" } else { family.name };
+        let shown = if found.is_some() { 3 } else { 1 };
+        for n in (1..=shown).filter(|n| f64::from(*n) * hz < end_hz) {
+            let label = if n == 1 { name.to_owned() } else { format!("{n}× {name}") };
+            figure.marks.push(Mark { x: f64::from(n) * hz, label, colour, dashed: found.is_none() });
+        }
+    }
+    figure
 }
 
 /// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its sidebands.

@@ -1,0 +1,232 @@
+//! Alarm bands: which level calls for a look, and which for a stop.
+//!
+//! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from records of the
+//! machine in its sound state.
+
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::Findings;
+
+/// What a limit is set on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Root mean square [unit].
+    Rms,
+    /// Root mean square of the velocity, 10 to 1000 Hz [mm/s].
+    VelocityMmS,
+    /// Kurtosis.
+    Kurtosis,
+    /// Crest factor.
+    CrestFactor,
+    /// Level of a defect family [dB]; no value where the family is not there.
+    #[serde(rename = "BPFO")]
+    Bpfo,
+    /// As BPFO, for the inner raceway.
+    #[serde(rename = "BPFI")]
+    Bpfi,
+    /// As BPFO, for a rolling element.
+    #[serde(rename = "BSF")]
+    Bsf,
+    /// As BPFO, for the cage.
+    #[serde(rename = "FTF")]
+    Ftf,
+}
+
+/// From which value on to look, and from which to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Limit {
+    /// What it is set on.
+    pub quantity: Quantity,
+    /// Warning from here.
+    pub warning: f64,
+    /// Alarm from here.
+    pub alarm: f64,
+}
+
+/// How a value stands to its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// Below both.
+    Good,
+    /// At or above the warning.
+    Warning,
+    /// At or above the alarm.
+    Alarm,
+}
+
+/// A value beside its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Judged {
+    /// The limit.
+    #[serde(flatten)]
+    pub limit: Limit,
+    /// The value.
+    pub value: f64,
+    /// How it stands.
+    pub state: State,
+}
+
+/// Part of the records of an unchanged machine that pass the warning, and the alarm.
+const PASSING: [f64; 2] = [0.01, 0.001];
+/// Fewest reference records.
+pub const LEAST_RECORDS: usize = 3;
+
+impl Quantity {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Rms,
+        Self::VelocityMmS,
+        Self::Kurtosis,
+        Self::CrestFactor,
+        Self::Bpfo,
+        Self::Bpfi,
+        Self::Bsf,
+        Self::Ftf,
+    ];
+
+    /// As a user writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Rms => "rms",
+            Self::VelocityMmS => "velocity",
+            Self::Kurtosis => "kurtosis",
+            Self::CrestFactor => "crest",
+            Self::Bpfo => "BPFO",
+            Self::Bpfi => "BPFI",
+            Self::Bsf => "BSF",
+            Self::Ftf => "FTF",
+        }
+    }
+
+    /// Its value in a record; `None` where the record does not have it.
+    pub fn of(self, findings: &Findings) -> Option<f64> {
+        let health = &findings.health;
+        match self {
+            Self::Rms => Some(health.rms),
+            Self::VelocityMmS => findings.velocity_mm_s,
+            Self::Kurtosis => Some(health.kurtosis),
+            Self::CrestFactor => Some(health.crest_factor),
+            Self::Bpfo | Self::Bpfi | Self::Bsf | Self::Ftf => {
+                let family = findings.families.iter().find(|f| f.name == self.name())?;
+                family.level_db.filter(|_| family.is_there())
+            }
+        }
+    }
+
+    /// Whether it scatters by factors, so that its logarithm is the better normal variable.
+    fn by_factors(self) -> bool {
+        !matches!(self, Self::Bpfo | Self::Bpfi | Self::Bsf | Self::Ftf)
+    }
+}
+
+impl Limit {
+    /// From `rms=0.5..1.2`: warning from 0.5 on, alarm from 1.2 on.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and what would be right.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let names = || Quantity::ALL.map(Quantity::name).join(", ");
+        let form = || {
+            format!("`{text}`: write NAME=WARNING..ALARM, for example rms=0.5..1.2; names are {}", names())
+        };
+        let (name, values) = text.split_once('=').ok_or_else(form)?;
+        let (warning, alarm) = values.split_once("..").ok_or_else(form)?;
+        let quantity = Quantity::ALL
+            .into_iter()
+            .find(|q| q.name().eq_ignore_ascii_case(name.trim()))
+            .ok_or_else(|| format!("`{}` has no limit; names are {}", name.trim(), names()))?;
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite()).ok_or_else(form);
+        let (warning, alarm) = (number(warning)?, number(alarm)?);
+        if warning > alarm {
+            return Err(format!("`{text}`: the warning must not lie above the alarm"));
+        }
+        Ok(Self { quantity, warning, alarm })
+    }
+
+    /// Limits that one in a hundred, and one in a thousand, further records of a machine in the state of `reference` pass:
+    /// the prediction interval of Student's distribution, `m + t s √(1 + 1/n)`, of the logarithms of all but decibels.
+    /// `None` for fewer than three values.
+    ///
+    /// Source: G. J. Hahn and W. Q. Meeker, Statistical Intervals, Wiley 1991, section 4.8.
+    pub fn from_reference(quantity: Quantity, reference: &[f64]) -> Option<Self> {
+        let factors = quantity.by_factors();
+        let into = |x: f64| if factors { x.ln() } else { x };
+        let back = |x: f64| if factors { x.exp() } else { x };
+        let values: Vec<f64> = reference.iter().map(|x| into(*x)).filter(|x| x.is_finite()).collect();
+        if values.len() < LEAST_RECORDS {
+            return None;
+        }
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let deviation = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
+        let student = StudentsT::new(0.0, 1.0, n - 1.0).ok()?;
+        let [warning, alarm] =
+            PASSING.map(|p| back(mean + student.inverse_cdf(1.0 - p) * deviation * (1.0 + 1.0 / n).sqrt()));
+        Some(Self { quantity, warning, alarm })
+    }
+
+    /// How a record stands to it; `None` where the record does not have the quantity.
+    pub fn judge(self, findings: &Findings) -> Option<Judged> {
+        let value = self.quantity.of(findings)?;
+        let state = if value >= self.alarm {
+            State::Alarm
+        } else if value >= self.warning {
+            State::Warning
+        } else {
+            State::Good
+        };
+        Some(Judged { limit: self, value, state })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stribeck_testing::Noise;
+
+    #[test]
+    fn analytic_further_records_pass_a_limit_as_rarely_as_stated() {
+        // Hahn and Meeker (1991), section 4.8: the share over many references and one further value each.
+        let mut noise = Noise::new(17);
+        let mut level = || {
+            let sum: f64 = (0..12).map(|_| noise.uniform()).sum();
+            // A sum of twelve is normal but for its last thousandth, and its variance is that of twelve.
+            (0.1 * sum).exp()
+        };
+        let (mut passed, tried) = ([0_u32; 2], 40_000);
+        for _ in 0..tried {
+            let reference: Vec<f64> = (0..6).map(|_| level()).collect();
+            let limit = Limit::from_reference(Quantity::Rms, &reference).unwrap();
+            let next = level();
+            passed[0] += u32::from(next >= limit.warning);
+            passed[1] += u32::from(next >= limit.alarm);
+        }
+        let shares = passed.map(|count| f64::from(count) / f64::from(tried));
+        // Three deviations of a count of 400, and of one of 40.
+        assert!((shares[0] - 0.01).abs() < 0.0015 && (shares[1] - 0.001).abs() < 0.0005, "{shares:?}");
+    }
+
+    #[test]
+    fn example_limits_are_read_as_they_are_written() {
+        let limit = Limit::parse("velocity=2.8..7.1").unwrap();
+        assert_eq!(limit, Limit { quantity: Quantity::VelocityMmS, warning: 2.8, alarm: 7.1 });
+        assert_eq!(Limit::parse("bpfo = 20 .. 30").unwrap().quantity, Quantity::Bpfo);
+    }
+
+    #[test]
+    fn refuses_limits_that_are_none() {
+        for (text, says) in [
+            ("rms", "NAME=WARNING..ALARM"),
+            ("rms=1", "NAME=WARNING..ALARM"),
+            ("rms=a..2", "NAME=WARNING..ALARM"),
+            ("noise=1..2", "names are rms, velocity"),
+            ("rms=2..1", "must not lie above"),
+        ] {
+            assert!(Limit::parse(text).unwrap_err().contains(says), "{text}");
+        }
+        assert!(Limit::from_reference(Quantity::Rms, &[1.0, 2.0]).is_none());
+    }
+}
