@@ -5,15 +5,17 @@ mod signals;
 
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use stribeck_scene::Error as SceneError;
+use stribeck_scene::Error;
+use stribeck_scene::scene_file::SceneError;
 
 /// What went wrong, as the exception that a Python user would expect.
 fn raise(error: &anyhow::Error) -> PyErr {
-    let scene = error.chain().find_map(|cause| cause.downcast_ref::<SceneError>());
     let text = format!("{error:#}");
-    match scene {
-        Some(SceneError::Io { .. }) => PyOSError::new_err(text),
+    let of_scene = error.chain().any(|cause| cause.is::<SceneError>());
+    match error.chain().find_map(|cause| cause.downcast_ref::<Error>()) {
+        Some(Error::Io { .. }) => PyOSError::new_err(text),
         Some(_) => PyValueError::new_err(text),
+        None if of_scene => PyValueError::new_err(text),
         None => PyRuntimeError::new_err(text),
     }
 }

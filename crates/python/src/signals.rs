@@ -4,7 +4,9 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stribeck_analysis::measured::{Analysis, Machine};
-use stribeck_dsp::{Averaging, Detrend, EnvelopeSpectrum, Notch, Scaling, Sides, Welch, WelchOptions, Window};
+use stribeck_dsp::{
+    Averaging, Detrend, EnvelopeSpectrum, Notch, Scaling, Sides, Welch, WelchOptions, Window,
+};
 use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 
@@ -112,7 +114,11 @@ pub(crate) fn envelope_spectrum<'py>(
 
 /// Bands of the fast kurtogram: lower end, upper end, kurtosis.
 #[pyfunction]
-pub(crate) fn fast_kurtogram(x: PyReadonlyArray1<'_, f64>, fs: f64, levels: u32) -> PyResult<Vec<(f64, f64, f64)>> {
+pub(crate) fn fast_kurtogram(
+    x: PyReadonlyArray1<'_, f64>,
+    fs: f64,
+    levels: u32,
+) -> PyResult<Vec<(f64, f64, f64)>> {
     let bands = stribeck_dsp::fast_kurtogram(x.as_slice()?, fs, levels).map_err(refused)?;
     Ok(bands.iter().map(|band| (band.low_hz, band.high_hz, band.kurtosis)).collect())
 }

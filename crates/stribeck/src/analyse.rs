@@ -16,7 +16,7 @@ use crate::place::{Place, shown};
 /// Flags of `analyse`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// A file of signals (CSV, .npy, .npz, .mat, .uff, .tdms, .parquet, .wav), or the folder of a run; several are set side by
+    /// A file of signals (CSV, .npy, .npz, .mat, .h5, .uff, .tdms, .mf4, .parquet, .wav, .flac), or the folder of a run; several are set side by
     /// side, in their order
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,

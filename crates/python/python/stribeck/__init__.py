@@ -20,6 +20,7 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
@@ -207,9 +208,10 @@ def analyse(
 
 
 def command(*arguments: str | os.PathLike[str]) -> int:
-    """Runs a command of the program, as in a shell, and returns its exit code."""
-    return _stribeck.command([os.fspath(a) for a in arguments])
+    """Runs a command of the program, as in a shell, in a process of its own, and returns its exit code."""
+    return subprocess.run([sys.executable, "-m", "stribeck", *map(os.fspath, arguments)]).returncode
 
 
 def _main() -> None:
-    sys.exit(command(*sys.argv[1:]))
+    # The program listens for Ctrl-C itself, which is why it has a process of its own.
+    sys.exit(_stribeck.command(sys.argv[1:]))

@@ -1,0 +1,5 @@
+"""`python -m stribeck`: the program."""
+
+from . import _main
+
+_main()
