@@ -39,6 +39,7 @@ const CHECKS: &[Check] = &[
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
     ("links in the documents lead somewhere", documents::check_links),
     ("commands in the documents exist", documents::check_commands),
+    ("scenes in the documents can be run", documents::check_scenes),
     ("tests have a prefix, and a source where they need one", test_names::check),
     ("crates can be published", packages::check),
     ("VALIDATION says what the tests say", validation::check),

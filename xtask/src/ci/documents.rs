@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use clap::Parser;
+use stribeck_scene::scene::Scene;
 
 use super::{layers, markdown, sources};
 use crate::Cli;
@@ -84,6 +85,17 @@ pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
     for name in documents(root)? {
         for command in markdown::code(&read(root, &name)?) {
             complaints.extend(wrong_command(root, command).map(|why| format!("{name}: `{command}`: {why}")));
+        }
+    }
+    Ok(complaints)
+}
+
+/// Every block of RON in the documents is a scene.
+pub(crate) fn check_scenes(root: &Path) -> Result<Vec<String>> {
+    let mut complaints = Vec::new();
+    for name in documents(root)? {
+        for block in markdown::blocks(&read(root, &name)?, "ron") {
+            complaints.extend(Scene::parse(&block, &name).err().map(|why| why.to_string()));
         }
     }
     Ok(complaints)

@@ -16,6 +16,20 @@ pub(crate) fn code(text: &str) -> Vec<&str> {
     found
 }
 
+/// Fenced blocks of a language.
+pub(crate) fn blocks(text: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}");
+    let mut found: Vec<String> = Vec::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if line.trim() == fence {
+            let block: Vec<&str> = lines.by_ref().take_while(|line| line.trim() != "```").collect();
+            found.push(block.join("\n"));
+        }
+    }
+    found
+}
+
 /// Targets of links to files, `[text](docs/x.md#section)` → `docs/x.md`, and of pictures; none of links to the network.
 pub(crate) fn links(text: &str) -> Vec<&str> {
     let mut targets: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
@@ -80,6 +94,11 @@ mod tests {
     fn example_code_is_found_in_fences_and_backticks() {
         let text = "Run `cargo xtask ci` or `x`.\n```sh\ncargo xtask simulate\n```\nno code";
         assert_eq!(code(text), ["cargo xtask ci", "x", "cargo xtask simulate"]);
+    }
+
+    #[test]
+    fn example_blocks_of_a_language() {
+        assert_eq!(blocks("a\n```ron\n(\n)\n```\n```sh\nb\n```", "ron"), ["(\n)"]);
     }
 
     #[test]
