@@ -163,10 +163,6 @@ mod tests {
                 kept[1] > least * expected && kept[1] < most * expected,
                 "{height}: {kept:?}, {expected}"
             );
-            println!(
-                "height {height}: on the grid {:.3}, between {:.3}, formula {expected:.3}",
-                kept[0], kept[1]
-            );
             // Of the noise 1/√(segments) of the amplitude passes each line of the filter.
             let rest: Vec<f64> = (inside.clone()).map(|n| parted.random[n] - noise[n]).collect();
             let rms = |x: &[f64]| (x.iter().map(|v| v * v).sum::<f64>() / x.len() as f64).sqrt();

@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn analytic_the_velocity_of_a_sine() {
-        // a sin ωt moves with a/ω: Rao, Mechanical Vibrations, section 1.10.
+        // a sin ωt moves with a/ω (THEORY §7.10).
         let signal: Vec<f64> = (0..20_000).map(|n| 5.0 * (TAU * 80.0 * f64::from(n) / 1e4).sin()).collect();
         let spectrum = Welch::for_grid(1e4, signal.len(), 1.0).unwrap().estimate(&signal).unwrap();
         let found = spectrum.velocity_rms(10.0, 1000.0).unwrap();
