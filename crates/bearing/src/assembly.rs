@@ -7,7 +7,8 @@ use std::{
 
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{
-    Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Part, Placed, SeatedBlock, characteristic_length,
+    Annulus, ArcBlock, Circle, Disc, FormDeviation, Grading, Groove, Mesh, Part, Placed, SeatedBlock,
+    characteristic_length,
 };
 use stribeck_solver::{
     Behaviour, Elastic, Model, Motion, critical::damped_time_step, structural_damping::StructuralDamping,
@@ -16,6 +17,7 @@ use stribeck_system::{Film, Pair, Plan, System};
 
 use crate::{error::Error, grading};
 use stribeck_scene::{
+    deviation::Relief,
     geometry::{CageGeometry, Geometry},
     kinematics::{FacetCounts, Kinematics},
     lubrication,
@@ -159,7 +161,8 @@ impl Assembly {
             start_angle: 0.0,
             groove: groove_in(&g, DefectRing::Outer),
         };
-        let outer = mesh.add("outer ring", &made(&outer, &outer_grading)?);
+        let outer = formed(made(&outer, &outer_grading)?, "inner", Circle::Inner, g.outer_relief.as_ref())?;
+        let outer = mesh.add("outer ring", &outer);
 
         let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
         let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
@@ -171,7 +174,8 @@ impl Assembly {
             start_angle: 0.0,
             groove: groove_in(&g, DefectRing::Inner),
         };
-        let inner = mesh.add("inner ring", &made(&inner, &inner_grading)?);
+        let inner = formed(made(&inner, &inner_grading)?, "outer", Circle::Outer, g.inner_relief.as_ref())?;
+        let inner = mesh.add("inner ring", &inner);
 
         let adapter = adapter_part(&g, &mesh, surface(&outer, "outer"))?;
         let adapter = mesh.add("adapter", &adapter);
@@ -187,7 +191,7 @@ impl Assembly {
         };
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
         let path = outer_radius - roller_radius;
-        let rollers = (0..b.rollers)
+        let rollers: Result<Vec<Placed>, Error> = (0..b.rollers)
             .map(|i| {
                 let angle = roller_angle(scene, i);
                 let turned = match scene.mesh.roller_copies {
@@ -195,10 +199,13 @@ impl Assembly {
                     RollerCopies::Translated => disc.rotated(g.roller_phase),
                     RollerCopies::Rotated => disc.rotated(angle + g.roller_phase),
                 };
+                let relief = g.roller_reliefs.iter().find(|(roller, _)| *roller == i);
+                let turned = formed(turned, "rim", Circle::Outer, relief.map(|(_, relief)| relief))?;
                 let (s, c) = angle.sin_cos();
-                mesh.add(format!("roller {}", i + 1), &turned.translated(path * c, path * s))
+                Ok(mesh.add(format!("roller {}", i + 1), &turned.translated(path * c, path * s)))
             })
             .collect();
+        let rollers = rollers?;
 
         let cage_mesh = g.cage.as_ref().map(|cage| {
             let part = cage_part(&g, cage, cage.walls(path, g.roller_radius), path)?;
@@ -295,10 +302,19 @@ impl Assembly {
         // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
         let spline = scene.contact.interpolation == ContactInterpolation::Spline;
         plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
-        plan.smooth(OUTER_RACEWAY, smoothing(scene.contact.surface, [0.0; 2]), spline)?;
+        let g = Geometry::of(scene);
+        plan.smooth(
+            OUTER_RACEWAY,
+            smoothing(scene.contact.surface, [0.0; 2], g.outer_relief.is_none()),
+            spline,
+        )?;
         plan.surface(BACK, surface(&self.outer, "outer").clone())?;
         plan.surface(INNER_RACEWAY, surface(&self.inner, "outer").clone())?;
-        plan.smooth(INNER_RACEWAY, smoothing(scene.contact.surface, [0.0; 2]), spline)?;
+        plan.smooth(
+            INNER_RACEWAY,
+            smoothing(scene.contact.surface, [0.0; 2], g.inner_relief.is_none()),
+            spline,
+        )?;
         plan.surface(SEAT, surface(&self.adapter, "seat").clone())?;
         let mesh = &self.model.mesh;
         let rollers: Vec<Roller> = self
@@ -313,7 +329,8 @@ impl Assembly {
         for (i, (placed, roller)) in self.rollers.iter().zip(&rollers).enumerate() {
             let centre = [mesh.x[roller.centre as usize], mesh.y[roller.centre as usize]];
             plan.surface(&rim(i), surface(placed, "rim").clone())?;
-            plan.smooth(&rim(i), smoothing(scene.contact.surface, centre), spline)?;
+            let round = g.roller_reliefs.iter().all(|(roller, _)| *roller != i);
+            plan.smooth(&rim(i), smoothing(scene.contact.surface, centre, round), spline)?;
         }
         for (i, (_, piece)) in self.cage.iter().flat_map(|c| &c.surfaces).enumerate() {
             plan.surface(&cage_piece(i), piece.clone())?;
@@ -409,11 +426,19 @@ fn cage_piece(piece: usize) -> String {
     format!("piece {} of the cage", piece + 1)
 }
 
-/// What the polyline of a body about `centre` stands for.
-fn smoothing(surface: ContactSurface, centre: [f64; 2]) -> Smoothing {
+/// The part with what deviates from round on its surface.
+fn formed(part: Part, surface: &str, circle: Circle, relief: Option<&Relief>) -> Result<Part, Error> {
+    let Some(relief) = relief else { return Ok(part) };
+    let (depth, corners) = (|angle: f64| relief.depth(angle), relief.corners());
+    Ok(FormDeviation { depth: &depth, corners: &corners, circle }.of_part(&part, surface)?)
+}
+
+/// What the polyline of a body about `centre` stands for; one that is not round has no circle.
+fn smoothing(surface: ContactSurface, centre: [f64; 2], round: bool) -> Smoothing {
     match surface {
         ContactSurface::Facet => Smoothing::Facet,
-        ContactSurface::Arc => Smoothing::Arc { centre },
+        ContactSurface::Arc if round => Smoothing::Arc { centre },
+        ContactSurface::Arc => Smoothing::Nagata,
         ContactSurface::Nagata => Smoothing::Nagata,
     }
 }

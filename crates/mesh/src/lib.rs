@@ -71,6 +71,7 @@
 //! |---|---|
 //! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
 //! | How is a ring divided? | `annulus.rs`, on the columns and rows of `polar_grid.rs`; with fine and coarse cells `grading.rs`; with a groove `groove.rs` |
+//! | How is a surface made not round? | `form.rs` |
 //! | How is a disc divided? | `disc.rs`: squares inside (`core_grid.rs`), rows outside, triangles between them (`gap.rs`) |
 //! | How are blocks divided? | `rectangle.rs`, `seated_block.rs`, `arc_block.rs` |
 //! | How are rows numbered, and strips found? | `rows.rs`, `strips.rs` |
@@ -84,6 +85,7 @@ mod mesh;
 mod part;
 
 mod annulus;
+mod form;
 mod grading;
 mod groove;
 mod polar_grid;
@@ -116,6 +118,7 @@ pub use arc_block::ArcBlock;
 pub use characteristic::characteristic_length;
 pub use disc::Disc;
 pub use error::Error;
+pub use form::FormDeviation;
 pub use grading::Grading;
 pub use groove::Groove;
 pub use mesh::{Body, Mesh, Placed};

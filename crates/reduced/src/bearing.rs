@@ -1,7 +1,9 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
 use stribeck_contact::Law;
+use stribeck_mesh::{Circle, FormDeviation};
 use stribeck_scene::{
+    deviation::Relief,
     geometry::Geometry,
     kinematics::Kinematics,
     scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
@@ -38,7 +40,10 @@ pub struct Bearing {
     pub(crate) outer: Track,
     /// Contact with the inner raceway.
     pub(crate) inner: Track,
-    pub(crate) roller: Outline,
+    /// Rims of rollers: the round one first, then those that are not round.
+    pub(crate) rims: Vec<Rim>,
+    /// Which of them each roller has.
+    pub(crate) rim_of: Vec<u32>,
     /// Angle of vertex 0 of each roller at the start [rad].
     pub(crate) vertex_angle: Vec<f64>,
     /// Normal and tangential stiffness and damping a metre of contact: [N/m²], [N/m²], [N s/m²].
@@ -58,6 +63,16 @@ pub struct Bearing {
     pub(crate) gravity: f64,
     pub(crate) kinematics: Kinematics,
     pub(crate) cage: Option<Cage>,
+}
+
+/// The rim of a roller.
+#[derive(Debug, Clone)]
+pub(crate) struct Rim {
+    pub(crate) outline: Outline,
+    /// Radius of the circle around it [m].
+    pub(crate) top: f64,
+    /// Whether its vertices lie on that circle.
+    pub(crate) round: bool,
 }
 
 /// One raceway.
@@ -115,6 +130,8 @@ impl Bearing {
     pub fn new(scene: &Scene, reduction: Reduction, time_step: f64) -> Result<Self, Error> {
         let g = Geometry::of(scene);
         let [outer, inner, roller] = reduction.outlines();
+        let outer = formed(&outer, g.outer_relief.as_ref(), Circle::Inner);
+        let inner = formed(&inner, g.inner_relief.as_ref(), Circle::Outer);
         let arcs = scene.contact.surface != ContactSurface::Facet;
         let law = Law::penalty(g.penalty_stiffness)
             .and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass));
@@ -129,6 +146,7 @@ impl Bearing {
             along,
             bulge: if arcs { 0.5 * relative } else { 0.0 },
             curvature: if arcs { kr } else { 0.0 },
+            round: true,
         };
         let radii = |outline: &Outline| {
             outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
@@ -145,12 +163,21 @@ impl Bearing {
                 bound,
                 relative: 1.0 / relative,
             };
-        let vertex_angle = (0..g.rollers)
+        let vertex_angle: Vec<f64> = (0..g.rollers)
             .map(|i| match scene.mesh.roller_copies {
                 RollerCopies::Translated => g.roller_phase,
                 RollerCopies::Rotated => g.roller_angle(i) + g.roller_phase,
             })
             .collect();
+        // Vertex 0 of the outline lies on the x axis.
+        let round = Rim { top: roller.x[0], outline: roller.clone(), round: true };
+        let (mut rims, mut rim_of) = (vec![round], vec![0; g.rollers]);
+        for (i, relief) in &g.roller_reliefs {
+            // A rim is seen from its vertex 0.
+            let own = formed(&roller, Some(&relief.turned(-vertex_angle[*i])), Circle::Outer);
+            rim_of[*i] = rims.len() as u32;
+            rims.push(Rim { top: radii(&own).into_iter().fold(0.0, f64::max), outline: own, round: false });
+        }
         let branches = match (&scene.solver.structural_damping, g.structural_damping) {
             (Some(chosen), Some(band)) => {
                 StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
@@ -181,7 +208,8 @@ impl Bearing {
             gravity: g.gravity,
             kinematics: Kinematics::of(scene),
             cage: cage.flatten(),
-            roller,
+            rims,
+            rim_of,
             reduction,
         })
     }
@@ -192,6 +220,7 @@ impl Bearing {
     pub(crate) fn touch(
         &self,
         track: &Track,
+        rim: &Rim,
         centre: [f64; 2],
         spin: [f64; 2],
         hints: &mut [u32; 2],
@@ -200,18 +229,19 @@ impl Bearing {
         let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
         let outwards = if track.sides.along { 1.0 } else { -1.0 };
         let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
-        let most = outwards * (distance - track.bound) + self.top();
+        let most = outwards * (distance - track.bound) + rim.top;
         if most <= 0.0 {
             return Touch { d, ..Touch::default() };
         }
         // The roller's own frame: turned back by its spin.
         let [c, s] = spin;
         let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
-        let facet = self.roller.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
+        let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
         let under = track.outline.facet_along(centre, d, hints[1] as usize, outwards);
         *hints = [facet as u32, under as u32];
-        let roller = View { outline: &self.roller, from: [0.0; 2], d: own, facet };
+        let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
+        let sides = Sides { round: rim.round, ..track.sides };
         let mut force = before;
         let mut found = Overlap::default();
         let (mut give, mut given) = (0.0, 0.0);
@@ -224,7 +254,7 @@ impl Bearing {
                 continue;
             }
             let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
-            found = overlap(roller, raceway, track.sides, shift, reach);
+            found = overlap(roller, raceway, sides, shift, reach);
             // Newton's method with what the overlap becomes by a further shift.
             let start = force;
             let (mut further, mut now) = (0.0, [found.area, found.length]);
@@ -269,11 +299,10 @@ impl Bearing {
         2.0 / of_roller.max(of_modes).sqrt()
     }
 
-    /// Radius of the circle around a roller [m].
+    /// The rim of a roller, from 0.
     #[inline(always)]
-    pub(crate) fn top(&self) -> f64 {
-        // Vertex 0 of the outline lies on the x axis.
-        self.roller.x[0]
+    pub(crate) fn rim(&self, roller: usize) -> &Rim {
+        &self.rims[self.rim_of[roller] as usize]
     }
 
     /// A state before its first step, not in equilibrium yet.
@@ -329,7 +358,7 @@ impl Bearing {
                         + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
                     let of = |angle: f64| [angle.cos(), angle.sin()];
-                    [nearest(&self.roller, of(own)), nearest(&track.outline, of(on_race))]
+                    [nearest(&self.rim(i).outline, of(own)), nearest(&track.outline, of(on_race))]
                 })
                 .collect()
         };
@@ -369,6 +398,15 @@ impl Cage {
         let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
         Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points })
     }
+}
+
+/// A boundary with what deviates from round.
+fn formed(outline: &Outline, relief: Option<&Relief>, circle: Circle) -> Outline {
+    let Some(relief) = relief else { return outline.clone() };
+    let mut vertices: Vec<[f64; 2]> = outline.x.iter().zip(&outline.y).map(|(x, y)| [*x, *y]).collect();
+    let (depth, corners) = (|angle: f64| relief.depth(angle), relief.corners());
+    FormDeviation { depth: &depth, corners: &corners, circle }.of_polygon(&mut vertices);
+    Outline::new(&vertices)
 }
 
 /// Gives both ends of a wall their mean shape: a roller that passes over it has no height to tell them apart by.

@@ -48,6 +48,8 @@ pub fn reference(scene: &Scene) -> Scene {
         cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
         adapter: scene.adapter.clone(),
         defect: scene.defect.clone(),
+        // They change places, hardly the rings' stiffness: outlines get them later.
+        defects: Vec::new(),
         material: scene.material.clone(),
         mesh,
         operation: scene.operation.clone(),

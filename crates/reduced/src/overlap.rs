@@ -86,6 +86,8 @@ pub struct Sides {
     pub bulge: f64,
     /// Curvature of the roller [1/m]; 0 for chords.
     pub curvature: f64,
+    /// Whether the arcs of the roller are those of one circle.
+    pub round: bool,
 }
 
 /// Integrals over the overlap, per unit of thickness.
@@ -329,6 +331,17 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     sum.square += square;
     sum.length += width;
     sum.first += width * middle;
+    if !sides.round && sides.curvature != 0.0 {
+        // How much more the arc slopes than that of the circle, and how high it stands.
+        let lean = of_roller + 0.5 * sides.curvature * (r.a[0] + r.b[0]);
+        let high = base + of_roller * middle;
+        let rest = 1.0 - sides.curvature * high;
+        sum.across += lean * i0;
+        sum.moment += lean * high * i0 + rest * first;
+        sum.skew += lean * square;
+        sum.slope += lean * width;
+        sum.arm += width * (lean * high + rest * middle);
+    }
     if sides.curvature == 0.0 {
         sum.skew += of_roller * square;
         sum.slope += of_roller * width;

@@ -8,6 +8,7 @@ use stribeck_bearing::{
     simulation::mesh_file,
     start::preload,
 };
+use stribeck_mesh::Mesh;
 use stribeck_scene::{geometry::Geometry, run_info::MeshInfo, scene::Scene, static_load};
 use stribeck_solver::{
     Dynamics, Force,
@@ -113,11 +114,11 @@ impl Reduction {
         let mut machine = assembly.machine(scene, 1)?;
         let warning = preload(&mut machine, scene, &assembly.kinematics)?;
         let picture = mesh_file(&assembly, &machine)?;
-        let reduced = Self::of(scene, machine)?;
+        let reduced = Self::of(scene, machine, &assembly.model.mesh)?;
         Ok(Self { mesh: assembly.mesh_info(), picture, warning, ..reduced })
     }
 
-    fn of(scene: &Scene, mut machine: Machine) -> Result<Self, Error> {
+    fn of(scene: &Scene, mut machine: Machine, mesh: &Mesh) -> Result<Self, Error> {
         let g = Geometry::of(scene);
         let forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
@@ -349,7 +350,6 @@ impl Reduction {
             .map(|i| (TAU * i as f64 / nodes.rim.len() as f64).sin_cos())
             .map(|(s, c)| [g.roller_radius * c, g.roller_radius * s])
             .collect();
-        let inner_ideal = ideal(&inner, g.inner_race_radius);
         let mut squares = vec![0.0; padded];
         squares[..kept].copy_from_slice(&modes.squares);
         Ok(Self {
@@ -358,7 +358,8 @@ impl Reduction {
             squares,
             outer,
             shapes,
-            inner: inner_ideal,
+            // As it was meshed: it turns on as a rigid body.
+            inner: nodes.inner.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect(),
             roller,
             sensors,
             constant,
@@ -377,11 +378,6 @@ impl Reduction {
             warning: None,
         })
     }
-}
-
-/// Vertices on their circle again, at their angles.
-fn ideal(vertices: &[[f64; 2]], radius: f64) -> Vec<[f64; 2]> {
-    vertices.iter().map(|[x, y]| [radius * x / x.hypot(*y), radius * y / x.hypot(*y)]).collect()
 }
 
 /// The spring across a normal one: the same nodes, directions turned by a right angle.

@@ -147,8 +147,9 @@ impl Bearing {
         // A force found with steps of Newton's method: from the one before until it stands.
         let mut forces = [state.force[0][i], state.force[1][i]];
         for _ in 0..40 {
-            let outer = self.touch(&self.outer, seen, [c, s], &mut hints[0], forces[0]);
-            let inner = self.touch(&self.inner, back(centre), back([c, s]), &mut hints[1], forces[1]);
+            let outer = self.touch(&self.outer, self.rim(i), seen, [c, s], &mut hints[0], forces[0]);
+            let inner =
+                self.touch(&self.inner, self.rim(i), back(centre), back([c, s]), &mut hints[1], forces[1]);
             let next = [outer.normal, inner.normal];
             let still = (0..2).all(|k| (next[k] - forces[k]).abs() <= 1e-12 * next[k].abs());
             forces = next;

@@ -142,7 +142,7 @@ impl Bearing {
             let turned = scratch.turned[i];
             let mut hints = state.hints[0][i];
             let seen = [centre[0] - moved[0], centre[1] - moved[1]];
-            let touch = self.touch(&self.outer, seen, turned, &mut hints, state.force[0][i]);
+            let touch = self.touch(&self.outer, self.rim(i), seen, turned, &mut hints, state.force[0][i]);
             state.hints[0][i] = hints;
             state.force[0][i] = touch.normal;
             let mut force = [0.0, -self.gravity * roller_mass];
@@ -184,7 +184,14 @@ impl Bearing {
             let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
             let rate = self.kinematics.shaft_rad_s;
             let mut hints = state.hints[1][i];
-            let touch = self.touch(&self.inner, back(centre), back(turned), &mut hints, state.force[1][i]);
+            let touch = self.touch(
+                &self.inner,
+                self.rim(i),
+                back(centre),
+                back(turned),
+                &mut hints,
+                state.force[1][i],
+            );
             state.hints[1][i] = hints;
             state.force[1][i] = touch.normal;
             let mut on_inner = [0.0; 2];
@@ -515,7 +522,8 @@ impl Bearing {
         let t = t.clamp(0.0, 1.0);
         let foot = [a[0] + t * edge[0] - own[0], a[1] + t * edge[1] - own[1]];
         let distance = (foot[0] * foot[0] + foot[1] * foot[1]).sqrt();
-        if distance >= self.top() || (own[0] - a[0]) * wall.normal[0] + (own[1] - a[1]) * wall.normal[1] < 0.0
+        if distance >= self.rims[0].top
+            || (own[0] - a[0]) * wall.normal[0] + (own[1] - a[1]) * wall.normal[1] < 0.0
         {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
@@ -524,7 +532,7 @@ impl Bearing {
         let to = [foot[0] / distance, foot[1] / distance];
         let d = [c * to[0] - s * to[1], s * to[0] + c * to[1]];
         let own_d = [turned[0] * d[0] + turned[1] * d[1], turned[0] * d[1] - turned[1] * d[0]];
-        let (depth, tilt) = self.roller.depth(own_d, distance);
+        let (depth, tilt) = self.rims[0].outline.depth(own_d, distance);
         if depth <= 0.0 {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;

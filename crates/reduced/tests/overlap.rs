@@ -42,7 +42,7 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
     // The parabola leaves out terms of δ/R.
     const TOLERANCE: f64 = 2e-3;
     let relative = 1.0 / ROLLER - 1.0 / RACEWAY;
-    let sides = Sides { along: true, bulge: 0.5 * relative, curvature: 1.0 / ROLLER };
+    let sides = Sides { along: true, bulge: 0.5 * relative, curvature: 1.0 / ROLLER, round: true };
     let depth = 1e-5;
     let (roller, raceway) = (polygon(ROLLER, 112), polygon(RACEWAY, 1257));
     let found = pressed(&roller, &raceway, sides, [0.0, RACEWAY - ROLLER + depth], 0.3, [0.0, 1.0]);
@@ -86,7 +86,7 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
 #[test]
 fn invariant_forces_on_polygons_are_the_gradient_of_the_energy() {
     const TOLERANCE: f64 = 1e-5;
-    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
+    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0, round: true };
     let (roller, raceway) = (polygon(ROLLER, 112), polygon(RACEWAY, 1257));
     let mut noise = Noise::new(7);
     for _ in 0..200 {
@@ -123,7 +123,7 @@ fn invariant_forces_on_polygons_are_the_gradient_of_the_energy() {
 /// The same at the edge of a groove, with d turning as the roller goes along: the energy of a path closes.
 #[test]
 fn conserves_energy_along_a_path_over_an_edge() {
-    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
+    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0, round: true };
     let roller = polygon(ROLLER, 112);
     // About the y axis, 0.2 mm deep, with radial walls: seen from beyond an edge its wall leans over the bottom.
     let half = 0.05;

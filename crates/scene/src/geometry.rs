@@ -7,6 +7,7 @@
 use std::f64::consts::TAU;
 
 use crate::contact_formula::ContactNumbers;
+use crate::deviation::{Relief, RollingSurface, rolling_circle};
 use crate::material::Material;
 use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
@@ -45,6 +46,12 @@ pub struct Geometry {
     pub adapter_height: f64,
     /// The spall, if there is one.
     pub defect: Option<DefectGeometry>,
+    /// What deviates from round on the outer raceway.
+    pub outer_relief: Option<Relief>,
+    /// The same of the inner raceway, at the start.
+    pub inner_relief: Option<Relief>,
+    /// Rolling elements that are not round, from 0, and what deviates on them at the start.
+    pub roller_reliefs: Vec<(usize, Relief)>,
     /// Material of every body.
     pub material: Material,
     /// Element edge [m].
@@ -141,6 +148,11 @@ impl Geometry {
         let material = Material::of(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
         let contact = ContactNumbers::of(scene, &material, element_size);
+        let relief = |on: RollingSurface| {
+            let [diameter_mm, facet_mm] = rolling_circle(scene, on);
+            Relief::of(&scene.defects, on, 0.5e-3 * diameter_mm, facet_mm)
+        };
+        let of_roller = |i: usize| Some((i, relief(RollingSurface::Roller(i + 1))?));
         let clearance_mm = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
         Self {
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
@@ -163,6 +175,9 @@ impl Geometry {
             adapter_width: 1e-3 * scene.adapter.width_mm,
             adapter_height: 1e-3 * scene.adapter.height_mm,
             defect: scene.defect.as_ref().map(DefectGeometry::of),
+            outer_relief: relief(RollingSurface::Outer),
+            inner_relief: relief(RollingSurface::Inner),
+            roller_reliefs: (0..b.rollers).filter_map(of_roller).collect(),
             element_size,
             coarse_size: scene.mesh.grading.as_ref().map(|grading| 1e-3 * grading.coarse_mm),
             penalty_stiffness: contact.stiffness,

@@ -42,7 +42,7 @@
 //! | question | module |
 //! |---|---|
 //! | What can a scene say, and what is checked? | [`scene`], [`scene_file`] |
-//! | What is that in SI? | [`geometry`] |
+//! | What is that in SI? | [`geometry`]; surfaces that are not round [`deviation`] |
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 //! | Which scenes does a campaign make of one? | [`campaign`] |
@@ -51,6 +51,7 @@
 pub mod campaign;
 pub mod catalogue;
 mod contact_formula;
+pub mod deviation;
 pub mod dice;
 pub mod ensemble;
 pub mod error;

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::deviation::DeviationScene;
+
 /// A complete scene. `()` in a file is the paper's bearing; every field has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -18,6 +20,8 @@ pub struct Scene {
     pub adapter: AdapterScene,
     /// Spall on a raceway; `None` is a sound bearing.
     pub defect: Option<DefectScene>,
+    /// Further defects of raceways and rolling elements, and other deviations from round.
+    pub defects: Vec<DeviationScene>,
     /// Linear elastic material of every body.
     pub material: MaterialScene,
     /// Discretisation.
@@ -467,6 +471,7 @@ impl Default for Scene {
             cage: Some(CageScene::default()),
             adapter: AdapterScene::default(),
             defect: Some(DefectScene::default()),
+            defects: Vec::new(),
             material: MaterialScene::default(),
             mesh: MeshScene::default(),
             operation: OperationScene::default(),

@@ -5,6 +5,7 @@
 //! [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
 mod check;
+mod deviations;
 pub(crate) mod dialect;
 mod extent;
 mod finding;

@@ -5,7 +5,7 @@ use super::origin::Origin;
 use super::overrides;
 use super::problem::SceneError;
 use super::schema::Schema;
-use super::{extent, geometry, limits};
+use super::{deviations, extent, geometry, limits};
 use crate::scene::Scene;
 
 /// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
@@ -26,6 +26,7 @@ fn findings(scene: &Scene) -> Vec<Finding> {
         return found;
     }
     let mut found = geometry::findings(scene);
+    found.extend(deviations::findings(scene));
     found.extend(extent::findings(scene));
     found
 }

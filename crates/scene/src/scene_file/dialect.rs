@@ -26,7 +26,8 @@ impl Scene {
     /// Two files with the same fields have the same hash, whatever their comments and omitted defaults. A field that came
     /// after the first scenes counts where it is used: their hashes stay, and so do their runs and checkpoints.
     pub fn hash(&self) -> String {
-        const LATER: [&str; 11] = [
+        const LATER: [&str; 12] = [
+            "defects: [],",
             "ring: outer,",
             "edge_slope_deg: 90.0,",
             "designation: \"\",",

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
-use crate::scene::{DefectRing, ModelScene, Scene, Start};
+use crate::scene::{ModelScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
@@ -35,7 +35,6 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_twice,
         reduced_starts,
         reduced_oil,
-        reduced_inner,
     ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
@@ -199,22 +198,6 @@ fn reduced_oil(scene: &Scene) -> Option<Finding> {
         message,
         vec![
             Remedy::new("film", "`None`".to_owned()).value("None", ""),
-            Remedy::new("model", "`full`".to_owned()).value("full", ""),
-        ],
-    ))
-}
-
-/// The reduced inner ring is a circle.
-fn reduced_inner(scene: &Scene) -> Option<Finding> {
-    if scene.model == ModelScene::Full || scene.defect.as_ref()?.ring == DefectRing::Outer {
-        return None;
-    }
-    let message =
-        "`defect.ring` is `inner`, and the reduced model knows defects of the outer raceway alone".to_owned();
-    Some(Finding::new(
-        message,
-        vec![
-            Remedy::new("defect.ring", "`outer`".to_owned()).value("outer", ""),
             Remedy::new("model", "`full`".to_owned()).value("full", ""),
         ],
     ))

@@ -3,7 +3,9 @@
 use std::fmt;
 
 use super::finding::{Finding, Remedy};
+use super::schema::every_form;
 use super::wording::{number, shown};
+use crate::deviation::{FormScene, RollingSurface};
 use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
 
 /// Longest name of a scene or sensor: they become folder and channel names.
@@ -70,6 +72,7 @@ fn with_everything() -> Scene {
     scene.mesh.grading = Some(GradingScene::default());
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
     scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
+    scene.defects = every_form();
     scene.film = Some(FilmScene::default());
     scene
 }
@@ -142,6 +145,46 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("defect.depth_mm", defect.depth_mm, positive(5_000.0), "mm");
         add("defect.angle_deg", defect.angle_deg, within(-360.0, 360.0), "°");
         add("defect.edge_slope_deg", defect.edge_slope_deg, within(5.0, 90.0), "°");
+    }
+    for (i, deviation) in scene.defects.iter().enumerate() {
+        let mut add = |name: &str, value: f64, range: Range, unit: &'static str| {
+            add(&format!("defects[{i}].{name}"), value, range, unit);
+        };
+        if let RollingSurface::Roller(roller) = deviation.on {
+            add("on", roller as f64, within(1.0, b.rollers as f64), "");
+        }
+        add("angle_deg", deviation.angle_deg, within(-360.0, 360.0), "°");
+        match &deviation.form {
+            FormScene::Spall(spall) => {
+                add("form.length_mm", spall.length_mm, positive(20_000.0), "mm");
+                add("form.depth_mm", spall.depth_mm, positive(5_000.0), "mm");
+                add("form.edge_mm", spall.edge_mm, within(0.0, 5_000.0), "mm");
+            }
+            FormScene::Dent(dent) => {
+                add("form.length_mm", dent.length_mm, positive(20_000.0), "mm");
+                add("form.depth_mm", dent.depth_mm, positive(5_000.0), "mm");
+                add("form.rim_um", dent.rim_um, within(0.0, 10_000.0), "µm");
+            }
+            FormScene::Profile(profile) => {
+                for (k, point) in profile.points.iter().enumerate() {
+                    add(&format!("form.points[{k}].at_mm"), point.at_mm, within(-20_000.0, 20_000.0), "mm");
+                    add(&format!("form.points[{k}].depth_um"), point.depth_um, within(-10_000.0, 1e6), "µm");
+                }
+            }
+            FormScene::Waviness(waviness) => {
+                add("form.order", waviness.order as f64, within(1.0, 10_000.0), "");
+                add("form.amplitude_um", waviness.amplitude_um, within(0.0, 1_000.0), "µm");
+            }
+            FormScene::Roughness(roughness) => {
+                add("form.rq_um", roughness.rq_um, within(0.0, 100.0), "µm");
+                add("form.longest_mm", roughness.longest_mm, positive(20_000.0), "mm");
+                add("form.shortest_mm", roughness.shortest_mm, positive(20_000.0), "mm");
+                add("form.seed", roughness.seed as f64, within(0.0, 1e9), "");
+            }
+            FormScene::Diameter(diameter) => {
+                add("form.larger_um", diameter.larger_um, within(-1_000.0, 1_000.0), "µm");
+            }
+        }
     }
     add("material.youngs_modulus_gpa", material.youngs_modulus_gpa, positive(10_000.0), "GPa");
     let poisson = Range { low: 0.0, low_included: true, high: 0.5, high_included: false };

@@ -1,11 +1,28 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
 use super::outline::Outline;
+use crate::deviation::{
+    DentScene, DeviationScene, DiameterScene, FormScene, PointScene, ProfileScene, RoughnessScene,
+    SpallScene, WavinessScene,
+};
 use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
 
 /// Groups that a scene may lack.
 const OPTIONAL_GROUPS: [&str; 6] =
     ["cage", "defect", "film", "mesh.grading", "solver.structural_damping", "output.frames"];
+
+/// One deviation of every form: items of a list may have different fields.
+pub(crate) fn every_form() -> Vec<DeviationScene> {
+    let forms = [
+        FormScene::Spall(SpallScene::default()),
+        FormScene::Dent(DentScene::default()),
+        FormScene::Profile(ProfileScene { points: vec![PointScene::default()], ..ProfileScene::default() }),
+        FormScene::Waviness(WavinessScene::default()),
+        FormScene::Roughness(RoughnessScene::default()),
+        FormScene::Diameter(DiameterScene::default()),
+    ];
+    forms.into_iter().map(|form| DeviationScene { form, ..DeviationScene::default() }).collect()
+}
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -22,6 +39,7 @@ impl Schema {
         scene.solver.structural_damping = Some(StructuralDampingScene::default());
         // Empty by default, but an item must have a kind.
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
+        scene.defects = every_form();
         scene.film = Some(FilmScene::default());
         let text = scene.to_ron();
         let outline = Outline::of(&text);
@@ -38,9 +56,18 @@ impl Schema {
             .collect()
     }
 
+    /// The path of the first item of a list that has such a field.
+    fn item_with(&self, path: &str) -> String {
+        let first = first_item(path);
+        if self.outline.get(&first).is_some() {
+            return first;
+        }
+        forms_of(&first).find(|path| self.outline.get(path).is_some()).unwrap_or(first)
+    }
+
     /// The default of `path` as text; any item of a list stands for its siblings.
     pub(crate) fn default_of(&self, path: &str) -> Option<&str> {
-        let path = first_item(path);
+        let path = self.item_with(path);
         self.outline.get(&path).map(|entry| &self.text[entry.value.clone()])
     }
 
@@ -53,8 +80,17 @@ impl Schema {
     pub(crate) fn names_in(&self, section: &str) -> Vec<&str> {
         let section = first_item(section);
         let prefix = if section.is_empty() { String::new() } else { format!("{section}.") };
-        let names = self.outline.entries.iter().filter_map(|entry| entry.path.strip_prefix(&prefix));
-        names.filter(|name| !name.contains(['.', '['])).collect()
+        let prefixes = std::iter::once(prefix.clone()).chain(forms_of(&prefix));
+        let mut names: Vec<&str> = Vec::new();
+        for prefix in prefixes {
+            let inside = self.outline.entries.iter().filter_map(|entry| entry.path.strip_prefix(&prefix));
+            for name in inside.filter(|name| !name.contains(['.', '['])) {
+                if !names.contains(&name) {
+                    names.push(name);
+                }
+            }
+        }
+        names
     }
 
     /// True when `value` is a number and `path` takes one: then the fault lies behind it.
@@ -87,7 +123,7 @@ impl Schema {
 
     /// The complete default scene with `value` at `path`, as text; `None` for a field that no scene has.
     pub(crate) fn text_with(&self, path: &str, value: &str) -> Option<String> {
-        let place = self.outline.get(&first_item(path))?.value.clone();
+        let place = self.outline.get(&self.item_with(path))?.value.clone();
         Some(format!("{}{value}{}", &self.text[..place.start], &self.text[place.end..]))
     }
 }
@@ -119,6 +155,13 @@ impl Kind {
             Self::List => "a list `[ … ]`",
         }
     }
+}
+
+/// The same path in deviations of the other forms.
+fn forms_of(path: &str) -> impl Iterator<Item = String> + use<> {
+    let of_defects = path.strip_prefix("defects[0]").map(str::to_owned);
+    let others = 1..every_form().len();
+    of_defects.into_iter().flat_map(move |rest| others.clone().map(move |i| format!("defects[{i}]{rest}")))
 }
 
 /// `sensors[7].name` → `sensors[0].name`.

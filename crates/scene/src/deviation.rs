@@ -1,0 +1,458 @@
+//! Deviations of raceways and rolling elements from round: what a scene says of them, and how deep the surface lies at any
+//! angle.
+
+use std::f64::consts::{PI, TAU};
+
+use serde::{Deserialize, Serialize};
+
+use crate::dice::Dice;
+use crate::scene::Scene;
+
+/// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DeviationScene {
+    /// The surface.
+    pub on: RollingSurface,
+    /// Angle of its middle at the start [°], counter-clockwise from the x axis, about the centre of the body.
+    pub angle_deg: f64,
+    /// Its form.
+    pub form: FormScene,
+}
+
+/// A surface that rolls or is rolled over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RollingSurface {
+    /// The raceway of the outer ring.
+    Outer,
+    /// The raceway of the inner ring; what is on it turns with the shaft.
+    Inner,
+    /// A rolling element, from 1.
+    Roller(usize),
+}
+
+/// Form of a deviation over the arc length along its surface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FormScene {
+    /// A flat floor between two edges.
+    Spall(SpallScene),
+    /// A dent with a raised rim.
+    Dent(DentScene),
+    /// Any profile, as points.
+    Profile(ProfileScene),
+    /// A sine wave around the whole surface; of order 2 an oval.
+    Waviness(WavinessScene),
+    /// Random waves over a band of wavelengths.
+    Roughness(RoughnessScene),
+    /// Another diameter of a rolling element.
+    Diameter(DiameterScene),
+}
+
+/// A flat floor between two edges.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SpallScene {
+    /// Circumferential length between the upper ends of its edges [mm].
+    pub length_mm: f64,
+    /// Depth [mm].
+    pub depth_mm: f64,
+    /// Length of each edge [mm]; 0 for one facet.
+    pub edge_mm: f64,
+    /// Whether edges are rounded.
+    pub edge: Edge,
+}
+
+/// Form of an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Edge {
+    /// A plane with corners at both ends.
+    Sloped,
+    /// Half a cosine wave.
+    Rounded,
+}
+
+/// A dent with a raised rim.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DentScene {
+    /// Length of the hollow [mm]; the rim takes half as much again on either side.
+    pub length_mm: f64,
+    /// Depth of its middle [mm].
+    pub depth_mm: f64,
+    /// Height of the rim [µm].
+    pub rim_um: f64,
+}
+
+/// Any profile, linear between points.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ProfileScene {
+    /// Table with the columns `position_mm` and `depth_um`, beside the scene; read where no points are given.
+    pub file: String,
+    /// Its points, in the order of their places; the surface is not changed outside of them.
+    pub points: Vec<PointScene>,
+}
+
+/// One point of a profile.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PointScene {
+    /// Place along the surface, counter-clockwise from the middle [mm].
+    pub at_mm: f64,
+    /// Depth [µm]; negative where the surface stands out.
+    pub depth_um: f64,
+}
+
+/// A sine wave around the whole surface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct WavinessScene {
+    /// Waves around the surface.
+    pub order: usize,
+    /// Half the height from valley to crest [µm]; the surface is deepest at the angle of the deviation.
+    pub amplitude_um: f64,
+}
+
+/// Random waves over a band of wavelengths, whose spectrum falls as the square of the wave number.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RoughnessScene {
+    /// Root mean square of the depth, Rq [µm].
+    pub rq_um: f64,
+    /// Longest wave [mm].
+    pub longest_mm: f64,
+    /// Shortest wave [mm].
+    pub shortest_mm: f64,
+    /// Seed of the phases.
+    pub seed: u64,
+}
+
+/// Another diameter of a rolling element.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct DiameterScene {
+    /// By how much the diameter is larger [µm].
+    pub larger_um: f64,
+}
+
+impl Default for DeviationScene {
+    fn default() -> Self {
+        Self { on: RollingSurface::Outer, angle_deg: 90.0, form: FormScene::Spall(SpallScene::default()) }
+    }
+}
+
+impl Default for SpallScene {
+    fn default() -> Self {
+        Self { length_mm: 5.0, depth_mm: 0.1, edge_mm: 0.0, edge: Edge::Sloped }
+    }
+}
+
+impl Default for DentScene {
+    fn default() -> Self {
+        Self { length_mm: 3.0, depth_mm: 0.05, rim_um: 5.0 }
+    }
+}
+
+impl Default for WavinessScene {
+    fn default() -> Self {
+        Self { order: 11, amplitude_um: 1.0 }
+    }
+}
+
+impl Default for RoughnessScene {
+    fn default() -> Self {
+        Self { rq_um: 0.3, longest_mm: 10.0, shortest_mm: 2.5, seed: 1 }
+    }
+}
+
+impl Default for DiameterScene {
+    fn default() -> Self {
+        Self { larger_um: -5.0 }
+    }
+}
+
+impl FormScene {
+    /// Length along the surface that it changes [mm]; `None` for all of it.
+    pub fn length_mm(&self) -> Option<f64> {
+        match self {
+            Self::Spall(spall) => Some(spall.length_mm),
+            Self::Dent(dent) => Some(2.0 * dent.length_mm),
+            Self::Profile(profile) => {
+                Some(2.0 * profile.points.iter().map(|point| point.at_mm.abs()).fold(0.0, f64::max))
+            }
+            Self::Waviness(_) | Self::Roughness(_) | Self::Diameter(_) => None,
+        }
+    }
+
+    /// Depth of what it takes away from the surface at its deepest [mm].
+    pub fn depth_mm(&self) -> f64 {
+        match self {
+            Self::Spall(spall) => spall.depth_mm,
+            Self::Dent(dent) => dent.depth_mm,
+            Self::Profile(profile) => 1e-3 * profile.points.iter().map(|p| p.depth_um).fold(0.0, f64::max),
+            Self::Waviness(waviness) => 1e-3 * waviness.amplitude_um,
+            // Three standard deviations.
+            Self::Roughness(roughness) => 3e-3 * roughness.rq_um,
+            Self::Diameter(diameter) => 0.5e-3 * (-diameter.larger_um).max(0.0),
+        }
+    }
+}
+
+/// Diameter of a rolling surface and length of its facets [mm].
+pub fn rolling_circle(scene: &Scene, on: RollingSurface) -> [f64; 2] {
+    let (b, mesh) = (&scene.bearing, &scene.mesh);
+    let (diameter, facets) = match on {
+        RollingSurface::Outer => (b.outer_race_diameter_mm, mesh.outer_facets),
+        RollingSurface::Inner => (b.inner_race_diameter_mm, mesh.inner_facets),
+        RollingSurface::Roller(_) => (b.roller_diameter_mm, Some(mesh.roller_facets)),
+    };
+    [diameter, facets.map_or(mesh.size_mm, |n| PI * diameter / n as f64)]
+}
+
+/// All deviations of one surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relief {
+    /// Radius of the circle that they deviate from [m].
+    pub radius: f64,
+    waves: Vec<Wave>,
+    pieces: Vec<Piece>,
+    /// The same everywhere [m].
+    level: f64,
+}
+
+/// A cosine wave around the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Wave {
+    order: f64,
+    amplitude: f64,
+    /// Angle of a deepest place [rad].
+    at: f64,
+}
+
+/// What changes a part of the surface.
+#[derive(Debug, Clone, PartialEq)]
+struct Piece {
+    /// Angle of its middle [rad].
+    at: f64,
+    form: FormScene,
+    /// Length of an edge [mm].
+    edge: f64,
+}
+
+impl Relief {
+    /// What the deviations make of a surface of the radius `radius` [m] whose facets are `facet_mm` long; `None` when none of
+    /// them is `on` it.
+    pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
+        let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
+        let mut any = false;
+        for deviation in deviations.iter().filter(|deviation| deviation.on == on) {
+            any = true;
+            let at = deviation.angle_deg.to_radians();
+            match &deviation.form {
+                FormScene::Waviness(w) => {
+                    let (order, amplitude) = (w.order as f64, 1e-6 * w.amplitude_um);
+                    relief.waves.push(Wave { order, amplitude, at });
+                }
+                FormScene::Roughness(roughness) => relief.waves.extend(random_waves(roughness, radius, at)),
+                FormScene::Diameter(diameter) => relief.level -= 0.5e-6 * diameter.larger_um,
+                form => {
+                    let edge = match form {
+                        FormScene::Spall(spall) if spall.edge_mm > 0.0 => spall.edge_mm,
+                        _ => facet_mm,
+                    };
+                    relief.pieces.push(Piece { at, form: form.clone(), edge });
+                }
+            }
+        }
+        any.then_some(relief)
+    }
+
+    /// How far below its circle the surface lies at `angle` [rad] from the centre, into the body [m].
+    pub fn depth(&self, angle: f64) -> f64 {
+        let waves = self.waves.iter().map(|w| w.amplitude * (w.order * (angle - w.at)).cos());
+        let pieces = self.pieces.iter().map(|piece| {
+            let from_middle = (angle - piece.at + PI).rem_euclid(TAU) - PI;
+            1e-3 * piece.depth_mm(1e3 * self.radius * from_middle)
+        });
+        self.level + waves.sum::<f64>() + pieces.sum::<f64>()
+    }
+
+    /// Angles of the corners of its profile [rad], where a mesh has nodes.
+    pub fn corners(&self) -> Vec<f64> {
+        let angles = self
+            .pieces
+            .iter()
+            .flat_map(|piece| piece.corners_mm().into_iter().map(|mm| piece.at + 1e-3 * mm / self.radius));
+        angles.collect()
+    }
+
+    /// The same about a body that is turned by `angle` [rad].
+    pub fn turned(&self, angle: f64) -> Self {
+        let mut turned = self.clone();
+        turned.waves.iter_mut().for_each(|wave| wave.at += angle);
+        turned.pieces.iter_mut().for_each(|piece| piece.at += angle);
+        turned
+    }
+}
+
+impl Piece {
+    /// Depth [mm] at a place along the surface from the middle [mm].
+    fn depth_mm(&self, s: f64) -> f64 {
+        match &self.form {
+            FormScene::Spall(spall) => {
+                let down = ((0.5 * spall.length_mm - s.abs()) / self.edge).clamp(0.0, 1.0);
+                spall.depth_mm
+                    * match spall.edge {
+                        Edge::Sloped => down,
+                        Edge::Rounded => 0.5 - 0.5 * (PI * down).cos(),
+                    }
+            }
+            FormScene::Dent(dent) => {
+                let out = 2.0 * s.abs() / dent.length_mm;
+                if out < 1.0 {
+                    // 1 − out² has a corner at the rim, its square none.
+                    dent.depth_mm * (1.0 - out * out).powi(2)
+                } else if out < 2.0 {
+                    let up = (out - 1.0) * (2.0 - out);
+                    -16e-3 * dent.rim_um * up * up
+                } else {
+                    0.0
+                }
+            }
+            FormScene::Profile(profile) => {
+                let after = profile.points.partition_point(|point| point.at_mm <= s);
+                let (Some(&a), Some(&b)) =
+                    (after.checked_sub(1).and_then(|i| profile.points.get(i)), profile.points.get(after))
+                else {
+                    return 0.0;
+                };
+                let along = (s - a.at_mm) / (b.at_mm - a.at_mm);
+                1e-3 * (a.depth_um + along * (b.depth_um - a.depth_um))
+            }
+            FormScene::Waviness(_) | FormScene::Roughness(_) | FormScene::Diameter(_) => 0.0,
+        }
+    }
+
+    /// Places of its corners along the surface [mm], ascending.
+    fn corners_mm(&self) -> Vec<f64> {
+        let FormScene::Spall(spall) = &self.form else { return Vec::new() };
+        let (half, floor) = (0.5 * spall.length_mm, 0.5 * spall.length_mm - self.edge);
+        if floor > 0.25 * self.edge { vec![-half, -floor, floor, half] } else { vec![-half, half] }
+    }
+}
+
+/// Waves of every order within the band, their phases drawn.
+fn random_waves(roughness: &RoughnessScene, radius: f64, at: f64) -> Vec<Wave> {
+    let around = 1e3 * TAU * radius;
+    let first = (around / roughness.longest_mm).ceil().max(1.0) as usize;
+    let last = ((around / roughness.shortest_mm).floor() as usize).max(first);
+    let mut dice = Dice::new(roughness.seed);
+    let mut waves: Vec<Wave> = (first..=last)
+        .map(|order| {
+            let order = order as f64;
+            Wave { order, amplitude: 1.0 / order, at: at + TAU * dice.share() / order }
+        })
+        .collect();
+    let square: f64 = waves.iter().map(|wave| 0.5 * wave.amplitude * wave.amplitude).sum();
+    let scale = 1e-6 * roughness.rq_um / square.sqrt();
+    waves.iter_mut().for_each(|wave| wave.amplitude *= scale);
+    waves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn on_outer(form: FormScene) -> Relief {
+        let deviation = DeviationScene { form, ..DeviationScene::default() };
+        Relief::of(&[deviation], RollingSurface::Outer, 0.1, 0.5).expect("one is on it")
+    }
+
+    /// Depth [µm] at a place along the surface [mm] from the top of a raceway of 100 mm.
+    fn depth_um(relief: &Relief, mm: f64) -> f64 {
+        1e6 * relief.depth(0.5 * PI + mm / 100.0)
+    }
+
+    #[test]
+    fn analytic_profiles_at_chosen_places() {
+        let spall = SpallScene { length_mm: 6.0, depth_mm: 0.1, edge_mm: 1.0, edge: Edge::Sloped };
+        let dent = FormScene::Dent(DentScene { length_mm: 2.0, depth_mm: 0.02, rim_um: 3.0 });
+        let point = |(at_mm, depth_um)| PointScene { at_mm, depth_um };
+        let points = [(-1.0, 0.0), (0.0, 8.0), (0.5, 2.0)].map(point).into();
+        let profile = ProfileScene { points, ..Default::default() };
+        let rounded = FormScene::Spall(SpallScene { edge: Edge::Rounded, ..spall.clone() });
+        let oval = FormScene::Waviness(WavinessScene { order: 2, amplitude_um: 4.0 });
+        for (form, places) in [
+            (FormScene::Spall(spall), [(0.0, 100.0), (2.5, 50.0), (-2.25, 75.0), (3.1, 0.0)]),
+            (
+                rounded,
+                [(0.0, 100.0), (2.5, 50.0), (-2.75, 100.0 * (0.5 - 0.5 * (PI * 0.25).cos())), (3.1, 0.0)],
+            ),
+            // (1 − ¼)² of the depth half way out; the crest of the rim half a length beyond.
+            (dent, [(0.0, 20.0), (-0.5, 11.25), (1.5, -3.0), (2.1, 0.0)]),
+            (FormScene::Profile(profile), [(-0.5, 4.0), (0.25, 5.0), (0.6, 0.0), (-1.1, 0.0)]),
+            (oval, [(0.0, 4.0), (25.0 * PI, 0.0), (50.0 * PI, -4.0), (100.0 * PI, 4.0)]),
+        ] {
+            let relief = on_outer(form.clone());
+            for (mm, um) in places {
+                let ours = depth_um(&relief, mm);
+                // A place is rounded to 1e-13 mm, where walls are steep.
+                assert!((ours - um).abs() < 1e-9, "{form:?} at {mm} mm: {ours} instead of {um}");
+            }
+        }
+    }
+
+    #[test]
+    fn analytic_a_roller_of_another_diameter_lies_half_as_deep() {
+        let roller = |larger_um| DeviationScene {
+            on: RollingSurface::Roller(3),
+            form: FormScene::Diameter(DiameterScene { larger_um }),
+            ..DeviationScene::default()
+        };
+        let relief = |on| Relief::of(&[roller(-6.0), roller(2.0)], on, 9e-3, 0.5);
+        assert!((relief(RollingSurface::Roller(3)).expect("two").depth(1.0) - 2e-6).abs() < 1e-18);
+        assert!(relief(RollingSurface::Roller(2)).is_none());
+    }
+
+    /// Parseval: the mean square over the circumference is half the sum of the squares of the amplitudes.
+    #[test]
+    fn analytic_roughness_has_its_root_mean_square_and_band() {
+        let relief = on_outer(FormScene::Roughness(RoughnessScene { rq_um: 0.4, ..Default::default() }));
+        let n = 4096;
+        let depths: Vec<f64> = (0..n).map(|i| 1e6 * relief.depth(TAU * i as f64 / n as f64)).collect();
+        let square = depths.iter().map(|d| d * d).sum::<f64>() / n as f64;
+        assert!((square.sqrt() - 0.4).abs() < 1e-12, "{}", square.sqrt());
+        // 628.3 mm hold 63 waves of 10 mm and 251 of 2.5 mm.
+        let orders: Vec<f64> = relief.waves.iter().map(|wave| wave.order).collect();
+        assert_eq!((orders[0], orders[orders.len() - 1]), (63.0, 251.0));
+        let again = on_outer(FormScene::Roughness(RoughnessScene { rq_um: 0.4, ..Default::default() }));
+        assert_eq!(relief, again);
+    }
+
+    #[test]
+    fn invariant_a_turned_relief_is_the_same_elsewhere() {
+        let mut deviations: Vec<DeviationScene> = [
+            FormScene::Spall(SpallScene::default()),
+            FormScene::Waviness(WavinessScene::default()),
+            FormScene::Roughness(RoughnessScene::default()),
+        ]
+        .map(|form| DeviationScene { form, ..DeviationScene::default() })
+        .into();
+        let of = |deviations: &[DeviationScene]| {
+            Relief::of(deviations, RollingSurface::Outer, 0.1, 0.5).expect("three")
+        };
+        let turned = of(&deviations).turned(0.25 * TAU);
+        deviations.iter_mut().for_each(|deviation| deviation.angle_deg = 180.0);
+        let elsewhere = of(&deviations);
+        for i in 0..1000 {
+            let angle = TAU * i as f64 / 1000.0;
+            assert!((turned.depth(angle) - elsewhere.depth(angle)).abs() < 1e-15);
+        }
+        for (a, b) in turned.corners().iter().zip(elsewhere.corners()) {
+            assert!((a - b).abs() < 1e-15);
+        }
+    }
+}

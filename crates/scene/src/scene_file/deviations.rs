@@ -1,0 +1,368 @@
+//! Deviations from round that a mesh can follow: as long as several facets, and no steeper than its cells can lean.
+
+use std::f64::consts::PI;
+
+use super::finding::{Finding, Remedy};
+use super::wording::{number, round_down, round_up};
+use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface, rolling_circle};
+use crate::scene::{DefectRing, Scene};
+
+/// Steepest slope of a surface: cells under it lean as much, and keep nine tenths of their time step.
+const STEEPEST: f64 = 0.4;
+
+/// Facets that a hollow needs at least, and a wave.
+const HOLLOW_FACETS: f64 = 4.0;
+const WAVE_FACETS: f64 = 6.0;
+
+/// Longest part of a surface that one of them takes: half a raceway, a quarter of a roller.
+const OF_RACEWAY: f64 = 0.5;
+const OF_ROLLER: f64 = 0.25;
+
+/// Deepest, over the thickness of a ring or the radius of a roller.
+const OF_THICKNESS: f64 = 0.3;
+const OF_RADIUS: f64 = 0.15;
+
+/// Steepest part of the dent's hollow and of its rim, in depths over half its length and heights over the same.
+const HOLLOW_SLOPE: f64 = 1.54;
+const RIM_SLOPE: f64 = 3.08;
+
+/// A profile that is proposed.
+const NOTCH: &str =
+    "[(at_mm: -1.0, depth_um: 0.0), (at_mm: 0.0, depth_um: 20.0), (at_mm: 1.0, depth_um: 0.0)]";
+
+/// What no mesh can follow, in a scene whose numbers are in range.
+pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
+    let each = scene.defects.iter().enumerate();
+    each.flat_map(|(i, deviation)| Checked::new(scene, i, deviation).findings()).collect()
+}
+
+/// One deviation with the surface that it is on.
+struct Checked<'a> {
+    scene: &'a Scene,
+    index: usize,
+    deviation: &'a DeviationScene,
+    /// Circumference and facet of the surface [mm].
+    around: f64,
+    facet: f64,
+}
+
+impl<'a> Checked<'a> {
+    fn new(scene: &'a Scene, index: usize, deviation: &'a DeviationScene) -> Self {
+        let [diameter, facet] = rolling_circle(scene, deviation.on);
+        Self { scene, index, deviation, around: PI * diameter, facet }
+    }
+
+    fn path(&self, name: &str) -> String {
+        format!("defects[{}].{name}", self.index)
+    }
+
+    fn on_roller(&self) -> bool {
+        matches!(self.deviation.on, RollingSurface::Roller(_))
+    }
+
+    fn surface(&self) -> String {
+        match self.deviation.on {
+            RollingSurface::Outer => "the outer raceway".to_owned(),
+            RollingSurface::Inner => "the inner raceway".to_owned(),
+            RollingSurface::Roller(i) => format!("roller {i}"),
+        }
+    }
+
+    /// A finer mesh of the surface.
+    fn finer(&self, facet: f64) -> Remedy {
+        if self.on_roller() {
+            let count = 4.0 * (self.around / facet / 4.0).ceil();
+            Remedy::new("mesh.roller_facets", format!("at least {}", number(count))).number(count, "")
+        } else {
+            Remedy::new("mesh.size_mm", format!("at most {} mm", number(facet)))
+                .number(round_down(facet, 2), "")
+        }
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        let found = match &self.deviation.form {
+            FormScene::Spall(spall) => {
+                let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { self.facet };
+                let steeper = if spall.edge == Edge::Rounded { 0.5 * PI } else { 1.0 };
+                vec![
+                    self.short(spall.length_mm),
+                    self.long(spall.length_mm),
+                    self.edge(spall.edge_mm, spall.length_mm),
+                    self.steep(steeper * spall.depth_mm / edge, "form.depth_mm", spall.depth_mm, "mm"),
+                    self.deep(),
+                ]
+            }
+            FormScene::Dent(dent) => {
+                let half = 0.5 * dent.length_mm;
+                vec![
+                    self.short(dent.length_mm),
+                    self.long(dent.length_mm),
+                    self.steep(HOLLOW_SLOPE * dent.depth_mm / half, "form.depth_mm", dent.depth_mm, "mm"),
+                    self.steep(1e-3 * RIM_SLOPE * dent.rim_um / half, "form.rim_um", dent.rim_um, "µm"),
+                    self.deep(),
+                ]
+            }
+            FormScene::Profile(profile) => vec![self.points(&profile.points), self.deep()],
+            FormScene::Waviness(waviness) => {
+                let slope = 2.0 * PI * waviness.order as f64 * 1e-3 * waviness.amplitude_um / self.around;
+                vec![
+                    self.order(waviness.order as f64),
+                    self.steep(slope, "form.amplitude_um", waviness.amplitude_um, "µm"),
+                    self.deep(),
+                ]
+            }
+            FormScene::Roughness(roughness) => {
+                let slope = 2.0 * PI * 1e-3 * roughness.rq_um / roughness.shortest_mm;
+                vec![
+                    self.band(roughness.shortest_mm, roughness.longest_mm),
+                    self.steep(slope, "form.rq_um", roughness.rq_um, "µm"),
+                ]
+            }
+            FormScene::Diameter(_) => vec![self.diameter()],
+        };
+        found.into_iter().flatten().chain(self.meets_defect()).collect()
+    }
+
+    fn short(&self, length: f64) -> Option<Finding> {
+        let least = HOLLOW_FACETS * self.facet;
+        if length >= least {
+            return None;
+        }
+        let path = self.path("form.length_mm");
+        let message = format!(
+            "`{path}` is {}, and facets of {} are {:.3} mm long: {} at least make a hollow",
+            number(length),
+            self.surface(),
+            self.facet,
+            number(HOLLOW_FACETS)
+        );
+        let long = Remedy::new(path, format!("at least {} mm", number(round_up(least, 3))))
+            .number(round_up(least, 3), "");
+        Some(Finding::new(message, vec![long, self.finer(length / HOLLOW_FACETS)]))
+    }
+
+    fn long(&self, length: f64) -> Option<Finding> {
+        let most = self.around * if self.on_roller() { OF_ROLLER } else { OF_RACEWAY };
+        if length <= most {
+            return None;
+        }
+        let path = self.path("form.length_mm");
+        let message = format!(
+            "`{path}` is {}: {} measures {:.1} mm around",
+            number(length),
+            self.surface(),
+            self.around
+        );
+        let most = round_down(most, 3);
+        Some(Finding::new(
+            message,
+            vec![Remedy::new(path, format!("at most {} mm", number(most))).number(most, "")],
+        ))
+    }
+
+    fn edge(&self, edge: f64, length: f64) -> Option<Finding> {
+        // A length that was written with few digits is a facet all the same.
+        let (least, most) = (0.99 * self.facet, 0.5 * length);
+        if edge == 0.0 || (least..=most).contains(&edge) {
+            return None;
+        }
+        let path = self.path("form.edge_mm");
+        let message = format!(
+            "`{path}` is {}: an edge takes a facet of {:.3} mm at least, and half of the spall at most",
+            number(edge),
+            self.facet
+        );
+        let remedy = Remedy::new(
+            path,
+            format!("0 for one facet, or {} to {} mm", number(round_up(least, 3)), number(most)),
+        );
+        let mut remedies = vec![remedy.value("0.0", "one facet")];
+        if edge < least {
+            remedies.push(self.finer(edge));
+        } else {
+            let path = self.path("form.length_mm");
+            remedies.push(
+                Remedy::new(path, format!("at least {} mm", number(2.0 * edge))).number(2.0 * edge, ""),
+            );
+        }
+        Some(Finding::new(message, remedies))
+    }
+
+    /// `field` in proportion makes the slope.
+    fn steep(&self, slope: f64, field: &str, value: f64, unit: &str) -> Option<Finding> {
+        if slope <= STEEPEST {
+            return None;
+        }
+        let path = self.path(field);
+        let message = format!(
+            "`{path}` is {}: the surface would slope by {:.0}°, and cells of a mesh lean by {:.0}° at most. Steep walls have \
+             `defect`, on either ring",
+            number(value),
+            slope.atan().to_degrees(),
+            STEEPEST.atan().to_degrees()
+        );
+        let most = round_down(value * STEEPEST / slope, 3);
+        let mut remedies =
+            vec![Remedy::new(path, format!("at most {} {unit}", number(most))).number(most, "")];
+        if let FormScene::Spall(spall) = &self.deviation.form {
+            let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { self.facet };
+            let longer = round_up(edge * slope / STEEPEST, 3);
+            remedies.push(
+                Remedy::new(self.path("form.edge_mm"), format!("at least {} mm", number(longer)))
+                    .number(longer, ""),
+            );
+        }
+        Some(Finding::new(message, remedies))
+    }
+
+    fn deep(&self) -> Option<Finding> {
+        let b = &self.scene.bearing;
+        let (most, of) = match self.deviation.on {
+            RollingSurface::Outer => (OF_THICKNESS * b.outer_ring_thickness_mm, "ring"),
+            RollingSurface::Inner => (OF_THICKNESS * b.inner_ring_thickness_mm, "ring"),
+            RollingSurface::Roller(_) => (OF_RADIUS * 0.5 * b.roller_diameter_mm, "roller"),
+        };
+        let depth = self.deviation.form.depth_mm();
+        if depth <= most {
+            return None;
+        }
+        let path = self.path("form");
+        let message = format!(
+            "`{path}` is {} mm deep, too deep for a {of} whose cells make room for {} mm",
+            number(depth),
+            number(round_down(most, 3))
+        );
+        Some(Finding::new(
+            message,
+            vec![Remedy::new(path, format!("at most {} mm deep", number(round_down(most, 3))))],
+        ))
+    }
+
+    fn points(&self, points: &[PointScene]) -> Option<Finding> {
+        let path = self.path("form.points");
+        let allowed = "two or more places along the surface [mm], ascending, with depths [µm]";
+        if points.len() < 2 {
+            let message = format!("`{path}` has {} points: a profile needs two", points.len());
+            let remedy = Remedy::new(path, allowed).value(NOTCH, "a notch");
+            return Some(Finding::new(message, vec![remedy]));
+        }
+        let most = self.around * if self.on_roller() { OF_ROLLER } else { OF_RACEWAY };
+        for (k, pair) in points.windows(2).enumerate() {
+            let [(a, from), (b, to)] = [pair[0], pair[1]].map(|point| (point.at_mm, point.depth_um));
+            let slope = 1e-3 * (to - from).abs() / (b - a);
+            let wrong = if b <= a {
+                format!("lies at {} mm, not beyond the one before", number(b))
+            } else if slope > STEEPEST {
+                format!(
+                    "is {:.0}° from the one before: cells of a mesh lean by {:.0}° at most",
+                    slope.atan().to_degrees(),
+                    STEEPEST.atan().to_degrees()
+                )
+            } else if b - points[0].at_mm > most {
+                format!(
+                    "ends a profile of {} mm: {} has room for {:.1} mm",
+                    number(b - points[0].at_mm),
+                    self.surface(),
+                    most
+                )
+            } else {
+                continue;
+            };
+            let message = format!("`{path}[{}]` {wrong}", k + 1);
+            return Some(Finding::new(message, vec![Remedy::new(path, allowed)]));
+        }
+        None
+    }
+
+    fn order(&self, order: f64) -> Option<Finding> {
+        let most = (self.around / (WAVE_FACETS * self.facet)).floor();
+        if order <= most {
+            return None;
+        }
+        let path = self.path("form.order");
+        let message = format!(
+            "`{path}` is {}: a wave would have {:.1} facets of {}, and needs {}",
+            number(order),
+            self.around / (order * self.facet),
+            self.surface(),
+            number(WAVE_FACETS)
+        );
+        let remedy = Remedy::new(path, format!("at most {}", number(most))).number(most, "");
+        Some(Finding::new(message, vec![remedy, self.finer(self.around / (WAVE_FACETS * order))]))
+    }
+
+    fn band(&self, shortest: f64, longest: f64) -> Option<Finding> {
+        let least = HOLLOW_FACETS * self.facet;
+        let (short, long) = (self.path("form.shortest_mm"), self.path("form.longest_mm"));
+        if shortest < least {
+            let message = format!(
+                "`{short}` is {}, less than {} facets of {}",
+                number(shortest),
+                number(HOLLOW_FACETS),
+                self.surface()
+            );
+            let up = round_up(least, 3);
+            let remedy = Remedy::new(short, format!("at least {} mm", number(up))).number(up, "");
+            return Some(Finding::new(message, vec![remedy, self.finer(shortest / HOLLOW_FACETS)]));
+        }
+        // One order of waves must lie within.
+        let waves = |mm: f64| self.around / mm;
+        if waves(longest).ceil() <= waves(shortest).floor() {
+            return None;
+        }
+        let message = format!(
+            "no whole number of waves of {} to {} mm fits {}",
+            number(shortest),
+            number(longest),
+            self.surface()
+        );
+        let wide = round_up(2.0 * shortest, 3);
+        Some(Finding::new(
+            message,
+            vec![
+                Remedy::new(long, format!("more than {} mm", number(shortest))).number(wide, ""),
+                Remedy::new(short, format!("less than {} mm", number(longest)))
+                    .number(round_down(0.5 * longest, 3), ""),
+            ],
+        ))
+    }
+
+    fn diameter(&self) -> Option<Finding> {
+        if self.on_roller() {
+            return None;
+        }
+        let path = self.path("on");
+        let message = format!("`{path}` is a raceway: its diameter is a field of `bearing`");
+        Some(Finding::new(message, vec![Remedy::new(path, "`roller(1)` and so on").value("roller(1)", "")]))
+    }
+
+    /// Walls of a groove and nodes that move do not go together.
+    fn meets_defect(&self) -> Option<Finding> {
+        let defect = self.scene.defect.as_ref()?;
+        let ring = match self.deviation.on {
+            RollingSurface::Outer => DefectRing::Outer,
+            RollingSurface::Inner => DefectRing::Inner,
+            RollingSurface::Roller(_) => return None,
+        };
+        let length = self.deviation.form.length_mm()?;
+        let apart = (self.deviation.angle_deg - defect.angle_deg + 180.0).rem_euclid(360.0) - 180.0;
+        let apart = apart.abs() / 360.0 * self.around;
+        let needed = 0.5 * (length + defect.length_mm) + 10.0 * self.facet;
+        if ring != defect.ring || apart >= needed {
+            return None;
+        }
+        let path = self.path("angle_deg");
+        let message = format!(
+            "`defects[{}]` lies {:.2} mm from `defect`, middle to middle, and needs {:.2} mm: lengths and ten facets",
+            self.index, apart, needed
+        );
+        let away = round_up(defect.angle_deg + 1.01 * 360.0 * needed / self.around, 4);
+        Some(Finding::new(
+            message,
+            vec![
+                Remedy::new(path, format!("{:.2} mm or more away", needed)).number(away % 360.0, ""),
+                Remedy::new("defect", "`None`").value("None", ""),
+            ],
+        ))
+    }
+}
