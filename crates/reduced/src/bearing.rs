@@ -71,8 +71,6 @@ pub(crate) struct Rim {
     pub(crate) outline: Outline,
     /// Radius of the circle around it [m].
     pub(crate) top: f64,
-    /// Whether its vertices lie on that circle.
-    pub(crate) round: bool,
 }
 
 /// One raceway.
@@ -146,7 +144,6 @@ impl Bearing {
             along,
             bulge: if arcs { 0.5 * relative } else { 0.0 },
             curvature: if arcs { kr } else { 0.0 },
-            round: true,
         };
         let radii = |outline: &Outline| {
             outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
@@ -170,13 +167,13 @@ impl Bearing {
             })
             .collect();
         // Vertex 0 of the outline lies on the x axis.
-        let round = Rim { top: roller.x[0], outline: roller.clone(), round: true };
+        let round = Rim { top: roller.x[0], outline: roller.clone() };
         let (mut rims, mut rim_of) = (vec![round], vec![0; g.rollers]);
         for (i, relief) in &g.roller_reliefs {
             // A rim is seen from its vertex 0.
             let own = formed(&roller, Some(&relief.turned(-vertex_angle[*i])), Circle::Outer);
             rim_of[*i] = rims.len() as u32;
-            rims.push(Rim { top: radii(&own).into_iter().fold(0.0, f64::max), outline: own, round: false });
+            rims.push(Rim { top: radii(&own).into_iter().fold(0.0, f64::max), outline: own });
         }
         let branches = match (&scene.solver.structural_damping, g.structural_damping) {
             (Some(chosen), Some(band)) => {
@@ -241,7 +238,6 @@ impl Bearing {
         *hints = [facet as u32, under as u32];
         let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
-        let sides = Sides { round: rim.round, ..track.sides };
         let mut force = before;
         let mut found = Overlap::default();
         let (mut give, mut given) = (0.0, 0.0);
@@ -254,7 +250,7 @@ impl Bearing {
                 continue;
             }
             let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
-            found = overlap(roller, raceway, sides, shift, reach);
+            found = overlap(roller, raceway, track.sides, shift, reach);
             // Newton's method with what the overlap becomes by a further shift.
             let start = force;
             let (mut further, mut now) = (0.0, [found.area, found.length]);

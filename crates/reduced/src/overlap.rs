@@ -86,8 +86,6 @@ pub struct Sides {
     pub bulge: f64,
     /// Curvature of the roller [1/m]; 0 for chords.
     pub curvature: f64,
-    /// Whether the arcs of the roller are those of one circle.
-    pub round: bool,
 }
 
 /// Integrals over the overlap, per unit of thickness.
@@ -319,37 +317,29 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     let first = length * (u1 * i0 + length * i1);
     let i0 = length * i0;
     sum.area += i0;
-    if sides.curvature == 0.0 {
-        sum.across += of_roller * i0;
-        sum.moment += base * of_roller * i0 + (1.0 + of_roller * of_roller) * first;
-    } else {
-        sum.across -= sides.curvature * first;
-    }
     let [a, z] = [u1 + from * length, u1 + to * length];
     let [width, middle] = [z - a, 0.5 * (z + a)];
     let square = length * square;
     sum.square += square;
     sum.length += width;
     sum.first += width * middle;
-    if !sides.round && sides.curvature != 0.0 {
-        // How much more the arc slopes than that of the circle, and how high it stands.
-        let lean = of_roller + 0.5 * sides.curvature * (r.a[0] + r.b[0]);
-        let high = base + of_roller * middle;
-        let rest = 1.0 - sides.curvature * high;
-        sum.across += lean * i0;
-        sum.moment += lean * high * i0 + rest * first;
-        sum.skew += lean * square;
-        sum.slope += lean * width;
-        sum.arm += width * (lean * high + rest * middle);
-    }
     if sides.curvature == 0.0 {
+        sum.across += of_roller * i0;
+        sum.moment += base * of_roller * i0 + (1.0 + of_roller * of_roller) * first;
         sum.skew += of_roller * square;
         sum.slope += of_roller * width;
         sum.arm += width * (base * of_roller + (1.0 + of_roller * of_roller) * middle);
     } else {
-        // The slope in the middle: the part is short.
-        sum.skew -= sides.curvature * middle * square;
-        sum.slope -= sides.curvature * width * middle;
+        // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
+        // The height is taken in the middle: the part is short.
+        let lean = of_roller + 0.5 * sides.curvature * (r.a[0] + r.b[0]);
+        let high = base + of_roller * middle + 0.5 * sides.curvature * (middle - r.a[0]) * (r.b[0] - middle);
+        let rest = 1.0 - sides.curvature * high;
+        sum.across += lean * i0 - sides.curvature * first;
+        sum.moment += lean * high * i0 + rest * first;
+        sum.skew += (lean - sides.curvature * middle) * square;
+        sum.slope += width * (lean - sides.curvature * middle);
+        sum.arm += width * (lean * high + rest * middle);
     }
     sum.second += (z * z * z - a * a * a) / 3.0;
     sum.deepest = sum.deepest.max(p1).max(p2);
