@@ -2,7 +2,7 @@
 
 mod passages;
 
-use stribeck_dsp::{Spectrum, Welch};
+use stribeck_dsp::{PeriodCount, Spectrum, Welch};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
@@ -10,6 +10,7 @@ use stribeck_scene::run_info::Status;
 use self::passages::{crossing_forces, level_finding, picked_events, start_up_end_s};
 use crate::Error;
 use crate::artefacts;
+use crate::diagnosis;
 use crate::enveloping;
 use crate::families::{self, Channel, Motion, RollerTrack};
 use crate::film::FilmFinding;
@@ -178,6 +179,13 @@ impl Findings {
             None => Vec::new(),
         };
         let (envelope, enveloped) = envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
+        // Ten periods, or nothing could be said of a record.
+        let leading = sensors.first().filter(|_| span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH);
+        let name = |sensor: &SensorSignal| format!("sensor.{}.ay_m_s2", sensor.name);
+        let diagnosis = match leading {
+            Some(sensor) => diagnosis::of(&run.scene, &record, &motion, &name(sensor))?,
+            None => None,
+        };
         let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
         let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
 
@@ -201,6 +209,7 @@ impl Findings {
             spectrum: spectrum.map(|s| SpectrumFinding::of(s.resolution())),
             artefacts,
             envelope: enveloped,
+            diagnosis,
             cursor,
             paper: Vec::new(),
             notes,

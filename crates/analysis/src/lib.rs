@@ -74,6 +74,7 @@ pub mod spall;
 pub mod tones;
 
 pub mod artefacts;
+pub mod diagnosis;
 pub mod measured;
 pub mod stress;
 

@@ -39,7 +39,10 @@ pub fn is_scene_of(scene: &Scene) -> bool {
         ]
     };
     let defect = |s: &Scene| s.defect.as_ref().map(|d| (d.ring, [d.length_mm, d.depth_mm, d.edge_slope_deg]));
-    size(b) == size(p) && b.rollers == p.rollers && defect(scene) == defect(&paper)
+    size(b) == size(p)
+        && b.rollers == p.rollers
+        && defect(scene) == defect(&paper)
+        && scene.defects.is_empty()
 }
 
 /// What the rows are made of.

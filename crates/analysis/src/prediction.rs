@@ -1,6 +1,7 @@
 //! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
 //! defect when, and who carries how much.
 
+use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
@@ -79,14 +80,16 @@ impl Prediction {
             let until_s = Geometry::of(scene).duration + traverse_s;
             kinematics.crossings(defect, &roller_angles_deg(scene), until_s)
         };
+        let spall = scene.leading_spall();
         Self {
             facet_lines,
-            defect: scene.defect.as_ref().filter(|d| d.ring == DefectRing::Outer).map(edges),
-            family: scene.defect.as_ref().map(|defect| match defect.ring {
-                DefectRing::Outer => ("BPFO", kinematics.bpfo_hz),
-                DefectRing::Inner => ("BPFI", kinematics.bpfi_hz),
+            defect: spall.as_ref().filter(|d| d.ring == DefectRing::Outer).map(edges),
+            family: scene.faults().first().map(|on| match on {
+                RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
+                RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
+                RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
             }),
-            passages: scene.defect.as_ref().map(passages).unwrap_or_default(),
+            passages: spall.as_ref().map(passages).unwrap_or_default(),
             kinematics,
         }
     }
@@ -96,7 +99,12 @@ impl Prediction {
     pub fn moved(&self, bpfo_hz: Option<f64>) -> Option<f64> {
         let k = &self.kinematics;
         let (name, _) = self.family?;
-        bpfo_hz.map(|hz| if name == "BPFI" { k.bpfo_hz + k.bpfi_hz - hz } else { hz })
+        bpfo_hz.map(|hz| match name {
+            "BPFI" => k.bpfo_hz + k.bpfi_hz - hz,
+            // A rolling element turns in proportion to its way along the outer raceway.
+            "2×BSF" => 2.0 * k.bsf_hz * hz / k.bpfo_hz,
+            _ => hz,
+        })
     }
 
     /// The combs that facets can make: rollers, nodes of the outer and of the inner raceway.

@@ -20,6 +20,7 @@ use std::thread;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
+use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{DefectRing, ModelScene, Scene};
@@ -106,6 +107,7 @@ fn page(
     scene: &str,
 ) -> Result<Markup, Error> {
     let summary = &findings.summary;
+    let family = findings.prediction.family.map_or("BPFO", |(name, _)| name);
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
@@ -117,7 +119,7 @@ fn page(
                 (answer::paragraphs(run, summary))
                 (contents(findings.of_paper, run.scene.model != ModelScene::Full))
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
-                (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, sections::envelope(summary), "The record is too short for a spectrum.")?)
+                (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
                 (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
                 (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
@@ -188,13 +190,20 @@ fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
 
 /// The sentence under the title.
 fn lead(scene: &Scene, simulated_ms: f64) -> String {
-    let defect = scene.defect.as_ref().map_or("sound raceways".to_owned(), |d| {
+    let of_defect = scene.defect.as_ref().map(|d| {
         let ring = match d.ring {
             DefectRing::Outer => "outer",
             DefectRing::Inner => "inner",
         };
         format!("a spall of {} × {} mm on the {ring} raceway", d.length_mm, d.depth_mm)
     });
+    let all: Vec<String> =
+        of_defect.into_iter().chain(scene.defects.iter().map(DeviationScene::spoken)).collect();
+    let defect = match all.len() {
+        0 => "sound raceways".to_owned(),
+        1..=3 => all.join(", "),
+        more => format!("{} and {} more deviations", all[..2].join(", "), more - 2),
+    };
     let name = match scene.bearing.designation.as_str() {
         "" => String::new(),
         name => format!("{name}: "),

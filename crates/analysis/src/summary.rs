@@ -6,6 +6,7 @@ use stribeck_dsp::Resolution;
 use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
+use crate::diagnosis::DiagnosisFinding;
 use crate::enveloping::EnvelopeFinding;
 use crate::families::FamilyFinding;
 use crate::film::FilmFinding;
@@ -51,6 +52,9 @@ pub struct Summary {
     pub artefacts: Vec<Artefact>,
     /// The defect's family in the envelope; `None` when the record is too short.
     pub envelope: Option<EnvelopeFinding>,
+    /// What the leading sensor would tell somebody who does not know the scene; `None` when the record is too short.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diagnosis: Option<DiagnosisFinding>,
     /// What the paper's 4545 Hz can be at this sample rate.
     pub cursor: Option<CursorReading>,
     /// Every number of the paper beside ours.

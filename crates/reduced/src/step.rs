@@ -537,15 +537,17 @@ impl Bearing {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         }
-        // The normal of the roller's facet, which leans from d by an angle of sine `tilt`.
-        let n = [d[0] - tilt * d[1], d[1] + tilt * d[0]];
-        let (force, stiffness, stored) = if t > 0.0 && t < 1.0 {
-            // Flat against round: the parabola on the penalty.
+        let (n, [force, stiffness, stored], couple) = if t > 0.0 && t < 1.0 {
+            // Flat against round: the parabola on the penalty. The foot goes along the wall with the roller, so that the force stands on
+            // the wall, and that the facet leans from it by an angle of sine `tilt` turns roller and cage against each other.
             let reach = (2.0 * self.arm * depth).sqrt();
             let force = self.penalty * depth * reach * (4.0 / 3.0);
-            (force, self.penalty * 2.0 * reach, 0.4 * force * depth)
+            let across = (1.0 - tilt * tilt).sqrt() * force;
+            (d, [across, self.penalty * 2.0 * reach, 0.4 * force * depth], -force * distance * tilt)
         } else {
-            self.corner(cage, wall, d, [c, s], depth)
+            // The normal of the roller's facet.
+            let n = [d[0] - tilt * d[1], d[1] + tilt * d[0]];
+            (n, self.corner(cage, wall, d, [c, s], depth), 0.0)
         };
         // The cage's velocity at the foot.
         let arm = [rel[0] + d[0] * distance, rel[1] + d[1] * distance];
@@ -573,14 +575,18 @@ impl Bearing {
         let normal = force + damping;
         let on_roller = [drag * t[0] - normal * n[0], drag * t[1] - normal * n[1]];
         let cross = |r: [f64; 2]| r[0] * on_roller[1] - r[1] * on_roller[0];
-        Some(Hit { force: on_roller, moment: cross([d[0] * distance, d[1] * distance]), on_cage: cross(arm) })
+        Some(Hit {
+            force: on_roller,
+            moment: couple + cross([d[0] * distance, d[1] * distance]),
+            on_cage: couple + cross(arm),
+        })
     }
 
     /// Force, stiffness and stored energy of a corner of the cage that is `depth` deep in a facet: its own points, and those of the
     /// roller in the wedge. The wedge stands to the direction d from the roller's centre: the normal of the facet jumps where facets
     /// meet, and the energy would jump with it.
     #[inline(always)]
-    fn corner(&self, cage: &Cage, wall: &Wall, d: [f64; 2], [c, s]: [f64; 2], depth: f64) -> (f64, f64, f64) {
+    fn corner(&self, cage: &Cage, wall: &Wall, d: [f64; 2], [c, s]: [f64; 2], depth: f64) -> [f64; 3] {
         let normal = [c * wall.normal[0] - s * wall.normal[1], s * wall.normal[0] + c * wall.normal[1]];
         // Sine of the angle between d and the wall's normal; the other side of the corner stands at a right angle to the wall.
         let cosine = -(d[0] * normal[0] + d[1] * normal[1]);
@@ -591,7 +597,7 @@ impl Bearing {
         let base = depth * (cosine / sine + sine / cosine);
         let peak = base * sine * cosine / (sine + cosine);
         let others = 0.25 * self.penalty * base * peak;
-        (own * depth + others, own + 2.0 * others / depth, depth * (0.5 * own * depth + others / 3.0))
+        [own * depth + others, own + 2.0 * others / depth, depth * (0.5 * own * depth + others / 3.0)]
     }
 }
 

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use crate::scene::BearingScene;
+use crate::scene::{BearingScene, Scene};
 
 /// Shapes of rolling elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,6 +140,21 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
 }
 
 impl CatalogueBearing {
+    /// The bearing of a scene, as far as its frequencies go.
+    pub fn of_scene(scene: &Scene) -> Self {
+        let b = &scene.bearing;
+        Self {
+            name: scene.name.clone(),
+            element: Element::Roller,
+            elements: u32::try_from(b.rollers).ok(),
+            diameter_mm: b.roller_diameter_mm,
+            pitch_mm: 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm),
+            angle_deg: 0.0,
+            boundary: None,
+            source: "the scene".to_owned(),
+        }
+    }
+
     /// A bearing by its name (spaces, hyphens and suffixes such as `-2RS` or `ECP` do not matter), by its numbers, or both:
     /// `NU 205, elements=13`.
     ///

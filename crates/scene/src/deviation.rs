@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
-use crate::scene::Scene;
+use crate::scene::{DefectRing, DefectScene, Scene};
 
 /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -198,6 +198,76 @@ impl FormScene {
             Self::Roughness(roughness) => 3e-3 * roughness.rq_um,
             Self::Diameter(diameter) => 0.5e-3 * (-diameter.larger_um).max(0.0),
         }
+    }
+}
+
+impl Scene {
+    /// The spall whose entries and exits a report looks for: `defect`, or else the first spall of `defects` on a raceway.
+    pub fn leading_spall(&self) -> Option<DefectScene> {
+        self.defect.clone().or_else(|| {
+            self.defects.iter().find_map(|deviation| {
+                let FormScene::Spall(spall) = &deviation.form else { return None };
+                let ring = match deviation.on {
+                    RollingSurface::Outer => DefectRing::Outer,
+                    RollingSurface::Inner => DefectRing::Inner,
+                    RollingSurface::Roller(_) => return None,
+                };
+                let [_, facet] = rolling_circle(self, deviation.on);
+                let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { facet };
+                Some(DefectScene {
+                    ring,
+                    length_mm: spall.length_mm,
+                    depth_mm: spall.depth_mm,
+                    angle_deg: deviation.angle_deg,
+                    edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
+                })
+            })
+        })
+    }
+
+    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, `defect` first. Waves
+    /// and other diameters are none.
+    pub fn faults(&self) -> Vec<RollingSurface> {
+        let of_defect = self.defect.iter().map(|defect| match defect.ring {
+            DefectRing::Outer => RollingSurface::Outer,
+            DefectRing::Inner => RollingSurface::Inner,
+        });
+        let local = self.defects.iter().filter(|deviation| deviation.form.length_mm().is_some());
+        let mut faults = Vec::new();
+        for on in of_defect.chain(local.map(|deviation| deviation.on)) {
+            if !faults.contains(&on) {
+                faults.push(on);
+            }
+        }
+        faults
+    }
+}
+
+impl RollingSurface {
+    /// In words.
+    pub fn spoken(self) -> String {
+        match self {
+            Self::Outer => "the outer raceway".to_owned(),
+            Self::Inner => "the inner raceway".to_owned(),
+            Self::Roller(roller) => format!("roller {roller}"),
+        }
+    }
+}
+
+impl DeviationScene {
+    /// In words: `a spall of 4 × 0.1 mm on roller 1`.
+    pub fn spoken(&self) -> String {
+        let form = match &self.form {
+            FormScene::Spall(spall) => format!("a spall of {} × {} mm", spall.length_mm, spall.depth_mm),
+            FormScene::Dent(dent) => format!("a dent of {} × {} mm", dent.length_mm, dent.depth_mm),
+            FormScene::Profile(profile) => format!("a profile of {} points", profile.points.len()),
+            FormScene::Waviness(waviness) => {
+                format!("waviness of order {} and ±{} µm", waviness.order, waviness.amplitude_um)
+            }
+            FormScene::Roughness(roughness) => format!("roughness of {} µm", roughness.rq_um),
+            FormScene::Diameter(diameter) => format!("a diameter {} µm larger", diameter.larger_um),
+        };
+        format!("{form} on {}", self.on.spoken())
     }
 }
 

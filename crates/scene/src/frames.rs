@@ -42,7 +42,7 @@ impl Window {
     pub fn of(scene: &Scene) -> Option<Self> {
         let geometry = Geometry::of(scene);
         let half = geometry.frame_half_width?;
-        let angle = geometry.defect.map_or(FRAC_PI_2, |defect| defect.angle);
+        let angle = scene.leading_spall().map_or(FRAC_PI_2, |defect| defect.angle_deg.to_radians());
         let outward = [angle.cos(), angle.sin()];
         let centre = outward.map(|c| geometry.path_radius() * c);
         Some(Self { centre, outward, half })

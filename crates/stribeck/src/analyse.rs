@@ -8,7 +8,7 @@ use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity,
 use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
 use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
 use stribeck_formats::{Channel, Recording};
-use stribeck_scene::catalogue::{CatalogueBearing, Element};
+use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::scene::Scene;
 
 use crate::place::{Place, shown};
@@ -258,7 +258,7 @@ fn machine(
 ) -> Result<(Machine, Option<Vec<f64>>)> {
     let bearing = match (&options.bearing, scene) {
         (Some(text), _) => Some(CatalogueBearing::parse(text).map_err(anyhow::Error::msg)?),
-        (None, Some(scene)) => Some(of_scene(scene)),
+        (None, Some(scene)) => Some(CatalogueBearing::of_scene(scene)),
         (None, None) => None,
     };
     let said = recording.channels.iter().find(|c| c.len == 1 && c.name.to_lowercase().contains("rpm"));
@@ -298,20 +298,6 @@ fn machine(
         None
     };
     Ok((Machine { speed_rpm, bearing }, pulses))
-}
-
-fn of_scene(scene: &Scene) -> CatalogueBearing {
-    let b = &scene.bearing;
-    CatalogueBearing {
-        name: scene.name.clone(),
-        element: Element::Roller,
-        elements: u32::try_from(b.rollers).ok(),
-        diameter_mm: b.roller_diameter_mm,
-        pitch_mm: 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm),
-        angle_deg: 0.0,
-        boundary: None,
-        source: "scene.ron of the run".to_owned(),
-    }
 }
 
 fn default_folder(file: &Path) -> PathBuf {

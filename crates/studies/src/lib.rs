@@ -11,6 +11,7 @@
 pub mod integrators;
 pub mod reference;
 
+mod atlas;
 mod families;
 mod host;
 mod impulse;
@@ -54,6 +55,8 @@ pub enum Study {
     Noise(noise::Options),
     /// Whether the family of lines of any facet count is named rightly, and false ones are not
     Families(families::Options),
+    /// Many bearings, many defects: whether each comes out as what it is
+    Atlas(atlas::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -73,6 +76,7 @@ impl Study {
             Self::WorkPrecision => work_precision::run(host),
             Self::Noise(options) => noise::run(options, host),
             Self::Families(options) => families::run(options, host),
+            Self::Atlas(options) => atlas::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }

@@ -1,6 +1,5 @@
 //! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
 
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Crossing;
 use stribeck_scene::scene::Scene;
 
@@ -26,7 +25,7 @@ pub(super) fn picked_events(
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
     let edge = Edge::of(scene);
     let speed_m_s = prediction.kinematics.contact_speed_m_s;
-    let depth_m = Geometry::of(scene).defect.map_or(0.0, |defect| defect.depth);
+    let depth_m = scene.leading_spall().map_or(0.0, |spall| 1e-3 * spall.depth_mm);
     let floor_s = edge.floor_m(depth_m) / speed_m_s;
     let mut events = Vec::new();
     for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {

@@ -1,8 +1,8 @@
 //! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to trust it.
 
 use maud::{Markup, html};
+use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::run_dir::Run;
-use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Family;
 use crate::families::FamilyFinding;
@@ -34,14 +34,21 @@ fn count(number: usize, noun: &str) -> String {
 }
 
 fn defect(run: &Run, summary: &Summary) -> String {
-    if run.scene.defect.is_none() {
+    let faults = run.scene.faults();
+    if let Some(RollingSurface::Roller(roller)) = faults.first() {
+        return format!(
+            "It lies on roller {roller} and strikes both raceways; entries and exits are picked on outer raceways only. Look for its \
+             family, twice its spin, in the spectra."
+        );
+    }
+    if faults.is_empty() {
         let gap = gravities(summary.levels.phases.gap_g);
         let level =
             gap.map_or(String::new(), |g| format!(" The acceleration reaches {g} after the start-up."));
-        return format!("The raceway is sound, so there is none to see.{level}");
+        return format!("Raceways and rollers are sound, so there is none to see.{level}");
     }
     let events = &summary.events;
-    if run.scene.defect.as_ref().is_some_and(|d| d.ring == DefectRing::Inner) {
+    if faults.first() == Some(&RollingSurface::Inner) {
         return "It lies on the inner raceway and turns with the shaft; entries and exits are picked on outer raceways only. Look \
                 for its family, BPFI, in the spectra."
             .into();

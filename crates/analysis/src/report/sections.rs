@@ -197,7 +197,7 @@ pub(super) fn readings(summary: &Summary) -> Markup {
 }
 
 /// The defect's family in the envelope.
-pub(super) fn envelope(summary: &Summary) -> Markup {
+pub(super) fn envelope(summary: &Summary, name: &str) -> Markup {
     let Some(envelope) = &summary.envelope else {
         let why = summary.notes.iter().find(|n| n.starts_with("no envelope spectrum"));
         return html! { p class="hint" { (why.map_or("No envelope spectrum was made.", String::as_str)) "." } };
@@ -208,7 +208,7 @@ pub(super) fn envelope(summary: &Summary) -> Markup {
             tbody {
                 @for line in &envelope.lines {
                     tr {
-                        td { "BPFO ×" (line.harmonic) }
+                        td { (name) " ×" (line.harmonic) }
                         td class="n" { (format!("{:.2}", line.predicted_hz)) }
                         (cell(line.measured_hz.map(|hz| format!("{hz:.2}"))))
                         (cell(line.prominence_db.map(|db| format!("{db:.1}").replace('-', "−"))))
@@ -219,10 +219,53 @@ pub(super) fn envelope(summary: &Summary) -> Markup {
     }
 }
 
+/// What the leading sensor would tell somebody who does not know the scene.
+pub(super) fn diagnosis(summary: &Summary) -> Markup {
+    let Some(diagnosis) = &summary.diagnosis else { return html! {} };
+    let number = |hz: Option<f64>| cell(hz.map(|hz| format!("{hz:.2}")));
+    html! {
+        h3 #diagnosis { "What the record shows by itself" }
+        p { "Sensor channel " code { (diagnosis.channel) } ", judged as a measured record is, without the scene: " (diagnosis.verdict) }
+        div class="scroll" {
+            table {
+                thead {
+                    tr {
+                        th { "Family" } th { "In the scene" } th { "Claimed" } th class="n" { "No slip Hz" } th class="n" { "By motion Hz" }
+                        th class="n" { "Measured Hz" } th class="n" { "Height dB" } th { "Sidebands" } th { "Why" }
+                    }
+                }
+                tbody {
+                    @for family in &diagnosis.families {
+                        tr {
+                            td { (family.name) }
+                            td { (if family.present { "yes" } else { "no" }) }
+                            td { (if family.claimed { "yes" } else { "no" }) }
+                            td class="n" { (format!("{:.2}", family.expected_hz)) }
+                            (number(family.from_motion_hz))
+                            (number(family.measured_hz))
+                            (cell(family.level_db.map(|db| format!("{db:.1}").replace('-', "−"))))
+                            td {
+                                @if let Some(sides) = &family.sidebands {
+                                    (sides.seen) " of 6 at ±" (format!("{:.2} Hz", sides.spacing_hz)) " (" (sides.of) ")"
+                                } @else { "–" }
+                            }
+                            td { (family.reason) }
+                        }
+                    }
+                }
+            }
+        }
+        p class="hint" {
+            "The envelope spectra resolve " (format!("{:.2} Hz", diagnosis.resolution_hz)) ". BSF is the spin of a rolling element, which strikes \
+             twice a turn; sidebands are those of the first three harmonics."
+        }
+    }
+}
+
 /// Length of the defect from the event times, beside the truth.
 pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
-    let truth = match &run.scene.defect {
-        None => return html! { p { "The raceways are sound." } },
+    let truth = match &run.scene.leading_spall() {
+        None => return html! { p { "No spall lies on a raceway." } },
         Some(defect) if defect.ring == DefectRing::Inner => {
             return html! { p { "Entries and exits are picked on outer raceways only." } };
         }

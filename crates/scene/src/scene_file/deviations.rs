@@ -61,11 +61,7 @@ impl<'a> Checked<'a> {
     }
 
     fn surface(&self) -> String {
-        match self.deviation.on {
-            RollingSurface::Outer => "the outer raceway".to_owned(),
-            RollingSurface::Inner => "the inner raceway".to_owned(),
-            RollingSurface::Roller(i) => format!("roller {i}"),
-        }
+        self.deviation.on.spoken()
     }
 
     /// A finer mesh of the surface.

@@ -8,10 +8,11 @@ use serde_json::Value;
 use stribeck_formats::parquet::{Column, Values, Writer, write_table};
 use stribeck_formats::{Channel, Recording};
 use stribeck_scene::campaign::Campaign;
+use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::Status;
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::scene::Scene;
 
 use super::{Folder, Stage, summary_of};
 
@@ -133,8 +134,8 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
         text("reason", &|row| row.reason.clone()),
         text("scene_hash", &|row| row.scene.as_ref().map(Scene::hash)),
         text("bearing", &|row| row.scene.as_ref().map(|s| s.bearing.designation.clone())),
-        text("fault_location", &|row| row.scene.as_ref().map(|s| fault(s).to_owned())),
-        number("fault_size_mm", &|row| Some(row.scene.as_ref()?.defect.as_ref()?.length_mm)),
+        text("fault_location", &|row| row.scene.as_ref().map(fault)),
+        number("fault_size_mm", &|row| row.scene.as_ref().and_then(fault_size_mm)),
         of_scene("shaft_speed_rpm", &|s| s.operation.speed_rpm),
         of_scene("load_n", &|s| s.operation.load_n),
         of_scene("sampling_rate_hz", &|s| (1e6 / s.output.interval_us * 1e3).round() / 1e3),
@@ -160,12 +161,21 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
 }
 
 /// Where the defect is, in the words of data sets.
-fn fault(scene: &Scene) -> &'static str {
-    match scene.defect.as_ref().map(|defect| defect.ring) {
-        None => "healthy",
-        Some(DefectRing::Outer) => "outer_race",
-        Some(DefectRing::Inner) => "inner_race",
-    }
+fn fault(scene: &Scene) -> String {
+    let name = |on: &RollingSurface| match on {
+        RollingSurface::Outer => "outer_race",
+        RollingSurface::Inner => "inner_race",
+        RollingSurface::Roller(_) => "rolling_element",
+    };
+    let mut names: Vec<&str> = scene.faults().iter().map(name).collect();
+    names.dedup();
+    if names.is_empty() { "healthy".to_owned() } else { names.join("+") }
+}
+
+/// Length of the first defect along its surface [mm].
+fn fault_size_mm(scene: &Scene) -> Option<f64> {
+    let of_defect = scene.defect.as_ref().map(|defect| defect.length_mm);
+    of_defect.or_else(|| scene.defects.iter().find_map(|deviation| deviation.form.length_mm()))
 }
 
 /// One group of rows for each run that has signals: a row a sample.

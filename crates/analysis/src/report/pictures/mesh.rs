@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use stribeck_scene::geometry::Geometry;
+use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::mesh_file::{Body, RunMesh};
 use stribeck_scene::scene::{DefectRing, Scene};
 
@@ -92,8 +92,9 @@ pub(super) fn whole(mesh: &RunMesh) -> Picture {
 /// Two rollers and the defect between them.
 pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let geometry = Geometry::of(scene);
-    let angle = geometry.defect.map_or(FRAC_PI_2, |defect| defect.angle);
-    let ring = geometry.defect.map_or(DefectRing::Outer, |defect| defect.ring);
+    let spall = scene.leading_spall().as_ref().map(DefectGeometry::of);
+    let angle = spall.map_or(FRAC_PI_2, |defect| defect.angle);
+    let ring = spall.map_or(DefectRing::Outer, |defect| defect.ring);
     let (radius, outwards) = match ring {
         DefectRing::Outer => (geometry.outer_race_radius, 1.0),
         DefectRing::Inner => (geometry.inner_race_radius, -1.0),
@@ -116,7 +117,7 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
                 &format!("fill:none;stroke:{paint};stroke-width:1.5;stroke-dasharray:6 4"),
             );
         }
-        if let Some(defect) = &geometry.defect {
+        if let Some(defect) = &spall {
             let reach = 0.5 * defect.length;
             let ring: Vec<[f64; 2]> = (0..60)
                 .map(|n| {
@@ -136,14 +137,14 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
     scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
     let mut picture = Picture::new("mesh-defect", "The mesh about the defect", sheet);
-    picture.caption = match &scene.defect {
+    picture.caption = match &scene.leading_spall() {
         Some(d) => format!(
             "The defect, {} mm long and {} mm deep, is one layer of elements whose nodes are moved {}; its walls are single facets.",
             d.length_mm,
             d.depth_mm,
             if outwards > 0.0 { "outwards" } else { "inwards" }
         ),
-        None => "The raceway is sound.".into(),
+        None => "No spall lies on a raceway.".into(),
     };
     picture.note =
         "Undeformed, before the load. Dashed: middle of the defect and roller 1. Rollers move to the right."

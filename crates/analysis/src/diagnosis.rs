@@ -1,0 +1,151 @@
+//! What the leading sensor would tell somebody who does not know the scene: the verdict of [`measured`](crate::measured) on the
+//! record, beside the defects that the scene has.
+
+use serde::{Deserialize, Serialize};
+use stribeck_dsp::{BandEnvelope, Whitened};
+use stribeck_formats::Channel;
+use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::deviation::RollingSurface;
+use stribeck_scene::scene::Scene;
+
+use crate::Error;
+use crate::kinematics::KinematicsFinding;
+use crate::measured::{Analysis, Family, Machine};
+use crate::record::Record;
+
+/// Verdict on a record, beside the truth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DiagnosisFinding {
+    /// The sensor and component, as the trace names it.
+    pub channel: String,
+    /// What the record shows, in one sentence.
+    pub verdict: String,
+    /// One over the length of the segments behind the envelope spectra [Hz].
+    pub resolution_hz: f64,
+    /// Every family.
+    pub families: Vec<DiagnosedFamily>,
+}
+
+/// One family of lines in the envelope spectra.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DiagnosedFamily {
+    /// `BPFO`, `BPFI`, `BSF` or `FTF`.
+    pub name: String,
+    /// Frequency of rolling without slip [Hz].
+    pub expected_hz: f64,
+    /// Frequency of the recorded motion [Hz].
+    pub from_motion_hz: Option<f64>,
+    /// Frequency at which the family stands [Hz]; `None` when it is not there.
+    pub measured_hz: Option<f64>,
+    /// Height of its first harmonic above the background [dB].
+    pub level_db: Option<f64>,
+    /// Whether the record is said to show such a defect.
+    pub claimed: bool,
+    /// Whether the scene has such a defect.
+    pub present: bool,
+    /// Why it is claimed, or not.
+    pub reason: String,
+    /// The sidebands that the load zone and the rotation of the defect make.
+    pub sidebands: Option<Sidebands>,
+}
+
+/// Sidebands of the first three harmonics of a family.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Sidebands {
+    /// Distance from the harmonic: `shaft` or `cage`.
+    pub of: String,
+    /// The same [Hz].
+    pub spacing_hz: f64,
+    /// How many of them noise would not make, of six.
+    pub seen: usize,
+}
+
+/// Harmonics whose sidebands are looked for.
+const HARMONICS: usize = 3;
+
+/// Probability that noise makes a line as high, below which it is seen.
+const ALPHA: f64 = 1e-3;
+
+/// The verdict on channel `name` of the record; `None` where it is too short or not recorded.
+pub fn of(
+    scene: &Scene,
+    record: &Record<'_>,
+    motion: &KinematicsFinding,
+    name: &str,
+) -> Result<Option<DiagnosisFinding>, Error> {
+    let Some(samples) = record.channel(name) else { return Ok(None) };
+    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * motion.shaft_hz);
+    let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing) };
+    let channel = Channel::held(name.to_owned(), samples.to_vec()).in_unit(Some("m/s²".to_owned()));
+    let analysis = match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
+        Ok(analysis) => analysis,
+        // A record that is too short, or a sensor that stands still.
+        Err(Error::NoSignal(_)) => return Ok(None),
+        Err(why) => return Err(why),
+    };
+    let present = scene.faults();
+    let families = analysis.findings.families.iter().map(|family| {
+        let sides = match family.name {
+            "BPFI" => Some(("shaft", motion.shaft_hz)),
+            "BSF" => Some(("cage", motion.cage_hz.unwrap_or(motion.expected_cage_hz))),
+            _ => None,
+        };
+        let sidebands = sides.and_then(|(of, hz)| sidebands(family, analysis.band_of(family)?, of, hz));
+        DiagnosedFamily {
+            name: family.name.to_owned(),
+            expected_hz: family.expected_hz,
+            from_motion_hz: from_motion(family.name, motion, &present),
+            measured_hz: family.measured_hz,
+            level_db: family.level_db.filter(|level| level.is_finite()),
+            claimed: family.claimed,
+            present: present.iter().any(|on| family_of(*on) == family.name),
+            reason: family.reason.clone(),
+            sidebands,
+        }
+    });
+    Ok(Some(DiagnosisFinding {
+        channel: name.to_owned(),
+        verdict: analysis.findings.verdict.clone(),
+        resolution_hz: analysis.findings.resolution_hz,
+        families: families.collect(),
+    }))
+}
+
+/// The family of a defect on a surface.
+pub fn family_of(on: RollingSurface) -> &'static str {
+    match on {
+        RollingSurface::Outer => "BPFO",
+        RollingSurface::Inner => "BPFI",
+        RollingSurface::Roller(_) => "BSF",
+    }
+}
+
+/// Frequency of a family by the recorded motion [Hz]; a rolling element by its own spin.
+fn from_motion(name: &str, motion: &KinematicsFinding, present: &[RollingSurface]) -> Option<f64> {
+    let rollers = motion.rollers.len() as f64;
+    match name {
+        "BPFO" => motion.bpfo_hz,
+        // They pass either raceway as often as the shaft takes them round, less what they pass the other.
+        "BPFI" => motion.bpfo_hz.map(|bpfo| rollers * motion.shaft_hz - bpfo),
+        "BSF" => {
+            let damaged = present.iter().find_map(|on| match on {
+                RollingSurface::Roller(roller) => motion.rollers.iter().find(|m| m.roller == *roller),
+                _ => None,
+            });
+            damaged.map(|m| m.spin_hz).or(motion.roller_spin_hz)
+        }
+        _ => motion.cage_hz,
+    }
+}
+
+/// Lines beside the harmonics of a family that is there.
+fn sidebands(family: &Family, band: &BandEnvelope, of: &str, spacing_hz: f64) -> Option<Sidebands> {
+    // A spot on a rolling element strikes twice a turn.
+    let times = if family.name == "BSF" { 2.0 } else { 1.0 };
+    let fundamental_hz = times * family.measured_hz?;
+    let spectrum = Whitened::new(&band.values, band.grid_hz, band.segments).ok()?;
+    let seen = |hz: f64| spectrum.line_p_value(spectrum.at(hz)) < ALPHA;
+    let beside =
+        (1..=HARMONICS).flat_map(|n| [-1.0, 1.0].map(|side| n as f64 * fundamental_hz + side * spacing_hz));
+    Some(Sidebands { of: of.to_owned(), spacing_hz, seen: beside.filter(|hz| seen(*hz)).count() })
+}
