@@ -94,7 +94,7 @@ pub fn of(
         DiagnosedFamily {
             name: family.name.to_owned(),
             expected_hz: family.expected_hz,
-            from_motion_hz: from_motion(family.name, motion, &present),
+            from_motion_hz: from_motion(family.name, motion),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             claimed: family.claimed,
@@ -120,20 +120,15 @@ pub fn family_of(on: RollingSurface) -> &'static str {
     }
 }
 
-/// Frequency of a family by the recorded motion [Hz]; a rolling element by its own spin.
-fn from_motion(name: &str, motion: &KinematicsFinding, present: &[RollingSurface]) -> Option<f64> {
+/// Frequency of a family by the recorded motion [Hz].
+fn from_motion(name: &str, motion: &KinematicsFinding) -> Option<f64> {
     let rollers = motion.rollers.len() as f64;
     match name {
         "BPFO" => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
         "BPFI" => motion.bpfo_hz.map(|bpfo| rollers * motion.shaft_hz - bpfo),
-        "BSF" => {
-            let damaged = present.iter().find_map(|on| match on {
-                RollingSurface::Roller(roller) => motion.rollers.iter().find(|m| m.roller == *roller),
-                _ => None,
-            });
-            damaged.map(|m| m.spin_hz).or(motion.roller_spin_hz)
-        }
+        // Under load: a roller that carries nothing may turn as it likes, and strikes nothing.
+        "BSF" => motion.roller_spin_hz,
         _ => motion.cage_hz,
     }
 }

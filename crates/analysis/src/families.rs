@@ -38,7 +38,7 @@ pub const LEAST_LEAD: f64 = 0.3;
 /// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
 /// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that grows with the square of
-/// them, and more do not change which family is there.
+/// them.
 pub const MOST_PERIODS: f64 = 32.0;
 /// Sidebands that are listed on either side of the carrier.
 pub const SIDEBANDS: i32 = 3;

@@ -184,6 +184,8 @@ struct Walk<'a> {
     b: [f64; 2],
     next: [f64; 2],
     slope: f64,
+    /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its slope, as a series.
+    stretch: f64,
     /// How far the facet is seen: a wall behind it may lean over it.
     end: f64,
 }
@@ -203,7 +205,8 @@ impl<'a> Walk<'a> {
             first = if along { outline.before(first) } else { outline.next(first) };
             a = view.see(first);
         }
-        let mut walk = Self { view, along, vertex: first, a, b: a, next: a, slope: 0.0, end: a[0] };
+        let mut walk =
+            Self { view, along, vertex: first, a, b: a, next: a, slope: 0.0, stretch: 1.0, end: a[0] };
         walk.look();
         walk.step();
         walk
@@ -227,6 +230,8 @@ impl<'a> Walk<'a> {
         self.look();
         let width = self.b[0] - self.a[0];
         self.slope = if width > 0.0 { (self.b[1] - self.a[1]) / width } else { 0.0 };
+        let square = self.slope * self.slope;
+        self.stretch = 1.0 + square * (1.5 + 0.375 * square);
         let hidden = self.next[0] < self.b[0] && self.next[1] < self.b[1];
         self.end = if hidden { self.next[0] } else { self.b[0] };
     }
@@ -260,20 +265,21 @@ pub fn overlap(roller: View<'_>, raceway: View<'_>, sides: Sides, shift: f64, re
 fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, sides: Sides, shift: f64) {
     let [of_roller, of_raceway] = [r.slope, w.slope];
     let base = r.a[1] - of_roller * r.a[0];
+    let curvature = sides.curvature * r.stretch;
+    let bulge = 0.5 * curvature + (sides.bulge - 0.5 * sides.curvature) * w.stretch;
     let height = |u: f64| {
         let chords = base + of_roller * u - (w.a[1] + of_raceway * (u - w.a[0])) - shift;
         if sides.bulge == 0.0 {
             return chords;
         }
         // What the arcs stand out from their chords.
-        let of = |a: f64, b: f64| (u - a) * (b - u);
-        let roller = 0.5 * sides.curvature * of(r.a[0], r.b[0]);
-        chords + roller + (sides.bulge - 0.5 * sides.curvature) * of(w.a[0], w.b[0])
+        let of = |walk: &Walk<'_>| (u - walk.a[0]) * (walk.b[0] - u);
+        chords + 0.5 * curvature * of(r) + (bulge - 0.5 * curvature) * of(w)
     };
     let [p1, p2] = [height(u1), height(u2)];
     let length = u2 - u1;
     // p = p1 + b τ + c τ² over τ from 0 to 1.
-    let c = -sides.bulge * length * length;
+    let c = -bulge * length * length;
     let b = p2 - p1 - c;
     let (from, to) = if p1 >= 0.0 && p2 >= 0.0 {
         (0.0, 1.0)
@@ -332,13 +338,13 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     } else {
         // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
         // The height is taken in the middle: the part is short.
-        let lean = of_roller + 0.5 * sides.curvature * (r.a[0] + r.b[0]);
-        let high = base + of_roller * middle + 0.5 * sides.curvature * (middle - r.a[0]) * (r.b[0] - middle);
-        let rest = 1.0 - sides.curvature * high;
-        sum.across += lean * i0 - sides.curvature * first;
+        let lean = of_roller + 0.5 * curvature * (r.a[0] + r.b[0]);
+        let high = base + of_roller * middle + 0.5 * curvature * (middle - r.a[0]) * (r.b[0] - middle);
+        let rest = 1.0 - curvature * high;
+        sum.across += lean * i0 - curvature * first;
         sum.moment += lean * high * i0 + rest * first;
-        sum.skew += (lean - sides.curvature * middle) * square;
-        sum.slope += width * (lean - sides.curvature * middle);
+        sum.skew += (lean - curvature * middle) * square;
+        sum.slope += width * (lean - curvature * middle);
         sum.arm += width * (lean * high + rest * middle);
     }
     sum.second += (z * z * z - a * a * a) / 3.0;

@@ -8,6 +8,7 @@ use stribeck_analysis::agreement::{Agreement, Row};
 use stribeck_analysis::report;
 use stribeck_scene::ensemble::{folder_name, start};
 use stribeck_scene::run_dir::{Run, State};
+use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ModelScene, Scene};
 
 use crate::interrupt::{self, Interrupt};
@@ -18,8 +19,8 @@ use crate::simulate::{jobs, threads};
 /// Flags of `validate`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Scene file, with either model [default: fixtures/scenes/reduced_30ms.ron]
-    scene: Option<PathBuf>,
+    /// Scene file, with either model
+    scene: PathBuf,
     /// Overrides a field of the scene, for example --set operation.load_n=30000; may be repeated
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     set: Vec<String>,
@@ -40,12 +41,8 @@ pub struct Options {
     out: Option<PathBuf>,
 }
 
-/// The scene that is validated when none is named.
-const SCENE: &str = "fixtures/scenes/reduced_30ms.ron";
-
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let file = options.scene.clone().unwrap_or_else(|| SCENE.into());
-    let scene = place.scene(Some(&file), &options.set)?;
+    let scene = place.scene(Some(&options.scene), &options.set)?;
     let models = models(&scene)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(format!("{}-validation", scene.name)));
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
@@ -70,7 +67,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let mut pairs = Vec::new();
     for number in 1..=usize::from(options.starts) {
-        let read = |model: &str| -> Result<Run> { Ok(Run::read(folder(&out, model, number))?) };
+        let read = |model: &str| -> Result<Run> {
+            let folder = folder(&out, model, number);
+            let run = Run::read(&folder)?;
+            if run.info.status != Status::Complete {
+                let why = run.info.stop_reason.as_deref().unwrap_or("it was stopped");
+                bail!("`{}` did not come to its end, and cannot be compared: {why}", shown(&folder));
+            }
+            Ok(run)
+        };
         pairs.push([read(models[0].0)?, read(models[1].0)?]);
     }
     let agreement = Agreement::of(&models[1].1, &pairs)?;

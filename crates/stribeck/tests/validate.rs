@@ -100,3 +100,16 @@ fn refuses_scenes_that_the_reduced_model_cannot_have() {
     assert!(!short.status.success());
     says(&short, &["models are compared from 1 ms on"]);
 }
+
+#[test]
+fn refuses_to_compare_a_run_that_diverged() {
+    let desk = Scratch::create("validate-diverged");
+    fs::write(desk.join("scene.ron"), SCENE).unwrap();
+    let words = ["validate", "scene.ron", "--starts=1", "--threads=2", "--set=solver.time_step_factor=1.5"];
+    let diverged = run(&desk, &words);
+    assert!(!diverged.status.success());
+    says(&diverged, &["full/start-001", "did not come to its end"]);
+    let nothing = run(&desk, &["validate"]);
+    assert!(!nothing.status.success());
+    says(&nothing, &["<SCENE>"]);
+}
