@@ -116,7 +116,7 @@ impl<'a> Checked<'a> {
             }
             FormScene::Diameter(_) => vec![self.diameter()],
         };
-        found.into_iter().flatten().chain(self.meets_defect()).collect()
+        found.into_iter().flatten().chain(self.meets_defect()).chain(self.in_oil()).collect()
     }
 
     fn short(&self, length: f64) -> Option<Finding> {
@@ -330,6 +330,23 @@ impl<'a> Checked<'a> {
         let path = self.path("on");
         let message = format!("`{path}` is a raceway: its diameter is a field of `bearing`");
         Some(Finding::new(message, vec![Remedy::new(path, "`roller(1)` and so on").value("roller(1)", "")]))
+    }
+
+    /// An oil film knows the curvature of a whole roller.
+    fn in_oil(&self) -> Option<Finding> {
+        let local = self.deviation.form.length_mm().is_some();
+        if self.scene.film.is_none() || !self.on_roller() || !local {
+            return None;
+        }
+        let message =
+            format!("`film` is there, and {} has a defect: oil knows round rollers alone", self.surface());
+        Some(Finding::new(
+            message,
+            vec![
+                Remedy::new("film", "`None`").value("None", "dry rollers"),
+                Remedy::new(self.path("on"), "`outer` or `inner`").value("outer", ""),
+            ],
+        ))
     }
 
     /// Walls of a groove and nodes that move do not go together.
