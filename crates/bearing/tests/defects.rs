@@ -138,3 +138,24 @@ fn conserves_energy_and_carries_the_load_over_every_form() {
     };
     assert!(mean(&run) < 0.9 * mean(&other), "{} {}", mean(&run), mean(&other));
 }
+
+/// Oil over what a scene allows under it: a gentle dent, a rounded spall, waves and a small roller.
+#[test]
+fn conserves_energy_in_oil() {
+    let mut scene = coarse(2.5);
+    scene.defect = None;
+    (scene.mesh.size_mm, scene.mesh.roller_facets) = (1.0, 112);
+    let defects = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 6.0, depth_mm: 0.1, edge_mm: 2.0, edge: rounded)), \
+        (on: inner, angle_deg: 88.0, form: dent(length_mm: 6.0, depth_mm: 0.05, rim_um: 8.0)), \
+        (on: outer, form: roughness(rq_um: 0.5, longest_mm: 20.0, shortest_mm: 5.0)), \
+        (on: roller(2), form: diameter(larger_um: -8.0))";
+    let scene = scene.with_overrides(&[format!("defects=[{defects}]")]).expect("oil goes with these");
+    assert!(scene.film.is_some());
+    let folder = Scratch::new("defects-oil");
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    let info = simulate(&scene, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("it runs");
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    assert!(info.energy.max_relative_error < 0.01, "{}", info.energy.max_relative_error);
+    let kinked = scene.with_overrides(&["defects=[(on: outer, form: spall())]"]);
+    assert!(kinked.expect_err("a kink").to_string().contains("oil knows round rollers"));
+}

@@ -10,6 +10,9 @@ use crate::scene::{DefectRing, Scene};
 /// Steepest slope of a surface: cells under it lean as much, and keep nine tenths of their time step.
 const STEEPEST: f64 = 0.4;
 
+/// Steepest slope under an oil film; by steeper ones runs with oil end in a wrong balance of energy.
+const GENTLE: f64 = 0.08;
+
 /// Facets that a hollow needs at least, and a wave.
 const HOLLOW_FACETS: f64 = 4.0;
 const WAVE_FACETS: f64 = 6.0;
@@ -332,21 +335,31 @@ impl<'a> Checked<'a> {
         Some(Finding::new(message, vec![Remedy::new(path, "`roller(1)` and so on").value("roller(1)", "")]))
     }
 
-    /// An oil film knows the curvature of a whole roller.
+    /// An oil film knows the curvature of a whole roller, and tracks that bend gently.
     fn in_oil(&self) -> Option<Finding> {
-        let local = self.deviation.form.length_mm().is_some();
-        if self.scene.film.is_none() || !self.on_roller() || !local {
+        let gentle = match &self.deviation.form {
+            FormScene::Spall(spall) => {
+                spall.edge == Edge::Rounded && 0.5 * PI * spall.depth_mm <= GENTLE * spall.edge_mm
+            }
+            FormScene::Dent(dent) => {
+                HOLLOW_SLOPE * dent.depth_mm.max(2e-3 * dent.rim_um) <= 0.5 * GENTLE * dent.length_mm
+            }
+            FormScene::Profile(_) => false,
+            _ => return None,
+        };
+        if self.scene.film.is_none() || gentle && !self.on_roller() {
             return None;
         }
-        let message =
-            format!("`film` is there, and {} has a defect: oil knows round rollers alone", self.surface());
-        Some(Finding::new(
-            message,
-            vec![
-                Remedy::new("film", "`None`").value("None", "dry rollers"),
-                Remedy::new(self.path("on"), "`outer` or `inner`").value("outer", ""),
-            ],
-        ))
+        let message = format!(
+            "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope by {:.0}° at most \
+             without kinks, but for the walls of `defect`",
+            self.index,
+            self.surface(),
+            GENTLE.atan().to_degrees()
+        );
+        let form = Remedy::new(self.path("form"), "a gentle dent, a rounded spall, or waves, on a raceway");
+        let dry = Remedy::new("film", "`None`").value("None", "dry");
+        Some(Finding::new(message, vec![dry, form.value("dent(length_mm: 6.0, depth_mm: 0.05)", "")]))
     }
 
     /// Walls of a groove and nodes that move do not go together.

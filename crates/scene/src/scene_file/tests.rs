@@ -1,6 +1,7 @@
 //! What a user may write into a scene file or behind `--set`, and what the answer is.
 
 mod blame;
+mod deviations;
 mod formats;
 
 use proptest::prelude::*;
@@ -491,7 +492,6 @@ fn example_defects_on_either_ring_with_sloped_edges() {
 fn refuses_reduced_scenes_of_what_only_the_full_model_has() {
     for (text, says) in [
         ("(model: reduced(modes_khz: 30))", "`film` is there"),
-        ("(model: reduced(modes_khz: 30), film: None, defect: (ring: inner))", "`defect.ring` is `inner`"),
         (
             "(model: reduced(modes_khz: 30), film: None, solver: (start: sudden))",
             "`solver.start` is `sudden`",
@@ -500,5 +500,10 @@ fn refuses_reduced_scenes_of_what_only_the_full_model_has() {
         let problem = only(parse(text));
         assert!(problem.message.contains(says), "{text}: {problem}");
     }
-    assert!(parse("(model: reduced(modes_khz: 30), film: None)").is_ok());
+    for of_both in ["", "defect: (ring: inner)", "defects: [(on: roller(1), angle_deg: 0, form: dent())]"] {
+        assert!(
+            parse(&format!("(model: reduced(modes_khz: 30), film: None, {of_both})")).is_ok(),
+            "{of_both}"
+        );
+    }
 }

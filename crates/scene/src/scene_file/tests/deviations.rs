@@ -1,0 +1,101 @@
+//! Defects and deviations that a mesh cannot follow, and what is proposed instead.
+
+use super::{mark, only, parse};
+use crate::deviation::{FormScene, RollingSurface};
+use crate::scene::Scene;
+
+/// A scene without oil and without the paper's spall.
+fn dry(defects: &str) -> String {
+    format!("(film: None, defect: None, defects: [{defects}])")
+}
+
+#[test]
+fn example_defects_of_every_form_are_read_and_written_again() {
+    let text = dry(
+        "(on: roller(3), angle_deg: 20, form: spall(length_mm: 4)), (on: inner, form: dent(depth_mm: 0.02)), \
+         (form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 1, depth_um: 5)])), (form: waviness(order: 9)), \
+         (on: inner, form: roughness(seed: 4)), (on: roller(24), form: diameter(larger_um: 3))",
+    );
+    let scene = parse(&text).expect("six that a mesh can follow");
+    assert_eq!(parse(&scene.to_ron()).expect("its own text"), scene);
+    assert_eq!(scene.defects[0].on, RollingSurface::Roller(3));
+    assert_eq!(scene.faults(), [RollingSurface::Roller(3), RollingSurface::Inner, RollingSurface::Outer]);
+    let set =
+        scene.with_overrides(&["defects[1].form.rim_um=2.5", "defects[3].form.order=5"]).expect("fields");
+    let FormScene::Dent(dent) = &set.defects[1].form else { panic!("{:?}", set.defects[1]) };
+    assert_eq!(dent.rim_um, 2.5);
+    let none = Scene::default().with_overrides(&["film=None", "defects=[(on: inner, form: dent())]"]);
+    assert_eq!(none.expect("a list on the command line").defects.len(), 1);
+    // The hash of a scene without them is that of scenes from before.
+    let plain = Scene::default().to_ron();
+    assert!(plain.contains("defects: [],"));
+    assert_ne!(scene.hash(), Scene { defects: Vec::new(), ..scene.clone() }.hash());
+}
+
+#[test]
+fn refuses_what_no_mesh_can_follow() {
+    for (defect, field, words) in [
+        (
+            "form: spall(length_mm: 1)",
+            "defects[0].form.length_mm",
+            "facets of the outer raceway are 0.500 mm long",
+        ),
+        ("on: roller(25)", "defects[0].on", "outside its range"),
+        (
+            "on: roller(1), form: spall(length_mm: 20)",
+            "defects[0].form.length_mm",
+            "roller 1 measures 56.5 mm around",
+        ),
+        ("form: spall(depth_mm: 0.3)", "defects[0].form.depth_mm", "would slope by 31°"),
+        (
+            "form: spall(depth_mm: 0.05, edge_mm: 0.2)",
+            "defects[0].form.edge_mm",
+            "an edge takes a facet of 0.500 mm at least",
+        ),
+        ("form: dent(depth_mm: 0.5)", "defects[0].form.depth_mm", "would slope"),
+        ("form: waviness(order: 300)", "defects[0].form.order", "a wave would have 4.2 facets"),
+        ("form: roughness(shortest_mm: 1)", "defects[0].form.shortest_mm", "less than 4 facets"),
+        (
+            "form: roughness(shortest_mm: 5, longest_mm: 5)",
+            "defects[0].form.longest_mm",
+            "no whole number of waves",
+        ),
+        ("form: diameter(larger_um: 3)", "defects[0].on", "its diameter is a field of `bearing`"),
+        ("form: profile(points: [])", "defects[0].form.points", "needs two"),
+        (
+            "form: profile(points: [(at_mm: 1, depth_um: 0), (at_mm: 0, depth_um: 2)])",
+            "defects[0].form.points",
+            "`defects[0].form.points[1]` lies at 0 mm, not beyond the one before",
+        ),
+        ("form: spall(length_mm: NaN)", "defects[0].form.length_mm", "not a finite number"),
+    ] {
+        let problem = only(parse(&dry(&format!("({defect})"))));
+        assert_eq!(problem.field, field, "{problem}");
+        assert!(problem.message.contains(words), "{problem}");
+    }
+}
+
+#[test]
+fn refuses_a_defect_beside_a_groove_and_in_oil() {
+    let beside = only(parse("(film: None, defects: [(form: dent())])"));
+    assert!(
+        beside.message.contains("lies 0 mm from `defect`") || beside.message.contains("lies 0.00 mm"),
+        "{beside}"
+    );
+    assert!(parse("(film: None, defects: [(angle_deg: 120, form: dent())])").is_ok());
+    assert!(parse("(film: None, defects: [(on: inner, form: dent())])").is_ok());
+    let oil =
+        only(parse("(defect: None, defects: [(on: roller(2), form: dent(length_mm: 4, depth_mm: 0.02))])"));
+    assert!(oil.message.contains("oil knows round rollers"), "{oil}");
+    assert_eq!(oil.repair.as_deref(), Some("film=None"));
+}
+
+#[test]
+fn refuses_an_unknown_field_of_a_form_where_it_stands() {
+    let problem = only(parse(&dry("(form: dent(lenght_mm: 3))")));
+    assert!(problem.to_string().contains("length_mm"), "{problem}");
+    let (line, _, underlined) = mark(&problem);
+    assert_eq!((line, underlined.as_str()), (1, "lenght_mm"));
+    let problem = only(parse(&dry("(on: cage)")));
+    assert!(problem.to_string().contains("roller"), "{problem}");
+}
