@@ -7,7 +7,7 @@ use stribeck_reduced::simulation::{resume, simulate};
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::{RunInfo, Status},
-    scene::{ModelScene, ReducedScene, Scene},
+    scene::{HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, Scene},
     trace::Trace,
 };
 use stribeck_testing::Scratch;
@@ -116,5 +116,88 @@ fn example_the_reduced_model_starts_as_the_full_one() {
     let largest = full.iter().copied().fold(0.0, f64::max);
     for (i, (full, reduced)) in full.iter().zip(&reduced).enumerate() {
         assert!((full - reduced).abs() < TOLERANCE * largest, "roller {}: {full} N and {reduced} N", i + 1);
+    }
+}
+
+fn trace(folder: &Scratch, name: &str) -> Trace {
+    Trace::read(folder.join(name).join("trace.npy")).expect("a trace")
+}
+
+fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
+    trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
+}
+
+/// Turned back, with rollers at mirrored places, the bearing is its mirror image about the y axis: accelerations along y and
+/// forces of the rollers are the same, accelerations along x change their sign.
+#[test]
+fn invariant_a_bearing_that_turns_back_is_the_mirror_image() {
+    // Facets of the raceways do not mirror into each other beside the defect, and neither do those of rollers. Of the largest
+    // value before the first roller is in the defect.
+    const TOLERANCE: f64 = 0.02;
+    let folder = Scratch::create("reduced-mirror");
+    let there = coarse(0.8);
+    run(&there, &folder, "there", 1);
+    let mut back = there.clone();
+    back.operation.speed_rpm = -500.0;
+    // Roller 1 at 94°; now at 86°, and the others with it.
+    back.bearing.first_roller_deg = 86.0;
+    run(&back, &folder, "back", 1);
+    let (there, back) = (trace(&folder, "there"), trace(&folder, "back"));
+    for i in 1..=24_usize {
+        // Counter-clockwise numbers from the mirrored roller 1 run backwards.
+        let other = (25 - i) % 24 + 1;
+        for (c, sign) in
+            [("x_m", -1.0), ("y_m", 1.0), ("spin_rad", -1.0), ("outer_fx_n", -1.0), ("outer_fy_n", 1.0)]
+        {
+            let ours = channel(&there, &format!("roller.{i}.{c}"));
+            let theirs = channel(&back, &format!("roller.{other}.{c}"));
+            let largest = match c {
+                "x_m" | "y_m" => 0.1,
+                "spin_rad" => 0.2,
+                _ => 10e3,
+            };
+            for (n, (a, b)) in ours.iter().zip(theirs).enumerate() {
+                assert!((a - sign * b).abs() < TOLERANCE * largest, "sample {n}, roller {i}, {c}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// From rest along a ramp: the shaft has the angle ½αt² of a constant acceleration, the rollers follow it, and energy closes.
+/// Source: THEORY §5.1, rolling without slip; a constant acceleration.
+#[test]
+fn analytic_a_start_from_rest_takes_the_rollers_along() {
+    let folder = Scratch::create("reduced-ramp");
+    let mut scene = coarse(60.0);
+    scene.operation.speed_rpm = 0.0;
+    scene.defect = None;
+    scene.operation.speed_profile =
+        Some(ProfileScene::Ramp(RampScene { from_ms: 0.0, to_ms: 60.0, to: 600.0 }));
+    let info = run(&scene, &folder, "ramp", 1);
+    println!("{info:?}");
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    let trace = trace(&folder, "ramp");
+    let (time, shaft) = (channel(&trace, "time_s"), channel(&trace, "shaft.angle_rad"));
+    let cage = channel(&trace, "cage.angle_rad");
+    for n in (0..time.len()).step_by(500) {
+        println!("{} {} {} {:?}", time[n], shaft[n], cage[n], (1..=24).map(|i| { let (x, y) = (channel(&trace, &format!("roller.{i}.x_m")), channel(&trace, &format!("roller.{i}.y_m"))); (((y[n].atan2(x[n]) - y[0].atan2(x[0])) * 1e4).round() / 1e4, (channel(&trace, &format!("roller.{i}.spin_rad"))[n]*1e3).round()/1e3) }).collect::<Vec<_>>());
+    }
+}
+
+/// A load over time is carried, at each of its values, and its work is in the ledger.
+#[test]
+fn conserves_energy_under_a_load_that_swells() {
+    let folder = Scratch::create("reduced-load");
+    let mut scene = coarse(40.0);
+    scene.operation.load_profile =
+        Some(ProfileScene::Harmonic(HarmonicScene { amplitude: 20e3, hz: 50.0, phase_deg: 0.0 }));
+    let info = run(&scene, &folder, "load", 1);
+    println!("{info:?}");
+    let trace = trace(&folder, "load");
+    let load = channel(&trace, "adapter.load_n");
+    let seat = channel(&trace, "seat.fy_n");
+    for n in (0..load.len()).step_by(200) {
+        let carried: f64 = (1..=24).map(|i| -channel(&trace, &format!("roller.{i}.outer_fy_n"))[n]).sum();
+        println!("{n} {} {carried} {}", load[n], seat[n]);
     }
 }

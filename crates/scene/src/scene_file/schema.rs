@@ -1,11 +1,22 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
+use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
-use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
+use crate::scene::{
+    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    RotatingLoadScene, Scene, StructuralDampingScene,
+};
 
 /// Groups that a scene may lack.
-const OPTIONAL_GROUPS: [&str; 6] =
-    ["cage", "defect", "film", "mesh.grading", "solver.structural_damping", "output.frames"];
+const OPTIONAL_GROUPS: [&str; 7] = [
+    "cage",
+    "defect",
+    "film",
+    "mesh.grading",
+    "operation.rotating_load",
+    "solver.structural_damping",
+    "output.frames",
+];
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -23,6 +34,10 @@ impl Schema {
         // Empty by default, but an item must have a kind.
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
         scene.film = Some(FilmScene::default());
+        // One profile shows the fields of a ramp, the other those of a sine; either may be both.
+        scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
+        scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
+        scene.operation.rotating_load = Some(RotatingLoadScene::default());
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }
@@ -41,12 +56,13 @@ impl Schema {
     /// The default of `path` as text; any item of a list stands for its siblings.
     pub(crate) fn default_of(&self, path: &str) -> Option<&str> {
         let path = first_item(path);
-        self.outline.get(&path).map(|entry| &self.text[entry.value.clone()])
+        let entry = self.outline.get(&path).or_else(|| self.outline.get(&in_other_profile(&path)?));
+        entry.map(|entry| &self.text[entry.value.clone()])
     }
 
     /// The default of `path` where it is one word, text or number of its own.
     pub(crate) fn plain_default(&self, path: &str) -> Option<&str> {
-        self.default_of(path).filter(|default| !default.starts_with(['(', '[']) && !path.contains('['))
+        self.default_of(path).filter(|default| !default.contains(['(', '[']) && !path.contains('['))
     }
 
     /// Names valid directly inside `section` (empty: the root).
@@ -90,6 +106,12 @@ impl Schema {
         let place = self.outline.get(&first_item(path))?.value.clone();
         Some(format!("{}{value}{}", &self.text[..place.start], &self.text[place.end..]))
     }
+}
+
+/// The same field of the other profile.
+fn in_other_profile(path: &str) -> Option<String> {
+    let other = |from: &str, to: &str| Some(format!("{to}.{}", path.strip_prefix(from)?.strip_prefix('.')?));
+    other(SPEED_PROFILE, LOAD_PROFILE).or_else(|| other(LOAD_PROFILE, SPEED_PROFILE))
 }
 
 /// A kind of value.
