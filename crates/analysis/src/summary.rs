@@ -6,6 +6,7 @@ use stribeck_dsp::Resolution;
 use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
+use crate::duty::DutyFinding;
 use crate::enveloping::EnvelopeFinding;
 use crate::families::FamilyFinding;
 use crate::film::FilmFinding;
@@ -30,6 +31,10 @@ pub struct Summary {
     pub energy: EnergyFinding,
     /// Measured motion.
     pub kinematics: KinematicsFinding,
+    /// Speed and load where they change, with the families in orders of the shaft; `None` where neither does. Frequencies of
+    /// [`kinematics`](Self::kinematics) are then those at the mean speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duty: Option<DutyFinding>,
     /// Passages over the defect.
     pub events: Vec<Event>,
     /// Forces on the rollers.

@@ -102,6 +102,13 @@ impl Kinematics {
         Self::new(&scene.bearing, Duty::of(scene).speed_rpm(0.0))
     }
 
+    /// Kinematics of a scene's bearing at its mean speed over the run: where the speed changes, ratios of its frequencies to the
+    /// shaft's are what holds.
+    pub fn at_mean_speed(scene: &Scene) -> Self {
+        let duration_s = 1e-3 * scene.solver.duration_ms;
+        Self::new(&scene.bearing, Duty::of(scene).mean_speed_rpm(duration_s))
+    }
+
     /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive.
     pub fn new(bearing: &BearingScene, speed_rpm: f64) -> Self {
         let clockwise_hz = speed_rpm / 60.0;
