@@ -17,6 +17,7 @@ use stribeck_scene::scene::{DefectRing, Scene};
 
 use crate::Error;
 use crate::enveloping::band_hz;
+use crate::kinematics::KinematicsFinding;
 use crate::record::Record;
 use crate::tones;
 
@@ -25,6 +26,9 @@ use crate::tones;
 const STEPS_PER_TURN: usize = 1024;
 /// Harmonics of the family that are looked for.
 const HARMONICS: usize = 6;
+/// The grid of the spectrum is at least so much finer than its resolution: a run has few turns, and a line must have room beside
+/// its prediction.
+const FINER: usize = 4;
 /// Fewest steps of which a spectrum is made.
 const LEAST_STEPS: usize = 256;
 
@@ -65,6 +69,8 @@ pub struct OrderLine {
     pub harmonic: usize,
     /// Predicted order without slip.
     pub predicted: f64,
+    /// The same from the recorded motion.
+    pub from_motion: Option<f64>,
     /// Measured order; `None` when nothing stands out.
     pub measured: Option<f64>,
     /// Height above the surroundings [dB].
@@ -108,6 +114,14 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
     Some(angle.iter().map(|rad| turn * rad).collect())
 }
 
+/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them round, less what they
+/// pass the other.
+pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
+    let outer = motion.bpfo_hz? / motion.shaft_hz;
+    let order = if name == "BPFI" { motion.rollers.len() as f64 - outer } else { outer };
+    Some(order).filter(|order| order.is_finite())
+}
+
 /// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the orders of `family`;
 /// the reason when there is none. `turns` is the angle of the shaft at each sample.
 ///
@@ -118,6 +132,7 @@ pub fn over_angle(
     sample_rate_hz: f64,
     turns: &[f64],
     (name, order): (&str, f64),
+    moved: Option<f64>,
 ) -> Result<Result<(Spectrum, OrderEnvelope), String>, Error> {
     if turns.windows(2).any(|pair| pair[1] < pair[0]) {
         return Ok(Err("no order spectrum: the shaft turns back on the way".into()));
@@ -144,13 +159,17 @@ pub fn over_angle(
         window: Window::Hann,
         detrend: Detrend::Constant,
         scaling: Scaling::Spectrum,
+        nfft: (FINER * means.len()).next_power_of_two(),
         ..WelchOptions::new(means.len())
     };
     // A step is a sample, a turn a second: what the spectrum calls hertz are orders.
     let spectrum = Welch::new(STEPS_PER_TURN as f64, means.len(), &options)
         .and_then(|mut welch| welch.estimate(&means))
         .map_err(Error::Signal)?;
-    let lines = tones::harmonics(&[(name.to_owned(), order)], HARMONICS, 0.5 * STEPS_PER_TURN as f64);
+    let mut lines = tones::harmonics(&[(name.to_owned(), order)], HARMONICS, 0.5 * STEPS_PER_TURN as f64);
+    for line in &mut lines {
+        line.from_motion_hz = moved.map(|order| order * line.harmonic as f64);
+    }
     let measured = tones::measure("envelope", &lines, &spectrum)?;
     let finding = OrderEnvelope {
         family: name.to_owned(),
@@ -162,6 +181,7 @@ pub fn over_angle(
             .map(|t| OrderLine {
                 harmonic: t.harmonic,
                 predicted: t.predicted_hz,
+                from_motion: t.from_motion_hz,
                 measured: t.measured_hz,
                 prominence_db: t.prominence_db,
             })
@@ -195,7 +215,7 @@ mod tests {
     #[test]
     fn example_knocks_of_a_shaft_that_speeds_up_stand_at_their_order() {
         let (signal, turns) = knocks();
-        let (_, finding) = over_angle(&signal, 1e5, &turns, ("BPFO", 10.81)).unwrap().unwrap();
+        let (_, finding) = over_angle(&signal, 1e5, &turns, ("BPFO", 10.81), None).unwrap().unwrap();
         assert!((finding.periods - 12.5 * 10.81).abs() < 0.1 && (finding.resolution - 0.08).abs() < 1e-3);
         for line in &finding.lines {
             assert!((line.measured.unwrap() - line.predicted).abs() < finding.resolution, "{line:?}");
@@ -209,12 +229,13 @@ mod tests {
     #[test]
     fn refuses_few_turns_and_turns_back_and_says_why() {
         let (signal, turns) = knocks();
-        let why = over_angle(&signal[..5000], 1e5, &turns[..5000], ("BPFO", 10.81)).unwrap().unwrap_err();
+        let why =
+            over_angle(&signal[..5000], 1e5, &turns[..5000], ("BPFO", 10.81), None).unwrap().unwrap_err();
         assert!(why.contains("2.9 periods of BPFO"), "{why}");
         let there_and_back: Vec<f64> = turns.iter().map(|t| t * (10.0 - t)).collect();
-        let why = over_angle(&signal, 1e5, &there_and_back, ("BPFO", 10.81)).unwrap().unwrap_err();
+        let why = over_angle(&signal, 1e5, &there_and_back, ("BPFO", 10.81), None).unwrap().unwrap_err();
         assert!(why.contains("turns back"), "{why}");
         let still = vec![0.0; signal.len()];
-        assert!(over_angle(&signal, 1e5, &still, ("BPFO", 10.81)).unwrap().is_err());
+        assert!(over_angle(&signal, 1e5, &still, ("BPFO", 10.81), None).unwrap().is_err());
     }
 }

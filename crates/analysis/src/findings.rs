@@ -191,10 +191,11 @@ impl Findings {
             (envelope, enveloped) = self::envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
         } else {
             notes.push(
-                "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies,                  their notch among them, are left out. Other frequencies are those at the mean speed"
+                "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies, \
+                 the notch among them, are left out. Other frequencies are those at the mean speed"
                     .into(),
             );
-            orders = order_spectrum(run, &record, &sensors, duty.as_mut(), &mut notes)?;
+            orders = order_spectrum(run, &record, &motion, &sensors, duty.as_mut(), &mut notes)?;
         }
         let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
         let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
@@ -424,6 +425,7 @@ fn filter_sensors(filter: &Filter, record: &Record<'_>, sensors: &mut [SensorSig
 fn order_spectrum(
     run: &Run,
     record: &Record<'_>,
+    motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
     duty: Option<&mut DutyFinding>,
     notes: &mut Vec<String>,
@@ -431,9 +433,12 @@ fn order_spectrum(
     let Some(family) = duty::family(&run.scene) else { return Ok(None) };
     let leading = sensors.first().filter(|s| s.raw_g.len() >= SHORTEST_SPECTRUM);
     let (Some(leading), Some(turns)) = (leading, duty::turns(record)) else { return Ok(None) };
-    match duty::over_angle(&leading.raw_g, record.sample_rate_hz(), &turns, family)? {
+    let moved = duty::moved(family.0, motion);
+    match duty::over_angle(&leading.raw_g, record.sample_rate_hz(), &turns, family, moved)? {
         Ok((spectrum, finding)) => {
-            duty.into_iter().for_each(|duty| duty.envelope = Some(finding.clone()));
+            if let Some(duty) = duty {
+                duty.envelope = Some(finding);
+            }
             Ok(Some(spectrum))
         }
         Err(why) => {

@@ -74,12 +74,13 @@ pub(super) fn duty(summary: &Summary) -> Markup {
         }
         @if let Some(envelope) = &duty.envelope {
             table class="pairs" {
-                thead { tr { th { "Envelope line over the angle" } th class="n" { "Predicted order" } th class="n" { "Measured order" } th class="n" { "Above surroundings dB" } } }
+                thead { tr { th { "Envelope line over the angle" } th class="n" { "Predicted order" } th class="n" { "From the motion" } th class="n" { "Measured order" } th class="n" { "Above surroundings dB" } } }
                 tbody {
                     @for line in &envelope.lines {
                         tr {
                             td { (envelope.family) " ×" (line.harmonic) }
                             td class="n" { (format!("{:.3}", line.predicted)) }
+                            (cell(line.from_motion.map(|order| format!("{order:.3}"))))
                             (cell(line.measured.map(|order| format!("{order:.3}"))))
                             (cell(line.prominence_db.map(|db| minus(format!("{db:.1}")))))
                         }
