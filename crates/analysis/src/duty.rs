@@ -1,4 +1,4 @@
-//! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.10).
+//! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.11).
 //!
 //! Where the speed changes, a family has no frequency: it has an order, so many to a turn of the shaft. The squared envelope of
 //! the leading sensor, whose resonances stay where they are in time, is averaged over equal steps of the shaft's angle, which

@@ -187,7 +187,7 @@ fn guided(duration_ms: f64) -> Scene {
 
 /// From rest along a ramp the shaft has the angle ½αt² of a constant acceleration; loaded rollers roll without slip and take
 /// the cage along.
-/// Source: THEORY §5.1, rolling without slip; (6.6), a constant acceleration.
+/// Source: THEORY §5.1, rolling without slip; (6.4), a constant acceleration.
 #[test]
 fn analytic_a_start_from_rest_takes_the_rollers_along() {
     // The clearance of a pocket is 1.1 mrad. The cage lies some ten of them behind: rollers outside the load zone are pushed by its

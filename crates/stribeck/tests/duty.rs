@@ -98,6 +98,7 @@ fn invariant_a_mirrored_run_has_the_same_report() {
             edges += 1;
         }
     }
+    assert!(edges >= 2 * there.events.len() - 2, "{edges} edges of {} events", there.events.len());
     let hz =
         |s: &Summary| [s.kinematics.shaft_hz, s.kinematics.expected_cage_hz, s.kinematics.expected_bpfo_hz];
     assert_eq!(hz(&there), hz(&back));
