@@ -47,6 +47,10 @@ fn defect(run: &Run, summary: &Summary) -> String {
                 for its family, BPFI, in the spectra."
             .into();
     }
+    if events.is_empty() && unsteady(summary).is_some_and(|duty| duty.speed_rpm.0 * duty.speed_rpm.1 < 0.0) {
+        return "The shaft turns back on the way, and passages are foretold of one sense of rotation only."
+            .into();
+    }
     if events.is_empty() {
         return "No roller reaches it on this record.".into();
     }

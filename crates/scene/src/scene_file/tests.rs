@@ -475,6 +475,18 @@ proptest! {
 }
 
 #[test]
+fn example_a_bearing_by_its_name_starts_from_rest_or_turns_back() {
+    for operation in
+        ["speed_rpm: 0", "speed_rpm: -1500", "speed_rpm: 0, speed_profile: ramp(to_ms: 5, to: 1500)"]
+    {
+        let scene = Scene::parse(&format!("(bearing: \"NU 205\", operation: ({operation}))"), "mine")
+            .expect(operation);
+        let frames = scene.output.frames.expect("pictures");
+        assert!(frames.to_ms <= scene.solver.duration_ms && frames.from_ms < frames.to_ms, "{operation}");
+    }
+}
+
+#[test]
 fn example_a_bearing_by_its_name() {
     let scene = Scene::parse("(bearing: \"NU 205\", operation: (speed_rpm: 1500))", "mine").unwrap();
     let b = &scene.bearing;
