@@ -44,8 +44,8 @@ pub fn order_track(signal: &[f64], pulses: &[f64], samples_per_turn: usize) -> R
 
 /// Means of `signal`, taken at a constant rate, over equal steps of a shaft's angle: `steps_per_turn` of them, as many as the
 /// record holds. `turns` is the angle at each sample, in turns, never falling; between samples signal and angle follow
-/// straight lines. Nothing is left out however slowly the shaft turns, so that an envelope is safe from aliases from rest on;
-/// a line of `n` waves a turn loses the factor sin x/x with x = π n/`steps_per_turn`.
+/// straight lines. Nothing between the steps is left out however slowly the shaft turns, so that an envelope is safe from aliases
+/// from rest on; what is heard while it stands counts for nothing. A line of `n` waves a turn loses the factor sin x/x with x = π n/`steps_per_turn`.
 ///
 /// # Errors
 /// [`Error::TooShort`] for a record without a whole step, [`Error::WrongLength`], [`Error::NotFinite`], [`Error::Undefined`] for
@@ -68,25 +68,24 @@ pub fn means_over_angle(signal: &[f64], turns: &[f64], steps_per_turn: usize) ->
     }
     let mut until = vec![0.0; signal.len()];
     for n in 1..signal.len() {
-        until[n] = until[n - 1] + 0.5 * (signal[n - 1] + signal[n]);
+        until[n] = until[n - 1] + 0.5 * (signal[n - 1] + signal[n]) * (turns[n] - turns[n - 1]);
     }
-    // The place of an angle in samples, and the sum of the signal up to there.
+    // The integral of the signal over the angle, up to an angle.
     let mut below = 0;
-    let mut at = |angle: f64| {
+    let mut upto = |angle: f64| {
         while below + 2 < turns.len() && turns[below + 1] < angle {
             below += 1;
         }
         let (a, b) = (turns[below], turns[below + 1]);
         let t = if b > a { ((angle - a) / (b - a)).clamp(0.0, 1.0) } else { 1.0 };
         let rise = signal[below + 1] - signal[below];
-        (below as f64 + t, until[below] + t * (signal[below] + 0.5 * t * rise))
+        until[below] + t * (b - a) * (signal[below] + 0.5 * t * rise)
     };
     let mut values = Vec::with_capacity(steps);
-    let mut last = at(turns[0]);
+    let mut last = 0.0;
     for step in 1..=steps {
-        let next = at(turns[0] + step as f64 / per_turn);
-        let width = next.0 - last.0;
-        values.push(if width > 0.0 { (next.1 - last.1) / width } else { 0.0 });
+        let next = upto(turns[0] + step as f64 / per_turn);
+        values.push((next - last) * per_turn);
         last = next;
     }
     Ok(values)
