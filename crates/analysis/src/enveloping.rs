@@ -57,8 +57,7 @@ pub fn analyse(
     if count.verdict() == PeriodVerdict::TooFew {
         return Ok(Err(format!("no envelope spectrum: {count}")));
     }
-    let to = 0.5 * BAND_TO * sample_rate_hz;
-    let band_hz = if to > 2.0 * BAND_FROM_HZ { (BAND_FROM_HZ, to) } else { (0.1 * to, to) };
+    let band_hz = band_hz(sample_rate_hz);
     let mut planned =
         EnvelopeSpectrum::new(sample_rate_hz, signal_g.len(), Some(band_hz)).map_err(Error::Signal)?;
     let mut spectrum = planned.blank();
@@ -79,6 +78,12 @@ pub fn analyse(
             .collect(),
     };
     Ok(Ok((spectrum, finding)))
+}
+
+/// Band whose envelope is taken of a record sampled so often [Hz].
+pub(crate) fn band_hz(sample_rate_hz: f64) -> (f64, f64) {
+    let to = 0.5 * BAND_TO * sample_rate_hz;
+    if to > 2.0 * BAND_FROM_HZ { (BAND_FROM_HZ, to) } else { (0.1 * to, to) }
 }
 
 #[cfg(test)]

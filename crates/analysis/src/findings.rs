@@ -11,6 +11,7 @@ use self::passages::{crossing_forces, level_finding, picked_events, start_up_end
 use crate::Error;
 use crate::artefacts;
 use crate::diagnosis;
+use crate::duty::{self, DutyFinding};
 use crate::enveloping;
 use crate::families::{self, Channel, Motion, RollerTrack};
 use crate::film::FilmFinding;
@@ -60,6 +61,9 @@ pub struct Findings {
     pub distribution: Distribution,
     /// Squared envelope spectrum of the leading sensor [g⁴]; `None` when the record is too short.
     pub envelope: Option<Spectrum>,
+    /// Squared envelope spectrum of the leading sensor over the angle of the shaft [g⁴], its frequencies orders; `None` for a
+    /// speed that does not change, or a record too short.
+    pub orders: Option<Spectrum>,
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
     /// What the families of facet lines were judged by: recorded motion and accelerations [g].
@@ -130,14 +134,17 @@ impl Findings {
 
         let mut sensors = sensor_signals(run, &record, &mut notes)?;
         let motion = kinematics::measure(&record, &prediction.kinematics);
-        let mut lines = tones::harmonics(&prediction.facet_lines, HARMONICS, 0.5 * record.sample_rate_hz());
+        // Where the speed changes no line of the mesh or of the defect has a frequency.
+        let steady = !run.scene.operation.speed_varies();
+        let facet_lines = if steady { &prediction.facet_lines[..] } else { &[] };
+        let mut lines = tones::harmonics(facet_lines, HARMONICS, 0.5 * record.sample_rate_hz());
         for line in &mut lines {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
         let (tracks, channels) = heard(&record, &prediction, &motion, &sensors);
-        let candidates = prediction.candidates(&run.scene, &run.info.mesh);
-        if let Some(from) = tracks.too_early() {
+        let candidates = if steady { prediction.candidates(&run.scene, &run.info.mesh) } else { Vec::new() };
+        if let Some(from) = tracks.too_early().filter(|_| steady) {
             let sought_s = record.interval_s() * (time.len() - from) as f64;
             notes.push(format!(
                 "the mesh\u{2019}s families of lines are sought in the last {sought_s:.3} s of the record, {:.0} periods of BPFO",
@@ -145,7 +152,8 @@ impl Findings {
             ));
         }
         let families = families::identify(&tracks, &candidates, &channels)?;
-        let filter = filter(&record, &prediction, &sensors, &measured, &mut notes)?;
+        let filter =
+            if steady { filter(&record, &prediction, &sensors, &measured, &mut notes)? } else { None };
         if let Some(filter) = &filter {
             filter_sensors(filter, &record, &mut sensors)?;
         }
@@ -170,7 +178,7 @@ impl Findings {
         load.least_rolling_n = static_curve.as_ref().and_then(least);
         notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let span = time.last().copied().unwrap_or(0.0);
-        let artefacts = match sensors.first().zip(spectrum) {
+        let artefacts = match sensors.first().zip(spectrum).filter(|_| steady) {
             Some((sensor, density)) => {
                 let seen =
                     artefacts::Seen { tones: &measured, families: &families, sensor: &sensor.name, density };
@@ -178,14 +186,24 @@ impl Findings {
             }
             None => Vec::new(),
         };
-        let (envelope, enveloped) = envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
-        // Ten periods, or nothing could be said of a record.
-        let leading = sensors.first().filter(|_| span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH);
-        let name = |sensor: &SensorSignal| format!("sensor.{}.ay_m_s2", sensor.name);
-        let diagnosis = match leading {
-            Some(sensor) => diagnosis::of(&run.scene, &record, &motion, &name(sensor))?,
-            None => None,
-        };
+        let mut duty = DutyFinding::of(&run.scene, &record);
+        let (mut envelope, mut enveloped, mut orders, mut diagnosis) = (None, None, None, None);
+        if steady {
+            (envelope, enveloped) = self::envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
+            // Ten periods, or nothing could be said of a record.
+            let leading = sensors.first().filter(|_| span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH);
+            let name = |sensor: &SensorSignal| format!("sensor.{}.ay_m_s2", sensor.name);
+            if let Some(sensor) = leading {
+                diagnosis = diagnosis::of(&run.scene, &record, &motion, &name(sensor))?;
+            }
+        } else {
+            notes.push(
+                "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies, \
+                 the notch among them, are left out. Other frequencies are those at the mean speed"
+                    .into(),
+            );
+            orders = order_spectrum(run, &record, &motion, &sensors, duty.as_mut(), &mut notes)?;
+        }
         let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
         let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
 
@@ -199,6 +217,7 @@ impl Findings {
                 peak_strain_j: run.info.energy.peak_strain_j,
             },
             kinematics: motion,
+            duty,
             events,
             load,
             families,
@@ -214,7 +233,7 @@ impl Findings {
             paper: Vec::new(),
             notes,
         };
-        let of_paper = paper::is_scene_of(&run.scene);
+        let of_paper = paper::is_scene_of(&run.scene) && !run.scene.operation.varies();
         if of_paper {
             summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
         }
@@ -230,6 +249,7 @@ impl Findings {
             crossings,
             distribution: load::distribution(&record),
             envelope,
+            orders,
             static_curve,
             heard: (tracks, channels),
             prediction,
@@ -308,14 +328,17 @@ fn heard(
     motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
 ) -> (Motion, Vec<Channel>) {
+    // Families are told of a shaft that turns clockwise; one that turns the other way is seen in a mirror.
+    let sense = prediction.kinematics.sense();
     let track = |r: &Roller<'_>| {
-        let orbit = r.orbit();
+        let orbit: Vec<f64> = r.orbit().into_iter().map(|angle| sense * angle).collect();
         let place = orbit.first().copied().unwrap_or(0.0);
-        RollerTrack { place, orbit, spin: r.spin.to_vec(), load_n: r.outer_normal() }
+        let spin = r.spin.iter().map(|angle| sense * angle).collect();
+        RollerTrack { place, orbit, spin, load_n: r.outer_normal() }
     };
     let tracks = Motion {
         interval_s: record.interval_s(),
-        shaft_rad_s: prediction.kinematics.shaft_rad_s,
+        shaft_rad_s: sense * prediction.kinematics.shaft_rad_s,
         bpfo_hz: motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz),
         rollers: record.rollers().iter().map(track).collect(),
     };
@@ -404,6 +427,33 @@ fn filter_sensors(filter: &Filter, record: &Record<'_>, sensors: &mut [SensorSig
         }
     }
     Ok(())
+}
+
+/// The defect's family over the angle of the shaft, put into `duty`, and the spectrum behind it; a note where there is none.
+fn order_spectrum(
+    run: &Run,
+    record: &Record<'_>,
+    motion: &kinematics::KinematicsFinding,
+    sensors: &[SensorSignal],
+    duty: Option<&mut DutyFinding>,
+    notes: &mut Vec<String>,
+) -> Result<Option<Spectrum>, Error> {
+    let Some(family) = duty::family(&run.scene) else { return Ok(None) };
+    let leading = sensors.first().filter(|s| s.raw_g.len() >= SHORTEST_SPECTRUM);
+    let (Some(leading), Some(turns)) = (leading, duty::turns(record)) else { return Ok(None) };
+    let moved = duty::moved(family.0, motion);
+    match duty::over_angle(&leading.raw_g, record.sample_rate_hz(), &turns, family, moved)? {
+        Ok((spectrum, finding)) => {
+            if let Some(duty) = duty {
+                duty.envelope = Some(finding);
+            }
+            Ok(Some(spectrum))
+        }
+        Err(why) => {
+            notes.push(why);
+            Ok(None)
+        }
+    }
 }
 
 /// The envelope spectrum of the leading sensor when the record is long enough; a note otherwise, instead of a spectrum that

@@ -1,5 +1,6 @@
 //! How fast cage and rollers really turned, beside rolling without slip.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
@@ -64,7 +65,8 @@ impl KinematicsFinding {
 
 /// Measures the motion recorded in `record`.
 pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding {
-    let time = record.time_s();
+    let clock = clock(record, expected);
+    let time = &clock[..];
     let rollers = record.rollers();
     let orbits: Vec<Option<f64>> = rollers.iter().map(|r| rate(time, &r.orbit())).collect();
     let guided = record.channel("cage.angle_rad").and_then(|angle| rate(time, angle));
@@ -99,6 +101,17 @@ pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding 
         expected_roller_spin_hz: expected.roller_spin_hz,
         roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
         rollers: motions,
+    }
+}
+
+/// Times [s], or where the angle of the shaft was recorded those at which a shaft of constant speed would have come so far: rates
+/// are then those at that speed, whatever the true one did.
+fn clock<'a>(record: &Record<'a>, expected: &Kinematics) -> Cow<'a, [f64]> {
+    match record.channel("shaft.angle_rad") {
+        Some(angle) if expected.shaft_rad_s != 0.0 => {
+            angle.iter().map(|rad| rad / expected.shaft_rad_s).collect()
+        }
+        _ => Cow::Borrowed(record.time_s()),
     }
 }
 

@@ -17,6 +17,7 @@
 //! | question | module |
 //! |---|---|
 //! | What does a run hold, what lets geometry expect? | [`record`], [`prediction`], [`plan`] |
+//! | How did speed and load go, what comes how often a turn? | [`duty`] |
 //! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
@@ -55,6 +56,7 @@ pub mod summary;
 pub mod prediction;
 pub mod record;
 
+pub mod duty;
 pub mod enveloping;
 pub mod events;
 pub mod families;

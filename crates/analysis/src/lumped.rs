@@ -84,7 +84,7 @@ impl Lumped {
             springs += angle.sin().powi(2);
         }
         let both_contacts = 1.0 + (PI * facets).cos();
-        let frequency_hz = facets * Kinematics::of(scene).roller_spin_hz;
+        let frequency_hz = facets * Kinematics::at_mean_speed(scene).roller_spin_hz;
         let y = re.hypot(im) * both_contacts * height_m / springs;
         Ok(Self {
             frequency_hz,

@@ -4,7 +4,6 @@
 use std::f64::consts::PI;
 
 use stribeck_scene::geometry::Geometry;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
@@ -82,7 +81,7 @@ impl Plan {
         let counts = &mesh.counts;
         let prediction = Prediction::of(scene, counts);
         let lumped = Lumped::of(scene)?;
-        let kinematics = Kinematics::of(scene);
+        let kinematics = &prediction.kinematics;
         let geometry = Geometry::of(scene);
         let material = &geometry.material;
         let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());

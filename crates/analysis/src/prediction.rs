@@ -1,7 +1,10 @@
 //! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
 //! defect when, and who carries how much.
 
+use std::f64::consts::TAU;
+
 use stribeck_scene::deviation::RollingSurface;
+use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
@@ -17,13 +20,13 @@ const CAGE_STEPS: usize = 30;
 /// Everything that geometry and speed predict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
-    /// Frequencies without slip.
+    /// Frequencies without slip, at the mean speed where it changes.
     pub kinematics: Kinematics,
     /// Names and frequencies [Hz] of the fundamental facet-passing lines, from the actual mesh counts.
     pub facet_lines: Vec<(String, f64)>,
     /// Edges of the defect, when there is one on the outer raceway; one on the inner raceway has no fixed place.
     pub defect: Option<DefectEdges>,
-    /// What a defect strikes: the name and the frequency [Hz] of its family.
+    /// What a defect strikes: the name and the frequency [Hz] of its family; `None` where the speed changes and it has none.
     pub family: Option<(&'static str, f64)>,
     /// Passages over the defect that begin in the simulated time, in order of entry.
     pub passages: Vec<Crossing>,
@@ -58,7 +61,7 @@ pub struct StaticCurve {
 impl Prediction {
     /// Predicts from the resolved scene and the counts of the mesh that was run.
     pub fn of(scene: &Scene, mesh: &MeshInfo) -> Self {
-        let kinematics = Kinematics::of(scene);
+        let kinematics = Kinematics::at_mean_speed(scene);
         let counts = FacetCounts {
             roller: mesh.roller_facets,
             outer: facets_around(scene, DefectRing::Outer, mesh.outer_facets),
@@ -67,13 +70,17 @@ impl Prediction {
         let facet_lines = kinematics.facet_tones(counts).map(|tone| (tone.name.to_owned(), tone.hz)).to_vec();
         let edges = |defect: &DefectScene| {
             let half_deg = (defect.length_mm / scene.bearing.outer_race_diameter_mm).to_degrees();
+            let ahead_deg = kinematics.sense() * half_deg;
             DefectEdges {
-                leading_deg: defect.angle_deg + half_deg,
+                leading_deg: defect.angle_deg + ahead_deg,
                 middle_deg: defect.angle_deg,
-                trailing_deg: defect.angle_deg - half_deg,
+                trailing_deg: defect.angle_deg - ahead_deg,
             }
         };
         let passages = |defect: &DefectScene| {
+            if scene.operation.speed_varies() {
+                return over_turns(scene, defect);
+            }
             // On the inner raceway the contact is as fast: rollers do not slip.
             let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
             // Whoever enters in time leaves at most one traverse later.
@@ -84,7 +91,7 @@ impl Prediction {
         Self {
             facet_lines,
             defect: spall.as_ref().filter(|d| d.ring == DefectRing::Outer).map(edges),
-            family: scene.faults().first().map(|on| match on {
+            family: scene.faults().first().filter(|_| !scene.operation.speed_varies()).map(|on| match on {
                 RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
                 RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
                 RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
@@ -167,9 +174,29 @@ impl Prediction {
     fn over_defect(&self, angle_deg: f64) -> bool {
         self.defect.is_some_and(|d| {
             let from_middle = (angle_deg - d.middle_deg + 180.0).rem_euclid(360.0) - 180.0;
-            from_middle.abs() < d.leading_deg - d.middle_deg
+            from_middle.abs() < (d.leading_deg - d.middle_deg).abs()
         })
     }
+}
+
+/// Passages over a defect where the speed changes: they follow the angle of the shaft. None where it turns back on the way.
+fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
+    let (duty, until_s) = (Duty::of(scene), Geometry::of(scene).duration);
+    if !duty.is_one_way(until_s) {
+        return Vec::new();
+    }
+    let all = duty.shaft_rad(until_s).abs() / TAU;
+    // At a turn a second times are turns.
+    let rpm = 60.0 * duty.mean_speed_rpm(until_s).signum();
+    let mut crossings =
+        Kinematics::new(&scene.bearing, rpm).crossings(defect, &roller_angles_deg(scene), all);
+    crossings.retain_mut(|c| {
+        let times = [c.entry_s, c.centre_s, c.exit_s].map(|turns| duty.time_of_turns(turns, until_s));
+        let [Some(entry), Some(centre), Some(exit)] = times else { return false };
+        [c.entry_s, c.centre_s, c.exit_s] = [entry, centre, exit];
+        true
+    });
+    crossings
 }
 
 /// Facets that a whole turn of the raceway of `ring` would have at the spacing outside the defect; `facets` counts them all.

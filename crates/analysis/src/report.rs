@@ -21,6 +21,7 @@ use std::thread;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use stribeck_scene::deviation::DeviationScene;
+use stribeck_scene::duty::Duty;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{DefectRing, ModelScene, Scene};
@@ -117,8 +118,9 @@ fn page(
                 p class="lead" { (lead(&run.scene, summary.run.simulated_ms)) }
                 (banner(run))
                 (answer::paragraphs(run, summary))
-                (contents(findings.of_paper, run.scene.model != ModelScene::Full))
+                (contents(findings.of_paper, run.scene.model != ModelScene::Full, summary.duty.is_some()))
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
+                @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
                 (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
@@ -150,10 +152,11 @@ fn head(name: &str) -> Markup {
     }
 }
 
-fn contents(of_paper: bool, reduced: bool) -> Markup {
+fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
     let entries = [
         ("summary", "Summary"),
         ("acceleration", "Acceleration"),
+        ("duty", "Speed and load"),
         ("spectra", "Spectrum"),
         ("forces", "Forces"),
         ("bearing", "Load and slip"),
@@ -167,6 +170,7 @@ fn contents(of_paper: bool, reduced: bool) -> Markup {
     ];
     let shown = entries.into_iter().filter(|(id, _)| match *id {
         "numbers" => of_paper,
+        "duty" => varies,
         "model" => reduced,
         _ => true,
     });
@@ -209,12 +213,37 @@ fn lead(scene: &Scene, simulated_ms: f64) -> String {
         name => format!("{name}: "),
     };
     format!(
-        "{name}{} rollers under {} kN at {} rpm, {defect}; {:.1} ms on record.",
+        "{name}{} rollers under {} at {}, {defect}; {:.1} ms on record.",
         scene.bearing.rollers,
-        1e-3 * scene.operation.load_n,
-        scene.operation.speed_rpm,
+        load(scene, simulated_ms),
+        speed(scene, simulated_ms),
         simulated_ms
     )
+}
+
+/// The load in words, with its range where it changes.
+fn load(scene: &Scene, simulated_ms: f64) -> String {
+    let kilo = |n: f64| (1e-3 * n * 1e6).round() / 1e6;
+    if !scene.operation.load_varies() {
+        return format!("{} kN", 1e-3 * scene.operation.load_n);
+    }
+    let [least, most] = Duty::of(scene).load_range_n(1e-3 * simulated_ms);
+    format!("{} to {} kN", kilo(least), kilo(most))
+}
+
+/// The speed in words, with its range where it changes, and the sense where it is not the usual one.
+fn speed(scene: &Scene, simulated_ms: f64) -> String {
+    let tidy = |rpm: f64| (rpm * 1e3).round() / 1e3;
+    let [least, most] = Duty::of(scene).speed_range_rpm(1e-3 * simulated_ms);
+    let span = |a: f64, b: f64| if a == b { format!("{a} rpm") } else { format!("{a} to {b} rpm") };
+    let (least, most) = (tidy(least), tidy(most));
+    if most <= 0.0 && least < 0.0 {
+        format!("{} counter-clockwise", span(-most, -least))
+    } else if least < 0.0 {
+        format!("{} (negative: counter-clockwise)", span(least, most).replace('-', "−"))
+    } else {
+        span(least, most)
+    }
 }
 
 /// Says loudly when a run did not complete.

@@ -17,7 +17,7 @@ const SLIDING: f64 = 0.02;
 /// distribution `curve` (THEORY §5.4): under less, rollers that have lost their spin do not roll again. `None` when nothing
 /// turns or nothing is loaded, infinite without friction.
 pub fn least_support_n(scene: &Scene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
-    let (geometry, motion) = (Geometry::of(scene), Kinematics::of(scene));
+    let (geometry, motion) = (Geometry::of(scene), Kinematics::at_mean_speed(scene));
     let radius = geometry.roller_radius;
     let inertia = 0.5 * PI * geometry.material.density * geometry.thickness * radius.powi(4);
     let pairs = curve.angle_deg.windows(2).zip(curve.force_n.windows(2));

@@ -7,6 +7,7 @@ use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
 use crate::diagnosis::DiagnosisFinding;
+use crate::duty::DutyFinding;
 use crate::enveloping::EnvelopeFinding;
 use crate::families::FamilyFinding;
 use crate::film::FilmFinding;
@@ -31,6 +32,10 @@ pub struct Summary {
     pub energy: EnergyFinding,
     /// Measured motion.
     pub kinematics: KinematicsFinding,
+    /// Speed and load where they change, with the families in orders of the shaft; `None` where neither does. Frequencies of
+    /// [`kinematics`](Self::kinematics) are then those at the mean speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub duty: Option<DutyFinding>,
     /// Passages over the defect.
     pub events: Vec<Event>,
     /// Forces on the rollers.

@@ -18,6 +18,7 @@ use stribeck_system::{Film, Pair, Plan, System};
 use crate::{error::Error, grading};
 use stribeck_scene::{
     deviation::Relief,
+    duty::Duty,
     geometry::{CageGeometry, Geometry},
     kinematics::{FacetCounts, Kinematics},
     lubrication,
@@ -45,7 +46,7 @@ const INNER_RACEWAY: &str = "inner raceway";
 const SEAT: &str = "adapter seat";
 
 /// Name of the surface that carries the load.
-const TOP: &str = "adapter's top";
+pub(crate) const TOP: &str = "adapter's top";
 
 /// A scene made into bodies, in mesh numbers.
 #[derive(Debug)]
@@ -339,8 +340,12 @@ impl Assembly {
         plan.load(TOP, [0.0, -scene.operation.load_n])?;
         let pairs = self.touch(&mut plan, scene)?;
         oil(&mut plan, scene, &rollers)?;
+        let mut system = plan.build(threads)?;
+        if let Some(duty) = Duty::varying(scene) {
+            system.scale_load(TOP, duty.load_n(0.0) / scene.operation.load_n)?;
+        }
         Ok(Machine {
-            system: plan.build(threads)?,
+            system,
             outer: self.outer.body,
             inner: self.inner.body,
             adapter: self.adapter.body,

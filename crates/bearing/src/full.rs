@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 use stribeck_system::{Ledger, Snapshot};
 
 use crate::{
-    assembly::{Assembly, Machine},
+    assembly::{Assembly, Machine, TOP},
     error::Error,
     frames::Frames,
     guards::{self, Guards},
     recorder::{self, Recorder},
     time_loop::Motion,
 };
-use stribeck_scene::{run_dir::RunDir, run_info::RunInfo, scene::Scene};
+use stribeck_scene::{duty::Duty, run_dir::RunDir, run_info::RunInfo, scene::Scene};
 
 /// What a checkpoint holds of the full model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,6 +27,8 @@ pub(crate) struct Full<'a> {
     recorder: Recorder,
     frames: Option<Frames>,
     guards: Guards,
+    /// Speed and load, where they change, and the load that a factor of one stands for [N].
+    duty: Option<(Duty, f64)>,
 }
 
 impl<'a> Full<'a> {
@@ -37,6 +39,7 @@ impl<'a> Full<'a> {
             recorder: Recorder::new(scene, &machine),
             frames: Frames::of(scene, dir.frames()),
             guards: Guards::new(scene, assembly, &machine),
+            duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
             assembly,
             machine,
         }
@@ -63,12 +66,25 @@ impl<'a> Full<'a> {
         guards::arm(scene, &mut machine.system);
         machine.system.restore(saved.system).map_err(|e| other(e.to_string()))?;
         Ok(Self {
-            recorder: Recorder::resume(&machine, saved.recorder).ok_or_else(elsewhere)?,
+            recorder: Recorder::resume(scene, &machine, saved.recorder).ok_or_else(elsewhere)?,
             frames: Frames::of(scene, dir.frames()),
             guards: Guards::new(scene, assembly, &machine),
+            duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
             assembly,
             machine,
         })
+    }
+}
+
+impl Full<'_> {
+    /// Speed and load of the next step, where they change.
+    fn drive(&mut self) -> Result<(), Error> {
+        let Some((duty, load_n)) = &self.duty else { return Ok(()) };
+        let system = &mut self.machine.system;
+        let now = system.time();
+        system.set_rotation_rate(duty.mean_shaft_rad_s(now, now + system.time_step()))?;
+        system.scale_load(TOP, duty.load_n(now) / load_n)?;
+        Ok(())
     }
 }
 
@@ -77,9 +93,11 @@ impl Motion for Full<'_> {
 
     fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
         for _ in 1..steps {
+            self.drive()?;
             self.machine.system.step()?;
             self.recorder.after_step(&self.machine);
         }
+        self.drive()?;
         self.recorder.before_step(&self.machine);
         let ledger = self.machine.system.step_with_ledger()?;
         self.recorder.after_step(&self.machine);

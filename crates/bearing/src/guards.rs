@@ -22,10 +22,12 @@ use stribeck_system::{Limits, Scale, System, Words};
 
 use crate::assembly::{Assembly, Machine};
 use stribeck_scene::{
+    duty::Duty,
     geometry::Geometry,
+    kinematics::roller_angles_deg,
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
-    static_load,
+    static_load::RigidRings,
 };
 
 /// A critical time step that is this share of that of a square cell of the scene's size is worth a word.
@@ -71,7 +73,9 @@ struct Softness {
 impl Softness {
     fn of(scene: &Scene, g: &Geometry) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
-        let hertz = static_load::at_start(scene).map_or(0.0, |load| 0.5 * load.max_approach_m());
+        let [_, most] = Duty::of(scene).load_range_n(g.duration);
+        let load = RigidRings::new(g).distribute(most, &roller_angles_deg(scene));
+        let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = g.defect.map_or(f64::INFINITY, |d| d.depth);
         Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
     }

@@ -6,8 +6,15 @@ use serde::{Deserialize, Serialize};
 use stribeck_contact::Resultant;
 
 use crate::assembly::Machine;
+use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
+
+/// Channel of the shaft's angle.
+const SHAFT: &str = "shaft.angle_rad";
+
+/// Channel of the load.
+const LOAD: &str = "adapter.load_n";
 
 /// Sums between samples and the channels made of them.
 #[derive(Debug)]
@@ -21,6 +28,36 @@ pub(crate) struct Recorder {
     film: Vec<[f64; 2]>,
     steps: usize,
     row: Vec<f64>,
+    tacho: Tacho,
+}
+
+/// The channels of a duty that changes: the angle of the shaft, and the load where it changes too.
+#[derive(Debug, Clone)]
+pub struct Tacho {
+    /// `None` where nothing changes.
+    duty: Option<Duty>,
+    load: bool,
+}
+
+impl Tacho {
+    /// Of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        Self { duty: Duty::varying(scene), load: scene.operation.load_varies() }
+    }
+
+    /// Names of its columns.
+    fn names(&self) -> Vec<String> {
+        let channels = [self.duty.as_ref().map(|_| SHAFT), self.load.then_some(LOAD)];
+        channels.into_iter().flatten().map(str::to_owned).collect()
+    }
+
+    /// Its values at a time [s]: the angle by which the shaft has turned since the start [rad], counter-clockwise positive, and
+    /// the load [N].
+    pub fn sample(&self, time_s: f64) -> impl Iterator<Item = f64> {
+        let angle = self.duty.as_ref().map(|duty| duty.shaft_rad(time_s));
+        let load = self.duty.as_ref().filter(|_| self.load).map(|duty| duty.load_n(time_s));
+        angle.into_iter().chain(load)
+    }
 }
 
 /// What the recorder carries from sample to sample.
@@ -56,20 +93,21 @@ impl Recorder {
             rim_angle: (0..rollers).map(|i| rim_angle(machine, i)).collect(),
             spin: vec![0.0; rollers],
         };
-        Self::with(memory, machine)
+        Self::with(scene, memory, machine)
     }
 
     /// A recorder that goes on; `None` when the memory is that of another machine.
-    pub(crate) fn resume(machine: &Machine, memory: Memory) -> Option<Self> {
+    pub(crate) fn resume(scene: &Scene, machine: &Machine, memory: Memory) -> Option<Self> {
         let nodes = machine.system.node_count();
         let fits = memory.sensors.iter().all(|&n| (n as usize) < nodes)
             && memory.at_sample.len() == memory.sensors.len()
             && [&memory.rim_angle, &memory.spin].iter().all(|v| v.len() == machine.rollers.len());
-        fits.then(|| Self::with(memory, machine))
+        fits.then(|| Self::with(scene, memory, machine))
     }
 
-    fn with(memory: Memory, machine: &Machine) -> Self {
+    fn with(scene: &Scene, memory: Memory, machine: &Machine) -> Self {
         Self {
+            tacho: Tacho::of(scene),
             before_step: vec![[0.0; 2]; memory.sensors.len()],
             memory,
             force: vec![[0.0; 2]; machine.system.resultants().count()],
@@ -110,6 +148,7 @@ pub fn names(scene: &Scene) -> Vec<String> {
         names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad"].map(str::to_owned));
     }
     names.extend(["seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    names.extend(Tacho::of(scene).names());
     names
 }
 
@@ -183,6 +222,7 @@ impl Recorder {
         }
         let seat = machine.pairs.seat();
         self.row.extend(mean(seat..seat + 1));
+        self.row.extend(self.tacho.sample(system.time()));
         self.force.fill([0.0; 2]);
         self.film.fill([0.0; 2]);
         self.steps = 0;

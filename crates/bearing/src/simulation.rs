@@ -17,6 +17,7 @@ use crate::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    duty::Duty,
     geometry::Geometry,
     mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},
@@ -287,7 +288,8 @@ fn may_go_on(dir: &RunDir, scene: &Scene) -> Result<Option<String>, Error> {
 fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
     let system = &machine.system;
     let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
-    scene.operation.load_n + scene.operation.gravity_m_s2 * (mass(machine.outer) + mass(machine.adapter))
+    let load = Duty::of(scene).mean_load_n(Geometry::of(scene).duration);
+    load + scene.operation.gravity_m_s2 * (mass(machine.outer) + mass(machine.adapter))
 }
 
 /// Sets the mass damping of the scene, if it has one.

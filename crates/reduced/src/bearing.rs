@@ -1,9 +1,11 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
+use stribeck_bearing::recorder::Tacho;
 use stribeck_contact::Law;
 use stribeck_mesh::{Circle, FormDeviation};
 use stribeck_scene::{
     deviation::Relief,
+    duty::Duty,
     geometry::Geometry,
     kinematics::Kinematics,
     scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
@@ -63,6 +65,9 @@ pub struct Bearing {
     pub(crate) gravity: f64,
     pub(crate) kinematics: Kinematics,
     pub(crate) cage: Option<Cage>,
+    /// Speed and load, where they change.
+    pub(crate) duty: Option<Duty>,
+    pub(crate) tacho: Tacho,
 }
 
 /// The rim of a roller.
@@ -204,6 +209,8 @@ impl Bearing {
             branches,
             gravity: g.gravity,
             kinematics: Kinematics::of(scene),
+            duty: Duty::varying(scene),
+            tacho: Tacho::of(scene),
             cage: cage.flatten(),
             rims,
             rim_of,

@@ -5,19 +5,24 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
+    duty::Duty,
     run_dir::write_atomic,
     scene::{
-        CageScene, ContactScene, GuardsScene, ModelScene, OutputScene, ReducedScene, Scene, SolverScene,
+        CageScene, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene, ReducedScene, Scene,
+        SolverScene,
     },
 };
 
 use crate::{error::Error, reduction::Reduction};
 
+/// Longest run that a scene may ask for [s].
+const LONGEST_RUN_S: f64 = 60.0;
+
 /// Folder of the reductions, in the parent of a run's folder.
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced v1\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced v2\n";
 
 /// The scene that a reduction of `scene` is made from: what matters neither to mesh nor to preload has its default. Rollers
 /// stand in the middle between their places, so that none is in the defect.
@@ -52,7 +57,7 @@ pub fn reference(scene: &Scene) -> Scene {
         defects: Vec::new(),
         material: scene.material.clone(),
         mesh,
-        operation: scene.operation.clone(),
+        operation: between(scene),
         contact: ContactScene {
             method,
             surface,
@@ -70,6 +75,23 @@ pub fn reference(scene: &Scene) -> Scene {
         output: OutputScene { sensors: scene.output.sensors.clone(), frames: None, ..OutputScene::default() },
         guards: GuardsScene::default(),
     }
+}
+
+/// Half-way between the least and the largest load of a profile: what is linear about the preload is then nearest to all of
+/// them. The speed is that at the start, either way round: it matters by its square.
+fn between(scene: &Scene) -> OperationScene {
+    let fields = OperationScene {
+        speed_profile: None,
+        load_profile: None,
+        rotating_load: None,
+        ..scene.operation.clone()
+    };
+    let Some(duty) = Duty::varying(scene) else {
+        return OperationScene { speed_rpm: fields.speed_rpm.abs(), ..fields };
+    };
+    let [least, most] = duty.load_range_n(LONGEST_RUN_S);
+    let load_n = 0.5 * (least + most);
+    OperationScene { load_n, speed_rpm: duty.speed_rpm(0.0).abs(), ..fields }
 }
 
 /// The reduction of a scene, and whether it was there already. `runs` is where the folder of the run lies.

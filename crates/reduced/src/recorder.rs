@@ -94,6 +94,7 @@ impl Bearing {
             row.extend([centre[0] + state.cage[0], centre[1] + state.cage[1], state.cage[2]]);
         }
         row.extend(self.seat_force(state));
+        row.extend(self.tacho.sample(state.steps as f64 * dt));
     }
 
     /// Force of the adapter on the outer ring [N].

@@ -58,6 +58,8 @@ pub struct Reduction {
     pub constant: Vec<f64>,
     /// Those of the load and of weight alone [N/√kg].
     pub external: Vec<f64>,
+    /// Those of the load alone, without weight, and the load [N].
+    pub load: (Vec<f64>, f64),
     /// Strain energy of all bodies at the preload [J].
     pub strain: f64,
     /// Of roller and outer raceway.
@@ -146,6 +148,7 @@ impl Reduction {
         let mut all = NodeForces::zeros(count);
         let mut outside = NodeForces::zeros(count);
         parts.others.accumulate(parts.dynamics.moment(), &mut outside);
+        let loaded = outside.clone();
         let [gx, gy] = parts.dynamics.gravity();
         for (n, mass) in parts.dynamics.mass().iter().enumerate() {
             outside.fx[n] += mass * gx;
@@ -207,6 +210,7 @@ impl Reduction {
         let unbalanced = generalised(&motions, &all.fx, &all.fy);
         let constant = unbalanced.iter().zip(&by_rollers).map(|(all, rollers)| all - rollers).collect();
         let external = generalised(&motions, &outside.fx, &outside.fy);
+        let load = (generalised(&motions, &loaded.fx, &loaded.fy), g.load);
 
         // The raceway without the dents of the rollers, which the local compliance makes anew.
         let mut dents = field(&motions, &slots(&nodes.structure), &pressed.fx, &pressed.fy);
@@ -364,6 +368,7 @@ impl Reduction {
             sensors,
             constant,
             external,
+            load,
             strain,
             outer_compliance,
             inner_compliance,

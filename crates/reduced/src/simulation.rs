@@ -8,6 +8,7 @@ use stribeck_bearing::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    duty::Duty,
     geometry::Geometry,
     run_dir::{RunDir, write_atomic},
     run_info::{ReducedInfo, RunInfo},
@@ -49,7 +50,8 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
         from_cache,
     };
     let (mesh, picture) = (reduction.mesh.clone(), reduction.picture.clone());
-    let expected = scene.operation.load_n + scene.operation.gravity_m_s2 * reduction.structure_mass;
+    let expected = Duty::of(scene).mean_load_n(Geometry::of(scene).duration)
+        + scene.operation.gravity_m_s2 * reduction.structure_mass;
     let bearing = Bearing::new(scene, reduction, step)?;
     let state = bearing.at_start(scene)?;
     let setup = Setup {

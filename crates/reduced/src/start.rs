@@ -1,7 +1,7 @@
 //! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
 
 use faer::{Mat, linalg::solvers::Solve};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::{duty::Duty, scene::Scene};
 
 use crate::{bearing::Bearing, error::Error, state::State};
 
@@ -23,7 +23,9 @@ impl Bearing {
         let mut state = self.rest(scene);
         let r = self.reduction.padded;
         let k = &self.kinematics;
-        let load = scene.operation.load_n.max(1.0);
+        let at_start = Duty::of(scene).load_n(0.0);
+        let load = at_start.max(1.0);
+        let further = self.duty.as_ref().map_or(0.0, |_| self.beside_the_preload(at_start));
         let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers];
         let mut residual = 0.0;
@@ -31,7 +33,7 @@ impl Bearing {
             let mut force = self.reduction.constant.clone();
             let mut matrix = Mat::<f64>::zeros(r, r);
             for n in 0..r {
-                force[n] -= self.reduction.squares[n] * state.q[n];
+                force[n] += further * self.reduction.load.0[n] - self.reduction.squares[n] * state.q[n];
                 matrix[(n, n)] = self.reduction.squares[n] + HOLD;
             }
             for i in 0..self.rollers {
@@ -118,6 +120,12 @@ impl Bearing {
         }
         state.hints = self.first_hints(&state);
         Ok(state)
+    }
+
+    /// By what the load [N] exceeds that of the preload, in shares of the latter.
+    #[inline(always)]
+    pub(crate) fn beside_the_preload(&self, load_n: f64) -> f64 {
+        load_n / self.reduction.load.1 - 1.0
     }
 
     /// Shapes under roller `i` in the direction of its centre, and the displacement there.

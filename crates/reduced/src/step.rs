@@ -113,6 +113,16 @@ impl Bearing {
         let [roller_mass, roller_inertia] = self.reduction.roller_inertia;
         let mut energy = Stored::default();
         scratch.push.copy_from_slice(&self.reduction.constant);
+        let mut rate = self.kinematics.shaft_rad_s;
+        let mut further = 0.0;
+        if let Some(duty) = &self.duty {
+            let now = state.steps as f64 * dt;
+            rate = duty.mean_shaft_rad_s(now, now + dt);
+            further = self.beside_the_preload(duty.load_n(now));
+            for (push, load) in scratch.push.iter_mut().zip(&self.reduction.load.0) {
+                *push += further * load;
+            }
+        }
         if last {
             scratch.before.copy_from_slice(&scratch.heard);
         }
@@ -182,7 +192,6 @@ impl Bearing {
             // The inner raceway turns about the origin: everything is turned back.
             let (ss, sc) = shaft;
             let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
-            let rate = self.kinematics.shaft_rad_s;
             let mut hints = state.hints[1][i];
             let touch = self.touch(
                 &self.inner,
@@ -313,7 +322,7 @@ impl Bearing {
         }
         scratch.summed += 1;
 
-        self.move_modes(state, scratch, last, &mut energy, &mut external, &mut damped);
+        self.move_modes(state, scratch, further, last, &mut energy, &mut external, &mut damped);
 
         if let Some(cage) = &self.cage {
             let old = state.cage_velocity;
@@ -330,7 +339,7 @@ impl Bearing {
                 *place += dt * v;
             }
         }
-        state.shaft += dt * self.kinematics.shaft_rad_s;
+        state.shaft += dt * rate;
         work.friction += 0.5 * dt * heat[0];
         work.contact_damping += 0.5 * dt * heat[1];
         count(&mut work.external, external);
@@ -439,12 +448,14 @@ impl Bearing {
         }
     }
 
-    /// Modes move (THEORY §9.4).
+    /// Modes move (THEORY §9.4); `further` is what the load exceeds that of the preload by, in shares of it.
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "one motion, with all that it reads and adds to")]
     fn move_modes(
         &self,
         state: &mut State,
         scratch: &Scratch,
+        further: f64,
         last: bool,
         energy: &mut Stored,
         external: &mut f64,
@@ -459,6 +470,9 @@ impl Bearing {
         let (kept, gain) = ((1.0 - h) / (1.0 + h), dt / (1.0 + h));
         let alpha = 2.0 * h / dt;
         let mut sums = [[0.0; LANES]; 4];
+        let along_load =
+            |state: &State| state.v.iter().zip(&self.reduction.load.0).map(|(v, load)| v * load).sum::<f64>();
+        let before = if further != 0.0 { along_load(state) } else { 0.0 };
         for (branch, stretch) in self.branches.iter().zip(&mut state.branches) {
             let e = (-dt / branch.relaxation_time).exp();
             for (u, v) in stretch.iter_mut().zip(&state.v) {
@@ -488,6 +502,9 @@ impl Bearing {
         }
         let total = |s: [f64; LANES]| ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
         *external += dt * total(sums[0]);
+        if further != 0.0 {
+            *external += 0.5 * dt * further * (before + along_load(state));
+        }
         *damped += dt * total(sums[1]);
         if last {
             energy.kinetic += 0.5 * total(sums[2]);

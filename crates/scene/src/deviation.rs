@@ -41,7 +41,7 @@ pub enum FormScene {
     /// A dent with a raised rim.
     Dent(DentScene),
     /// Any profile, as points.
-    Profile(ProfileScene),
+    Profile(SurfaceProfileScene),
     /// A sine wave around the whole surface; of order 2 an oval.
     Waviness(WavinessScene),
     /// Random waves over a band of wavelengths.
@@ -89,7 +89,7 @@ pub struct DentScene {
 /// Any profile, linear between points.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
-pub struct ProfileScene {
+pub struct SurfaceProfileScene {
     /// Table with the columns `position_mm` and `depth_um`, beside the scene; read where no points are given.
     pub file: String,
     /// Its points, in the order of their places; the surface is not changed outside of them.
@@ -452,7 +452,7 @@ mod tests {
         let dent = FormScene::Dent(DentScene { length_mm: 2.0, depth_mm: 0.02, rim_um: 3.0 });
         let point = |(at_mm, depth_um)| PointScene { at_mm, depth_um };
         let points = [(-1.0, 0.0), (0.0, 8.0), (0.5, 2.0)].map(point).into();
-        let profile = ProfileScene { points, ..Default::default() };
+        let profile = SurfaceProfileScene { points, ..Default::default() };
         let rounded = FormScene::Spall(SpallScene { edge: Edge::Rounded, ..spall.clone() });
         let oval = FormScene::Waviness(WavinessScene { order: 2, amplitude_um: 4.0 });
         for (form, places) in [

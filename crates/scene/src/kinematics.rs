@@ -1,11 +1,13 @@
 //! Ideal kinematics: who turns how fast when nothing slips, when a roller crosses the defect, and which tones the facets
 //! of a mesh make.
 //!
-//! Angles count counter-clockwise from the x axis. The inner ring turns clockwise, so its angular velocity and that of
-//! the cage are negative, and that of a roller is positive. Frequencies are magnitudes.
+//! Angles count counter-clockwise from the x axis. An inner ring at a positive speed turns clockwise, so its angular velocity
+//! and that of the cage are negative, and that of a roller is positive; at a negative speed all are the other way round.
+//! Frequencies are magnitudes.
 
 use std::f64::consts::TAU;
 
+use crate::duty::Duty;
 use crate::geometry::DefectGeometry;
 use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
 
@@ -33,15 +35,15 @@ pub struct Kinematics {
     pub bsf_hz: f64,
     /// Spin of a roller relative to the cage, f_c·D_o/D_r with [`Kinematics::cage_hz`] [Hz].
     pub roller_spin_hz: f64,
-    /// Angular velocity of the inner ring [rad/s], negative: clockwise.
+    /// Angular velocity of the inner ring [rad/s]; negative, clockwise, at a positive speed.
     pub shaft_rad_s: f64,
-    /// Angular velocity of the cage with rollers riding on the outer raceway [rad/s], negative.
+    /// Angular velocity of the cage with rollers riding on the outer raceway [rad/s], of the sign of the ring's.
     pub cage_rad_s: f64,
-    /// Angular velocity of a roller in space, riding on the outer raceway [rad/s], positive.
+    /// Angular velocity of a roller in space, riding on the outer raceway [rad/s], of the other sign.
     pub roller_rad_s: f64,
-    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], positive.
+    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], of the sign of `roller_rad_s`.
     pub roller_relative_rad_s: f64,
-    /// Speed of the contact point along the outer raceway [m/s], with [`Kinematics::cage_hz`].
+    /// Speed of the contact point along the outer raceway [m/s], positive, with [`Kinematics::cage_hz`].
     pub contact_speed_m_s: f64,
     bearing: Dimensions,
 }
@@ -95,14 +97,22 @@ pub struct Crossing {
 }
 
 impl Kinematics {
-    /// Kinematics of a scene's bearing at its speed.
+    /// Kinematics of a scene's bearing at its speed at the start.
     pub fn of(scene: &Scene) -> Self {
-        Self::new(&scene.bearing, scene.operation.speed_rpm)
+        Self::new(&scene.bearing, Duty::of(scene).speed_rpm(0.0))
     }
 
-    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise.
+    /// Kinematics of a scene's bearing at its mean speed over the run: where the speed changes, ratios of its frequencies to the
+    /// shaft's are what holds.
+    pub fn at_mean_speed(scene: &Scene) -> Self {
+        let duration_s = 1e-3 * scene.solver.duration_ms;
+        Self::new(&scene.bearing, Duty::of(scene).mean_speed_rpm(duration_s))
+    }
+
+    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive.
     pub fn new(bearing: &BearingScene, speed_rpm: f64) -> Self {
-        let shaft_hz = speed_rpm / 60.0;
+        let clockwise_hz = speed_rpm / 60.0;
+        let shaft_hz = clockwise_hz.abs();
         let (outer, inner) = (bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm);
         let (roller, count) = (bearing.roller_diameter_mm, bearing.rollers as f64);
         let pitch = (outer + inner) / 2.0;
@@ -112,7 +122,7 @@ impl Kinematics {
         // where the ring has come up by the clearance; the ring's surface speed is that of its own radius.
         let centre_path = (outer - roller) / 2.0;
         let cage_outer_hz = shaft_hz * (inner / 2.0) / (2.0 * centre_path);
-        let cage_rad_s = -TAU * cage_outer_hz;
+        let cage_rad_s = -TAU * cage_outer_hz.copysign(clockwise_hz);
         let roller_rad_s = -cage_rad_s * centre_path / (roller / 2.0);
         Self {
             shaft_hz,
@@ -123,13 +133,18 @@ impl Kinematics {
             bpfi_hz: shaft_hz * count / 2.0 * (1.0 + roller / pitch),
             bsf_hz: shaft_hz * pitch / (2.0 * roller) * (1.0 - (roller / pitch).powi(2)),
             roller_spin_hz: cage_hz * outer / roller,
-            shaft_rad_s: -TAU * shaft_hz,
+            shaft_rad_s: -TAU * clockwise_hz,
             cage_rad_s,
             roller_rad_s,
             roller_relative_rad_s: roller_rad_s - cage_rad_s,
             contact_speed_m_s: TAU * cage_hz * outer / 2.0 * 1e-3,
             bearing: Dimensions { outer_m: outer * 1e-3, inner_m: inner * 1e-3 },
         }
+    }
+
+    /// 1 for a shaft that turns clockwise or stands, −1 for one that turns counter-clockwise.
+    pub fn sense(&self) -> f64 {
+        if self.shaft_rad_s > 0.0 { -1.0 } else { 1.0 }
     }
 
     /// Facet-passing tones of a mesh, THEORY §5.
@@ -157,13 +172,15 @@ impl Kinematics {
 
     /// Rollers that leave `defect` within `duration_s`, in the order of their entry.
     ///
-    /// They start at the angles `start_deg`, roller 1 first. As seen from the outer ring all move clockwise: the leading edge
-    /// is the one at the larger angle; as seen from the inner one, which turns faster, counter-clockwise. A roller that starts
-    /// inside the defect has a negative entry time. Empty when the shaft stands still.
+    /// They start at the angles `start_deg`, roller 1 first. As seen from the outer ring all move with the shaft: clockwise at
+    /// a positive speed, where the leading edge is the one at the larger angle; as seen from the inner one, which turns
+    /// faster, the other way round. A roller that starts inside the defect has a negative entry time. Empty when the shaft
+    /// stands still.
     pub fn crossings(&self, defect: &DefectScene, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
+        let sense = self.sense();
         let (speed, diameter, ahead) = match defect.ring {
-            DefectRing::Outer => (360.0 * self.cage_hz, self.bearing.outer_m, 1.0),
-            DefectRing::Inner => (360.0 * (self.shaft_hz - self.cage_hz), self.bearing.inner_m, -1.0),
+            DefectRing::Outer => (360.0 * self.cage_hz, self.bearing.outer_m, sense),
+            DefectRing::Inner => (360.0 * (self.shaft_hz - self.cage_hz), self.bearing.inner_m, -sense),
         };
         if !(speed > 0.0 && duration_s.is_finite()) {
             return Vec::new();
@@ -330,6 +347,33 @@ mod tests {
         for (a, b) in centred.iter().zip(crossings(&scene)) {
             let speed = TAU * paper().cage_hz * 91e-3;
             assert_close(b.exit_s - a.exit_s, 1e-6 * offsets[a.roller - 1] / speed, 1e-9);
+        }
+    }
+
+    /// What turns the other way is the mirror image: frequencies stay, angular velocities change their sign, and rollers that
+    /// start at mirrored angles meet a mirrored defect at the same times.
+    #[test]
+    fn invariant_a_shaft_that_turns_back_is_the_mirror_image() {
+        let scene = Scene::default();
+        let (there, back) = (paper(), Kinematics::new(&scene.bearing, -500.0));
+        let hz = |k: &Kinematics| [k.shaft_hz, k.cage_hz, k.bpfo_hz, k.bpfi_hz, k.bsf_hz, k.roller_spin_hz];
+        assert_eq!(hz(&there), hz(&back));
+        assert_eq!(there.contact_speed_m_s, back.contact_speed_m_s);
+        let turns = |k: &Kinematics| [k.shaft_rad_s, k.cage_rad_s, k.roller_rad_s, k.roller_relative_rad_s];
+        assert_eq!(turns(&there), turns(&back).map(|rate| -rate));
+        assert_eq!((there.sense(), back.sense()), (1.0, -1.0));
+        let angles = roller_angles_deg(&scene);
+        let mirrored: Vec<f64> = angles.iter().map(|angle| 180.0 - angle).collect();
+        for ring in [DefectRing::Outer, DefectRing::Inner] {
+            let defect = |angle_deg| DefectScene { ring, angle_deg, ..DefectScene::default() };
+            let ours = there.crossings(&defect(70.0), &angles, 1.0);
+            let theirs = back.crossings(&defect(110.0), &mirrored, 1.0);
+            assert!(ours.len() > 80 && ours.len() == theirs.len());
+            for (a, b) in ours.iter().zip(&theirs) {
+                assert_eq!(a.roller, b.roller);
+                let apart = [a.entry_s - b.entry_s, a.centre_s - b.centre_s, a.exit_s - b.exit_s];
+                assert!(apart.iter().all(|s| s.abs() < ROUNDING), "{a:?} {b:?}");
+            }
         }
     }
 

@@ -44,6 +44,7 @@
 //! | What can a scene say, and what is checked? | [`scene`], [`scene_file`] |
 //! | What is that in SI? | [`geometry`]; surfaces that are not round [`deviation`] |
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
+//! | How do speed and load go over time? | [`duty`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 //! | Which scenes does a campaign make of one? | [`campaign`] |
 //! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
@@ -53,6 +54,7 @@ pub mod catalogue;
 mod contact_formula;
 pub mod deviation;
 pub mod dice;
+pub mod duty;
 pub mod ensemble;
 pub mod error;
 pub mod frames;

@@ -1,7 +1,12 @@
 //! Oil films of loaded contacts in steady rolling, from the textbook: for a plan, and for the least thickness that a film
 //! keeps (THEORY §4.6). No pressure is computed.
 
-use crate::{error::Error, geometry::Geometry, kinematics::Kinematics, scene::Scene, static_load};
+use crate::{
+    duty::Duty, error::Error, geometry::Geometry, kinematics::Kinematics, scene::Scene, static_load,
+};
+
+/// Longest run that a scene may ask for [s].
+const LONGEST_RUN_S: f64 = 60.0;
 
 /// The film of the most loaded roller on one raceway.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,9 +39,14 @@ pub fn loaded_films(scene: &Scene) -> Result<Option<[LoadedFilm; 2]>, Error> {
         (k.shaft_rad_s - k.cage_rad_s).abs() * g.inner_race_radius,
     ];
     let modulus = 2.0 * g.material.contact_modulus();
+    // The least film is that of the slowest moment of the profile, however long the run: it can be made longer.
+    let slowest = Duty::varying(scene).map_or(1.0, |duty| {
+        let slowest = Kinematics::new(&scene.bearing, duty.slowest_rpm(LONGEST_RUN_S)).shaft_hz;
+        if k.shaft_hz > 0.0 { slowest / k.shaft_hz } else { 0.0 }
+    });
     let of = |radius: f64, speed: f64| {
-        let thickness =
-            least_thickness(film.viscosity, film.pressure_viscosity, modulus, radius, speed, load);
+        let slow = slowest * speed;
+        let thickness = least_thickness(film.viscosity, film.pressure_viscosity, modulus, radius, slow, load);
         LoadedFilm {
             radius,
             speed,

@@ -21,6 +21,7 @@ mod problem;
 mod schema;
 mod suggest;
 mod syntax;
+mod table;
 mod wording;
 
 use std::path::Path;
@@ -54,26 +55,31 @@ impl Scene {
     pub fn read_with<S: AsRef<str>>(path: impl AsRef<Path>, overrides: &[S]) -> Result<Self, SceneError> {
         let path = path.as_ref();
         let text = load(path)?;
-        compose(&text, &path.display().to_string(), overrides)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        compose(&text, &path.display().to_string(), folder, overrides)
     }
 
-    /// Checks the scene in `text`; `file_name` is what errors call it.
+    /// Checks the scene in `text`; `file_name` is what errors call it. Tables of the scene are looked for from the present
+    /// folder.
     ///
     /// # Errors
     ///
     /// As [`Scene::read`].
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
-        compose(text, file_name, &[] as &[&str])
+        compose(text, file_name, Path::new(""), &[] as &[&str])
     }
 
-    /// This scene with `overrides` applied, checked. The syntax is that of [`Scene::read_with`].
+    /// This scene with `overrides` applied, checked. The syntax is that of [`Scene::read_with`]; tables are looked for from
+    /// the present folder.
     ///
     /// # Errors
     ///
     /// As [`Scene::read_with`].
     pub fn with_overrides<S: AsRef<str>>(&self, overrides: &[S]) -> Result<Self, SceneError> {
-        let (scene, set) = overrides::apply(self.clone(), overrides)?;
-        check(&scene, &Origin::in_memory(set))?;
+        let (mut scene, set) = overrides::apply(self.clone(), overrides)?;
+        let origin = Origin::in_memory(set);
+        table::read(&mut scene, Path::new(""), &origin)?;
+        check(&scene, &origin)?;
         Ok(scene)
     }
 
@@ -87,8 +93,13 @@ impl Scene {
     }
 }
 
-/// Text → scene, overrides, check.
-fn compose<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Scene, SceneError> {
+/// Text → scene, overrides, tables in `folder`, check.
+fn compose<S: AsRef<str>>(
+    text: &str,
+    file: &str,
+    folder: &Path,
+    overrides: &[S],
+) -> Result<Scene, SceneError> {
     // Some editors put a byte order mark in front; RON knows none.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let outline = Outline::of(text);
@@ -102,8 +113,10 @@ fn compose<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Sce
             unknown_bearing(why, place.unwrap_or(Place::Unwritten { file: file.to_owned() }))
         })?;
     }
-    let (scene, set) = overrides::apply(scene, overrides)?;
-    check(&scene, &Origin::in_file(file, text, set))?;
+    let (mut scene, set) = overrides::apply(scene, overrides)?;
+    let origin = Origin::in_file(file, text, set);
+    table::read(&mut scene, folder, &origin)?;
+    check(&scene, &origin)?;
     Ok(scene)
 }
 

@@ -16,7 +16,7 @@ use crate::{
         sweep::{Scratch, StepEnergies},
         tile::{Tile, TileDamping},
     },
-    model::{Behaviour, Model, Motion},
+    model::{Behaviour, Model, Motion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Accumulated, Moment, NodeForces, State},
     structural_damping::{MAX_BRANCHES, StructuralDamping},
@@ -243,6 +243,22 @@ impl Dynamics {
         check("time step [s]", dt, dt > 0.0, "positive")?;
         self.time_step = dt;
         self.set_step_over_mass();
+        Ok(())
+    }
+
+    /// Lets every rotating node turn at `rate` [rad/s], counter-clockwise positive, from the next step on: what was given in
+    /// the model holds until then. A step turns it by the exact angle `rate` · Δt; what is to follow an angle over time is
+    /// given the mean rate of each step. Restoring a snapshot leaves it as it is.
+    ///
+    /// # Errors
+    /// As for the rate of a model.
+    pub fn set_rotation_rate(&mut self, rate: f64) -> Result<(), Error> {
+        check_rate(rate)?;
+        for finish in self.tiles.iter_mut().flat_map(|tile| &mut tile.finish) {
+            if let Motion::Rotating { rate: old, .. } = &mut finish.motion {
+                *old = rate;
+            }
+        }
         Ok(())
     }
 

@@ -188,10 +188,15 @@ impl Model {
         check("gravity y [m/s²]", self.gravity[1], true, "finite")?;
         for motion in &self.motion {
             if let Motion::Rotating { rate, .. } = motion {
-                // Half a turn a millisecond is far beyond any bearing and still harmless.
-                check("rotation rate [rad/s]", *rate, rate.abs() < 1e6 * PI, "below π·10⁶")?;
+                check_rate(*rate)?;
             }
         }
         Ok(())
     }
+}
+
+/// Checks the rate of rotating nodes [rad/s].
+pub(crate) fn check_rate(rate: f64) -> Result<(), Error> {
+    // Half a turn a millisecond is far beyond any bearing and still harmless.
+    check("rotation rate [rad/s]", rate, rate.abs() < 1e6 * PI, "below π·10⁶")
 }

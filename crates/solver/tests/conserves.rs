@@ -186,3 +186,40 @@ fn conserves_the_ledger_of_a_driven_ring() {
         assert!(miss < 1e-14 * 5000.0, "node {n} misses its place by {miss:e} m");
     }
 }
+
+#[test]
+fn conserves_the_ledger_of_a_ring_whose_speed_changes() {
+    // Driven from rest at a constant acceleration, and given the mean speed of each step: the bore follows ½αt², and the work
+    // of the drive is what the ring holds.
+    const ACCELERATION: f64 = 4e5;
+    let part = stribeck_mesh::Annulus {
+        inner_radius: 0.05,
+        outer_radius: 0.08,
+        facets: 48,
+        layers: 4,
+        start_angle: 0.0,
+        groove: None,
+    };
+    let mut model = body(&part.part().expect("a ring"));
+    for n in 0..48 {
+        model.motion[n] = Motion::Rotating { centre: [0.0; 2], rate: 0.0 };
+    }
+    let mut d = ready(&model, 0.9);
+    let (mut largest, mut worst) = (0.0_f64, 0.0_f64);
+    for _ in 0..5000 {
+        d.set_rotation_rate(ACCELERATION * (d.state.time + 0.5 * d.time_step())).expect("a possible rate");
+        let now = step_and_balance(&mut d, &mut []);
+        largest = largest.max(now.mechanical());
+        worst = worst.max((now.mechanical() - now.drive).abs());
+    }
+    assert!(worst < 1e-5 * largest, "{worst:e} J of {largest:e} J are missing");
+    let angle = 0.5 * ACCELERATION * d.state.time * d.state.time;
+    assert!(angle > 1.0, "{angle} rad");
+    for n in 0..48 {
+        let s = slot(&d, n);
+        let (sin, cos) = (TAU * n as f64 / 48.0 + angle).sin_cos();
+        let miss = (d.state.x[s] - 0.05 * cos).hypot(d.state.y[s] - 0.05 * sin);
+        assert!(miss < 1e-14 * 5000.0, "node {n} misses its place by {miss:e} m");
+    }
+    assert!(d.set_rotation_rate(f64::NAN).is_err() && d.set_rotation_rate(4e6).is_err());
+}

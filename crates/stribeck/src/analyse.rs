@@ -33,7 +33,7 @@ pub struct Options {
     /// over the record, and a record whose speed varies is analysed over the angle
     #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse)]
     speed_rpm: Option<Speed>,
-    /// Channel of a tachometer, one pulse a turn; a record whose speed varies is analysed over the angle
+    /// Channel of a tachometer, one pulse a turn, or of the angle of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
     #[arg(long)]
     tacho: Option<String>,
     /// What a sample is multiplied by, for example 1/sensitivity
@@ -280,14 +280,26 @@ fn machine(
         }
         Some(60.0 * found.mean_hz())
     } else if let Some(name) = &options.tacho {
-        let turns = tacho::turns(recording.channel(name)?, rate_hz)?;
+        let channel = recording.channel(name)?;
+        let by_angle = channel.name.ends_with("_rad");
+        let turns =
+            if by_angle { tacho::of_angle(channel, rate_hz)? } else { tacho::turns(channel, rate_hz)? };
         if turns.variation > STEADY {
             notes.push(format!("the speed varies by {:.1} % over the record", 100.0 * turns.variation));
             pulses = Some(turns.pulses);
         }
         Some(turns.rpm)
+    } else if let Some(scene) = scene.filter(|scene| scene.operation.speed_varies()) {
+        let turns = tacho::of_angle(recording.channel("shaft.angle_rad")?, rate_hz)
+            .with_context(|| format!("the speed of `{}` changes", scene.name))?;
+        notes.push(format!(
+            "the speed varies by {:.1} % over the record, by the recorded angle of the shaft",
+            100.0 * turns.variation
+        ));
+        pulses = Some(turns.pulses);
+        Some(turns.rpm)
     } else if let Some(scene) = scene {
-        Some(scene.operation.speed_rpm)
+        Some(scene.operation.speed_rpm.abs())
     } else if let Some(channel) = said {
         let rpm = channel.read()?.first().copied();
         notes.extend(

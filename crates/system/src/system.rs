@@ -129,6 +129,15 @@ impl System {
         Ok(())
     }
 
+    /// Lets all nodes that were constrained to rotate turn at `rate` [rad/s], counter-clockwise positive, from the next step
+    /// on. No part of a [`Snapshot`](crate::Snapshot): it is a function of time, which whoever drives a system knows.
+    ///
+    /// # Errors
+    /// When the rate is not finite or beyond π·10⁶.
+    pub fn set_rotation_rate(&mut self, rate: f64) -> Result<(), Error> {
+        Ok(self.dynamics.set_rotation_rate(rate)?)
+    }
+
     /// One step: everything pushes, everything moves (THEORY §2.3).
     ///
     /// # Errors

@@ -24,12 +24,18 @@ pub(super) fn picked_events(
     let time = record.time_s();
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
     let edge = Edge::of(scene);
-    let speed_m_s = prediction.kinematics.contact_speed_m_s;
-    let depth_m = scene.leading_spall().map_or(0.0, |spall| 1e-3 * spall.depth_mm);
-    let floor_s = edge.floor_m(depth_m) / speed_m_s;
+    let [depth_m, length_m] =
+        scene.leading_spall().map_or([0.0; 2], |spall| [1e-3 * spall.depth_mm, 1e-3 * spall.length_mm]);
     let mut events = Vec::new();
     for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {
         let mut event = Event::expected(passage);
+        // A shaft whose speed changes has another one at each passage.
+        let speed_m_s = if scene.operation.speed_varies() {
+            length_m / (passage.exit_s - passage.entry_s)
+        } else {
+            prediction.kinematics.contact_speed_m_s
+        };
+        let floor_s = edge.floor_m(depth_m) / speed_m_s;
         match record.roller(passage.roller) {
             None => notes.push(format!("roller {} is not in the trace", passage.roller)),
             Some(roller) => {

@@ -5,6 +5,7 @@ use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::run_dir::Run;
 
 use crate::artefacts::Family;
+use crate::duty::DutyFinding;
 use crate::families::FamilyFinding;
 use crate::rolling;
 use crate::summary::Summary;
@@ -53,6 +54,10 @@ fn defect(run: &Run, summary: &Summary) -> String {
                 for its family, BPFI, in the spectra."
             .into();
     }
+    if events.is_empty() && unsteady(summary).is_some_and(|duty| duty.speed_rpm.0 * duty.speed_rpm.1 < 0.0) {
+        return "The shaft turns back on the way, and passages are foretold of one sense of rotation only."
+            .into();
+    }
     if events.is_empty() {
         return "No roller reaches it on this record.".into();
     }
@@ -86,6 +91,13 @@ fn defect(run: &Run, summary: &Summary) -> String {
 }
 
 fn mesh(summary: &Summary) -> String {
+    if let Some(duty) = unsteady(summary) {
+        let (least, most) = duty.speed_rpm;
+        return format!(
+            "The speed goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and are not looked for."
+        )
+        .replace('-', "−");
+    }
     let families = &summary.families;
     if families.iter().all(|f| f.lead.is_none()) {
         return "This record is too short to tell a family of facet lines from anything else.".into();
@@ -124,7 +136,40 @@ fn mesh(summary: &Summary) -> String {
     )
 }
 
+/// The duty of a run whose speed changes.
+fn unsteady(summary: &Summary) -> Option<&DutyFinding> {
+    summary.duty.as_ref().filter(|duty| duty.speed_rpm.0 != duty.speed_rpm.1)
+}
+
+/// What the envelope shows over the angle of the shaft.
+fn orders(duty: &DutyFinding) -> String {
+    let Some(envelope) = &duty.envelope else {
+        return "No family was sought over the angle of the shaft.".into();
+    };
+    let seen: Vec<String> =
+        envelope.lines.iter().filter(|l| l.measured.is_some()).map(|l| format!("×{}", l.harmonic)).collect();
+    let order = envelope.lines.first().map_or(0.0, |line| line.predicted);
+    if seen.is_empty() {
+        return format!(
+            "Over the angle of the shaft nothing stands at {} ({order:.3} a turn) or its multiples.",
+            envelope.family
+        );
+    }
+    let (family, at) = (&envelope.family, envelope.lines.first().and_then(|line| line.measured));
+    let at = at.map_or(String::new(), |at| format!(" at {at:.3}"));
+    format!(
+        "Over the angle of the shaft {family} ({order:.3} a turn) stands{at}, of its multiples {}.",
+        seen.join(", ")
+    )
+}
+
 fn physics(summary: &Summary) -> String {
+    if let Some(duty) = unsteady(summary) {
+        return format!(
+            "Bursts at entries and exits and the forces of the rollers follow from load and geometry. {}",
+            orders(duty)
+        );
+    }
     let seen: Vec<String> = summary
         .artefacts
         .iter()

@@ -2,6 +2,7 @@
 
 mod acceleration;
 mod beating;
+mod duty;
 mod forces;
 mod motion;
 mod spectra;
@@ -56,6 +57,7 @@ impl Item {
 #[derive(Debug, Default)]
 pub(super) struct Figures {
     pub(super) acceleration: Vec<Item>,
+    pub(super) duty: Vec<Item>,
     pub(super) spectra: Vec<Item>,
     pub(super) forces: Vec<Item>,
     pub(super) bearing: Vec<Item>,
@@ -73,6 +75,7 @@ impl Figures {
                 .chain(charts(acceleration::others(findings)))
                 .chain(charts(acceleration::notched(findings)))
                 .collect(),
+            duty: charts(duty::figures(run, findings)).collect(),
             spectra: charts(spectra::raw(findings))
                 .chain(charts(spectra::notched(findings)))
                 .chain(charts(spectra::others(findings)))
@@ -92,6 +95,7 @@ impl Figures {
     pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
         [
             &self.acceleration,
+            &self.duty,
             &self.spectra,
             &self.forces,
             &self.bearing,
@@ -143,7 +147,8 @@ fn load(findings: &Findings) -> Vec<Figure> {
     }
     if let Some(edges) = findings.prediction.defect {
         let label = "defect".into();
-        figure.bands.push(Band { from: edges.trailing_deg, to: edges.leading_deg, label });
+        let (one, other) = (edges.trailing_deg, edges.leading_deg);
+        figure.bands.push(Band { from: one.min(other), to: one.max(other), label });
     }
     vec![figure]
 }

@@ -51,8 +51,62 @@ fn family(family: Family) -> (&'static str, &'static str) {
     }
 }
 
+/// Range of speed and load, and the families in orders of the shaft.
+pub(super) fn duty(summary: &Summary) -> Markup {
+    let Some(duty) = &summary.duty else { return html! {} };
+    let minus = |text: String| text.replace('-', "−");
+    let (speed, load) = (duty.speed_rpm, duty.load_n);
+    html! {
+        table {
+            thead { tr { th { "Over the record" } th class="n" { "From" } th class="n" { "To" } } }
+            tbody {
+                tr { td { "Speed, clockwise positive, rpm" } td class="n" { (minus(format!("{:.1}", speed.0))) } td class="n" { (minus(format!("{:.1}", speed.1))) } }
+                tr { td { "Load, kN" } td class="n" { (format!("{:.2}", 1e-3 * load.0)) } td class="n" { (format!("{:.2}", 1e-3 * load.1)) } }
+                tr { td { "Turns of the shaft" } td class="n" { "" } td class="n" { (format!("{:.2}", duty.turns)) } }
+            }
+        }
+        @if speed.0 != speed.1 {
+            p class="hint" {
+                "Families come so often in a turn of the shaft, without slip: "
+                @for (n, (name, order)) in duty.orders.iter().enumerate() { @if n > 0 { ", " } (name) " " (format!("{order:.4}")) }
+                ". The squared envelope of the leading sensor was averaged over equal steps of the shaft’s angle (THEORY §7.11)."
+            }
+        }
+        @if let Some(envelope) = &duty.envelope {
+            table class="pairs" {
+                thead { tr { th { "Envelope line over the angle" } th class="n" { "Predicted order" } th class="n" { "From the motion" } th class="n" { "Measured order" } th class="n" { "Above surroundings dB" } } }
+                tbody {
+                    @for line in &envelope.lines {
+                        tr {
+                            td { (envelope.family) " ×" (line.harmonic) }
+                            td class="n" { (format!("{:.3}", line.predicted)) }
+                            (cell(line.from_motion.map(|order| format!("{order:.3}"))))
+                            (cell(line.measured.map(|order| format!("{order:.3}"))))
+                            (cell(line.prominence_db.map(|db| minus(format!("{db:.1}")))))
+                        }
+                    }
+                }
+            }
+            p class="hint" { (format!("{:.1} periods of {}; resolution {:.3} orders, one over the turns on record.", envelope.periods, envelope.family, envelope.resolution)) }
+        }
+    }
+}
+
+/// Whether the speed of a run changes, so that nothing has a frequency.
+fn unsteady(summary: &Summary) -> bool {
+    summary.duty.as_ref().is_some_and(|duty| duty.speed_rpm.0 != duty.speed_rpm.1)
+}
+
+/// What stands in the place of lines at constant frequencies where the speed changes.
+fn no_lines() -> Markup {
+    html! { p class="hint" { "The speed changes, so that no line of the mesh or of the defect has a place here: see " a href="#duty" { "Speed and load" } "." } }
+}
+
 /// Verdicts on the families, and their lines.
 pub(super) fn families(summary: &Summary) -> Markup {
+    if unsteady(summary) {
+        return no_lines();
+    }
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
     let signed = |v: Option<f64>| v.map(|v| format!("{v:+.1}").replace('-', "−"));
     let lines = summary.families.iter().flat_map(|f| &f.lines).filter(|l| l.measured_hz.is_some());
@@ -109,6 +163,9 @@ pub(super) fn families(summary: &Summary) -> Markup {
 
 /// Every line of the leading sensor's spectrum.
 pub(super) fn artefacts(summary: &Summary) -> Markup {
+    if unsteady(summary) {
+        return no_lines();
+    }
     if summary.artefacts.is_empty() {
         return html! { p { "The record is too short for a spectrum." } };
     }
@@ -198,6 +255,9 @@ pub(super) fn readings(summary: &Summary) -> Markup {
 
 /// The defect's family in the envelope.
 pub(super) fn envelope(summary: &Summary, name: &str) -> Markup {
+    if unsteady(summary) {
+        return html! {};
+    }
     let Some(envelope) = &summary.envelope else {
         let why = summary.notes.iter().find(|n| n.starts_with("no envelope spectrum"));
         return html! { p class="hint" { (why.map_or("No envelope spectrum was made.", String::as_str)) "." } };

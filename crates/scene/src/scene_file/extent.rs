@@ -4,8 +4,10 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
-use super::wording::{number, round_down, round_up};
-use crate::scene::{ModelScene, Scene, Start};
+use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
+use super::wording::{number, round_down, round_up, shown};
+use crate::duty::Duty;
+use crate::scene::{ModelScene, ProfileScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
@@ -35,6 +37,9 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_twice,
         reduced_starts,
         reduced_oil,
+        speed_profile,
+        load_profile,
+        rotating_load,
     ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
@@ -218,6 +223,94 @@ fn reduced_starts(scene: &Scene) -> Option<Finding> {
             Remedy::new("model", "`full`".to_owned()).value("full", ""),
         ],
     ))
+}
+
+/// A speed over time that can be followed.
+fn speed_profile(scene: &Scene) -> Option<Finding> {
+    let o = &scene.operation;
+    profile(SPEED_PROFILE, o.speed_profile.as_ref()?, ("operation.speed_rpm", o.speed_rpm))
+}
+
+/// A load over time that can be followed.
+fn load_profile(scene: &Scene) -> Option<Finding> {
+    let o = &scene.operation;
+    profile(LOAD_PROFILE, o.load_profile.as_ref()?, ("operation.load_n", o.load_n))
+}
+
+/// A profile with a beginning, an end and values that its field may have; `field` has the name and the value of the latter.
+fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Option<Finding> {
+    match profile {
+        ProfileScene::Ramp(ramp) if ramp.to_ms <= ramp.from_ms => {
+            let (from, to) = (format!("{path}.from_ms"), format!("{path}.to_ms"));
+            let message = format!(
+                "the ramp ends at {} ms, not after it begins ({} ms)",
+                number(ramp.to_ms),
+                number(ramp.from_ms)
+            );
+            let later = Remedy::new(to, format!("more than {} ms", number(ramp.from_ms)));
+            let earlier = Remedy::new(from, format!("less than {} ms", number(ramp.to_ms)));
+            let remedies =
+                vec![later.number(ramp.from_ms + 100.0, "0.1 s"), earlier.number(0.0, "from the start")];
+            Some(Finding::new(message, remedies))
+        }
+        ProfileScene::Harmonic(sine) => {
+            let ends = [mean - sine.amplitude, mean + sine.amplitude];
+            let (end, allowed) =
+                ends.into_iter().find_map(|end| Some((end, limits::refuses_in_profile(path, end)?)))?;
+            let amplitude = format!("{path}.amplitude");
+            let message = format!(
+                "`{field}` = {} and `{amplitude}` = {} come to {}, outside the range of `{field}`",
+                number(mean),
+                number(sine.amplitude),
+                number(end)
+            );
+            let less = Remedy::new(amplitude, format!("`{field}` may be {allowed}"))
+                .number(round_down(0.5 * mean.abs(), 2), "half of the mean")
+                .number(0.0, "none");
+            let more = Remedy::new(field, allowed).number(2.0 * sine.amplitude, "twice the amplitude");
+            Some(Finding::new(message, vec![less, more]))
+        }
+        ProfileScene::Points(points) => {
+            let falls = |i: &usize| {
+                let (at, before) = (points[*i].0, if *i > 0 { points[*i - 1].0 } else { f64::NEG_INFINITY });
+                !(at > before && at.is_finite())
+            };
+            let message = match (0..points.len()).find(falls) {
+                None if points.is_empty() => format!("`{path}` has no points"),
+                None => return None,
+                Some(i) => format!("`{path}[{i}]` is at {} ms: times must ascend", number(points[i].0)),
+            };
+            let allowed = "points with ascending times, `[(0.0, 500.0), (100.0, 1000.0)]`";
+            Some(Finding::new(message, vec![Remedy::new(path, allowed)]))
+        }
+        ProfileScene::Table(file) => {
+            let message = format!("`{path}` is the table `{}`, which was not read", shown(file));
+            let allowed = "`points([ … ])` for a scene that is made in memory";
+            Some(Finding::new(message, vec![Remedy::new(path, allowed)]))
+        }
+        ProfileScene::Ramp(_) => None,
+    }
+}
+
+/// A rotating load that does not lift the adapter.
+fn rotating_load(scene: &Scene) -> Option<Finding> {
+    const FORCE: &str = "operation.rotating_load.force_n";
+    let rotating = scene.operation.rotating_load.as_ref()?;
+    let [least, _] = Duty::of(scene).load_range_n(1e-3 * scene.solver.duration_ms);
+    if least > 0.0 {
+        return None;
+    }
+    let load = least + rotating.force_n;
+    let message = format!(
+        "`{FORCE}` is {}, not less than the least load ({} N): it would lift the adapter",
+        number(rotating.force_n),
+        number(load)
+    );
+    let less = Remedy::new(FORCE, format!("less than {} N", number(load)));
+    let more = Remedy::new("operation.load_n", format!("more than {} N", number(rotating.force_n)));
+    let remedies =
+        vec![less.number(round_down(0.2 * load, 2), "a fifth"), more.number(5.0 * rotating.force_n, "")];
+    Some(Finding::new(message, remedies))
 }
 
 /// A file that fits a disk.

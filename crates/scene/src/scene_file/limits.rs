@@ -6,7 +6,10 @@ use super::finding::{Finding, Remedy};
 use super::schema::every_form;
 use super::wording::{number, shown};
 use crate::deviation::{FormScene, RollingSurface};
-use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
+use crate::scene::{
+    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    RotatingLoadScene, Scene, StructuralDampingScene,
+};
 
 /// Longest name of a scene or sensor: they become folder and channel names.
 const MAX_NAME: usize = 64;
@@ -74,7 +77,52 @@ fn with_everything() -> Scene {
     scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
     scene.defects = every_form();
     scene.film = Some(FilmScene::default());
+    // Between them they have the numbers of both kinds of profile.
+    scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
+    scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
+    scene.operation.rotating_load = Some(RotatingLoadScene::default());
     scene
+}
+
+/// What speeds [rpm] and loads [N] may be.
+const SPEED: Range = within(-100_000.0, 100_000.0);
+const LOAD: Range = positive(1e9);
+
+/// What a value of the profile at `path` may be, in words, where `value` is not.
+pub(crate) fn refuses_in_profile(path: &str, value: f64) -> Option<String> {
+    let (range, unit) = if path == LOAD_PROFILE { (LOAD, "N") } else { (SPEED, "rpm") };
+    (!range.contains(value)).then(|| format!("{range} {unit}"))
+}
+
+/// Paths of the profiles.
+pub(crate) const SPEED_PROFILE: &str = "operation.speed_profile";
+pub(crate) const LOAD_PROFILE: &str = "operation.load_profile";
+
+/// The numbers of a profile.
+fn in_profile(
+    path: &str,
+    profile: &ProfileScene,
+    (range, unit): (Range, &'static str),
+    add: &mut dyn FnMut(&str, f64, Range, &'static str),
+) {
+    match profile {
+        ProfileScene::Ramp(ramp) => {
+            add(&format!("{path}.from_ms"), ramp.from_ms, within(0.0, 60_000.0), "ms");
+            add(&format!("{path}.to_ms"), ramp.to_ms, within(0.0, 60_000.0), "ms");
+            add(&format!("{path}.to"), ramp.to, range, unit);
+        }
+        ProfileScene::Harmonic(sine) => {
+            add(&format!("{path}.amplitude"), sine.amplitude, within(0.0, range.high), unit);
+            add(&format!("{path}.hz"), sine.hz, positive(1e5), "Hz");
+            add(&format!("{path}.phase_deg"), sine.phase_deg, within(-360.0, 360.0), "°");
+        }
+        ProfileScene::Points(points) => {
+            for (i, (_, value)) in points.iter().enumerate() {
+                add(&format!("{path}[{i}]"), *value, range, unit);
+            }
+        }
+        ProfileScene::Table(_) => {}
+    }
 }
 
 /// One number of the scene and what it may be.
@@ -203,9 +251,19 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("mesh.grading.coarse_mm", grading.coarse_mm, positive(1_000.0), "mm");
         add("mesh.grading.fine_layers", grading.fine_layers as f64, within(1.0, 1_000.0), "");
     }
-    add("operation.load_n", operation.load_n, positive(1e9), "N");
-    add("operation.speed_rpm", operation.speed_rpm, within(0.0, 100_000.0), "rpm");
+    add("operation.load_n", operation.load_n, LOAD, "N");
+    add("operation.speed_rpm", operation.speed_rpm, SPEED, "rpm");
     add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
+    if let Some(profile) = &operation.speed_profile {
+        in_profile(SPEED_PROFILE, profile, (SPEED, "rpm"), &mut add);
+    }
+    if let Some(profile) = &operation.load_profile {
+        in_profile(LOAD_PROFILE, profile, (LOAD, "N"), &mut add);
+    }
+    if let Some(rotating) = &operation.rotating_load {
+        add("operation.rotating_load.force_n", rotating.force_n, LOAD, "N");
+        add("operation.rotating_load.angle_deg", rotating.angle_deg, within(-360.0, 360.0), "°");
+    }
     add("contact.points_per_facet", contact.points_per_facet as f64, within(1.0, 16.0), "");
     add("contact.penalty_scale", contact.penalty_scale, positive(1_000.0), "");
     add("contact.onset_um", contact.onset_um, within(0.0, 20.0), "µm");

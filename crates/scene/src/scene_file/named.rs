@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use super::outline::Outline;
 use crate::catalogue::{Boundary, CatalogueBearing, Element};
+use crate::duty::Duty;
 use crate::geometry::Geometry;
 use crate::line_contact::LineContacts;
 use crate::point_contact;
@@ -96,16 +97,20 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     let area = |b: &BearingScene| b.rollers as f64 * b.roller_diameter_mm * b.thickness_mm;
     let load = paper.operation.load_n * area(&bearing) / area(&paper.bearing);
     follow("operation.load_n", &mut scene.operation.load_n, load);
+    let [least, most] = Duty::of(scene).speed_range_rpm(1e-3 * scene.solver.duration_ms);
     if let Some(frames) = &mut scene.output.frames {
         let of_paper = FramesScene::default();
         follow("output.frames.half_width_mm", &mut frames.half_width_mm, size * of_paper.half_width_mm);
         // Roller 1 begins as far before the defect in parts of the pitch, which passes with each roller.
         let passing = |b: &BearingScene, rpm: f64| {
             let pitch = 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm);
-            rpm.abs().max(1e-3) * b.rollers as f64 * b.inner_race_diameter_mm / pitch
+            rpm * b.rollers as f64 * b.inner_race_diameter_mm / pitch
         };
+        let fastest = least.abs().max(most.abs());
+        // A shaft that stands passes nothing: its pictures are as good at any time.
+        let fastest = if fastest > 0.0 { fastest } else { paper.operation.speed_rpm };
         let slower =
-            passing(&paper.bearing, paper.operation.speed_rpm) / passing(&bearing, scene.operation.speed_rpm);
+            passing(&paper.bearing, paper.operation.speed_rpm) / passing(&bearing, fastest.max(1e-3));
         follow("output.frames.from_ms", &mut frames.from_ms, slower * of_paper.from_ms);
         let to = (slower * of_paper.to_ms).min(scene.solver.duration_ms);
         follow("output.frames.to_ms", &mut frames.to_ms, to);

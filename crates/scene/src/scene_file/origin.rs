@@ -94,6 +94,11 @@ impl<'a> Origin<'a> {
         problem
     }
 
+    /// Where `field` was written, or that nobody did.
+    pub(crate) fn place(&self, field: &str) -> Place {
+        self.written(field).unwrap_or(Place::Unwritten { file: self.file.to_owned() })
+    }
+
     /// Where `field` was written; an override of the field or of a section around it wins over the file.
     fn written(&self, field: &str) -> Option<Place> {
         let within = |path: &str| {

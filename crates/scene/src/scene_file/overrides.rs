@@ -3,6 +3,7 @@
 //! Working on the text keeps RON's own rules for enums, options and numbers: an override means exactly what the same
 //! words would mean in the file.
 
+use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
 use super::origin::{Override, command_line};
 use super::outline::{Outline, is_single_value};
 use super::problem::{Place, Problem, SceneError};
@@ -163,12 +164,31 @@ fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
         let (start, end) = (entry.value.start, entry.value.end);
         return format!("{}{value}{}", &text[..start], &text[end..]);
     }
+    let group = |section: &str| {
+        let value = outline.get(section)?.value.clone();
+        text[value.clone()].starts_with('(').then_some(value.start + 1)
+    };
     match path.rsplit_once('.') {
+        // A field that a section may lack beside others.
+        Some((section, name)) if group(section).is_some() => {
+            let inside = group(section).unwrap_or_default();
+            format!("{}{name}: {value}, {}", &text[..inside], &text[inside..])
+        }
+        // A profile of another kind than the one that has such fields.
+        Some((SPEED_PROFILE | LOAD_PROFILE, name)) => {
+            let (section, kind) = (path.rsplit_once('.').map_or("", |(section, _)| section), kind_with(name));
+            write(text, outline, section, &format!("{kind}({name}: {value})"))
+        }
         // The other model than the one that has such fields is a word, not a group.
         Some(("model", name)) => write(text, outline, "model", &format!("reduced({name}: {value})")),
         Some((section, name)) => write(text, outline, section, &format!("({name}: {value})")),
         None => text.to_owned(),
     }
+}
+
+/// The kind of profile that has a field of this name.
+fn kind_with(name: &str) -> &'static str {
+    if ["amplitude", "hz", "phase_deg"].contains(&name) { "harmonic" } else { "ramp" }
 }
 
 fn refuse(field: &str, message: String, suggestion: String, place: Place) -> Box<Problem> {

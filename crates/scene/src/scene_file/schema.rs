@@ -1,22 +1,36 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
+use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
 use crate::deviation::{
-    DentScene, DeviationScene, DiameterScene, FormScene, PointScene, ProfileScene, RoughnessScene,
-    SpallScene, WavinessScene,
+    DentScene, DeviationScene, DiameterScene, FormScene, PointScene, RoughnessScene, SpallScene,
+    SurfaceProfileScene, WavinessScene,
 };
-use crate::scene::{FilmScene, GradingScene, ModelScene, ReducedScene, Scene, StructuralDampingScene};
+use crate::scene::{
+    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    RotatingLoadScene, Scene, StructuralDampingScene,
+};
 
 /// Groups that a scene may lack.
-const OPTIONAL_GROUPS: [&str; 6] =
-    ["cage", "defect", "film", "mesh.grading", "solver.structural_damping", "output.frames"];
+const OPTIONAL_GROUPS: [&str; 7] = [
+    "cage",
+    "defect",
+    "film",
+    "mesh.grading",
+    "operation.rotating_load",
+    "solver.structural_damping",
+    "output.frames",
+];
 
 /// One deviation of every form: items of a list may have different fields.
 pub(crate) fn every_form() -> Vec<DeviationScene> {
     let forms = [
         FormScene::Spall(SpallScene::default()),
         FormScene::Dent(DentScene::default()),
-        FormScene::Profile(ProfileScene { points: vec![PointScene::default()], ..ProfileScene::default() }),
+        FormScene::Profile(SurfaceProfileScene {
+            points: vec![PointScene::default()],
+            ..SurfaceProfileScene::default()
+        }),
         FormScene::Waviness(WavinessScene::default()),
         FormScene::Roughness(RoughnessScene::default()),
         FormScene::Diameter(DiameterScene::default()),
@@ -41,6 +55,10 @@ impl Schema {
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
         scene.defects = every_form();
         scene.film = Some(FilmScene::default());
+        // One profile shows the fields of a ramp, the other those of a sine; either may be both.
+        scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
+        scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
+        scene.operation.rotating_load = Some(RotatingLoadScene::default());
         let text = scene.to_ron();
         let outline = Outline::of(&text);
         Self { text, outline }
@@ -68,12 +86,13 @@ impl Schema {
     /// The default of `path` as text; any item of a list stands for its siblings.
     pub(crate) fn default_of(&self, path: &str) -> Option<&str> {
         let path = self.item_with(path);
-        self.outline.get(&path).map(|entry| &self.text[entry.value.clone()])
+        let entry = self.outline.get(&path).or_else(|| self.outline.get(&in_other_profile(&path)?));
+        entry.map(|entry| &self.text[entry.value.clone()])
     }
 
     /// The default of `path` where it is one word, text or number of its own.
     pub(crate) fn plain_default(&self, path: &str) -> Option<&str> {
-        self.default_of(path).filter(|default| !default.starts_with(['(', '[']) && !path.contains('['))
+        self.default_of(path).filter(|default| !default.contains(['(', '[']) && !path.contains('['))
     }
 
     /// Names valid directly inside `section` (empty: the root).
@@ -126,6 +145,12 @@ impl Schema {
         let place = self.outline.get(&self.item_with(path))?.value.clone();
         Some(format!("{}{value}{}", &self.text[..place.start], &self.text[place.end..]))
     }
+}
+
+/// The same field of the other profile.
+fn in_other_profile(path: &str) -> Option<String> {
+    let other = |from: &str, to: &str| Some(format!("{to}.{}", path.strip_prefix(from)?.strip_prefix('.')?));
+    other(SPEED_PROFILE, LOAD_PROFILE).or_else(|| other(LOAD_PROFILE, SPEED_PROFILE))
 }
 
 /// A kind of value.

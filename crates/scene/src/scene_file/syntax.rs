@@ -101,7 +101,9 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
             fault.allowed = list(expected);
             match suggest::nearest(found, expected) {
                 Some(near) => fault.suggestion = format!("did you mean `{near}`?"),
-                None => fault.proposal = schema.default_of(path).map(|word| (word.to_owned(), "the default")),
+                None => {
+                    fault.proposal = schema.plain_default(path).map(|word| (word.to_owned(), "the default"))
+                }
             }
         }
         E::DuplicateStructField { field, .. } => {

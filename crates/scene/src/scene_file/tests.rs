@@ -8,7 +8,9 @@ use proptest::prelude::*;
 use stribeck_testing::Scratch;
 
 use super::{Place, Problem, SceneError};
-use crate::scene::{ContactMethod, DampingFrame, RollerCopies, Scene, Start};
+use crate::scene::{
+    ContactMethod, DampingFrame, HarmonicScene, ProfileScene, RampScene, RollerCopies, Scene, Start,
+};
 
 /// The only problem of `result`.
 fn only(result: Result<Scene, SceneError>) -> Problem {
@@ -303,6 +305,69 @@ fn example_overrides_reach_every_kind_of_field() {
 }
 
 #[test]
+fn example_profiles_are_written_in_files_and_behind_set() {
+    let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid").operation;
+    let ramp = RampScene { from_ms: 5.0, to_ms: 25.0, to: 1500.0 };
+    let in_file =
+        parse("(operation: (speed_profile: ramp(from_ms: 5, to_ms: 25, to: 1500)))").expect("valid");
+    assert_eq!(in_file.operation.speed_profile, Some(ProfileScene::Ramp(ramp.clone())));
+    // Beside what the section says already, whole or field by field, of the same kind or of another.
+    let whole =
+        set(&["operation.speed_rpm=0", "operation.speed_profile=ramp(from_ms: 5, to_ms: 25, to: 1500)"]);
+    assert_eq!((whole.speed_rpm, whole.speed_profile), (0.0, Some(ProfileScene::Ramp(ramp))));
+    let pieces = set(&["operation.load_profile.amplitude=4000", "operation.load_profile.hz=30"]);
+    let sine = HarmonicScene { amplitude: 4000.0, hz: 30.0, phase_deg: 0.0 };
+    assert_eq!((pieces.load_n, pieces.load_profile), (50_000.0, Some(ProfileScene::Harmonic(sine))));
+    let points = set(&[
+        "operation.speed_profile=points([(0, 500), (20, -100)])",
+        "operation.rotating_load.force_n=50",
+    ]);
+    assert_eq!(points.speed_profile, Some(ProfileScene::Points(vec![(0.0, 500.0), (20.0, -100.0)])));
+    assert_eq!(points.rotating_load.map(|load| load.force_n), Some(50.0));
+    assert_eq!(set(&["operation.speed_rpm=-500"]).speed_rpm, -500.0);
+    let scene =
+        parse("(operation: (load_profile: points([(1, 2.5)]), rotating_load: (force_n: 1)))").expect("valid");
+    assert_eq!(parse(&scene.to_ron()).expect("valid"), scene);
+    let text = Scene::default().to_ron();
+    assert!(!text.contains("profile") && !text.contains("rotating"), "{text}");
+}
+
+#[test]
+fn refuses_profiles_that_cannot_be_followed() {
+    for (operation, field, words) in [
+        ("speed_profile: ramp(to: 1e6)", "operation.speed_profile.to", "outside its range"),
+        (
+            "speed_profile: ramp(from_ms: 5, to_ms: 5)",
+            "operation.speed_profile.to_ms",
+            "not after it begins (5 ms)",
+        ),
+        ("speed_profile: rmp(to: 10)", "operation.speed_profile", "not one of its words"),
+        ("speed_profile: ramp(til: 10)", "", "unknown field `til`"),
+        ("speed_profile: points([])", "operation.speed_profile", "no points"),
+        (
+            "speed_profile: points([(0, 1), (0, 2)])",
+            "operation.speed_profile",
+            "[1]` is at 0 ms: times must ascend",
+        ),
+        ("speed_profile: points([(inf, 1)])", "operation.speed_profile", "times must ascend"),
+        ("speed_profile: points([(0, 1), (1, 2e5)])", "operation.speed_profile[1]", "outside its range"),
+        ("load_profile: ramp(to: -5)", "operation.load_profile.to", "outside its range"),
+        ("load_profile: harmonic(amplitude: 6e4)", "operation.load_profile.amplitude", "come to -10000"),
+        ("load_profile: harmonic(hz: 0)", "operation.load_profile.hz", "outside its range"),
+        ("rotating_load: (force_n: 6e4)", "operation.rotating_load.force_n", "would lift the adapter"),
+        ("speed_rpm: -200000", "operation.speed_rpm", "outside its range"),
+    ] {
+        let problem = only(parse(&format!("(operation: ({operation}))")));
+        assert!(field.is_empty() || problem.field == field, "{problem}");
+        assert!(problem.to_string().contains(words), "{operation}\n{problem}");
+        assert!(!problem.allowed.is_empty(), "{operation}\n{problem}");
+    }
+    let mut unread = Scene::default();
+    unread.operation.load_profile = Some(ProfileScene::Table("load.csv".into()));
+    assert!(unread.validate().expect_err("in memory").to_string().contains("was not read"));
+}
+
+#[test]
 fn refuses_overrides_and_points_at_the_command_line() {
     let refuse = |argument: &str| only(Scene::default().with_overrides(&[argument]));
     for (argument, words) in [
@@ -407,6 +472,18 @@ proptest! {
         scene.operation.load_n = load;
         scene.bearing.first_roller_deg = angle;
         prop_assert_eq!(parse(&scene.to_ron()).expect("in range"), scene);
+    }
+}
+
+#[test]
+fn example_a_bearing_by_its_name_starts_from_rest_or_turns_back() {
+    for operation in
+        ["speed_rpm: 0", "speed_rpm: -1500", "speed_rpm: 0, speed_profile: ramp(to_ms: 5, to: 1500)"]
+    {
+        let scene = Scene::parse(&format!("(bearing: \"NU 205\", operation: ({operation}))"), "mine")
+            .expect(operation);
+        let frames = scene.output.frames.expect("pictures");
+        assert!(frames.to_ms <= scene.solver.duration_ms && frames.from_ms < frames.to_ms, "{operation}");
     }
 }
 

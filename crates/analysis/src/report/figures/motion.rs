@@ -12,6 +12,9 @@ use crate::record::Record;
 /// Rates are means over this time [s]; at most a tenth of the record.
 const SMOOTHING_S: f64 = 0.5e-3;
 
+/// Speed over the mean speed below which slip is not drawn.
+const LEAST_PACE: f64 = 0.05;
+
 /// Spin of the rollers that cross the defect, and orbit of rollers and cage.
 pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
     let record = Record::new(run);
@@ -23,9 +26,16 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
     let start = record.time_s()[0] + 0.5 * (width + 1) as f64 * record.interval_s();
     let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
     let crossing: Vec<usize> = findings.summary.events.iter().map(|e| e.roller).take(3).collect();
+    // What the shaft turns at, over its mean; a shaft that hardly turns tells nothing of slip.
+    let shaft = record.channel("shaft.angle_rad").map(|angle| rates(angle, record.interval_s(), width));
+    let pace = |n: usize| shaft.as_ref().map_or(1.0, |rate| (rate[n] / k.shaft_rad_s).abs());
     let percent = |name: &str, colour: Colour, angle: &[f64], without_slip_rad_s: f64| {
         let rate = rates(angle, record.interval_s(), width);
-        let off = rate.iter().map(|r| 100.0 * (r.abs() / without_slip_rad_s.abs() - 1.0)).collect();
+        let off = |(n, r): (usize, &f64)| {
+            let rolling = pace(n) * without_slip_rad_s.abs();
+            if pace(n) < LEAST_PACE { 0.0 } else { 100.0 * (r.abs() / rolling - 1.0) }
+        };
+        let off = rate.iter().enumerate().map(off).collect();
         Series::sampled(name, colour, start, record.interval_s(), off)
     };
     let mut spin =

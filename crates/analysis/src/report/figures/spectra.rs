@@ -116,7 +116,12 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
     let mut figure = over_frequency("spectrum-low", "Low frequencies: the defect and the ring", (0.0, top))
         .with(density("raw", Colour::Blue, raw));
+    let unsteady = findings.summary.duty.as_ref().is_some_and(|duty| duty.speed_rpm.0 != duty.speed_rpm.1);
     let caption = match findings.prediction.family {
+        None if unsteady => {
+            "The speed changes: what comes once a passage is smeared here, and stands over the angle."
+                .to_owned()
+        }
         None => "There is no defect whose lines could stand here.".to_owned(),
         Some((name, hz)) if artefacts::shows_family(raw, hz) => {
             format!("The record is long enough to separate the multiples of {name}.")

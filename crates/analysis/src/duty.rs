@@ -1,0 +1,241 @@
+//! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.11).
+//!
+//! Where the speed changes, a family has no frequency: it has an order, so many to a turn of the shaft. The squared envelope of
+//! the leading sensor, whose resonances stay where they are in time, is averaged over equal steps of the shaft's angle, which
+//! the run records as a tachometer would; its spectrum then has the family's lines at their orders.
+
+use std::f64::consts::TAU;
+
+use serde::{Deserialize, Serialize};
+use stribeck_dsp::{
+    Detrend, Envelope, PeriodCount, PeriodVerdict, Scaling, Spectrum, Welch, WelchOptions, Window,
+    means_over_angle,
+};
+use stribeck_scene::duty::Duty;
+use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::scene::{DefectRing, Scene};
+
+use crate::Error;
+use crate::enveloping::band_hz;
+use crate::kinematics::KinematicsFinding;
+use crate::record::Record;
+use crate::tones;
+
+/// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is looked for loses less
+/// than 2 %.
+const STEPS_PER_TURN: usize = 1024;
+/// Harmonics of the family that are looked for.
+const HARMONICS: usize = 6;
+/// The grid of the spectrum is at least so much finer than its resolution: a run has few turns, and a line must have room beside
+/// its prediction.
+const FINER: usize = 4;
+/// Fewest steps of which a spectrum is made.
+const LEAST_STEPS: usize = 256;
+
+/// What a run whose speed or load changes says of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DutyFinding {
+    /// Least and largest speed on record, clockwise positive [1/min].
+    pub speed_rpm: (f64, f64),
+    /// Least and largest load on record [N].
+    pub load_n: (f64, f64),
+    /// Turns of the shaft on record, both ways counted.
+    pub turns: f64,
+    /// Name and order of each family: how often it comes in a turn of the shaft, without slip.
+    pub orders: Vec<(String, f64)>,
+    /// The defect's family over the angle; `None` with the reason in `notes`.
+    pub envelope: Option<OrderEnvelope>,
+}
+
+/// What the envelope shows at the defect's orders.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OrderEnvelope {
+    /// Name of the family.
+    pub family: String,
+    /// Band whose envelope was taken [Hz].
+    pub band_hz: (f64, f64),
+    /// Periods of the defect in the record.
+    pub periods: f64,
+    /// What the spectrum resolves: one over the turns on record.
+    pub resolution: f64,
+    /// Each line of the family.
+    pub lines: Vec<OrderLine>,
+}
+
+/// One line of a family.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OrderLine {
+    /// Multiple of the family's order.
+    pub harmonic: usize,
+    /// Predicted order without slip.
+    pub predicted: f64,
+    /// The same from the recorded motion.
+    pub from_motion: Option<f64>,
+    /// Measured order; `None` when nothing stands out.
+    pub measured: Option<f64>,
+    /// Height above the surroundings [dB].
+    pub prominence_db: Option<f64>,
+}
+
+impl DutyFinding {
+    /// Of a scene and its record; `None` where nothing changes.
+    pub fn of(scene: &Scene, record: &Record<'_>) -> Option<Self> {
+        let duty = Duty::varying(scene)?;
+        let until_s = record.time_s().last().copied().unwrap_or(0.0);
+        let (speed, load) = (duty.speed_range_rpm(until_s), duty.load_range_n(until_s));
+        let k = Kinematics::new(&scene.bearing, 60.0);
+        let families =
+            [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), ("FTF", k.cage_hz)];
+        Some(Self {
+            speed_rpm: (speed[0], speed[1]),
+            load_n: (load[0], load[1]),
+            turns: turns(record)
+                .map_or(0.0, |turns| turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>()),
+            orders: families.map(|(name, order)| (name.to_owned(), order)).to_vec(),
+            envelope: None,
+        })
+    }
+}
+
+/// Name and order of the family that a scene's defect makes.
+pub fn family(scene: &Scene) -> Option<(&'static str, f64)> {
+    let k = Kinematics::new(&scene.bearing, 60.0);
+    scene.defect.as_ref().map(|defect| match defect.ring {
+        DefectRing::Outer => ("BPFO", k.bpfo_hz),
+        DefectRing::Inner => ("BPFI", k.bpfi_hz),
+    })
+}
+
+/// Angle of the shaft at each sample [turns], rising for one that turns its main way; `None` when it was not recorded.
+pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
+    let angle = record.channel("shaft.angle_rad")?;
+    let back = angle.last()? < angle.first()?;
+    let turn = if back { -1.0 / TAU } else { 1.0 / TAU };
+    Some(angle.iter().map(|rad| turn * rad).collect())
+}
+
+/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them round, less what they
+/// pass the other.
+pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
+    let outer = motion.bpfo_hz? / motion.shaft_hz;
+    let order = if name == "BPFI" { motion.rollers.len() as f64 - outer } else { outer };
+    Some(order).filter(|order| order.is_finite())
+}
+
+/// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the orders of `family`;
+/// the reason when there is none. `turns` is the angle of the shaft at each sample.
+///
+/// # Errors
+/// [`Error::Signal`] when a finite signal is refused.
+pub fn over_angle(
+    signal_g: &[f64],
+    sample_rate_hz: f64,
+    turns: &[f64],
+    (name, order): (&str, f64),
+    moved: Option<f64>,
+) -> Result<Result<(Spectrum, OrderEnvelope), String>, Error> {
+    if turns.windows(2).any(|pair| pair[1] < pair[0]) {
+        return Ok(Err("no order spectrum: the shaft turns back on the way".into()));
+    }
+    let made = turns.last().zip(turns.first()).map_or(0.0, |(last, first)| last - first);
+    let Ok(count) = PeriodCount::new(made, order) else {
+        return Ok(Err("no order spectrum: the shaft stands still".into()));
+    };
+    if count.verdict() == PeriodVerdict::TooFew || made * (STEPS_PER_TURN as f64) < LEAST_STEPS as f64 {
+        return Ok(Err(format!(
+            "no order spectrum: {made:.2} turns hold {:.1} periods of {name}, {} are the least",
+            count.periods(),
+            PeriodCount::ENOUGH
+        )));
+    }
+    let band = band_hz(sample_rate_hz);
+    let mut squared = vec![0.0; signal_g.len()];
+    Envelope::in_band(sample_rate_hz, signal_g.len(), band.0, band.1)
+        .and_then(|mut envelope| envelope.process(signal_g, &mut squared))
+        .map_err(Error::Signal)?;
+    squared.iter_mut().for_each(|a| *a *= *a);
+    let means = means_over_angle(&squared, turns, STEPS_PER_TURN).map_err(Error::Signal)?;
+    let options = WelchOptions {
+        window: Window::Hann,
+        detrend: Detrend::Constant,
+        scaling: Scaling::Spectrum,
+        nfft: (FINER * means.len()).next_power_of_two(),
+        ..WelchOptions::new(means.len())
+    };
+    // A step is a sample, a turn a second: what the spectrum calls hertz are orders.
+    let spectrum = Welch::new(STEPS_PER_TURN as f64, means.len(), &options)
+        .and_then(|mut welch| welch.estimate(&means))
+        .map_err(Error::Signal)?;
+    let mut lines = tones::harmonics(&[(name.to_owned(), order)], HARMONICS, 0.5 * STEPS_PER_TURN as f64);
+    for line in &mut lines {
+        line.from_motion_hz = moved.map(|order| order * line.harmonic as f64);
+    }
+    let measured = tones::measure("envelope", &lines, &spectrum)?;
+    let finding = OrderEnvelope {
+        family: name.to_owned(),
+        band_hz: band,
+        periods: count.periods(),
+        resolution: spectrum.resolution().resolution_hz,
+        lines: measured
+            .iter()
+            .map(|t| OrderLine {
+                harmonic: t.harmonic,
+                predicted: t.predicted_hz,
+                from_motion: t.from_motion_hz,
+                measured: t.measured_hz,
+                prominence_db: t.prominence_db,
+            })
+            .collect(),
+    };
+    Ok(Ok((spectrum, finding)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::enveloping;
+
+    /// Knocks 10.81 times a turn, of a shaft from 5 to 20 turns a second in a second, that ring at 12 kHz.
+    fn knocks() -> (Vec<f64>, Vec<f64>) {
+        let turns: Vec<f64> =
+            (0..100_000).map(|n| 1e-5 * f64::from(n)).map(|t| 5.0 * t + 7.5 * t * t).collect();
+        let mut signal = vec![0.0; turns.len()];
+        let mut since = f64::INFINITY;
+        for n in 1..turns.len() {
+            let knock = (10.81 * turns[n]).floor() > (10.81 * turns[n - 1]).floor();
+            since = if knock { 0.0 } else { since + 1e-5 };
+            signal[n] = 100.0 * (-since / 0.3e-3).exp() * (TAU * 12_000.0 * since).sin();
+            if since.is_infinite() {
+                signal[n] = 0.0;
+            }
+        }
+        (signal, turns)
+    }
+
+    #[test]
+    fn example_knocks_of_a_shaft_that_speeds_up_stand_at_their_order() {
+        let (signal, turns) = knocks();
+        let (_, finding) = over_angle(&signal, 1e5, &turns, ("BPFO", 10.81), None).unwrap().unwrap();
+        assert!((finding.periods - 12.5 * 10.81).abs() < 0.1 && (finding.resolution - 0.08).abs() < 1e-3);
+        for line in &finding.lines {
+            assert!((line.measured.unwrap() - line.predicted).abs() < finding.resolution, "{line:?}");
+        }
+        // At the mean speed of 12.5 turns a second nothing stands where the family would be.
+        let family = tones::harmonics(&[("BPFO".into(), 12.5 * 10.81)], 4, 1e9);
+        let (_, smeared) = enveloping::analyse(&signal, 1e5, &family).unwrap().unwrap();
+        assert!(smeared.lines.iter().all(|line| line.measured_hz.is_none()), "{:?}", smeared.lines);
+    }
+
+    #[test]
+    fn refuses_few_turns_and_turns_back_and_says_why() {
+        let (signal, turns) = knocks();
+        let why =
+            over_angle(&signal[..5000], 1e5, &turns[..5000], ("BPFO", 10.81), None).unwrap().unwrap_err();
+        assert!(why.contains("2.9 periods of BPFO"), "{why}");
+        let there_and_back: Vec<f64> = turns.iter().map(|t| t * (10.0 - t)).collect();
+        let why = over_angle(&signal, 1e5, &there_and_back, ("BPFO", 10.81), None).unwrap().unwrap_err();
+        assert!(why.contains("turns back"), "{why}");
+        let still = vec![0.0; signal.len()];
+        assert!(over_angle(&signal, 1e5, &still, ("BPFO", 10.81), None).unwrap().is_err());
+    }
+}

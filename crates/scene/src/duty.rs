@@ -1,0 +1,350 @@
+//! Duty: speed and load over time, and the angle of the shaft that follows (THEORY §6.3).
+//!
+//! The inner ring follows the angle of the profile, θ(t) = −∫ω dt with the speed ω clockwise positive. What turns it in steps
+//! is given the mean speed of each step, whose sum is that angle: nothing drifts. The mean is formed within the step and
+//! not as a difference of two angles, whose rounding would shake the ring.
+
+use std::f64::consts::TAU;
+
+use crate::scene::{OperationScene, ProfileScene, Scene};
+
+/// Samples over which the mean magnitude of a speed that changes its sign is taken.
+const SAMPLES: u32 = 10_000;
+
+/// Halvings of a bracket: beyond rounding.
+const HALVINGS: usize = 80;
+
+/// Speed and load of a scene over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Duty {
+    /// [rpm], clockwise positive.
+    speed: Course,
+    /// [N], without what rotates.
+    load: Course,
+    /// Force that turns with the shaft [N] and its angle at the start [rad].
+    rotating: Option<(f64, f64)>,
+}
+
+/// A number over time.
+#[derive(Debug, Clone, PartialEq)]
+enum Course {
+    Constant(f64),
+    /// Angular frequency [rad/s] and phase [rad].
+    Harmonic {
+        mean: f64,
+        amplitude: f64,
+        omega: f64,
+        phase: f64,
+    },
+    /// Times [s], ascending, values, and the integral from the first time on.
+    Lines {
+        time: Vec<f64>,
+        value: Vec<f64>,
+        integral: Vec<f64>,
+    },
+}
+
+impl Duty {
+    /// Of a scene. A table that was not read counts as the field that it varies.
+    pub fn of(scene: &Scene) -> Self {
+        let o = &scene.operation;
+        Self {
+            speed: Course::of(o.speed_rpm, o.speed_profile.as_ref()),
+            load: Course::of(o.load_n, o.load_profile.as_ref()),
+            rotating: o.rotating_load.as_ref().map(|load| (load.force_n, load.angle_deg.to_radians())),
+        }
+    }
+
+    /// The same, if anything changes in time.
+    pub fn varying(scene: &Scene) -> Option<Self> {
+        scene.operation.varies().then(|| Self::of(scene))
+    }
+
+    /// Speed of the inner ring at a time [s], clockwise positive [rpm].
+    pub fn speed_rpm(&self, time_s: f64) -> f64 {
+        self.speed.value(time_s)
+    }
+
+    /// Angular velocity of the inner ring [rad/s], counter-clockwise positive, mean between two times [s].
+    pub fn mean_shaft_rad_s(&self, from_s: f64, to_s: f64) -> f64 {
+        -TAU / 60.0 * self.speed.mean(from_s, to_s)
+    }
+
+    /// By what angle the inner ring has turned at a time [s] since the start [rad], counter-clockwise positive.
+    pub fn shaft_rad(&self, time_s: f64) -> f64 {
+        -TAU / 60.0 * self.speed.integral(time_s)
+    }
+
+    /// Load on the adapter at a time [s], downwards [N]: with the vertical part of what turns with the shaft.
+    pub fn load_n(&self, time_s: f64) -> f64 {
+        let rotating =
+            self.rotating.map_or(0.0, |(force, angle)| force * (angle + self.shaft_rad(time_s)).sin());
+        self.load.value(time_s) - rotating
+    }
+
+    /// Mean load until a time [s] [N]; what rotates has none.
+    pub fn mean_load_n(&self, until_s: f64) -> f64 {
+        self.load.mean(0.0, until_s)
+    }
+
+    /// Least and largest speed until a time [s], clockwise positive [rpm].
+    pub fn speed_range_rpm(&self, until_s: f64) -> [f64; 2] {
+        self.speed.range(until_s)
+    }
+
+    /// Least and largest load until a time [s] [N]; what rotates is taken as if it stood along the load once.
+    pub fn load_range_n(&self, until_s: f64) -> [f64; 2] {
+        let [least, most] = self.load.range(until_s);
+        let rotating = self.rotating.map_or(0.0, |(force, _)| force);
+        [least - rotating, most + rotating]
+    }
+
+    /// Whether the inner ring turns one way all the time until a time [s].
+    pub fn is_one_way(&self, until_s: f64) -> bool {
+        let [least, most] = self.speed_range_rpm(until_s);
+        least * most >= 0.0
+    }
+
+    /// Mean speed until a time [s] [rpm] of the sign of the way that it turns longer; for a shaft that turns both ways its
+    /// magnitude is that of the mean magnitude.
+    pub fn mean_speed_rpm(&self, until_s: f64) -> f64 {
+        let mean = self.speed.mean(0.0, until_s);
+        if self.is_one_way(until_s) {
+            return mean;
+        }
+        let at = |n: u32| until_s * (f64::from(n) + 0.5) / f64::from(SAMPLES);
+        let sum: f64 = (0..SAMPLES).map(|n| self.speed_rpm(at(n)).abs()).sum();
+        (sum / f64::from(SAMPLES)).copysign(mean)
+    }
+
+    /// When a shaft that turns one way has made so many turns [s], within `until_s` [s]; a negative number of turns counts
+    /// back from the start at the mean speed. `None` for one that does not come so far.
+    pub fn time_of_turns(&self, turns: f64, until_s: f64) -> Option<f64> {
+        let made = |time_s: f64| self.speed.integral(time_s).abs() / 60.0;
+        let all = made(until_s);
+        if !(turns <= all && all > 0.0) {
+            return None;
+        }
+        if turns < 0.0 {
+            return Some(turns / all * until_s);
+        }
+        let (mut low, mut high) = (0.0, until_s);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if made(middle) < turns { low = middle } else { high = middle }
+        }
+        Some(0.5 * (low + high))
+    }
+
+    /// Slowest magnitude of the speed until a time [s] [rpm].
+    pub fn slowest_rpm(&self, until_s: f64) -> f64 {
+        let [least, most] = self.speed_range_rpm(until_s);
+        if least * most <= 0.0 { 0.0 } else { least.abs().min(most.abs()) }
+    }
+}
+
+impl OperationScene {
+    /// Whether the speed changes in time.
+    pub fn speed_varies(&self) -> bool {
+        self.speed_profile.is_some()
+    }
+
+    /// Whether the load changes in time.
+    pub fn load_varies(&self) -> bool {
+        self.load_profile.is_some() || self.rotating_load.is_some()
+    }
+
+    /// Whether anything changes in time.
+    pub fn varies(&self) -> bool {
+        self.speed_varies() || self.load_varies()
+    }
+}
+
+impl Course {
+    fn of(field: f64, profile: Option<&ProfileScene>) -> Self {
+        match profile {
+            None | Some(ProfileScene::Table(_)) => Self::Constant(field),
+            Some(ProfileScene::Ramp(ramp)) => {
+                Self::lines(&[(1e-3 * ramp.from_ms, field), (1e-3 * ramp.to_ms, ramp.to)])
+            }
+            Some(ProfileScene::Harmonic(sine)) => Self::Harmonic {
+                mean: field,
+                amplitude: sine.amplitude,
+                omega: TAU * sine.hz,
+                phase: sine.phase_deg.to_radians(),
+            },
+            Some(ProfileScene::Points(points)) if points.is_empty() => Self::Constant(field),
+            Some(ProfileScene::Points(points)) => {
+                Self::lines(&points.iter().map(|(ms, value)| (1e-3 * ms, *value)).collect::<Vec<_>>())
+            }
+        }
+    }
+
+    fn lines(points: &[(f64, f64)]) -> Self {
+        let (time, value): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+        let mut integral = vec![0.0];
+        for n in 1..time.len() {
+            let area = 0.5 * (value[n] + value[n - 1]) * (time[n] - time[n - 1]);
+            integral.push(integral[n - 1] + area);
+        }
+        Self::Lines { time, value, integral }
+    }
+
+    fn value(&self, at: f64) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Harmonic { mean, amplitude, omega, phase } => mean + amplitude * (omega * at + phase).sin(),
+            Self::Lines { time, value, .. } => {
+                let after = time.partition_point(|t| *t <= at);
+                match (after.checked_sub(1), value.get(after)) {
+                    (None, _) => value[0],
+                    (Some(before), None) => value[before],
+                    (Some(before), Some(next)) => {
+                        let share = (at - time[before]) / (time[after] - time[before]);
+                        value[before] + share * (next - value[before])
+                    }
+                }
+            }
+        }
+    }
+
+    /// From 0 to a time.
+    fn integral(&self, to: f64) -> f64 {
+        match self {
+            Self::Constant(value) => value * to,
+            Self::Harmonic { mean, amplitude, omega, phase } => {
+                // cos φ − cos(ωt + φ) as a product, which does not cancel.
+                let half = 0.5 * omega * to;
+                mean * to + 2.0 * amplitude / omega * half.sin() * (half + phase).sin()
+            }
+            Self::Lines { time, value, integral } => {
+                let from_first = |at: f64| {
+                    let after = time.partition_point(|t| *t <= at);
+                    match after.checked_sub(1) {
+                        None => value[0] * (at - time[0]),
+                        Some(n) => integral[n] + 0.5 * (value[n] + self.value(at)) * (at - time[n]),
+                    }
+                };
+                from_first(to) - from_first(0.0)
+            }
+        }
+    }
+
+    /// Mean between two times, to the last digits also of a short interval.
+    fn mean(&self, from: f64, to: f64) -> f64 {
+        let width = to - from;
+        match self {
+            Self::Constant(value) => *value,
+            _ if width <= 0.0 => self.value(from),
+            Self::Harmonic { mean, amplitude, omega, phase } => {
+                let half = 0.5 * omega * width;
+                let flattened = if half > 0.0 { half.sin() / half } else { 1.0 };
+                mean + amplitude * flattened * (omega * (from + 0.5 * width) + phase).sin()
+            }
+            Self::Lines { time, .. } => {
+                // Whole lines by their middle; a corner inside cuts the interval.
+                let mut sum = 0.0;
+                let mut at = from;
+                let first = time.partition_point(|t| *t <= from);
+                for corner in time[first..].iter().copied().take_while(|t| *t < to).chain([to]) {
+                    sum += self.value(0.5 * (at + corner)) * (corner - at);
+                    at = corner;
+                }
+                sum / width
+            }
+        }
+    }
+
+    /// Least and largest value from 0 to a time.
+    fn range(&self, until: f64) -> [f64; 2] {
+        let mut at = vec![0.0, until];
+        match self {
+            Self::Constant(_) => {}
+            Self::Harmonic { omega, phase, .. } => {
+                // The first four of its extremes hold both kinds.
+                let first = ((phase / std::f64::consts::PI - 0.5).ceil()) as i64;
+                let extreme = |n: i64| ((n as f64 + 0.5) * std::f64::consts::PI - phase) / omega;
+                at.extend((first..first + 4).map(extreme).filter(|t| (0.0..=until).contains(t)));
+            }
+            Self::Lines { time, .. } => at.extend(time.iter().copied().filter(|t| (0.0..=until).contains(t))),
+        }
+        let values = at.into_iter().map(|t| self.value(t));
+        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], v| [least.min(v), most.max(v)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sums of some thousand numbers.
+    const ROUNDING: f64 = 1e-12;
+
+    fn with(set: &[&str]) -> Duty {
+        Duty::of(&Scene::default().with_overrides(set).expect("a sound scene"))
+    }
+
+    fn close(ours: f64, theirs: f64) {
+        assert!((ours - theirs).abs() <= ROUNDING * theirs.abs().max(1.0), "{ours} instead of {theirs}");
+    }
+
+    /// Source: a motion of constant acceleration, θ = ω₀t + ½αt²; of a sine, θ = (A/ω)(cos φ − cos(ωt + φ)).
+    #[test]
+    fn analytic_angles_of_a_ramp_and_of_a_sine() {
+        let ramp = with(&["operation.speed_profile=ramp(from_ms: 10, to_ms: 30, to: 1500)"]);
+        close(ramp.speed_rpm(0.005), 500.0);
+        close(ramp.speed_rpm(0.02), 1000.0);
+        close(ramp.speed_rpm(0.05), 1500.0);
+        // 10 ms at 500, 20 ms at 1000 in the mean, 20 ms at 1500 rpm.
+        let turns = (0.01 * 500.0 + 0.02 * 1000.0 + 0.02 * 1500.0) / 60.0;
+        close(ramp.shaft_rad(0.05), -TAU * turns);
+        close(ramp.time_of_turns(turns, 0.1).expect("in time"), 0.05);
+        let sine = with(&["operation.speed_profile=harmonic(amplitude: 100, hz: 5, phase_deg: 30)"]);
+        let (omega, phase, t): (f64, f64, f64) = (TAU * 5.0, TAU / 12.0, 0.137);
+        let way = 500.0 * t + 100.0 / omega * (phase.cos() - (omega * t + phase).cos());
+        close(sine.shaft_rad(t), -TAU * way / 60.0);
+        close(sine.speed_rpm(0.0), 550.0);
+        assert_eq!(sine.speed_range_rpm(1.0).map(f64::round), [400.0, 600.0]);
+        close(sine.speed_range_rpm(0.01)[0], 550.0);
+    }
+
+    #[test]
+    fn invariant_means_of_steps_add_up_to_the_angle() {
+        for set in [
+            "operation.speed_profile=ramp(from_ms: 1.7, to_ms: 4.03, to: -700)",
+            "operation.speed_profile=harmonic(amplitude: 300, hz: 170, phase_deg: 40)",
+            "operation.speed_profile=points([(0.5, 0), (0.501, 900), (2.2, 900), (6, 20)])",
+        ] {
+            let duty = with(&[set]);
+            let dt = 0.7e-6;
+            let at = |n: u32| f64::from(n) * dt;
+            let sum: f64 = (0..8000).map(|n| dt * duty.mean_shaft_rad_s(at(n), at(n + 1))).sum();
+            close(sum, duty.shaft_rad(at(8000)));
+        }
+    }
+
+    #[test]
+    fn example_a_load_that_turns_with_the_shaft_comes_once_a_turn() {
+        let duty = with(&["operation.rotating_load=(force_n: 2000, angle_deg: 270)"]);
+        // Downwards at the start, upwards half a turn later, which 500 rpm make in 60 ms.
+        close(duty.load_n(0.0), 52_000.0);
+        close(duty.load_n(0.06), 48_000.0);
+        close(duty.load_n(0.12), 52_000.0);
+        assert_eq!(duty.load_range_n(1.0), [48_000.0, 52_000.0]);
+        assert_eq!((duty.mean_load_n(1.0), duty.mean_speed_rpm(1.0)), (50_000.0, 500.0));
+    }
+
+    #[test]
+    fn example_a_shaft_that_turns_back_has_no_time_for_its_turns() {
+        let set =
+            ["operation.speed_rpm=-500", "operation.speed_profile=ramp(from_ms: 0, to_ms: 100, to: 500)"];
+        let duty = with(&set);
+        assert!(!duty.is_one_way(0.1) && duty.is_one_way(0.05));
+        close(duty.mean_speed_rpm(0.1), 250.0);
+        assert_eq!(duty.slowest_rpm(0.1), 0.0);
+        let constant = Duty::of(&Scene::default());
+        assert_eq!(Duty::varying(&Scene::default()), None);
+        assert_eq!((constant.speed_rpm(0.3), constant.load_n(0.3)), (500.0, 50_000.0));
+        assert_eq!(constant.time_of_turns(5.0, 0.1), None);
+    }
+}

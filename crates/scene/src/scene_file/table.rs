@@ -1,0 +1,209 @@
+//! Profiles from CSV files: a scene that was read holds their points, so that a run holds all of its scene.
+//!
+//! ```text
+//! time_ms, value
+//! 0,       500
+//! 100,     1500
+//! ```
+//!
+//! The first line names the columns, of which `time_ms` and `value` are read; what follows a `#` is a comment.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
+use super::origin::Origin;
+use super::problem::{Problem, SceneError, place_in_file};
+use super::wording::{number, shown};
+use crate::scene::{ProfileScene, Scene};
+
+/// Longest table [bytes].
+const MAX_BYTES: u64 = 1 << 20;
+/// Most rows: the scene of the run holds them all.
+const MAX_ROWS: usize = 10_000;
+/// What a table is.
+const FORM: &str = "a CSV file whose first line is `time_ms,value`, with a time and a value in each line";
+
+/// Puts the points of tables in their place; `folder` is where their paths count from.
+pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Result<(), SceneError> {
+    let o = &mut scene.operation;
+    for (path, profile) in [(SPEED_PROFILE, &mut o.speed_profile), (LOAD_PROFILE, &mut o.load_profile)] {
+        let Some(ProfileScene::Table(name)) = profile else { continue };
+        let file = folder.join(&*name);
+        let text = text_of(&file).map_err(|why| {
+            let mut problem =
+                Problem::new(format!("cannot read the table `{}`: {why}", shown(name)), origin.place(path));
+            path.clone_into(&mut problem.field);
+            FORM.clone_into(&mut problem.allowed);
+            "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
+            problem
+        })?;
+        let points = points(&text, path).map_err(|fault| {
+            let place = place_in_file(&file.display().to_string(), &text, fault.range);
+            let mut problem = Problem::new(fault.message, place);
+            path.clone_into(&mut problem.field);
+            problem.allowed = fault.allowed;
+            problem
+        })?;
+        *profile = Some(ProfileScene::Points(points));
+    }
+    Ok(())
+}
+
+fn text_of(file: &Path) -> Result<String, String> {
+    let open = || -> std::io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        if std::fs::metadata(file)?.is_dir() {
+            return Err(std::io::Error::other("it is a folder"));
+        }
+        File::open(file)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    let bytes = open().map_err(|why| why.to_string())?;
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(format!("it is larger than {MAX_BYTES} bytes, the limit for a table"));
+    }
+    String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
+}
+
+/// What is wrong with a table, and where.
+struct Fault {
+    range: std::ops::Range<usize>,
+    message: String,
+    allowed: String,
+}
+
+/// The rows of a table for the profile at `path`.
+fn points(text: &str, path: &str) -> Result<Vec<(f64, f64)>, Fault> {
+    let fault = |range, message: String, allowed: &str| Fault { range, message, allowed: allowed.to_owned() };
+    let mut columns: Option<[usize; 2]> = None;
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    let mut start = 0;
+    for line in text.split_inclusive('\n') {
+        let (begin, end) = (start, start + line.len());
+        start = end;
+        let cells: Vec<(usize, &str)> = cells(line, begin);
+        if cells.iter().all(|(_, cell)| cell.is_empty()) {
+            continue;
+        }
+        let Some(which) = columns else {
+            let find = |name: &str| {
+                let at = cells.iter().position(|(_, cell)| *cell == name);
+                at.ok_or_else(|| fault(begin..end, format!("the table has no column `{name}`"), FORM))
+            };
+            columns = Some([find("time_ms")?, find("value")?]);
+            continue;
+        };
+        if points.len() == MAX_ROWS {
+            let message = format!("the table has more than {MAX_ROWS} rows");
+            return Err(fault(begin..end, message, "fewer points: lines run between them"));
+        }
+        let read = |column: usize, name: &str| {
+            let Some((at, cell)) = cells.get(column) else {
+                return Err(fault(begin..end, format!("the row has no `{name}`"), FORM));
+            };
+            let range = *at..at + cell.len().max(1);
+            match cell.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok((value, range)),
+                _ => Err(fault(range, format!("`{name}` is `{}`, which is not a number", shown(cell)), FORM)),
+            }
+        };
+        let ((time, at_time), (value, at_value)) = (read(which[0], "time_ms")?, read(which[1], "value")?);
+        if let Some((before, _)) = points.last().filter(|(before, _)| time <= *before) {
+            let message =
+                format!("`time_ms` is {}, not after {} of the row before", number(time), number(*before));
+            return Err(fault(at_time, message, "times that ascend"));
+        }
+        if let Some(allowed) = limits::refuses_in_profile(path, value) {
+            let message = format!("`value` is {}, outside the range of `{path}`", number(value));
+            return Err(fault(at_value, message, &allowed));
+        }
+        points.push((time, value));
+    }
+    if points.is_empty() {
+        return Err(fault(0..text.len(), "the table has no rows".to_owned(), FORM));
+    }
+    Ok(points)
+}
+
+/// Cells of a line without their blanks, and where they begin in the text; `from` is where the line does.
+fn cells(line: &str, from: usize) -> Vec<(usize, &str)> {
+    let line = line.split('#').next().unwrap_or_default();
+    let mut at = from;
+    line.split(',')
+        .map(|cell| {
+            // Some editors put a byte order mark in front.
+            let text = cell.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
+            let begin = at + cell.len() - text.len();
+            at += cell.len() + 1;
+            (begin, text.trim_end())
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use stribeck_testing::Scratch;
+
+    use super::*;
+
+    fn scene(table: &str) -> Result<Scene, String> {
+        let folder = Scratch::create("tables");
+        let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("writable");
+        write("speed.csv", table);
+        write("x.ron", "(operation: (\n  speed_profile: table(\"speed.csv\"),\n))");
+        Scene::read(folder.join("x.ron")).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn roundtrip_a_table_is_its_points_from_then_on() {
+        let scene =
+            scene("\u{feff}# by hand\nvalue, time_ms , note\r\n500,0,first\n\n750.5 , 20 # half\n-10,30")
+                .unwrap();
+        let points = vec![(0.0, 500.0), (20.0, 750.5), (30.0, -10.0)];
+        assert_eq!(scene.operation.speed_profile, Some(ProfileScene::Points(points)));
+        assert_eq!(Scene::parse(&scene.to_ron(), "again").unwrap(), scene);
+    }
+
+    #[test]
+    fn refuses_tables_with_file_line_and_value() {
+        for (table, words) in [
+            ("", "has no rows"),
+            ("time_ms,value\n", "has no rows"),
+            ("0,500\n", "speed.csv:1:1"),
+            ("0,500\n", "no column `time_ms`"),
+            ("time_ms,speed\n0,1\n", "no column `value`"),
+            ("time_ms,value\n0,500\n5,fast\n", "speed.csv:3:3"),
+            ("time_ms,value\n0,500\n5,fast\n", "`value` is `fast`"),
+            ("time_ms,value\n0,500\n5\n", "the row has no `value`"),
+            ("time_ms,value\n0,500\n0,600\n", "`time_ms` is 0, not after 0"),
+            ("time_ms,value\n0,1e9\n", "-100000 to 100000 rpm"),
+            ("time_ms,value\n0,NaN\n", "is `NaN`"),
+        ] {
+            let said = scene(table).expect_err(table);
+            assert!(said.contains(words) && !said.contains("x.ron"), "{table}: {said}");
+        }
+        let long: String = (0..=MAX_ROWS).map(|n| format!("{n},1\n")).collect();
+        assert!(
+            scene(&format!("time_ms,value\n{long}")).expect_err("too long").contains("more than 10000 rows")
+        );
+        let none = Scene::default().with_overrides(&["operation.load_profile=table(\"no.csv\")"]);
+        let said = none.expect_err("no file").to_string();
+        assert!(
+            said.contains("cannot read the table `no.csv`") && said.contains("--set operation"),
+            "{said}"
+        );
+    }
+
+    #[test]
+    fn example_the_longest_table_is_a_scene_that_can_be_read_again() {
+        let rows: String = (0..MAX_ROWS)
+            .map(|n| format!("{},{}\n", 0.1 + n as f64 / 3.0, 100.0 + 1.0 / (n + 1) as f64))
+            .collect();
+        let scene = scene(&format!("time_ms,value\n{rows}")).unwrap();
+        let folder = Scratch::create("long-table");
+        std::fs::write(folder.join("scene.ron"), scene.to_ron()).unwrap();
+        assert_eq!(Scene::read(folder.join("scene.ron")).unwrap(), scene);
+    }
+}
