@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_bearing::simulation;
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
+use stribeck_scene::duty::Duty;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::trace::Trace;
@@ -25,15 +26,24 @@ pub(crate) struct Kind {
     pub(crate) attempt: fn(&Inputs, &mut Dice) -> Result<Answer>,
 }
 
-pub(crate) const KINDS: [Kind; 7] = [
+pub(crate) const KINDS: [Kind; 8] = [
     Kind { name: "scene", weight: 50, attempt: scene },
     Kind { name: "override", weight: 15, attempt: set },
+    Kind { name: "table", weight: 10, attempt: table },
     Kind { name: "trace", weight: 10, attempt: trace },
     Kind { name: "checkpoint", weight: 10, attempt: checkpoint },
     Kind { name: "run-info", weight: 5, attempt: run_info },
     Kind { name: "mesh", weight: 40, attempt: mesh },
     Kind { name: "shape", weight: 4, attempt: shape },
 ];
+
+/// A scene of everything that goes over time.
+const DUTY: &str = "(operation: (speed_rpm: -300, speed_profile: points([(0.0, 500.0), (20.5, -1e2), (30, 0)]), \
+                    load_profile: harmonic(amplitude: 5000.0, hz: 25.0, phase_deg: 90.0), \
+                    rotating_load: (force_n: 1000.0, angle_deg: 30.0)))";
+
+/// A table of a profile.
+const TABLE: &str = "time_ms, value # by hand\n0.0, 500.0\n10, 600\n20.25, 1e2\n30,-50.5\n";
 
 /// Bytes before the content of a checkpoint; length and checksum are the last twelve.
 const HEADER: usize = 52;
@@ -53,7 +63,7 @@ pub(crate) struct Inputs {
 impl Inputs {
     /// Takes scenes from the repository and makes a run to damage, broken off after two samples.
     pub(crate) fn new(folder: &Path) -> Result<Self> {
-        let scenes = ["singh2014", "lean", "quick"].map(|name| {
+        let scenes = ["singh2014", "lean", "quick", "ramp"].map(|name| {
             let path = workspace::root().join(format!("fixtures/scenes/{name}.ron"));
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
         });
@@ -72,7 +82,7 @@ impl Inputs {
         let read =
             |path: PathBuf| std::fs::read(&path).with_context(|| format!("cannot read {}", path.display()));
         Ok(Self {
-            scenes: scenes.into_iter().collect::<Result<_>>()?,
+            scenes: scenes.into_iter().chain([Ok(DUTY.to_owned())]).collect::<Result<_>>()?,
             trace: read(dir.trace())?,
             checkpoint: read(dir.checkpoint())?,
             info: String::from_utf8(read(dir.info())?)?,
@@ -123,7 +133,7 @@ fn small(scene: &Scene) -> bool {
 }
 
 fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
-    const FIELDS: [&str; 14] = [
+    const FIELDS: [&str; 18] = [
         "mesh.size_mm",
         "bearing.rollers",
         "cage",
@@ -137,10 +147,15 @@ fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
         "mesh.outer_facets",
         "name",
         "operation",
+        "operation.speed_profile",
+        "operation.speed_profile.hz",
+        "operation.load_profile",
+        "operation.rotating_load.force_n",
         "",
     ];
     let field = dice.pick(&FIELDS);
-    let value = match dice.below(3) {
+    let value = match dice.below(4) {
+        3 => text("ramp(from_ms: 0.0, to_ms: 20.0, to: 900.0)", dice),
         0 => format!("{:?}", dice.number()),
         1 => text("Some((coarse_mm: 2.0, fine_layers: 2))", dice),
         _ => text("[(name: \"side\", angle_deg: 0.0)]", dice),
@@ -150,6 +165,25 @@ fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     let file = workspace::root().join("fixtures/scenes/quick.ron");
     let _ = inputs;
     Ok(answered(Scene::read_with(&file, &[set]))?.0)
+}
+
+fn table(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
+    let path = inputs.folder.join("damaged.csv");
+    let content = if dice.one_in(4) { bytes(TABLE.as_bytes(), dice) } else { text(TABLE, dice).into_bytes() };
+    std::fs::write(&path, content)?;
+    let file = inputs.folder.join("table.ron");
+    let field = dice.pick(&["speed_profile", "load_profile"]);
+    std::fs::write(&file, format!("(operation: ({field}: table(\"damaged.csv\")))"))?;
+    let (answer, scene) = answered(Scene::read(&file))?;
+    if let Some(scene) = scene {
+        let duty = Duty::of(&scene);
+        let angle = duty.shaft_rad(0.02);
+        ensure!(
+            angle.is_finite() && duty.load_n(0.02) > 0.0,
+            "a scene that was taken has no angle or no load"
+        );
+    }
+    Ok(answer)
 }
 
 fn trace(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
