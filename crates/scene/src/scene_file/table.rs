@@ -6,7 +6,8 @@
 //! 100,     1500
 //! ```
 //!
-//! The first line names the columns, of which `time_ms` and `value` are read; what follows a `#` is a comment.
+//! The first line names the columns, of which two are read: `time_ms` and `value` of a speed or a load, `position_mm` and
+//! `depth_um` of a surface. What follows a `#` is a comment.
 
 use std::fs::File;
 use std::io::Read;
@@ -16,39 +17,135 @@ use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
 use super::origin::Origin;
 use super::problem::{Problem, SceneError, place_in_file};
 use super::wording::{number, shown};
+use crate::deviation::{FormScene, PointScene};
 use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
 const MAX_BYTES: u64 = 1 << 20;
 /// Most rows: the scene of the run holds them all.
 const MAX_ROWS: usize = 10_000;
-/// What a table is.
-const FORM: &str = "a CSV file whose first line is `time_ms,value`, with a time and a value in each line";
+/// What a table is for.
+struct Table<'a> {
+    /// The field that takes it.
+    path: &'a str,
+    /// Its columns, the ascending one first.
+    columns: [&'static str; 2],
+    /// Says what a value may be that is out of range.
+    refuses: &'a dyn Fn(f64) -> Option<String>,
+}
 
 /// Puts the points of tables in their place; `folder` is where their paths count from.
 pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Result<(), SceneError> {
     let o = &mut scene.operation;
     for (path, profile) in [(SPEED_PROFILE, &mut o.speed_profile), (LOAD_PROFILE, &mut o.load_profile)] {
         let Some(ProfileScene::Table(name)) = profile else { continue };
-        let file = folder.join(&*name);
+        let refuses = |value: f64| limits::refuses_in_profile(path, value);
+        let table = Table { path, columns: ["time_ms", "value"], refuses: &refuses };
+        *profile = Some(ProfileScene::Points(table.read(folder, name, origin)?));
+    }
+    for (i, deviation) in scene.defects.iter_mut().enumerate() {
+        let FormScene::Profile(profile) = &mut deviation.form else { continue };
+        // The scene of a run holds the points.
+        if profile.file.is_empty() || !profile.points.is_empty() {
+            continue;
+        }
+        let path = format!("defects[{i}].form.file");
+        let table = Table { path: &path, columns: ["position_mm", "depth_um"], refuses: &|_| None };
+        let points = table.read(folder, &profile.file, origin)?;
+        profile.points = points.into_iter().map(|(at_mm, depth_um)| PointScene { at_mm, depth_um }).collect();
+    }
+    Ok(())
+}
+
+impl Table<'_> {
+    /// Its points, from the file of that name; `folder` is where its path counts from.
+    fn read(&self, folder: &Path, name: &str, origin: &Origin<'_>) -> Result<Vec<(f64, f64)>, SceneError> {
+        let file = folder.join(name);
         let text = text_of(&file).map_err(|why| {
-            let mut problem =
-                Problem::new(format!("cannot read the table `{}`: {why}", shown(name)), origin.place(path));
-            path.clone_into(&mut problem.field);
-            FORM.clone_into(&mut problem.allowed);
+            let place = origin.place(self.path);
+            let mut problem = Problem::new(format!("cannot read the table `{}`: {why}", shown(name)), place);
+            self.path.clone_into(&mut problem.field);
+            problem.allowed = self.form();
             "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
             problem
         })?;
-        let points = points(&text, path).map_err(|fault| {
+        let points = self.points(&text).map_err(|fault| {
             let place = place_in_file(&file.display().to_string(), &text, fault.range);
             let mut problem = Problem::new(fault.message, place);
-            path.clone_into(&mut problem.field);
+            self.path.clone_into(&mut problem.field);
             problem.allowed = fault.allowed;
             problem
         })?;
-        *profile = Some(ProfileScene::Points(points));
+        Ok(points)
     }
-    Ok(())
+
+    /// What it is.
+    fn form(&self) -> String {
+        let [first, second] = self.columns;
+        format!("a CSV file whose first line is `{first},{second}`, with two numbers in each line")
+    }
+
+    /// Its rows.
+    fn points(&self, text: &str) -> Result<Vec<(f64, f64)>, Fault> {
+        let [first, second] = self.columns;
+        let fault =
+            |range, message: String, allowed: &str| Fault { range, message, allowed: allowed.to_owned() };
+        let mut columns: Option<[usize; 2]> = None;
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        let mut start = 0;
+        for line in text.split_inclusive('\n') {
+            let (begin, end) = (start, start + line.len());
+            start = end;
+            let cells: Vec<(usize, &str)> = cells(line, begin);
+            if cells.iter().all(|(_, cell)| cell.is_empty()) {
+                continue;
+            }
+            let Some(which) = columns else {
+                let find = |name: &str| {
+                    let at = cells.iter().position(|(_, cell)| *cell == name);
+                    at.ok_or_else(|| {
+                        fault(begin..end, format!("the table has no column `{name}`"), &self.form())
+                    })
+                };
+                columns = Some([find(first)?, find(second)?]);
+                continue;
+            };
+            if points.len() == MAX_ROWS {
+                let message = format!("the table has more than {MAX_ROWS} rows");
+                return Err(fault(begin..end, message, "fewer points: lines run between them"));
+            }
+            let read = |column: usize, name: &str| {
+                let Some((at, cell)) = cells.get(column) else {
+                    return Err(fault(begin..end, format!("the row has no `{name}`"), &self.form()));
+                };
+                let range = *at..at + cell.len().max(1);
+                match cell.parse::<f64>() {
+                    Ok(value) if value.is_finite() => Ok((value, range)),
+                    _ => Err(fault(
+                        range,
+                        format!("`{name}` is `{}`, which is not a number", shown(cell)),
+                        &self.form(),
+                    )),
+                }
+            };
+            let ((time, at_time), (value, at_value)) = (read(which[0], first)?, read(which[1], second)?);
+            if let Some((before, _)) = points.last().filter(|(before, _)| time <= *before) {
+                let message =
+                    format!("`{first}` is {}, not after {} of the row before", number(time), number(*before));
+                return Err(fault(at_time, message, "rows that ascend"));
+            }
+            if let Some(allowed) = (self.refuses)(value) {
+                let message =
+                    format!("`{second}` is {}, outside the range of `{}`", number(value), self.path);
+                return Err(fault(at_value, message, &allowed));
+            }
+            points.push((time, value));
+        }
+        if points.is_empty() {
+            return Err(fault(0..text.len(), "the table has no rows".to_owned(), &self.form()));
+        }
+        Ok(points)
+    }
 }
 
 fn text_of(file: &Path) -> Result<String, String> {
@@ -72,59 +169,6 @@ struct Fault {
     range: std::ops::Range<usize>,
     message: String,
     allowed: String,
-}
-
-/// The rows of a table for the profile at `path`.
-fn points(text: &str, path: &str) -> Result<Vec<(f64, f64)>, Fault> {
-    let fault = |range, message: String, allowed: &str| Fault { range, message, allowed: allowed.to_owned() };
-    let mut columns: Option<[usize; 2]> = None;
-    let mut points: Vec<(f64, f64)> = Vec::new();
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let (begin, end) = (start, start + line.len());
-        start = end;
-        let cells: Vec<(usize, &str)> = cells(line, begin);
-        if cells.iter().all(|(_, cell)| cell.is_empty()) {
-            continue;
-        }
-        let Some(which) = columns else {
-            let find = |name: &str| {
-                let at = cells.iter().position(|(_, cell)| *cell == name);
-                at.ok_or_else(|| fault(begin..end, format!("the table has no column `{name}`"), FORM))
-            };
-            columns = Some([find("time_ms")?, find("value")?]);
-            continue;
-        };
-        if points.len() == MAX_ROWS {
-            let message = format!("the table has more than {MAX_ROWS} rows");
-            return Err(fault(begin..end, message, "fewer points: lines run between them"));
-        }
-        let read = |column: usize, name: &str| {
-            let Some((at, cell)) = cells.get(column) else {
-                return Err(fault(begin..end, format!("the row has no `{name}`"), FORM));
-            };
-            let range = *at..at + cell.len().max(1);
-            match cell.parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok((value, range)),
-                _ => Err(fault(range, format!("`{name}` is `{}`, which is not a number", shown(cell)), FORM)),
-            }
-        };
-        let ((time, at_time), (value, at_value)) = (read(which[0], "time_ms")?, read(which[1], "value")?);
-        if let Some((before, _)) = points.last().filter(|(before, _)| time <= *before) {
-            let message =
-                format!("`time_ms` is {}, not after {} of the row before", number(time), number(*before));
-            return Err(fault(at_time, message, "times that ascend"));
-        }
-        if let Some(allowed) = limits::refuses_in_profile(path, value) {
-            let message = format!("`value` is {}, outside the range of `{path}`", number(value));
-            return Err(fault(at_value, message, &allowed));
-        }
-        points.push((time, value));
-    }
-    if points.is_empty() {
-        return Err(fault(0..text.len(), "the table has no rows".to_owned(), FORM));
-    }
-    Ok(points)
 }
 
 /// Cells of a line without their blanks, and where they begin in the text; `from` is where the line does.
@@ -194,6 +238,24 @@ mod tests {
             said.contains("cannot read the table `no.csv`") && said.contains("--set operation"),
             "{said}"
         );
+    }
+
+    #[test]
+    fn example_the_profile_of_a_surface_from_a_table() {
+        let folder = Scratch::create("surface-tables");
+        let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("writable");
+        write("pit.csv", "position_mm,depth_um\n-2,0\n0.5,40\n2,0\n");
+        write("x.ron", "(film: None, defect: None, defects: [(form: profile(file: \"pit.csv\"))])");
+        let scene = Scene::read(folder.join("x.ron")).unwrap();
+        let FormScene::Profile(profile) = &scene.defects[0].form else { panic!("{:?}", scene.defects) };
+        assert_eq!(profile.points[1], PointScene { at_mm: 0.5, depth_um: 40.0 });
+        assert_eq!(Scene::parse(&scene.to_ron(), "again").unwrap(), scene);
+        write("pit.csv", "position_mm,depth_um\n-2,0\n0.5,deep\n");
+        let said = Scene::read(folder.join("x.ron")).expect_err("a word").to_string();
+        assert!(said.contains("pit.csv:3:5") && said.contains("`depth_um` is `deep`"), "{said}");
+        write("x.ron", "(film: None, defects: [(form: profile(file: \"none.csv\"))])");
+        let said = Scene::read(folder.join("x.ron")).expect_err("no file").to_string();
+        assert!(said.contains("none.csv") && said.contains("x.ron:1:"), "{said}");
     }
 
     #[test]
