@@ -63,7 +63,7 @@ pub(crate) struct Inputs {
 impl Inputs {
     /// Takes scenes from the repository and makes a run to damage, broken off after two samples.
     pub(crate) fn new(folder: &Path) -> Result<Self> {
-        let scenes = ["singh2014", "lean", "quick", "ramp"].map(|name| {
+        let scenes = ["singh2014", "lean", "quick", "ramp", "pitted"].map(|name| {
             let path = workspace::root().join(format!("fixtures/scenes/{name}.ron"));
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
         });
@@ -172,8 +172,16 @@ fn table(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     let content = if dice.one_in(4) { bytes(TABLE.as_bytes(), dice) } else { text(TABLE, dice).into_bytes() };
     std::fs::write(&path, content)?;
     let file = inputs.folder.join("table.ron");
-    let field = dice.pick(&["speed_profile", "load_profile"]);
-    std::fs::write(&file, format!("(operation: ({field}: table(\"damaged.csv\")))"))?;
+    let scene = dice.pick(&[
+        "(operation: (speed_profile: table(\"damaged.csv\")))",
+        "(operation: (load_profile: table(\"damaged.csv\")))",
+        "(film: None, defect: None, defects: [(form: profile(file: \"damaged.csv\"))])",
+    ]);
+    if scene.contains("profile(") {
+        let text = String::from_utf8_lossy(&std::fs::read(&path)?).replace("time_ms", "position_mm");
+        std::fs::write(&path, text.replace("value", "depth_um"))?;
+    }
+    std::fs::write(&file, scene)?;
     let (answer, scene) = answered(Scene::read(&file))?;
     if let Some(scene) = scene {
         let duty = Duty::of(&scene);
