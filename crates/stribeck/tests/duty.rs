@@ -46,6 +46,8 @@ fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
     let duty = summary.duty.as_ref().expect("a speed that changes");
     assert_eq!((duty.speed_rpm, duty.load_n), ((300.0, 1200.0), (50_000.0, 50_000.0)));
     let orders = duty.envelope.as_ref().expect("turns enough");
+    // What the project asks of every ledger; the reduced model's error goes with the square of its step.
+    assert!(summary.energy.max_relative_error < 0.01, "{:?}", summary.energy);
     let order = Kinematics::new(&scene.bearing, 60.0).bpfo_hz;
     let found = orders.lines[0].measured.expect("a line");
     assert!((found - order).abs() < orders.resolution, "{found} instead of {order} ± {}", orders.resolution);
@@ -93,8 +95,8 @@ fn invariant_a_mirrored_run_has_the_same_report() {
         for (a, b) in
             [(a.entry_ms, b.entry_ms), (a.exit_ms, b.exit_ms)].into_iter().filter_map(|(a, b)| a.zip(b))
         {
-            // Idle rollers rattle differently once rounding has grown.
-            assert!((a - b).abs() < 0.05, "{a} ms and {b} ms");
+            // Idle rollers rattle differently once rounding has grown: as two starts of one scene on so coarse a mesh.
+            assert!((a - b).abs() < 0.2, "{a} ms and {b} ms");
             edges += 1;
         }
     }

@@ -34,8 +34,16 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     Some(figure)
 }
 
+/// Whether the speed changes: lines at constant frequencies are then neither looked for nor taken out.
+fn unsteady(findings: &Findings) -> bool {
+    findings.summary.duty.as_ref().is_some_and(|duty| duty.speed_rpm.0 != duty.speed_rpm.1)
+}
+
 /// Which families were found, in one sentence.
 fn found(findings: &Findings) -> String {
+    if unsteady(findings) {
+        return "The speed changes: what stands here are resonances, and lines are smeared.".into();
+    }
     let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", f.spoken(), f.carrier_hz?));
     let all: Vec<String> = findings.summary.families.iter().filter_map(name).collect();
     if all.is_empty() {
@@ -47,7 +55,7 @@ fn found(findings: &Findings) -> String {
 
 /// Raw and notched, whole and about the tone (the paper's Figs. 7a and 7b).
 pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
-    let Some(leading) = findings.sensors.first() else { return Vec::new() };
+    let Some(leading) = findings.sensors.first().filter(|_| !unsteady(findings)) else { return Vec::new() };
     let Some(raw) = &leading.raw_density else { return Vec::new() };
     let overlay = |id: &str, title: &str, range: (f64, f64)| {
         let mut figure = over_frequency(id, title, range);
@@ -82,7 +90,7 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
 pub(super) fn others(findings: &Findings) -> Vec<Figure> {
     let Some(raw) = findings.sensors.first().and_then(|s| s.raw_density.as_ref()) else { return Vec::new() };
     let mut figures = Vec::new();
-    if findings.sensors.len() > 1 {
+    if findings.sensors.len() > 1 && !unsteady(findings) {
         figures.push(all_sensors(findings, zoom(findings, raw), raw));
     }
     figures.push(low(findings, raw));
@@ -116,7 +124,7 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
     let mut figure = over_frequency("spectrum-low", "Low frequencies: the defect and the ring", (0.0, top))
         .with(density("raw", Colour::Blue, raw));
-    let unsteady = findings.summary.duty.as_ref().is_some_and(|duty| duty.speed_rpm.0 != duty.speed_rpm.1);
+    let unsteady = unsteady(findings);
     let caption = match findings.prediction.family {
         None if unsteady => {
             "The speed changes: what comes once a passage is smeared here, and stands over the angle."
