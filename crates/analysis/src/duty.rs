@@ -11,9 +11,10 @@ use stribeck_dsp::{
     Detrend, Envelope, PeriodCount, PeriodVerdict, Scaling, Spectrum, Welch, WelchOptions, Window,
     means_over_angle,
 };
+use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::duty::Duty;
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::enveloping::band_hz;
@@ -100,9 +101,10 @@ impl DutyFinding {
 /// Name and order of the family that a scene's defect makes.
 pub fn family(scene: &Scene) -> Option<(&'static str, f64)> {
     let k = Kinematics::new(&scene.bearing, 60.0);
-    scene.defect.as_ref().map(|defect| match defect.ring {
-        DefectRing::Outer => ("BPFO", k.bpfo_hz),
-        DefectRing::Inner => ("BPFI", k.bpfi_hz),
+    scene.faults().first().map(|on| match on {
+        RollingSurface::Outer => ("BPFO", k.bpfo_hz),
+        RollingSurface::Inner => ("BPFI", k.bpfi_hz),
+        RollingSurface::Roller(_) => ("2·BSF", 2.0 * k.bsf_hz),
     })
 }
 
@@ -118,7 +120,11 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
 /// pass the other.
 pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
     let outer = motion.bpfo_hz? / motion.shaft_hz;
-    let order = if name == "BPFI" { motion.rollers.len() as f64 - outer } else { outer };
+    let order = match name {
+        "BPFI" => motion.rollers.len() as f64 - outer,
+        "2·BSF" => 2.0 * motion.roller_spin_hz? / motion.shaft_hz,
+        _ => outer,
+    };
     Some(order).filter(|order| order.is_finite())
 }
 

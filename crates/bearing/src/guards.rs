@@ -76,7 +76,7 @@ impl Softness {
         let [_, most] = Duty::of(scene).load_range_n(g.duration);
         let load = RigidRings::new(g).distribute(most, &roller_angles_deg(scene));
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
-        let depth = g.defect.map_or(f64::INFINITY, |d| d.depth);
+        let depth = scene.leading_spall().map_or(f64::INFINITY, |d| 1e-3 * d.depth_mm);
         Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
     }
 
@@ -106,7 +106,7 @@ impl Guards {
     pub(crate) fn new(scene: &Scene, assembly: &Assembly, machine: &Machine) -> Self {
         let g = Geometry::of(scene);
         let radius = g.roller_radius;
-        let depth = g.defect.map_or(0.0, |d| d.depth);
+        let depth = scene.leading_spall().map_or(0.0, |d| 1e-3 * d.depth_mm);
         let slack = OUT_OF_PLACE * radius;
         let mesh = &assembly.model.mesh;
         let [outer, adapter] = [machine.outer, machine.adapter].map(|body| {

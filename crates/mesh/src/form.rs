@@ -127,11 +127,14 @@ impl Moves {
         let after = self.knots.partition_point(|knot| knot[0] <= angle);
         let [before, after] = [self.knots[(after + n - 1) % n], self.knots[after % n]];
         let (behind, ahead) = ((angle - before[0]).rem_euclid(TAU), (after[0] - angle).rem_euclid(TAU));
+        let fade = |by: f64, off: f64| by * (1.0 - off / self.reach).max(0.0);
+        if n == 1 {
+            return fade(before[1], behind.min(ahead));
+        }
         let gap = behind + ahead;
-        if gap <= 2.0 * self.reach && n > 1 {
+        if gap <= 2.0 * self.reach {
             return (before[1] * ahead + after[1] * behind) / gap;
         }
-        let fade = |by: f64, off: f64| by * (1.0 - off / self.reach).max(0.0);
         fade(before[1], behind) + fade(after[1], ahead)
     }
 }

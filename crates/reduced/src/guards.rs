@@ -27,7 +27,7 @@ impl Guards {
     pub(crate) fn new(scene: &Scene) -> Self {
         let g = Geometry::of(scene);
         let slack = OUT_OF_PLACE * g.roller_radius;
-        let depth = g.defect.map_or(0.0, |d| d.depth);
+        let depth = scene.leading_spall().map_or(0.0, |d| 1e-3 * d.depth_mm);
         Self {
             limits: scene.guards.clone(),
             element_size: g.element_size,

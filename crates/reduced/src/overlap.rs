@@ -231,7 +231,8 @@ impl<'a> Walk<'a> {
         let width = self.b[0] - self.a[0];
         self.slope = if width > 0.0 { (self.b[1] - self.a[1]) / width } else { 0.0 };
         let square = self.slope * self.slope;
-        self.stretch = 1.0 + square * (1.5 + 0.375 * square);
+        // Walls are no part of a circle.
+        self.stretch = if square > 1.0 { 0.0 } else { 1.0 + square * (1.5 + 0.375 * square) };
         let hidden = self.next[0] < self.b[0] && self.next[1] < self.b[1];
         self.end = if hidden { self.next[0] } else { self.b[0] };
     }

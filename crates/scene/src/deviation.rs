@@ -21,7 +21,7 @@ pub struct DeviationScene {
 }
 
 /// A surface that rolls or is rolled over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RollingSurface {
     /// The raceway of the outer ring.
@@ -181,7 +181,8 @@ impl FormScene {
             Self::Spall(spall) => Some(spall.length_mm),
             Self::Dent(dent) => Some(2.0 * dent.length_mm),
             Self::Profile(profile) => {
-                Some(2.0 * profile.points.iter().map(|point| point.at_mm.abs()).fold(0.0, f64::max))
+                let ends = profile.points.first().zip(profile.points.last());
+                Some(ends.map_or(0.0, |(first, last)| last.at_mm - first.at_mm))
             }
             Self::Waviness(_) | Self::Roughness(_) | Self::Diameter(_) => None,
         }
@@ -225,20 +226,17 @@ impl Scene {
         })
     }
 
-    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, `defect` first. Waves
-    /// and other diameters are none.
+    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, the outer raceway first
+    /// and rollers last. Waves and other diameters are none.
     pub fn faults(&self) -> Vec<RollingSurface> {
         let of_defect = self.defect.iter().map(|defect| match defect.ring {
             DefectRing::Outer => RollingSurface::Outer,
             DefectRing::Inner => RollingSurface::Inner,
         });
         let local = self.defects.iter().filter(|deviation| deviation.form.length_mm().is_some());
-        let mut faults = Vec::new();
-        for on in of_defect.chain(local.map(|deviation| deviation.on)) {
-            if !faults.contains(&on) {
-                faults.push(on);
-            }
-        }
+        let mut faults: Vec<RollingSurface> = of_defect.chain(local.map(|deviation| deviation.on)).collect();
+        faults.sort_unstable();
+        faults.dedup();
         faults
     }
 }
@@ -265,7 +263,10 @@ impl DeviationScene {
                 format!("waviness of order {} and ±{} µm", waviness.order, waviness.amplitude_um)
             }
             FormScene::Roughness(roughness) => format!("roughness of {} µm", roughness.rq_um),
-            FormScene::Diameter(diameter) => format!("a diameter {} µm larger", diameter.larger_um),
+            FormScene::Diameter(diameter) => {
+                let than = if diameter.larger_um < 0.0 { "smaller" } else { "larger" };
+                format!("a diameter {} µm {than}", diameter.larger_um.abs())
+            }
         };
         format!("{form} on {}", self.on.spoken())
     }
@@ -350,7 +351,7 @@ impl Relief {
         self.level + waves.sum::<f64>() + pieces.sum::<f64>()
     }
 
-    /// Angles of the corners of its profile [rad], where a mesh has nodes.
+    /// Angles of the corners of its spalls [rad], where a mesh has nodes.
     pub fn corners(&self) -> Vec<f64> {
         let angles = self
             .pieces

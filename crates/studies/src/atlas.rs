@@ -145,6 +145,7 @@ fn faults(cell: &Cell<'_>) -> Vec<String> {
     let mut faults = Vec::new();
     for (model, run) in [("reduced", Some(cell.reduced)), ("full", cell.full)] {
         match run.map(|run| (run, run.numbers())) {
+            None => faults.push(format!("{model}: no run")),
             Some((run, None)) => {
                 let why = run.summary.as_ref().err().map_or("", String::as_str);
                 faults.push(format!("{model}: {why}"));

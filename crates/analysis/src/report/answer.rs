@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Family;
 use crate::duty::DutyFinding;
@@ -36,12 +37,6 @@ fn count(number: usize, noun: &str) -> String {
 
 fn defect(run: &Run, summary: &Summary) -> String {
     let faults = run.scene.faults();
-    if let Some(RollingSurface::Roller(roller)) = faults.first() {
-        return format!(
-            "It lies on roller {roller} and strikes both raceways; entries and exits are picked on outer raceways only. Look for its \
-             family, twice its spin, in the spectra."
-        );
-    }
     if faults.is_empty() {
         let gap = gravities(summary.levels.phases.gap_g);
         let level =
@@ -49,17 +44,35 @@ fn defect(run: &Run, summary: &Summary) -> String {
         return format!("Raceways and rollers are sound, so there is none to see.{level}");
     }
     let events = &summary.events;
-    if faults.first() == Some(&RollingSurface::Inner) {
-        return "It lies on the inner raceway and turns with the shaft; entries and exits are picked on outer raceways only. Look \
-                for its family, BPFI, in the spectra."
-            .into();
+    let spall = run.scene.leading_spall().filter(|spall| spall.ring == DefectRing::Outer);
+    let families: Vec<String> = faults
+        .iter()
+        .map(|on| match on {
+            RollingSurface::Outer => "that of the outer raceway, BPFO".to_owned(),
+            RollingSurface::Inner => "that of the inner raceway, which turns with the shaft, BPFI".to_owned(),
+            RollingSurface::Roller(roller) => {
+                format!("that of roller {roller}, which strikes both raceways, twice BSF")
+            }
+        })
+        .collect();
+    if spall.is_none() {
+        return format!(
+            "Entries and exits are picked for a spall of the outer raceway, and there is none. Look for the families in the spectra: {}.",
+            families.join("; ")
+        );
     }
+    let others = match faults.len() {
+        1 => String::new(),
+        _ => {
+            format!(" The scene has others, whose families are in the spectra: {}.", families[1..].join("; "))
+        }
+    };
     if events.is_empty() && unsteady(summary).is_some_and(|duty| duty.speed_rpm.0 * duty.speed_rpm.1 < 0.0) {
         return "The shaft turns back on the way, and passages are foretold of one sense of rotation only."
             .into();
     }
     if events.is_empty() {
-        return "No roller reaches it on this record.".into();
+        return format!("No roller reaches it on this record.{others}");
     }
     let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
@@ -82,7 +95,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
         _ => " The record is too short to set exits beside gaps.".into(),
     };
     format!(
-        "{} cross{} it; the contact forces show {} and {}, and {floor}.{heard}",
+        "{} cross{} it; the contact forces show {} and {}, and {floor}.{heard}{others}",
         count(events.len(), "roller"),
         if events.len() == 1 { "es" } else { "" },
         if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },

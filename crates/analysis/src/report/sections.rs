@@ -69,7 +69,10 @@ pub(super) fn duty(summary: &Summary) -> Markup {
             p class="hint" {
                 "Families come so often in a turn of the shaft, without slip: "
                 @for (n, (name, order)) in duty.orders.iter().enumerate() { @if n > 0 { ", " } (name) " " (format!("{order:.4}")) }
-                ". The squared envelope of the leading sensor was averaged over equal steps of the shaft’s angle (THEORY §7.11)."
+                "."
+                @if duty.envelope.is_some() {
+                    " The squared envelope of the leading sensor was averaged over equal steps of the shaft’s angle (THEORY §7.11)."
+                }
             }
         }
         @if let Some(envelope) = &duty.envelope {

@@ -119,7 +119,8 @@ impl<'a> Checked<'a> {
             }
             FormScene::Diameter(_) => vec![self.diameter()],
         };
-        found.into_iter().flatten().chain(self.meets_defect()).chain(self.in_oil()).collect()
+        let beside = [self.meets_defect(), self.meets_spall(), self.in_oil()];
+        found.into_iter().chain(beside).flatten().collect()
     }
 
     fn short(&self, length: f64) -> Option<Finding> {
@@ -246,6 +247,20 @@ impl<'a> Checked<'a> {
             return Some(Finding::new(message, vec![remedy]));
         }
         let most = self.around * if self.on_roller() { OF_ROLLER } else { OF_RACEWAY };
+        let (first, last) = (points[0], points[points.len() - 1]);
+        let wrong = if first.depth_um != 0.0 || last.depth_um != 0.0 {
+            Some("begins and ends on the circle, with depths of 0 µm".to_owned())
+        } else if last.at_mm > first.at_mm && last.at_mm - first.at_mm < HOLLOW_FACETS * self.facet {
+            Some(format!("is as long as {} facets of {:.3} mm at least", number(HOLLOW_FACETS), self.facet))
+        } else if first.at_mm < -0.5 * self.around || last.at_mm > 0.5 * self.around {
+            Some(format!("lies on {}, within {:.1} mm of its middle", self.surface(), 0.5 * self.around))
+        } else {
+            None
+        };
+        if let Some(wrong) = wrong {
+            let message = format!("no mesh can follow `{path}`: a profile {wrong}");
+            return Some(Finding::new(message, vec![Remedy::new(path, allowed).value(NOTCH, "a notch")]));
+        }
         for (k, pair) in points.windows(2).enumerate() {
             let [(a, from), (b, to)] = [pair[0], pair[1]].map(|point| (point.at_mm, point.depth_um));
             let slope = 1e-3 * (to - from).abs() / (b - a);
@@ -333,6 +348,31 @@ impl<'a> Checked<'a> {
         let path = self.path("on");
         let message = format!("`{path}` is a raceway: its diameter is a field of `bearing`");
         Some(Finding::new(message, vec![Remedy::new(path, "`roller(1)` and so on").value("roller(1)", "")]))
+    }
+
+    /// Corners of two spalls would want the same nodes.
+    fn meets_spall(&self) -> Option<Finding> {
+        let FormScene::Spall(own) = &self.deviation.form else { return None };
+        let earlier = self.scene.defects[..self.index].iter().enumerate();
+        for (other, deviation) in earlier.filter(|(_, deviation)| deviation.on == self.deviation.on) {
+            let FormScene::Spall(spall) = &deviation.form else { continue };
+            let apart = (self.deviation.angle_deg - deviation.angle_deg + 180.0).rem_euclid(360.0) - 180.0;
+            let apart = apart.abs() / 360.0 * self.around;
+            let needed = 0.5 * (own.length_mm + spall.length_mm) + 2.0 * self.facet;
+            if apart >= needed {
+                continue;
+            }
+            let path = self.path("angle_deg");
+            let message = format!(
+                "`defects[{}]` lies {apart:.2} mm from `defects[{other}]`, middle to middle: two spalls of one surface stand {needed:.2} mm \
+                 apart at least, their lengths and two facets",
+                self.index
+            );
+            let away = round_up(deviation.angle_deg + 1.01 * 360.0 * needed / self.around, 4);
+            let remedy = Remedy::new(path, format!("{needed:.2} mm or more away")).number(away % 360.0, "");
+            return Some(Finding::new(message, vec![remedy]));
+        }
+        None
     }
 
     /// An oil film knows the curvature of a whole roller, and tracks that bend gently.

@@ -167,6 +167,7 @@ fn fault(scene: &Scene) -> String {
         RollingSurface::Inner => "inner_race",
         RollingSurface::Roller(_) => "rolling_element",
     };
+    // In their order: rollers come last, one beside the other.
     let mut names: Vec<&str> = scene.faults().iter().map(name).collect();
     names.dedup();
     if names.is_empty() { "healthy".to_owned() } else { names.join("+") }

@@ -139,7 +139,7 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let mut picture = Picture::new("mesh-defect", "The mesh about the defect", sheet);
     picture.caption = match &scene.leading_spall() {
         Some(d) => format!(
-            "The defect, {} mm long and {} mm deep, is one layer of elements whose nodes are moved {}; its walls are single facets.",
+            "The defect, {} mm long and {} mm deep, is made by nodes that are moved {}; no element is left out.",
             d.length_mm,
             d.depth_mm,
             if outwards > 0.0 { "outwards" } else { "inwards" }

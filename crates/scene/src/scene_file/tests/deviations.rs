@@ -13,13 +13,13 @@ fn dry(defects: &str) -> String {
 fn example_defects_of_every_form_are_read_and_written_again() {
     let text = dry(
         "(on: roller(3), angle_deg: 20, form: spall(length_mm: 4)), (on: inner, form: dent(depth_mm: 0.02)), \
-         (form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 1, depth_um: 5)])), (form: waviness(order: 9)), \
+         (form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 0, depth_um: 5), (at_mm: 1, depth_um: 0)])), (form: waviness(order: 9)), \
          (on: inner, form: roughness(seed: 4)), (on: roller(24), form: diameter(larger_um: 3))",
     );
     let scene = parse(&text).expect("six that a mesh can follow");
     assert_eq!(parse(&scene.to_ron()).expect("its own text"), scene);
     assert_eq!(scene.defects[0].on, RollingSurface::Roller(3));
-    assert_eq!(scene.faults(), [RollingSurface::Roller(3), RollingSurface::Inner, RollingSurface::Outer]);
+    assert_eq!(scene.faults(), [RollingSurface::Outer, RollingSurface::Inner, RollingSurface::Roller(3)]);
     let set =
         scene.with_overrides(&["defects[1].form.rim_um=2.5", "defects[3].form.order=5"]).expect("fields");
     let FormScene::Dent(dent) = &set.defects[1].form else { panic!("{:?}", set.defects[1]) };
@@ -63,9 +63,24 @@ fn refuses_what_no_mesh_can_follow() {
         ("form: diameter(larger_um: 3)", "defects[0].on", "its diameter is a field of `bearing`"),
         ("form: profile(points: [])", "defects[0].form.points", "needs two"),
         (
-            "form: profile(points: [(at_mm: 1, depth_um: 0), (at_mm: 0, depth_um: 2)])",
+            "form: profile(points: [(at_mm: 1, depth_um: 0), (at_mm: 0, depth_um: 2), (at_mm: 4, depth_um: 0)])",
             "defects[0].form.points",
             "`defects[0].form.points[1]` lies at 0 mm, not beyond the one before",
+        ),
+        (
+            "form: profile(points: [(at_mm: -5, depth_um: 900), (at_mm: 5, depth_um: 900)])",
+            "defects[0].form.points",
+            "begins and ends on the circle",
+        ),
+        (
+            "form: profile(points: [(at_mm: -0.2, depth_um: 0), (at_mm: 0.2, depth_um: 0)])",
+            "defects[0].form.points",
+            "as long as 4 facets of 0.500 mm",
+        ),
+        (
+            "on: roller(1), form: profile(points: [(at_mm: 40, depth_um: 0), (at_mm: 44, depth_um: 0)])",
+            "defects[0].form.points",
+            "within 28.3 mm of its middle",
         ),
         ("form: spall(length_mm: NaN)", "defects[0].form.length_mm", "not a finite number"),
     ] {
@@ -88,6 +103,20 @@ fn refuses_a_defect_beside_a_groove_and_in_oil() {
         only(parse("(defect: None, defects: [(on: roller(2), form: dent(length_mm: 4, depth_mm: 0.02))])"));
     assert!(oil.message.contains("oil knows round rollers"), "{oil}");
     assert_eq!(oil.repair.as_deref(), Some("film=None"));
+}
+
+#[test]
+fn refuses_spalls_of_one_surface_that_meet() {
+    let spalls = |apart: f64| {
+        dry(&format!("(angle_deg: 90, form: spall()), (angle_deg: {}, form: spall())", 90.0 + apart))
+    };
+    // 5 mm and two facets of 0.5 mm are 3.44° of a raceway of 100 mm.
+    for apart in [0.0, 0.1, -3.4] {
+        let problem = only(parse(&spalls(apart)));
+        assert!(problem.message.contains("two spalls of one surface stand 6.00 mm apart"), "{problem}");
+    }
+    assert!(parse(&spalls(3.5)).is_ok());
+    assert!(parse(&dry("(on: outer, form: spall()), (on: inner, form: spall())")).is_ok());
 }
 
 #[test]
