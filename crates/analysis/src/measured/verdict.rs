@@ -116,6 +116,7 @@ pub(super) fn judge(
     {
         families.push(look(name, order * shaft_hz, times, &whitened, record_s, segment_s));
     }
+    share_out(&mut families, 1.0 / segment_s);
     decide(&mut families);
     let verdict = conclude(&families);
     Ok(Judged { families, verdict, notes })
@@ -196,6 +197,26 @@ fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened) -> Option<f64> {
         .collect();
     let as_high = heights.iter().filter(|height| **height >= comb.height).count();
     (!heights.is_empty()).then(|| as_high as f64 / heights.len() as f64)
+}
+
+/// Lines that two families both take for theirs belong to the one that is nearer to its place.
+fn share_out(families: &mut [Family], resolution_hz: f64) {
+    let comb = |family: &Family| {
+        let times = FAMILIES.iter().find(|f| f.0 == family.name).map_or(1.0, |f| f.2);
+        Some((times * family.measured_hz?, (family.measured_hz? / family.expected_hz - 1.0).abs()))
+    };
+    let combs: Vec<Option<(f64, f64)>> = families.iter().map(comb).collect();
+    for (at, own) in combs.iter().enumerate() {
+        let Some((hz, off)) = own else { continue };
+        let nearer = combs.iter().position(|other| {
+            other.is_some_and(|(there, less)| (there - hz).abs() < resolution_hz && less < *off)
+        });
+        if let Some(nearer) = nearer {
+            let reason =
+                format!("its lines are those of {}, which are nearer to their place", families[nearer].name);
+            families[at].reason = reason;
+        }
+    }
 }
 
 /// Which of the families that are there are defects.
@@ -296,4 +317,42 @@ fn probability(p: f64) -> String {
 
 fn decibel(power: f64) -> f64 {
     10.0 * power.max(1e-30).log10()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found at `measured_hz`, far above noise and anything else.
+    fn found(name: &'static str, expected_hz: f64, measured_hz: f64) -> Family {
+        Family {
+            name,
+            expected_hz,
+            measured_hz: Some(measured_hz),
+            harmonics: 5,
+            level_db: Some(25.0),
+            p_value: 1e-12,
+            rank: Some(0.0),
+            depth: Some(1.5),
+            band_hz: None,
+            claimed: false,
+            reason: String::new(),
+            height_db: 25.0,
+        }
+    }
+
+    /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move either.
+    #[test]
+    fn example_one_line_is_claimed_for_one_family() {
+        let mut families = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 53.081)];
+        share_out(&mut families, 1.25);
+        decide(&mut families);
+        assert!(families[0].claimed && !families[1].claimed, "{families:?}");
+        assert!(families[1].reason.contains("those of BPFO"), "{}", families[1].reason);
+        // Two lines of their own are two defects.
+        let mut apart = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 52.2)];
+        share_out(&mut apart, 1.25);
+        decide(&mut apart);
+        assert!(apart.iter().all(|family| family.claimed), "{apart:?}");
+    }
 }
