@@ -46,6 +46,7 @@ fn polar(scene: &Scene, surface: &str, centre: [f64; 2]) -> Vec<[f64; 2]> {
     nodes.into_iter().map(polar).collect()
 }
 
+/// Source: THEORY §6.4.
 #[test]
 fn analytic_nodes_lie_as_deep_as_the_scene_says() {
     // Positions of a meshed bearing are known to a few roundings of 0.1 m.
@@ -86,7 +87,7 @@ fn analytic_nodes_lie_as_deep_as_the_scene_says() {
 
 /// Asked of every defect: a time step within a tenth of the sound bearing's.
 #[test]
-fn keeps_nine_tenths_of_the_time_step_where_slopes_are_steepest() {
+fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
     let step = |scene: &Scene| {
         let machine = Assembly::new(scene).expect("it meshes").machine(scene, 1).expect("it is laid out");
         machine.system.critical_time_step()

@@ -147,6 +147,7 @@ mod tests {
         Moves { knots: knots.to_vec(), reach: 0.5 }
     }
 
+    /// Source: THEORY §6.4.
     #[test]
     fn analytic_moves_reach_corners_and_fade() {
         let one = moves(&[[1.0, 0.1]]);

@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
-use crate::scene::{DefectRing, DefectScene, Scene};
 
 /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -202,45 +201,6 @@ impl FormScene {
     }
 }
 
-impl Scene {
-    /// The spall whose entries and exits a report looks for: `defect`, or else the first spall of `defects` on a raceway.
-    pub fn leading_spall(&self) -> Option<DefectScene> {
-        self.defect.clone().or_else(|| {
-            self.defects.iter().find_map(|deviation| {
-                let FormScene::Spall(spall) = &deviation.form else { return None };
-                let ring = match deviation.on {
-                    RollingSurface::Outer => DefectRing::Outer,
-                    RollingSurface::Inner => DefectRing::Inner,
-                    RollingSurface::Roller(_) => return None,
-                };
-                let [_, facet] = rolling_circle(self, deviation.on);
-                let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { facet };
-                Some(DefectScene {
-                    ring,
-                    length_mm: spall.length_mm,
-                    depth_mm: spall.depth_mm,
-                    angle_deg: deviation.angle_deg,
-                    edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
-                })
-            })
-        })
-    }
-
-    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, the outer raceway first
-    /// and rollers last. Waves and other diameters are none.
-    pub fn faults(&self) -> Vec<RollingSurface> {
-        let of_defect = self.defect.iter().map(|defect| match defect.ring {
-            DefectRing::Outer => RollingSurface::Outer,
-            DefectRing::Inner => RollingSurface::Inner,
-        });
-        let local = self.defects.iter().filter(|deviation| deviation.form.length_mm().is_some());
-        let mut faults: Vec<RollingSurface> = of_defect.chain(local.map(|deviation| deviation.on)).collect();
-        faults.sort_unstable();
-        faults.dedup();
-        faults
-    }
-}
-
 impl RollingSurface {
     /// In words.
     pub fn spoken(self) -> String {
@@ -253,6 +213,20 @@ impl RollingSurface {
 }
 
 impl DeviationScene {
+    /// One of every form: items of a list may have different fields.
+    pub(crate) fn of_every_form() -> Vec<Self> {
+        let profile = SurfaceProfileScene { points: vec![PointScene::default()], ..Default::default() };
+        let forms = [
+            FormScene::Spall(SpallScene::default()),
+            FormScene::Dent(DentScene::default()),
+            FormScene::Profile(profile),
+            FormScene::Waviness(WavinessScene::default()),
+            FormScene::Roughness(RoughnessScene::default()),
+            FormScene::Diameter(DiameterScene::default()),
+        ];
+        forms.into_iter().map(|form| Self { form, ..Self::default() }).collect()
+    }
+
     /// In words: `a spall of 4 × 0.1 mm on roller 1`.
     pub fn spoken(&self) -> String {
         let form = match &self.form {
@@ -270,17 +244,6 @@ impl DeviationScene {
         };
         format!("{form} on {}", self.on.spoken())
     }
-}
-
-/// Diameter of a rolling surface and length of its facets [mm].
-pub fn rolling_circle(scene: &Scene, on: RollingSurface) -> [f64; 2] {
-    let (b, mesh) = (&scene.bearing, &scene.mesh);
-    let (diameter, facets) = match on {
-        RollingSurface::Outer => (b.outer_race_diameter_mm, mesh.outer_facets),
-        RollingSurface::Inner => (b.inner_race_diameter_mm, mesh.inner_facets),
-        RollingSurface::Roller(_) => (b.roller_diameter_mm, Some(mesh.roller_facets)),
-    };
-    [diameter, facets.map_or(mesh.size_mm, |n| PI * diameter / n as f64)]
 }
 
 /// All deviations of one surface.
@@ -447,6 +410,7 @@ mod tests {
         1e6 * relief.depth(0.5 * PI + mm / 100.0)
     }
 
+    /// Source: THEORY §6.4.
     #[test]
     fn analytic_profiles_at_chosen_places() {
         let spall = SpallScene { length_mm: 6.0, depth_mm: 0.1, edge_mm: 1.0, edge: Edge::Sloped };
@@ -476,6 +440,7 @@ mod tests {
         }
     }
 
+    /// Source: THEORY §6.4.
     #[test]
     fn analytic_a_roller_of_another_diameter_lies_half_as_deep() {
         let roller = |larger_um| DeviationScene {
@@ -488,7 +453,7 @@ mod tests {
         assert!(relief(RollingSurface::Roller(2)).is_none());
     }
 
-    /// Parseval: the mean square over the circumference is half the sum of the squares of the amplitudes.
+    /// Source: THEORY §6.4; the mean square over the circumference is half the sum of the squares of the amplitudes (Parseval).
     #[test]
     fn analytic_roughness_has_its_root_mean_square_and_band() {
         let relief = on_outer(FormScene::Roughness(RoughnessScene { rq_um: 0.4, ..Default::default() }));

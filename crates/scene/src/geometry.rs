@@ -7,7 +7,8 @@
 use std::f64::consts::TAU;
 
 use crate::contact_formula::ContactNumbers;
-use crate::deviation::{Relief, RollingSurface, rolling_circle};
+use crate::deviation::{Relief, RollingSurface};
+use crate::faults::rolling_circle;
 use crate::material::Material;
 use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,

@@ -57,6 +57,7 @@ pub mod dice;
 pub mod duty;
 pub mod ensemble;
 pub mod error;
+mod faults;
 pub mod frames;
 pub mod geometry;
 pub mod kinematics;

@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
-use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface, rolling_circle};
+use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface};
+use crate::faults::rolling_circle;
 use crate::scene::{DefectRing, Scene};
 
 /// Steepest slope of a surface: cells under it lean as much, and keep nine tenths of their time step.

@@ -3,9 +3,8 @@
 use std::fmt;
 
 use super::finding::{Finding, Remedy};
-use super::schema::every_form;
 use super::wording::{number, shown};
-use crate::deviation::{FormScene, RollingSurface};
+use crate::deviation::{DeviationScene, FormScene, RollingSurface};
 use crate::scene::{
     FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
@@ -75,7 +74,7 @@ fn with_everything() -> Scene {
     scene.mesh.grading = Some(GradingScene::default());
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
     scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
-    scene.defects = every_form();
+    scene.defects = DeviationScene::of_every_form();
     scene.film = Some(FilmScene::default());
     // Between them they have the numbers of both kinds of profile.
     scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));

@@ -2,10 +2,7 @@
 
 use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
-use crate::deviation::{
-    DentScene, DeviationScene, DiameterScene, FormScene, PointScene, RoughnessScene, SpallScene,
-    SurfaceProfileScene, WavinessScene,
-};
+use crate::deviation::DeviationScene;
 use crate::scene::{
     FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
@@ -22,22 +19,6 @@ const OPTIONAL_GROUPS: [&str; 7] = [
     "output.frames",
 ];
 
-/// One deviation of every form: items of a list may have different fields.
-pub(crate) fn every_form() -> Vec<DeviationScene> {
-    let forms = [
-        FormScene::Spall(SpallScene::default()),
-        FormScene::Dent(DentScene::default()),
-        FormScene::Profile(SurfaceProfileScene {
-            points: vec![PointScene::default()],
-            ..SurfaceProfileScene::default()
-        }),
-        FormScene::Waviness(WavinessScene::default()),
-        FormScene::Roughness(RoughnessScene::default()),
-        FormScene::Diameter(DiameterScene::default()),
-    ];
-    forms.into_iter().map(|form| DeviationScene { form, ..DeviationScene::default() }).collect()
-}
-
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
     text: String,
@@ -53,7 +34,7 @@ impl Schema {
         scene.solver.structural_damping = Some(StructuralDampingScene::default());
         // Empty by default, but an item must have a kind.
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
-        scene.defects = every_form();
+        scene.defects = DeviationScene::of_every_form();
         scene.film = Some(FilmScene::default());
         // One profile shows the fields of a ramp, the other those of a sine; either may be both.
         scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
@@ -185,7 +166,7 @@ impl Kind {
 /// The same path in deviations of the other forms.
 fn forms_of(path: &str) -> impl Iterator<Item = String> + use<> {
     let of_defects = path.strip_prefix("defects[0]").map(str::to_owned);
-    let others = 1..every_form().len();
+    let others = 1..DeviationScene::of_every_form().len();
     of_defects.into_iter().flat_map(move |rest| others.clone().map(move |i| format!("defects[{i}]{rest}")))
 }
 

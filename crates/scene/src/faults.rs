@@ -1,0 +1,56 @@
+//! Which surfaces of a scene have defects, and which of them a report looks at first.
+
+use std::f64::consts::PI;
+
+use crate::deviation::{FormScene, RollingSurface};
+use crate::scene::{DefectRing, DefectScene, Scene};
+
+impl Scene {
+    /// The spall whose entries and exits a report looks for: `defect`, or else the first spall of `defects` on a raceway.
+    pub fn leading_spall(&self) -> Option<DefectScene> {
+        self.defect.clone().or_else(|| {
+            self.defects.iter().find_map(|deviation| {
+                let FormScene::Spall(spall) = &deviation.form else { return None };
+                let ring = match deviation.on {
+                    RollingSurface::Outer => DefectRing::Outer,
+                    RollingSurface::Inner => DefectRing::Inner,
+                    RollingSurface::Roller(_) => return None,
+                };
+                let [_, facet] = rolling_circle(self, deviation.on);
+                let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { facet };
+                Some(DefectScene {
+                    ring,
+                    length_mm: spall.length_mm,
+                    depth_mm: spall.depth_mm,
+                    angle_deg: deviation.angle_deg,
+                    edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
+                })
+            })
+        })
+    }
+
+    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, the outer raceway first
+    /// and rollers last. Waves and other diameters are none.
+    pub fn faults(&self) -> Vec<RollingSurface> {
+        let of_defect = self.defect.iter().map(|defect| match defect.ring {
+            DefectRing::Outer => RollingSurface::Outer,
+            DefectRing::Inner => RollingSurface::Inner,
+        });
+        let local = self.defects.iter().filter(|deviation| deviation.form.length_mm().is_some());
+        let mut faults: Vec<RollingSurface> = of_defect.chain(local.map(|deviation| deviation.on)).collect();
+        faults.sort_unstable();
+        faults.dedup();
+        faults
+    }
+}
+
+/// Diameter of a rolling surface and length of its facets [mm].
+pub(crate) fn rolling_circle(scene: &Scene, on: RollingSurface) -> [f64; 2] {
+    let (b, mesh) = (&scene.bearing, &scene.mesh);
+    let (diameter, facets) = match on {
+        RollingSurface::Outer => (b.outer_race_diameter_mm, mesh.outer_facets),
+        RollingSurface::Inner => (b.inner_race_diameter_mm, mesh.inner_facets),
+        RollingSurface::Roller(_) => (b.roller_diameter_mm, Some(mesh.roller_facets)),
+    };
+    [diameter, facets.map_or(mesh.size_mm, |n| PI * diameter / n as f64)]
+}
