@@ -177,6 +177,8 @@ impl Findings {
         let least = |curve| rolling::least_support_n(&run.scene, curve, load.expected_n);
         load.least_rolling_n = static_curve.as_ref().and_then(least);
         notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
+        let cage = record.channel("cage.x_m").zip(record.channel("cage.y_m"));
+        notes.extend(cage.and_then(|(x, y)| rolling::straying(&run.scene, x, y)));
         let span = time.last().copied().unwrap_or(0.0);
         let artefacts = match sensors.first().zip(spectrum).filter(|_| steady) {
             Some((sensor, density)) => {

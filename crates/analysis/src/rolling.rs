@@ -56,11 +56,42 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
     said
 }
 
+/// How far a cage may stray, in clearances of its pockets: pockets with corners let it go four or five times as far.
+const STRAYS: f64 = 10.0;
+
+/// What to say of a cage that nothing holds across: `x` and `y` are where its centre was [m].
+pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
+    let room_um = scene.cage.as_ref()?.pocket_clearance_um;
+    let (first_x, first_y) = (x.first()?, y.first()?);
+    let far = x.iter().zip(y).map(|(x, y)| (x - first_x).hypot(y - first_y)).fold(0.0, f64::max);
+    let far_um = 1e6 * far;
+    (room_um > 0.0 && far_um > STRAYS * room_um).then(|| {
+        format!(
+            "the cage strays by {far_um:.0} µm, where its pockets leave {room_um:.0} µm: straight walls do not hold it across, and rollers bunch. \
+             `cage.pocket: corners`, on a cage outside of the pitch circle, holds it"
+        )
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::prediction::Prediction;
     use stribeck_scene::run_info::MeshInfo;
+
+    #[test]
+    fn example_a_cage_that_strays_is_named() {
+        // Pockets of 100 µm.
+        let scene = Scene::default();
+        let path = |far: f64| straying(&scene, &[1e-3, 1e-3 + 0.6 * far, 1e-3], &[0.0, 0.8 * far, 0.0]);
+        assert!(path(0.9e-3).is_none());
+        assert!(
+            path(1.2e-3)
+                .expect("twelve clearances")
+                .contains("strays by 1200 µm, where its pockets leave 100 µm")
+        );
+        assert!(straying(&Scene { cage: None, ..scene.clone() }, &[0.0, 1.0], &[0.0, 0.0]).is_none());
+    }
 
     /// The paper's bearing by hand: 0.3 N m s² … I = ½ m r² with m = 7850 · π · 9² · 30 mm³ = 59.9 g.
     #[test]
