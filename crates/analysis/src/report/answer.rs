@@ -78,6 +78,12 @@ fn defect(run: &Run, summary: &Summary) -> String {
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
     let floors: Vec<String> =
         events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
+    let rollers = run.scene.bearing.rollers;
+    let crossed = match events.len() {
+        1 => "1 roller crosses it".to_owned(),
+        times if times > rollers => format!("Rollers cross it {times} times"),
+        few => format!("{few} rollers cross it"),
+    };
     let floor = match floors.len() {
         0 => "none touches the floor".to_owned(),
         1 => format!("roller {} touches the floor", floors[0]),
@@ -95,9 +101,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
         _ => " The record is too short to set exits beside gaps.".into(),
     };
     format!(
-        "{} cross{} it; the contact forces show {} and {}, and {floor}.{heard}{others}",
-        count(events.len(), "roller"),
-        if events.len() == 1 { "es" } else { "" },
+        "{crossed}; the contact forces show {} and {}, and {floor}.{heard}{others}",
         if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
         count(exits, "exit"),
     )

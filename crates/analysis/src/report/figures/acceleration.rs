@@ -21,12 +21,14 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
             gravities(levels.phases.exit_g),
             gravities(levels.phases.entry_g),
             gravities(levels.phases.gap_g),
-        ))
-        .note(
-            "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
-             place without slip is drawn.",
-        );
+        ));
     figure.marks = passages(&findings.summary.events);
+    figure = figure.note(if findings.summary.events.len() > DRAWN {
+        "Entries and exits are too many to be drawn here; they stand in the table of the contact forces."
+    } else {
+        "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
+         place without slip is drawn."
+    });
     figure.bands = start_up(findings);
     if findings.of_paper {
         figure.levels = both_signs(&[(paper::IMPULSE_G, "impulses"), (paper::BETWEEN_G, "between")]);
@@ -100,10 +102,16 @@ fn over_time(id: &str, title: &str) -> Figure {
     Figure::new(id, title, Axis::si("Time", "s"), Axis::plain("a_y", "g")).synced("time")
 }
 
+/// Most passages that are drawn: the lines of more would hide the signal.
+const DRAWN: usize = 40;
+
 /// Entries and exits by the forces, dashed by rolling without slip where the forces show none; of many only the first is
-/// named in full.
+/// named in full, of very many none is drawn.
 fn passages(events: &[Event]) -> Vec<Mark> {
     let mut marks = Vec::new();
+    if events.len() > DRAWN {
+        return marks;
+    }
     for (n, e) in events.iter().enumerate() {
         let full = events.len() <= NAMED || n == 0;
         let label = |what: &str| if full { format!("{what} {}", e.roller) } else { e.roller.to_string() };
