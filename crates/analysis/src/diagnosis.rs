@@ -74,7 +74,7 @@ pub fn of(
     name: &str,
 ) -> Result<Option<DiagnosisFinding>, Error> {
     let Some(samples) = record.channel(name) else { return Ok(None) };
-    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * motion.shaft_hz);
+    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * motion.relative_hz);
     let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing) };
     let channel = Channel::held(name.to_owned(), samples.to_vec()).in_unit(Some("m/s²".to_owned()));
     let analysis = match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
@@ -86,7 +86,8 @@ pub fn of(
     let present = scene.faults();
     let families = analysis.findings.families.iter().map(|family| {
         let sides = match family.name {
-            "BPFI" => Some(("shaft", motion.shaft_hz)),
+            "BPFO" if motion.outer_ring_hz > 0.0 => Some(("outer ring", motion.outer_ring_hz)),
+            "BPFI" if motion.shaft_hz > 0.0 => Some(("shaft", motion.shaft_hz)),
             "BSF" => Some(("cage", motion.cage_hz.unwrap_or(motion.expected_cage_hz))),
             _ => None,
         };
@@ -126,7 +127,7 @@ fn from_motion(name: &str, motion: &KinematicsFinding) -> Option<f64> {
     match name {
         "BPFO" => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
-        "BPFI" => motion.bpfo_hz.map(|bpfo| rollers * motion.shaft_hz - bpfo),
+        "BPFI" => motion.bpfo_hz.map(|bpfo| rollers * motion.relative_hz - bpfo),
         // Under load: a roller that carries nothing may turn as it likes, and strikes nothing.
         "BSF" => motion.roller_spin_hz,
         _ => motion.cage_hz,

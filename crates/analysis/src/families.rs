@@ -76,6 +76,8 @@ pub struct Motion {
     pub interval_s: f64,
     /// Angular velocity of the inner ring [rad/s], counter-clockwise: negative.
     pub shaft_rad_s: f64,
+    /// The same of the outer ring; zero where it stands still.
+    pub outer_rad_s: f64,
     /// Rate at which rollers pass a place on the outer raceway [Hz], positive.
     pub bpfo_hz: f64,
     /// Every roller.
@@ -386,7 +388,7 @@ impl Source {
         match self {
             Self::RotatedVertices(count) => count * (spin - (orbit - roller.place)),
             Self::TranslatedVertices(count) => count * (spin - orbit),
-            Self::OuterNodes(count) => -count * orbit,
+            Self::OuterNodes(count) => -count * (orbit - motion.outer_rad_s * n as f64 * motion.interval_s),
             Self::InnerNodes(count) => count * (orbit - motion.shaft_rad_s * n as f64 * motion.interval_s),
         }
     }

@@ -163,7 +163,12 @@ impl Findings {
         let crossings = crossing_forces(&record, &events, filter.as_ref())?;
         let notch = filter.as_ref().zip(sensors.first()).map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g));
         let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
-        let mut load = load::measure(&record, run.info.expected_support_n, prediction.facet_period_s());
+        let mut load = load::measure(
+            &record,
+            run.scene.load_direction(),
+            run.info.expected_support_n,
+            prediction.facet_period_s(),
+        );
         let static_curve = match prediction.static_curve(&run.scene, run.info.expected_support_n) {
             Ok(curve) => Some(curve),
             Err(why) => {
@@ -341,6 +346,7 @@ fn heard(
     let tracks = Motion {
         interval_s: record.interval_s(),
         shaft_rad_s: sense * prediction.kinematics.shaft_rad_s,
+        outer_rad_s: sense * prediction.kinematics.outer_rad_s,
         bpfo_hz: motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz),
         rollers: record.rollers().iter().map(track).collect(),
     };

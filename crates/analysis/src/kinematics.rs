@@ -17,11 +17,20 @@ const LOADED: f64 = 0.05;
 pub struct KinematicsFinding {
     /// Shaft.
     pub shaft_hz: f64,
+    /// Outer ring; zero where it stands still.
+    #[serde(default)]
+    pub outer_ring_hz: f64,
+    /// The rings against each other.
+    #[serde(default)]
+    pub relative_hz: f64,
     /// Cage; without one, the mean orbital frequency of the rollers.
     pub cage_hz: Option<f64>,
     /// Cage, no slip (fundamental train frequency).
     pub expected_cage_hz: f64,
-    /// Number of rollers times the measured cage frequency.
+    /// Cage as seen from the outer ring, measured and without slip.
+    #[serde(default)]
+    pub cage_on_outer_hz: [Option<f64>; 2],
+    /// Number of rollers times the measured frequency of the cage as seen from the outer ring.
     pub bpfo_hz: Option<f64>,
     /// Ball pass frequency of the outer raceway, no slip.
     pub expected_bpfo_hz: f64,
@@ -52,11 +61,12 @@ pub struct RollerMotion {
 impl KinematicsFinding {
     /// Recorded over slip-free frequency of the facet line called `name`; `None` when that motion was not recorded.
     pub fn ratio(&self, name: &str) -> Option<f64> {
-        let (cage, expected) = (self.cage_hz?, self.expected_cage_hz);
+        let [cage, expected] = self.cage_on_outer_hz;
+        let (cage, expected) = (cage?, expected?);
         let ratio = match name {
             "roller_vertices" => self.roller_spin_hz? / self.expected_roller_spin_hz,
             "outer_race_nodes" => cage / expected,
-            "inner_race_nodes" => (self.shaft_hz - cage) / (self.shaft_hz - expected),
+            "inner_race_nodes" => (self.relative_hz - cage) / (self.relative_hz - expected),
             _ => return None,
         };
         Some(ratio).filter(|r| r.is_finite())
@@ -91,11 +101,15 @@ pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding 
         .collect();
 
     let cage_hz = cage.map(|rate| rate.abs() / TAU);
+    let on_outer = cage.map(|rate| (rate - expected.outer_rad_s).abs() / TAU);
     KinematicsFinding {
         shaft_hz: expected.shaft_hz,
         cage_hz,
         expected_cage_hz: expected.cage_hz,
-        bpfo_hz: cage_hz.filter(|_| !rollers.is_empty()).map(|hz| hz * rollers.len() as f64),
+        bpfo_hz: on_outer.filter(|_| !rollers.is_empty()).map(|hz| hz * rollers.len() as f64),
+        cage_on_outer_hz: [on_outer, Some(expected.cage_on_outer_hz)],
+        outer_ring_hz: expected.outer_ring_hz,
+        relative_hz: (expected.shaft_rad_s - expected.outer_rad_s).abs() / TAU,
         expected_bpfo_hz: expected.bpfo_hz,
         roller_spin_hz: spin_under_load(time, &rollers).zip(cage).map(|(s, c)| (s - c).abs() / TAU),
         expected_roller_spin_hz: expected.roller_spin_hz,
@@ -153,9 +167,8 @@ mod tests {
     #[test]
     fn example_a_slow_cage_slows_the_outer_and_speeds_the_inner_line() {
         let motion = KinematicsFinding {
-            shaft_hz: 8.0,
-            cage_hz: Some(3.9),
-            expected_cage_hz: 4.0,
+            relative_hz: 8.0,
+            cage_on_outer_hz: [Some(3.9), Some(4.0)],
             ..KinematicsFinding::default()
         };
         assert!((motion.ratio("outer_race_nodes").unwrap() - 0.975).abs() < 1e-12);

@@ -11,16 +11,16 @@ const BIN_DEG: f64 = 1.0;
 /// Forces on the rollers.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoadFinding {
-    /// Mean over the record of the vertical force between rollers and outer ring [N], positive when it supports
-    /// the load.
+    /// Mean over the record of the force between rollers and outer ring along the load [N], positive when it supports the
+    /// load.
     pub mean_n: Option<f64>,
-    /// What it must be: the load plus the weight of adapter and outer ring [N].
+    /// What it must be: the load plus the weight of housing and outer ring along it [N].
     pub expected_n: f64,
     /// `mean_n / expected_n − 1`.
     pub relative_error: Option<f64>,
     /// The same sum at the inner ring [N]: larger by the weight of the rollers.
     pub inner_mean_n: Option<f64>,
-    /// Mean vertical force of the adapter on the outer ring [N], positive downwards.
+    /// Mean force of the housing on the outer ring along the load [N], where the ring sits in one.
     pub seat_mean_n: Option<f64>,
     /// Largest outer-raceway force of any roller, averaged over one facet period [N], so that the facet tone does not
     /// set it. Load compensation next to an unloaded roller and impacts at the exit are in it.
@@ -46,25 +46,29 @@ pub struct Distribution {
     pub mean_n: Vec<f64>,
 }
 
-/// Sums and extremes over the record; the static figures are left empty.
-pub fn measure(record: &Record<'_>, expected_n: f64, facet_period_s: f64) -> LoadFinding {
+/// Sums and extremes over the record; the static figures are left empty. `along` is the direction of the load.
+pub fn measure(record: &Record<'_>, along: [f64; 2], expected_n: f64, facet_period_s: f64) -> LoadFinding {
     let rollers = record.rollers();
     let samples = (facet_period_s / record.interval_s()).round().max(1.0) as usize;
-    let sum = |of: fn(&Roller<'_>) -> Option<f64>| -> Option<f64> {
-        rollers.iter().map(of).try_fold(0.0, |sum, f| Some(sum + f?))
+    let sum = |of: fn(&Roller<'_>) -> Option<[f64; 2]>| -> Option<f64> {
+        rollers.iter().map(of).try_fold(0.0, |sum, f| Some(sum + dot(f?, along)))
     };
     let present = !rollers.is_empty() && !record.is_empty();
     let supported = |total: Option<f64>, sign: f64| total.filter(|_| present).map(|f| sign * f);
     let largest = |of: &dyn Fn(&Roller<'_>) -> Vec<f64>| {
         rollers.iter().flat_map(of).reduce(f64::max).filter(|_| present)
     };
-    let mean_n = supported(sum(|r| mean(r.outer_fy.iter().copied())), -1.0);
+    let mean_n = supported(sum(|r| mean_vector(r.outer_fx, r.outer_fy)), 1.0);
     LoadFinding {
         mean_n,
         expected_n,
         relative_error: mean_n.filter(|_| expected_n > 0.0).map(|f| f / expected_n - 1.0),
-        inner_mean_n: supported(sum(|r| mean(r.inner_fy.iter().copied())), 1.0),
-        seat_mean_n: record.channel("seat.fy_n").and_then(|f| mean(f.iter().copied())).map(|f| -f),
+        inner_mean_n: supported(sum(|r| mean_vector(r.inner_fx, r.inner_fy)), -1.0),
+        seat_mean_n: record
+            .channel("seat.fx_n")
+            .zip(record.channel("seat.fy_n"))
+            .and_then(|(x, y)| mean_vector(x, y))
+            .map(|force| dot(force, along)),
         max_roller_n: largest(&|r| running_mean(&r.outer_normal(), samples)),
         max_roller_peak_n: largest(&|r| r.outer_normal()),
         static_max_roller_n: None,
@@ -74,10 +78,20 @@ pub fn measure(record: &Record<'_>, expected_n: f64, facet_period_s: f64) -> Loa
     }
 }
 
-/// Vertical force of all rollers on the outer ring at every sample [N], positive when it supports the load.
-pub fn vertical_sum(record: &Record<'_>) -> Vec<f64> {
+/// Force of all rollers on the outer ring against the load, whose direction is `along`, at every sample [N]: positive when it
+/// supports the load.
+pub fn support(record: &Record<'_>, along: [f64; 2]) -> Vec<f64> {
     let rollers = record.rollers();
-    (0..record.len()).map(|n| -rollers.iter().map(|r| r.outer_fy[n]).sum::<f64>()).collect()
+    let at = |n: usize| rollers.iter().map(|r| dot([r.outer_fx[n], r.outer_fy[n]], along)).sum();
+    (0..record.len()).map(at).collect()
+}
+
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn mean_vector(x: &[f64], y: &[f64]) -> Option<[f64; 2]> {
+    Some([mean(x.iter().copied())?, mean(y.iter().copied())?])
 }
 
 /// Mean outer-raceway force by angle over all rollers and samples, in bins of one degree.

@@ -9,7 +9,7 @@ use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies, Scene};
-use stribeck_scene::static_load::RigidRings;
+use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
 
 use crate::Error;
 use crate::families::{Candidate, Source};
@@ -90,7 +90,10 @@ impl Prediction {
         let spall = scene.leading_spall();
         Self {
             facet_lines,
-            defect: spall.as_ref().filter(|d| d.ring == DefectRing::Outer).map(edges),
+            defect: spall
+                .as_ref()
+                .filter(|d| d.ring == DefectRing::Outer && scene.operation.outer_speed_rpm == 0.0)
+                .map(edges),
             family: scene.faults().first().filter(|_| !scene.operation.speed_varies()).map(|on| match on {
                 RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
                 RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
@@ -141,18 +144,24 @@ impl Prediction {
     /// [`Error::Run`] when the rings find no equilibrium.
     pub fn static_curve(&self, scene: &Scene, support_n: f64) -> Result<StaticCurve, Error> {
         let rings = RigidRings::new(&Geometry::of(scene));
-        let start = roller_angles_deg(scene);
+        // The rings see the load from above.
+        let turned_by = scene.load_zone_deg() - 90.0;
+        let start = angles_to_load_deg(scene);
         let spacing = 360.0 / scene.bearing.rollers as f64;
         let mut points: Vec<(f64, f64)> = Vec::new();
         let mut largest_sound_n = 0.0f64;
         for step in 0..CAGE_STEPS {
             let turned = spacing * step as f64 / CAGE_STEPS as f64;
             let all: Vec<f64> = start.iter().map(|a| (a - turned).rem_euclid(360.0)).collect();
-            let (inside, carrying): (Vec<f64>, Vec<f64>) = all.iter().partition(|&&a| self.over_defect(a));
+            let (inside, carrying): (Vec<f64>, Vec<f64>) =
+                all.iter().partition(|&&a| self.over_defect(a + turned_by));
             largest_sound_n = largest_sound_n.max(rings.distribute(support_n, &all)?.max_roller_n());
             let load = rings.distribute(support_n, &carrying)?;
             points.extend(carrying.into_iter().zip(load.roller_n));
             points.extend(inside.into_iter().map(|a| (a, 0.0)));
+        }
+        if turned_by != 0.0 {
+            points.iter_mut().for_each(|point| point.0 = (point.0 + turned_by).rem_euclid(360.0));
         }
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (angle_deg, force_n): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();

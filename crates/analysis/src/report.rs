@@ -22,6 +22,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::duty::Duty;
+use stribeck_scene::housing::HousingScene;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{DefectRing, ModelScene, Scene};
@@ -213,12 +214,26 @@ fn lead(scene: &Scene, simulated_ms: f64) -> String {
         name => format!("{name}: "),
     };
     format!(
-        "{name}{} rollers under {} at {}, {defect}; {:.1} ms on record.",
+        "{name}{} rollers{} under {} at {}, {defect}; {:.1} ms on record.",
         scene.bearing.rollers,
+        housing(scene),
         load(scene, simulated_ms),
         speed(scene, simulated_ms),
         simulated_ms
     )
+}
+
+/// What holds the outer ring, in words, where it is not the adapter.
+fn housing(scene: &Scene) -> String {
+    match &scene.housing {
+        HousingScene::Adapter => String::new(),
+        HousingScene::Pedestal(_) => " in a pedestal".to_owned(),
+        HousingScene::Mesh(housing) => format!(" in a housing (`{}`)", housing.file),
+        HousingScene::Rigid(_) => " in a rigid housing".to_owned(),
+        HousingScene::Springs(springs) => {
+            format!(" in a housing on springs of {} N/µm", springs.stiffness_n_um)
+        }
+    }
 }
 
 /// The load in words, with its range where it changes.
@@ -237,6 +252,12 @@ fn speed(scene: &Scene, simulated_ms: f64) -> String {
     let [least, most] = Duty::of(scene).speed_range_rpm(1e-3 * simulated_ms);
     let span = |a: f64, b: f64| if a == b { format!("{a} rpm") } else { format!("{a} to {b} rpm") };
     let (least, most) = (tidy(least), tidy(most));
+    let outer = tidy(scene.operation.outer_speed_rpm);
+    if outer != 0.0 {
+        let sense = |rpm: f64| if rpm < 0.0 { " counter-clockwise" } else { "" };
+        let [of_inner, of_outer] = [least, outer].map(|rpm| format!("{} rpm{}", rpm.abs(), sense(rpm)));
+        return format!("{of_inner} of the inner and {of_outer} of the outer ring");
+    }
     if most <= 0.0 && least < 0.0 {
         format!("{} counter-clockwise", span(-most, -least))
     } else if least < 0.0 {

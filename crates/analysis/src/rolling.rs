@@ -49,7 +49,7 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
     };
     for (what, percent) in [
         ("loaded rollers spin", slower(motion.roller_spin_hz, motion.expected_roller_spin_hz)),
-        ("the cage turns", slower(motion.cage_hz, motion.expected_cage_hz)),
+        ("the cage turns", slower(motion.cage_on_outer_hz[0], motion.cage_on_outer_hz[1].unwrap_or(0.0))),
     ] {
         said.extend(percent.map(|p| format!("{what} {p:.1} % slower than rolling: they slide")));
     }

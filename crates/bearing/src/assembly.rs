@@ -7,7 +7,7 @@ use std::{
 
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{
-    Annulus, ArcBlock, Circle, Disc, FormDeviation, Grading, Groove, Mesh, Part, Placed, SeatedBlock,
+    Annulus, ArcBlock, Circle, Disc, FormDeviation, Grading, Groove, Mesh, Part, Placed, Surface,
     characteristic_length,
 };
 use stribeck_solver::{
@@ -15,11 +15,17 @@ use stribeck_solver::{
 };
 use stribeck_system::{Film, Pair, Plan, System};
 
-use crate::{error::Error, grading};
+use crate::{
+    error::Error,
+    grading,
+    housing::housing,
+    suspension::{Suspension, Tie},
+};
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
     geometry::{CageGeometry, Geometry},
+    housing::{HousingScene, SpringHousingScene},
     kinematics::{FacetCounts, Kinematics},
     lubrication,
     run_info::MeshInfo,
@@ -32,21 +38,22 @@ use stribeck_scene::{
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
 pub const CAGE_ELEMENT_MM: f64 = 2.0;
 
-/// Height of the adapter's flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is
-/// narrower would set the time step.
-const FLATTEST: f64 = 0.91;
-
-/// Integration points on a facet of the adapter's seat: two conforming surfaces need fewer than a line contact.
+/// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line contact.
 const SEAT_POINTS: usize = 2;
 
 /// Names of the contact surfaces that every scene has.
 const OUTER_RACEWAY: &str = "outer raceway";
 const BACK: &str = "outer ring's back";
 const INNER_RACEWAY: &str = "inner raceway";
-const SEAT: &str = "adapter seat";
 
-/// Name of the surface that carries the load.
-pub(crate) const TOP: &str = "adapter's top";
+/// Name of the surface that the outer ring sits in, where it sits in one.
+const SEAT: &str = "seat";
+
+/// Name of the surface that takes the load, and of the load.
+pub(crate) const LOADED: &str = "loaded surface";
+
+/// Name of the part of a load that turns with the shaft which acts across the other.
+pub(crate) const ACROSS: &str = "load across";
 
 /// A scene made into bodies, in mesh numbers.
 #[derive(Debug)]
@@ -59,9 +66,20 @@ pub struct Assembly {
     pub facets: FacetCounts,
     outer: Placed,
     inner: Placed,
-    adapter: Placed,
+    housing: Option<PlacedHousing>,
     rollers: Vec<Placed>,
     cage: Option<Placed>,
+}
+
+/// What holds the outer ring, in mesh numbers.
+#[derive(Debug)]
+struct PlacedHousing {
+    body: usize,
+    /// What the ring sits in; none for springs.
+    seat: Option<Surface>,
+    loaded: Surface,
+    /// Its name in messages.
+    name: &'static str,
 }
 
 /// The same, ready to run; bodies by their numbers in the mesh.
@@ -73,14 +91,15 @@ pub struct Machine {
     pub outer: usize,
     /// The inner ring.
     pub inner: usize,
-    /// The adapter.
-    pub adapter: usize,
+    /// The body that holds the outer ring, if there is one: the adapter or another housing. A ring that does not deform needs
+    /// none.
+    pub housing: Option<usize>,
     /// Each roller.
     pub rollers: Vec<Roller>,
     /// The cage, which moves as one piece.
     pub cage: Option<usize>,
     /// Nodes on the outer surface of the outer ring.
-    pub housing: Vec<u32>,
+    pub back: Vec<u32>,
     /// Contact pairs by what touches.
     pub pairs: Pairs,
     /// Whether there is oil: a film of each roller on the outer and on the inner raceway in turn.
@@ -103,20 +122,22 @@ pub struct Roller {
 /// They follow one another from the outside in, the seat first: see [`Plan::contact`].
 #[derive(Debug, Clone, Copy)]
 pub struct Pairs {
+    /// One where the outer ring sits in something.
+    seats: usize,
     rollers: usize,
     /// Walls of a roller's pocket: two, or none.
     walls: usize,
 }
 
 impl Pairs {
-    /// Of outer ring and adapter; the force on the ring.
-    pub fn seat(&self) -> usize {
-        0
+    /// Of outer ring and housing; the force on the ring. None where the ring touches nothing outside.
+    pub fn seat(&self) -> Option<usize> {
+        (self.seats > 0).then_some(0)
     }
 
     /// Of a roller, from 0, and the outer raceway.
     pub fn outer(&self, roller: usize) -> usize {
-        1 + roller
+        self.seats + roller
     }
 
     /// Of a roller and the two walls of its pocket; none without a cage.
@@ -178,8 +199,13 @@ impl Assembly {
         let inner = formed(made(&inner, &inner_grading)?, "outer", Circle::Outer, g.inner_relief.as_ref())?;
         let inner = mesh.add("inner ring", &inner);
 
-        let adapter = adapter_part(&g, &mesh, surface(&outer, "outer"))?;
-        let adapter = mesh.add("adapter", &adapter);
+        let made = housing(scene, &g, &mesh, surface(&outer, "outer"))?;
+        let held = made.map(|made| {
+            let placed = mesh.add(made.name, &made.part);
+            let named = |name: &str| surface(&placed, name).clone();
+            let (body, seat, loaded) = (placed.body, made.seat.map(named), named(made.loaded));
+            (PlacedHousing { body, seat, loaded, name: made.name }, made.density)
+        });
 
         let roller_radius = g.roller_radius;
         let roller_facets = scene.mesh.roller_facets;
@@ -228,18 +254,36 @@ impl Assembly {
         }
         let cage = cage_mesh.map(|(cage, _)| cage);
         let kinematics = Kinematics::of(scene);
+        match (&scene.housing, &held) {
+            (HousingScene::Rigid(housing), _) => {
+                model.behaviour[outer.body] = Behaviour::Turning { rate: kinematics.outer_rad_s };
+                let area = area_of(&model.mesh, outer.body);
+                let heavier = 1.0 + housing.mass_kg / (area * g.thickness * m.density);
+                model.materials[outer.body] =
+                    Elastic::new(m.youngs_modulus, m.poissons_ratio, heavier * m.density)?;
+            }
+            (HousingScene::Springs(_), Some((frame, density))) => {
+                model.behaviour[frame.body] = Behaviour::Turning { rate: 0.0 };
+                model.materials[frame.body] =
+                    Elastic::new(m.youngs_modulus, m.poissons_ratio, density * m.density)?;
+            }
+            (_, Some((held, _))) => {
+                for &n in &held.loaded.nodes {
+                    model.motion[n as usize] = Motion::HeldX;
+                }
+            }
+            (_, None) => {}
+        }
+        let housing = held.map(|(held, _)| held);
         for &n in &surface(&inner, "inner").nodes {
             model.motion[n as usize] = Motion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s };
-        }
-        for &n in &surface(&adapter, "top").nodes {
-            model.motion[n as usize] = Motion::HeldX;
         }
         let facets = FacetCounts {
             roller: scene.mesh.roller_facets,
             outer: effective_facets(&g, DefectRing::Outer, outer_facets, outer_radius),
             inner: effective_facets(&g, DefectRing::Inner, inner_facets, inner_radius),
         };
-        Ok(Self { model, kinematics, facets, outer, inner, adapter, rollers, cage })
+        Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
 
     /// Counts for `run.json`.
@@ -265,9 +309,10 @@ impl Assembly {
         let bodies = chosen.bodies.iter().flat_map(|body| match body {
             DampedBody::OuterRing => vec![self.outer.body],
             DampedBody::InnerRing => vec![self.inner.body],
-            DampedBody::Adapter => vec![self.adapter.body],
+            DampedBody::Adapter => self.housing.iter().map(|housing| housing.body).collect(),
             DampedBody::Rollers => self.rollers.iter().map(|roller| roller.body).collect(),
         });
+        let bodies = bodies.filter(|body| self.model.behaviour[*body].is_elastic());
         let damping = StructuralDamping::over_band(band.ratio, band.band, chosen.branches, bodies.collect())?;
         Ok(Some(damping))
     }
@@ -278,9 +323,10 @@ impl Assembly {
         let mesh = &self.model.mesh;
         let nu = scene.material.poissons_ratio;
         let corner = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
-        // A rigid cage has no elastic elements.
-        let elastic =
-            |n: u32| self.cage.as_ref().is_none_or(|c| !mesh.bodies[c.body].nodes.contains(&(n as usize)));
+        let elastic = |n: u32| {
+            let mut bodies = mesh.bodies.iter().zip(&self.model.behaviour);
+            bodies.any(|(body, behaviour)| behaviour.is_elastic() && body.nodes.contains(&(n as usize)))
+        };
         let quads = mesh.quads.iter().filter(|q| elastic(q[0]));
         let quads = quads.map(|q| characteristic_length(&q.map(corner), nu));
         let triangles = mesh.triangles.iter().map(|t| characteristic_length(&t.map(corner), nu));
@@ -309,14 +355,17 @@ impl Assembly {
             smoothing(scene.contact.surface, [0.0; 2], g.outer_relief.is_none()),
             spline,
         )?;
-        plan.surface(BACK, surface(&self.outer, "outer").clone())?;
         plan.surface(INNER_RACEWAY, surface(&self.inner, "outer").clone())?;
         plan.smooth(
             INNER_RACEWAY,
             smoothing(scene.contact.surface, [0.0; 2], g.inner_relief.is_none()),
             spline,
         )?;
-        plan.surface(SEAT, surface(&self.adapter, "seat").clone())?;
+        let back = surface(&self.outer, "outer");
+        if let Some(seat) = self.seat() {
+            plan.surface(BACK, back.clone())?;
+            plan.surface(SEAT, seat.clone())?;
+        }
         let mesh = &self.model.mesh;
         let rollers: Vec<Roller> = self
             .rollers
@@ -336,22 +385,32 @@ impl Assembly {
         for (i, (_, piece)) in self.cage.iter().flat_map(|c| &c.surfaces).enumerate() {
             plan.surface(&cage_piece(i), piece.clone())?;
         }
-        plan.surface(TOP, surface(&self.adapter, "top").clone())?;
-        plan.load(TOP, [0.0, -scene.operation.load_n])?;
+        plan.surface(LOADED, self.housing.as_ref().map_or(back, |housing| &housing.loaded).clone())?;
+        let (load_n, [along_x, along_y]) = (scene.operation.load_n, scene.load_direction());
+        plan.load(LOADED, [load_n * along_x, load_n * along_y])?;
+        if Duty::of(scene).load_across_n(0.0).is_some() {
+            let nodes = plan.nodes(LOADED)?;
+            let share = load_n / nodes.len() as f64;
+            let across = nodes.iter().map(|&n| (n, [-share * along_y, share * along_x]));
+            plan.load_nodes(ACROSS, across.collect())?;
+        }
+        if let (HousingScene::Springs(springs), Some(housing)) = (&scene.housing, &self.housing) {
+            suspend(&mut plan, springs, back, housing)?;
+        }
         let pairs = self.touch(&mut plan, scene)?;
         oil(&mut plan, scene, &rollers)?;
         let mut system = plan.build(threads)?;
         if let Some(duty) = Duty::varying(scene) {
-            system.scale_load(TOP, duty.load_n(0.0) / scene.operation.load_n)?;
+            load(&mut system, &duty, load_n, 0.0)?;
         }
         Ok(Machine {
             system,
             outer: self.outer.body,
             inner: self.inner.body,
-            adapter: self.adapter.body,
+            housing: self.housing.as_ref().map(|housing| housing.body),
             rollers,
             cage: self.cage.as_ref().map(|cage| cage.body),
-            housing: surface(&self.outer, "outer").nodes.clone(),
+            back: back.nodes.clone(),
             pairs,
             oiled: scene.film.is_some(),
         })
@@ -379,12 +438,15 @@ impl Assembly {
             sides,
             ..Pair::new(&rim(i), second, rolling)
         };
-        plan.contact(Pair {
-            name: "the adapter and the outer ring".to_owned(),
-            // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
-            method: Method::Integrated { points: SEAT_POINTS },
-            ..Pair::new(BACK, SEAT, seat)
-        })?;
+        let seats = usize::from(self.seat().is_some());
+        if let Some(housing) = self.housing.as_ref().filter(|_| seats > 0) {
+            plan.contact(Pair {
+                name: format!("the {} and the outer ring", housing.name),
+                // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
+                method: Method::Integrated { points: SEAT_POINTS },
+                ..Pair::new(BACK, SEAT, seat)
+            })?;
+        }
         for i in 0..n {
             plan.contact(of_roller(i, OUTER_RACEWAY, "outer raceway"))?;
         }
@@ -398,8 +460,73 @@ impl Assembly {
         for i in 0..n {
             plan.contact(of_roller(i, INNER_RACEWAY, "inner raceway"))?;
         }
-        Ok(Pairs { rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } })
+        Ok(Pairs { seats, rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } })
     }
+
+    /// What the outer ring sits in, if it sits in something.
+    fn seat(&self) -> Option<&Surface> {
+        self.housing.as_ref().and_then(|housing| housing.seat.as_ref())
+    }
+}
+
+/// Sets what pushes on the housing at a time [s]; `load_n` is what a factor of one stands for.
+///
+/// # Errors
+/// When there is no load of a name.
+pub(crate) fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<(), Error> {
+    system.scale_load(LOADED, duty.load_n(at_s) / load_n)?;
+    if let Some(across) = duty.load_across_n(at_s) {
+        system.scale_load(ACROSS, across / load_n)?;
+    }
+    Ok(())
+}
+
+/// Ties the outer ring's back to the frame, node by node.
+fn suspend(
+    plan: &mut Plan,
+    springs: &SpringHousingScene,
+    back: &Surface,
+    frame: &PlacedHousing,
+) -> Result<(), Error> {
+    let mesh = &plan.model.mesh;
+    let place = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
+    let length: Vec<f64> = (0..back.facets())
+        .map(|f| back.facet(f).map(place))
+        .map(|[[ax, ay], [bx, by]]| (bx - ax).hypot(by - ay))
+        .collect();
+    let (whole, n) = (length.iter().sum::<f64>(), back.nodes.len());
+    let held = plan.model.mesh.bodies[frame.body].nodes.start as u32;
+    let ties = (0..n).map(|i| {
+        let share = 0.5 * (length[i] + length[(i + n - 1) % n]) / whole;
+        (back.nodes[i], 1e6 * share * springs.stiffness_n_um, share * springs.damping_n_s_m)
+    });
+    let ties: Vec<(u32, f64, f64)> = ties.collect();
+    let nodes: Vec<u32> = ties.iter().map(|tie| tie.0).chain([held]).collect();
+    let (x, y) = (mesh.x.clone(), mesh.y.clone());
+    plan.force("springs of the housing", nodes.clone(), move |slots| {
+        let (of_ring, frame) = slots.split_at(slots.len() - 1);
+        let apart = |n: u32| [x[n as usize] - x[held as usize], y[n as usize] - y[held as usize]];
+        let suspended = of_ring.iter().zip(&ties).map(|(&slot, &(node, stiffness, damping))| Tie {
+            slot,
+            apart: apart(node),
+            stiffness,
+            damping,
+        });
+        Box::new(Suspension::new(suspended.collect(), frame[0]))
+    })?;
+    Ok(())
+}
+
+/// Area of a body of the mesh [m²].
+fn area_of(mesh: &Mesh, body: usize) -> f64 {
+    let place = |n: &u32| [mesh.x[*n as usize], mesh.y[*n as usize]];
+    let area = |corners: &[u32]| {
+        let next = corners.iter().cycle().skip(1);
+        corners.iter().zip(next).map(|(a, b)| (place(a), place(b))).map(|([ax, ay], [bx, by])| 0.5 * (ax * by - bx * ay)).sum::<f64>()
+    };
+    let body = &mesh.bodies[body];
+    let quads: f64 = mesh.quads[body.quads.clone()].iter().map(|q| area(q)).sum();
+    quads + mesh.triangles[body.triangles.clone()].iter().map(|t| area(t)).sum::<f64>()
 }
 
 /// Puts oil between every roller and both raceways, the outer one first.
@@ -448,30 +575,8 @@ fn smoothing(surface: ContactSurface, centre: [f64; 2], round: bool) -> Smoothin
     }
 }
 
-fn surface<'a>(placed: &'a Placed, name: &str) -> &'a stribeck_mesh::Surface {
+fn surface<'a>(placed: &'a Placed, name: &str) -> &'a Surface {
     placed.surface(name).expect("the generator of this body names this surface")
-}
-
-/// The adapter. In a graded mesh its seat is the polygon of the outer ring, whose back surface is given.
-fn adapter_part(g: &Geometry, mesh: &Mesh, back: &stribeck_mesh::Surface) -> Result<Part, Error> {
-    let size = g.element_size;
-    let mut adapter = SeatedBlock {
-        width: g.adapter_width,
-        height: g.adapter_height,
-        seat_radius: g.outer_race_radius + g.outer_ring_thickness,
-        columns: ((g.adapter_width / size).round() as usize).max(2),
-        rows: adapter_rows(g, size),
-    };
-    let Some(coarse) = g.coarse_size else { return Ok(adapter.part()?) };
-    let seat = grading::seat(back, &mesh.x, &mesh.y, 0.5 * adapter.width, size);
-    adapter.columns = seat.len() - 1;
-    adapter.rows = adapter_rows(g, coarse);
-    Ok(adapter.part_on(&seat)?)
-}
-
-/// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at the crown.
-fn adapter_rows(g: &Geometry, size: f64) -> usize {
-    ((g.adapter_height / (FLATTEST * size)) as usize).max(2)
 }
 
 /// Facets that a whole turn of the raceway of `ring` would have at the spacing outside a defect.

@@ -16,6 +16,15 @@ pub enum Error {
     #[error("mesh: {0}")]
     Mesh(#[from] stribeck_mesh::Error),
 
+    /// The file of a housing is not one that the bearing fits.
+    #[error("`housing.file` `{file}`: {what}")]
+    HousingFile {
+        /// Its name in the scene.
+        file: String,
+        /// What is wrong, and what there is.
+        what: String,
+    },
+
     /// The model cannot be solved.
     #[error("solver: {0}")]
     Solver(#[from] stribeck_solver::Error),

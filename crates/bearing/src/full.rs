@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_system::{Ledger, Snapshot};
 
 use crate::{
-    assembly::{Assembly, Machine, TOP},
+    assembly::{Assembly, Machine, load},
     error::Error,
     frames::Frames,
     guards::{self, Guards},
@@ -83,8 +83,7 @@ impl Full<'_> {
         let system = &mut self.machine.system;
         let now = system.time();
         system.set_rotation_rate(duty.mean_shaft_rad_s(now, now + system.time_step()))?;
-        system.scale_load(TOP, duty.load_n(now) / load_n)?;
-        Ok(())
+        load(system, duty, *load_n, now)
     }
 }
 

@@ -10,7 +10,7 @@
 //! | time step over the critical one, at the start and as elements deform | above 1 | |
 //! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
 //! | time without a roller that carries anything | `unsupported_warning_ms` | |
-//! | rollers and adapter out of their place | | [`OUT_OF_PLACE`] |
+//! | rollers and housing out of their place | | [`OUT_OF_PLACE`] |
 //!
 //! The fields are those of `guards` in the scene. [`System::look`] watches what can go wrong with any bodies in motion and
 //! says it in the scene's words ([`arm`]); before the first step, for the penetration in the fourth row, and for the last two rows, it is said here. A warning is
@@ -24,10 +24,9 @@ use crate::assembly::{Assembly, Machine};
 use stribeck_scene::{
     duty::Duty,
     geometry::Geometry,
-    kinematics::roller_angles_deg,
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
-    static_load::RigidRings,
+    static_load::{RigidRings, angles_to_load_deg},
 };
 
 /// A critical time step that is this share of that of a square cell of the scene's size is worth a word.
@@ -36,7 +35,7 @@ const SMALL_STEP: f64 = 0.25;
 /// Elements are looked at every so many samples: the look costs as much as two steps.
 const LOOK_EVERY: u64 = 10;
 
-/// Rollers may leave their annulus, and the adapter its seat, by this share of a roller's radius.
+/// Rollers may leave their annulus, and the housing the outer ring, by this share of a roller's radius.
 const OUT_OF_PLACE: f64 = 0.5;
 
 /// Contact that sinks in by more than this share of the defect's depth moves its edges.
@@ -53,10 +52,10 @@ pub(crate) struct Guards {
     soft: Softness,
     /// Nearest and farthest place of a roller's centre from that of the outer ring [m].
     annulus: [f64; 2],
-    /// How far the adapter may leave its seat [m].
+    /// How far the housing may leave the ring [m].
     seat: f64,
-    /// Height of the adapter above the outer ring at rest [m].
-    adapter_height: f64,
+    /// Height of the housing above the outer ring at rest [m], if there is one.
+    housing_height: Option<f64>,
 }
 
 /// What a penetration is to be compared with [m]: a contact that sinks in by more is softer than the bearing itself.
@@ -74,7 +73,7 @@ impl Softness {
     fn of(scene: &Scene, g: &Geometry) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
         let [_, most] = Duty::of(scene).load_range_n(g.duration);
-        let load = RigidRings::new(g).distribute(most, &roller_angles_deg(scene));
+        let load = RigidRings::new(g).distribute(most, &angles_to_load_deg(scene));
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = scene.leading_spall().map_or(f64::INFINITY, |d| 1e-3 * d.depth_mm);
         Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
@@ -109,16 +108,13 @@ impl Guards {
         let depth = scene.leading_spall().map_or(0.0, |d| 1e-3 * d.depth_mm);
         let slack = OUT_OF_PLACE * radius;
         let mesh = &assembly.model.mesh;
-        let [outer, adapter] = [machine.outer, machine.adapter].map(|body| {
-            let nodes = mesh.bodies[body].nodes.clone();
-            mean(mesh.y[nodes].iter().copied())
-        });
+        let height = |body: usize| mean(mesh.y[mesh.bodies[body].nodes.clone()].iter().copied());
         Self {
             soft: Softness::of(scene, &g),
             unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
             annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
             seat: slack,
-            adapter_height: adapter - outer,
+            housing_height: machine.housing.map(|housing| height(housing) - height(machine.outer)),
         }
     }
 
@@ -219,11 +215,10 @@ impl Guards {
                 ));
             }
         }
-        let height = middle(machine.adapter, 1) - ring[1];
-        let off = height - self.adapter_height;
+        let off = middle(machine.housing?, 1) - ring[1] - self.housing_height?;
         (off.abs() > self.seat).then(|| {
             format!(
-                "the adapter has left its seat by {:.3} mm {}: take a larger `contact.penalty_scale`, or less \
+                "the housing has left the outer ring by {:.3} mm {}: take a larger `contact.penalty_scale`, or less \
                  `operation.load_n`",
                 1e3 * off,
                 when(info)

@@ -8,9 +8,11 @@ mod full;
 mod grading;
 mod guards;
 mod host;
+mod housing;
 pub mod recorder;
 pub mod simulation;
 pub mod start;
+mod suspension;
 pub mod time_loop;
 
 #[cfg(doctest)]

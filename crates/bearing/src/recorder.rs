@@ -83,12 +83,12 @@ impl Recorder {
             .into_iter()
             .map(|wanted| {
                 let off = |n: &u32| (angle(n) - wanted).sin().hypot(1.0 - (angle(n) - wanted).cos());
-                *machine.housing.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
+                *machine.back.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
             })
             .collect();
         let rollers = machine.rollers.len();
         let memory = Memory {
-            at_sample: sensors.iter().map(|&n| machine.system.velocity(n)).collect(),
+            at_sample: sensors.iter().map(|&n| velocity(machine, n)).collect(),
             sensors,
             rim_angle: (0..rollers).map(|i| rim_angle(machine, i)).collect(),
             spin: vec![0.0; rollers],
@@ -147,7 +147,9 @@ pub fn names(scene: &Scene) -> Vec<String> {
     if with_cage {
         names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad"].map(str::to_owned));
     }
-    names.extend(["seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    if scene.housing.has_seat() {
+        names.extend(["seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    }
     names.extend(Tacho::of(scene).names());
     names
 }
@@ -156,7 +158,7 @@ impl Recorder {
     /// Before every step.
     pub(crate) fn before_step(&mut self, machine: &Machine) {
         for (before, &n) in self.before_step.iter_mut().zip(&self.memory.sensors) {
-            *before = machine.system.velocity(n);
+            *before = velocity(machine, n);
         }
     }
 
@@ -182,7 +184,7 @@ impl Recorder {
         self.row.push(system.time());
         let Memory { sensors, at_sample, rim_angle: last_angle, spin } = &mut self.memory;
         for (i, &n) in sensors.iter().enumerate() {
-            let now = system.velocity(n);
+            let now = velocity(machine, n);
             for (before, span) in [(at_sample[i], interval), (self.before_step[i], dt)] {
                 self.row.push((now[0] - before[0]) / span);
                 self.row.push((now[1] - before[1]) / span);
@@ -220,14 +222,21 @@ impl Recorder {
         if let Some(at) = machine.cage.and_then(|cage| system.rigid(cage)) {
             self.row.extend([at.centre[0], at.centre[1], at.angle]);
         }
-        let seat = machine.pairs.seat();
-        self.row.extend(mean(seat..seat + 1));
+        if let Some(seat) = machine.pairs.seat() {
+            self.row.extend(mean(seat..seat + 1));
+        }
         self.row.extend(self.tacho.sample(system.time()));
         self.force.fill([0.0; 2]);
         self.film.fill([0.0; 2]);
         self.steps = 0;
         &self.row
     }
+}
+
+/// Velocity of a sensor [m/s]: that of its node, or of the centre of a ring that does not deform, on whose housing it stays
+/// where it is when the ring turns.
+fn velocity(machine: &Machine, node: u32) -> [f64; 2] {
+    machine.system.rigid(machine.outer).map_or_else(|| machine.system.velocity(node), |ring| ring.velocity)
 }
 
 /// Angle of the line from a roller's centre to its first rim node [rad].

@@ -289,7 +289,9 @@ fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
     let system = &machine.system;
     let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
     let load = Duty::of(scene).mean_load_n(Geometry::of(scene).duration);
-    load + scene.operation.gravity_m_s2 * (mass(machine.outer) + mass(machine.adapter))
+    let [_, up] = scene.load_direction();
+    let held = std::iter::once(machine.outer).chain(machine.housing);
+    load - up * scene.operation.gravity_m_s2 * held.map(mass).sum::<f64>()
 }
 
 /// Sets the mass damping of the scene, if it has one.
@@ -304,7 +306,8 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
     };
     // The inner ring's bore is driven: what is damped there would only be fed in again.
-    let mut frames: Vec<(usize, Frame)> = vec![(machine.outer, standing), (machine.adapter, standing)];
+    let held = std::iter::once(machine.outer).chain(machine.housing);
+    let mut frames: Vec<(usize, Frame)> = held.map(|body| (body, standing)).collect();
     frames.extend(machine.rollers.iter().map(|r| (r.body, rolling)));
     machine.system.set_mass_damping(&MassDamping::new(rate, frames)?);
     Ok(())

@@ -15,10 +15,14 @@ const CLEARANCE: f64 = 40e-6;
 fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
     let system = &machine.system;
     let mut acceleration = vec![[0.0; 2]; system.node_count()];
-    let shaft = k.shaft_rad_s * k.shaft_rad_s;
-    for n in system.nodes_of(machine.inner) {
-        let [x, y] = system.position(n);
-        acceleration[n as usize] = [-shaft * x, -shaft * y];
+    for (body, rate) in [(machine.inner, k.shaft_rad_s), (machine.outer, k.outer_rad_s)] {
+        let square = rate * rate;
+        if square > 0.0 {
+            for n in system.nodes_of(body) {
+                let [x, y] = system.position(n);
+                acceleration[n as usize] = [-square * x, -square * y];
+            }
+        }
     }
     let (orbit, spin) = (k.cage_rad_s * k.cage_rad_s, k.roller_rad_s * k.roller_rad_s);
     for roller in &machine.rollers {
@@ -36,7 +40,11 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
 /// # Errors
 /// When there is no equilibrium to be found.
 pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<Option<String>, Error> {
-    let mut undecided = vec![UndecidedMotion { body: machine.outer, along: None, rotation: true }];
+    let mut undecided = Vec::new();
+    // A ring that sits without friction may turn.
+    if machine.pairs.seat().is_some() {
+        undecided.push(UndecidedMotion { body: machine.outer, along: None, rotation: true });
+    }
     for (i, roller) in machine.rollers.iter().enumerate() {
         let (s, c) = roller_angle(scene, i).sin_cos();
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });

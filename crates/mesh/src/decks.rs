@@ -8,7 +8,7 @@
 //! |---|---|---|---|
 //! | LS-DYNA `.k` | `*NODE` | `*ELEMENT_SHELL`, triangles with the last node twice | `*PART`, `*SET_NODE_LIST_TITLE` |
 //! | Abaqus `.inp` | `*NODE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*NSET` |
-//! | Gmsh `.msh` 4.1, ASCII | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames`, `$Entities` |
+//! | Gmsh `.msh` 4.1, ASCII | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
 //!
 //! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh Reference Manual*,
 //! MSH file format 4.1.
@@ -20,7 +20,8 @@ mod lsdyna;
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::{Body, Mesh};
+use crate::smoothing::sound;
+use crate::{Body, Error, Mesh, Part};
 
 /// A format that meshes are exchanged in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,6 +77,17 @@ pub struct ReadDeck {
     pub node_sets: BTreeMap<String, Vec<u32>>,
     /// Cards that were not understood, with their lines.
     pub notes: Vec<String>,
+}
+
+impl ReadDeck {
+    /// All bodies as one part, without surfaces.
+    ///
+    /// # Errors
+    /// When an element is inside out or has no area.
+    pub fn part(&self) -> Result<Part, Error> {
+        let Mesh { x, y, quads, triangles, .. } = self.mesh.clone();
+        sound("mesh from a file", Part { x, y, quads, triangles, ..Part::default() })
+    }
 }
 
 /// Why a file is no mesh.

@@ -55,7 +55,7 @@
 //! |---|---|
 //! | make a ring, cut a groove into it, make it coarser away from one circle | [`Annulus`], [`Groove`], [`Grading`] |
 //! | make a disc with a given number of facets | [`Disc`] |
-//! | make a block: plain, with a seat for a ring, between two arcs | [`Rectangle`], [`SeatedBlock`], [`ArcBlock`] |
+//! | make a block: plain, with a seat for a ring, with a bore, between two arcs | [`Rectangle`], [`SeatedBlock`], [`BoredBlock`], [`ArcBlock`] |
 //! | turn a body, move it, ask for its area, its surfaces, its centre | [`Part`] |
 //! | put bodies together, know where their nodes went | [`Mesh::add`], [`Placed`] |
 //! | judge elements, know the critical time step that they allow | [`Quality`], [`characteristic_length`] |
@@ -73,7 +73,8 @@
 //! | How is a ring divided? | `annulus.rs`, on the columns and rows of `polar_grid.rs`; with fine and coarse cells `grading.rs`; with a groove `groove.rs` |
 //! | How is a surface made not round? | `form.rs` |
 //! | How is a disc divided? | `disc.rs`: squares inside (`core_grid.rs`), rows outside, triangles between them (`gap.rs`) |
-//! | How are blocks divided? | `rectangle.rs`, `seated_block.rs`, `arc_block.rs` |
+//! | How are blocks divided? | `rectangle.rs`, `seated_block.rs`, `bored_block.rs`, `arc_block.rs` |
+//! | Where is the boundary of a mesh from a file? | `outline.rs` |
 //! | How are rows numbered, and strips found? | `rows.rs`, `strips.rs` |
 //! | How large and how well shaped are elements? | `characteristic.rs`, `quality.rs` |
 //! | How are badly shaped cells improved? | one by one `smoothing.rs`; all at once `shape_optimisation.rs`, by the natural frequencies of a `submesh.rs` (`tridiagonal.rs`) |
@@ -83,6 +84,7 @@
 
 mod mesh;
 mod part;
+mod outline;
 
 mod annulus;
 mod form;
@@ -96,6 +98,7 @@ mod disc;
 mod gap;
 
 mod arc_block;
+mod bored_block;
 mod rectangle;
 mod seated_block;
 
@@ -115,6 +118,7 @@ mod error;
 
 pub use annulus::Annulus;
 pub use arc_block::ArcBlock;
+pub use bored_block::BoredBlock;
 pub use characteristic::characteristic_length;
 pub use disc::Disc;
 pub use error::Error;

@@ -38,7 +38,7 @@ pub fn reference(scene: &Scene) -> Scene {
         onset_um,
         ..
     } = scene.contact.clone();
-    let middle = scene.defect.as_ref().map_or(90.0, |defect| defect.angle_deg);
+    let middle = scene.defect.as_ref().map_or(scene.load_zone_deg(), |defect| defect.angle_deg);
     let mut bearing = scene.bearing.clone();
     bearing.first_roller_deg = middle + 180.0 / bearing.rollers as f64;
     let mut mesh = scene.mesh.clone();
@@ -52,6 +52,7 @@ pub fn reference(scene: &Scene) -> Scene {
         bearing,
         cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
         adapter: scene.adapter.clone(),
+        housing: scene.housing.clone(),
         defect: scene.defect.clone(),
         // They change places, hardly the rings' stiffness: outlines get them later.
         defects: Vec::new(),

@@ -38,7 +38,7 @@ const KNOTS: usize = 48;
 /// What the elastic bodies of one mesh under one load become.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reduction {
-    /// Modes of outer ring and adapter that are kept.
+    /// Modes of outer ring and housing that are kept.
     pub modes: usize,
     /// The same, filled up with zeros to whole groups.
     pub padded: usize,
@@ -126,7 +126,8 @@ impl Reduction {
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
         let preload =
             (0..g.rollers).map(|i| resultants[machine.pairs.outer(i)]).map(|[x, y]| x.hypot(y)).collect();
-        let seat = resultants[machine.pairs.seat()];
+        // A housing without a seat is refused before.
+        let seat = machine.pairs.seat().map_or([0.0; 2], |seat| resultants[seat]);
         let nodes = Nodes::of(&machine, &g)?;
         let on_ring: Vec<u32> = machine.system.nodes_of(machine.outer).collect();
         let of_roller = machine.system.motion_of(machine.rollers[0].body);
@@ -281,7 +282,7 @@ impl Reduction {
             (1.3 * (hertz + winkler).sqrt() / spacing).ceil() as usize + 2
         };
         // Beside the defect, or where it would be.
-        let beside = g.defect.map_or(0.5 * std::f64::consts::PI, |d| {
+        let beside = g.defect.map_or(scene.load_zone_deg().to_radians(), |d| {
             d.angle + (0.5 * d.length + 2.0 * g.outer_ring_thickness) / g.outer_race_radius
         });
         let node_at = |outline: &[[f64; 2]], angle: f64| {
@@ -407,14 +408,17 @@ impl Nodes {
             angle.sin().hypot(1.0 - angle.cos())
         };
         let sensors = g.sensor_angles.iter().map(|&wanted| {
-            let nearest = machine.housing.iter().min_by(|a, b| off(**a, wanted).total_cmp(&off(**b, wanted)));
+            let nearest = machine.back.iter().min_by(|a, b| off(**a, wanted).total_cmp(&off(**b, wanted)));
             *nearest.expect("a ring has nodes")
         });
         Ok(Self {
             outer,
             inner: named("inner raceway")?,
             rim: named("rim of roller 1")?,
-            structure: system.nodes_of(machine.outer).chain(system.nodes_of(machine.adapter)).collect(),
+            structure: std::iter::once(machine.outer)
+                .chain(machine.housing)
+                .flat_map(|body| system.nodes_of(body))
+                .collect(),
             inner_ring: system.nodes_of(machine.inner).collect(),
             roller: system.nodes_of(machine.rollers[0].body).collect(),
             sensors: sensors.collect(),

@@ -23,6 +23,10 @@ pub struct Duty {
     load: Course,
     /// Force that turns with the shaft [N] and its angle at the start [rad].
     rotating: Option<(f64, f64)>,
+    /// Direction of the load.
+    along: [f64; 2],
+    /// Whether the housing moves in that direction alone.
+    guided: bool,
 }
 
 /// A number over time.
@@ -52,6 +56,8 @@ impl Duty {
             speed: Course::of(o.speed_rpm, o.speed_profile.as_ref()),
             load: Course::of(o.load_n, o.load_profile.as_ref()),
             rotating: o.rotating_load.as_ref().map(|load| (load.force_n, load.angle_deg.to_radians())),
+            along: scene.load_direction(),
+            guided: !scene.housing.takes_any_direction(),
         }
     }
 
@@ -75,11 +81,24 @@ impl Duty {
         -TAU / 60.0 * self.speed.integral(time_s)
     }
 
-    /// Load on the adapter at a time [s], downwards [N]: with the vertical part of what turns with the shaft.
+    /// Load on the housing at a time [s] in its direction [N]: with the part along it of what turns with the shaft.
     pub fn load_n(&self, time_s: f64) -> f64 {
-        let rotating =
-            self.rotating.map_or(0.0, |(force, angle)| force * (angle + self.shaft_rad(time_s)).sin());
-        self.load.value(time_s) - rotating
+        self.load.value(time_s) + self.rotating_along(self.along, time_s).unwrap_or(0.0)
+    }
+
+    /// The part of what turns with the shaft that acts a quarter of a turn ahead of the load at a time [s] [N]; `None` where
+    /// nothing turns, and where the housing is guided: the guide takes it then.
+    pub fn load_across_n(&self, time_s: f64) -> Option<f64> {
+        let [x, y] = self.along;
+        self.rotating_along([-y, x], time_s).filter(|_| !self.guided)
+    }
+
+    /// What turns with the shaft, along a direction [N].
+    fn rotating_along(&self, [x, y]: [f64; 2], time_s: f64) -> Option<f64> {
+        self.rotating.map(|(force, angle)| {
+            let (s, c) = (angle + self.shaft_rad(time_s)).sin_cos();
+            force * (c * x + s * y)
+        })
     }
 
     /// Mean load until a time [s] [N]; what rotates has none.
@@ -140,6 +159,32 @@ impl Duty {
     pub fn slowest_rpm(&self, until_s: f64) -> f64 {
         let [least, most] = self.speed_range_rpm(until_s);
         if least * most <= 0.0 { 0.0 } else { least.abs().min(most.abs()) }
+    }
+}
+
+impl Scene {
+    /// Unit vector of the load on the housing, counter-clockwise from the x axis; exact for the four axes.
+    pub fn load_direction(&self) -> [f64; 2] {
+        direction(self.operation.load_angle_deg)
+    }
+
+    /// Middle of the load zone [°], 0 to 360: opposite to the way that the load pushes the housing.
+    pub fn load_zone_deg(&self) -> f64 {
+        (self.operation.load_angle_deg + 180.0).rem_euclid(360.0)
+    }
+}
+
+/// Unit vector at an angle, exact on the axes.
+fn direction(angle_deg: f64) -> [f64; 2] {
+    match angle_deg.rem_euclid(360.0) {
+        0.0 => [1.0, 0.0],
+        90.0 => [0.0, 1.0],
+        180.0 => [-1.0, 0.0],
+        270.0 => [0.0, -1.0],
+        angle => {
+            let (s, c) = angle.to_radians().sin_cos();
+            [c, s]
+        }
     }
 }
 

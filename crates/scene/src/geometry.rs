@@ -31,7 +31,7 @@ pub struct Geometry {
     pub roller_radius: f64,
     /// Out-of-plane thickness [m].
     pub thickness: f64,
-    /// Diametral clearance [m].
+    /// Diametral clearance [m]; below zero, rollers are pressed between the raceways.
     pub clearance: f64,
     /// Angle of the middle of the pocket of roller 1 [rad].
     pub first_roller_angle: f64,
@@ -158,12 +158,12 @@ impl Geometry {
         Self {
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
             outer_ring_thickness: 1e-3 * b.outer_ring_thickness_mm,
-            inner_race_radius: 0.5e-3 * b.inner_race_diameter_mm,
+            inner_race_radius: 0.5e-3 * b.inner_race_diameter_mm - 0.5e-6 * b.clearance_change_um,
             inner_ring_thickness: 1e-3 * b.inner_ring_thickness_mm,
             rollers: b.rollers,
             roller_radius: 0.5e-3 * b.roller_diameter_mm,
             thickness: 1e-3 * b.thickness_mm,
-            clearance: 1e-3 * clearance_mm,
+            clearance: 1e-3 * clearance_mm + 1e-6 * b.clearance_change_um,
             first_roller_angle: b.first_roller_deg.to_radians(),
             roller_offsets: scene
                 .cage

@@ -11,39 +11,48 @@ use crate::duty::Duty;
 use crate::geometry::DefectGeometry;
 use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
 
-/// Speeds of a bearing whose outer ring stands still and whose rollers do not slip.
+/// Speeds of a bearing whose rollers do not slip.
 ///
 /// Three definitions of the cage's speed differ by one part in ten thousand, because a bearing with clearance has no
 /// single pitch circle; each has its own field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kinematics {
-    /// Shaft frequency f_s [Hz].
+    /// Shaft frequency f_s, of the inner ring [Hz].
     pub shaft_hz: f64,
-    /// Cage frequency, the fundamental train frequency [Hz]: f_s·D_i/(D_i + D_o), rolling on both raceways with the
-    /// roller's centre half-way between them. Event times use this one.
+    /// Frequency of the outer ring f_o [Hz]; zero for one that stands still.
+    pub outer_ring_hz: f64,
+    /// Cage frequency in space, the fundamental train frequency [Hz]: (f_s·D_i + f_o·D_o)/(D_i + D_o), rolling on both raceways
+    /// with the roller's centre half-way between them.
     pub cage_hz: f64,
+    /// The same as seen from the outer ring [Hz], (f_s − f_o)·D_i/(D_i + D_o). Event times use this one.
+    pub cage_on_outer_hz: f64,
+    /// The same as seen from the inner ring [Hz], (f_s − f_o)·D_o/(D_i + D_o).
+    pub cage_on_inner_hz: f64,
     /// Cage frequency by the paper's equation (1), BPFO/N_r [Hz].
     pub cage_equation_1_hz: f64,
-    /// Cage frequency of rollers that ride on the outer raceway [Hz]: the centre's path has the radius (D_o − D_r)/2.
-    /// The initial velocities use this one.
+    /// Cage frequency of rollers that ride on the outer raceway, as seen from it [Hz]: the centre's path has the radius
+    /// (D_o − D_r)/2. The initial velocities use this one.
     pub cage_outer_hz: f64,
     /// Ball (here roller) pass frequency of the outer raceway, the paper's equation (1) [Hz].
     pub bpfo_hz: f64,
     /// Roller pass frequency of the inner raceway [Hz].
     pub bpfi_hz: f64,
-    /// Roller spin frequency by the textbook formula, f_s·D_p/(2·D_r)·(1 − (D_r/D_p)²) [Hz].
+    /// Roller spin frequency by the textbook formula, (f_s − f_o)·D_p/(2·D_r)·(1 − (D_r/D_p)²) [Hz].
     pub bsf_hz: f64,
-    /// Spin of a roller relative to the cage, f_c·D_o/D_r with [`Kinematics::cage_hz`] [Hz].
+    /// Spin of a roller relative to the cage, f_c·D_o/D_r with [`Kinematics::cage_on_outer_hz`] [Hz].
     pub roller_spin_hz: f64,
     /// Angular velocity of the inner ring [rad/s]; negative, clockwise, at a positive speed.
     pub shaft_rad_s: f64,
-    /// Angular velocity of the cage with rollers riding on the outer raceway [rad/s], of the sign of the ring's.
+    /// Angular velocity of the outer ring [rad/s], counted likewise.
+    pub outer_rad_s: f64,
+    /// Angular velocity of the cage in space with rollers riding on the outer raceway [rad/s].
     pub cage_rad_s: f64,
-    /// Angular velocity of a roller in space, riding on the outer raceway [rad/s], of the other sign.
+    /// Angular velocity of a roller in space, riding on the outer raceway [rad/s].
     pub roller_rad_s: f64,
-    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], of the sign of `roller_rad_s`.
+    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], positive where the inner ring turns
+    /// clockwise against the outer one.
     pub roller_relative_rad_s: f64,
-    /// Speed of the contact point along the outer raceway [m/s], positive, with [`Kinematics::cage_hz`].
+    /// Speed of the contact point along the outer raceway [m/s], positive, with [`Kinematics::cage_on_outer_hz`].
     pub contact_speed_m_s: f64,
     bearing: Dimensions,
 }
@@ -99,52 +108,65 @@ pub struct Crossing {
 impl Kinematics {
     /// Kinematics of a scene's bearing at its speed at the start.
     pub fn of(scene: &Scene) -> Self {
-        Self::new(&scene.bearing, Duty::of(scene).speed_rpm(0.0))
+        Self::between(&scene.bearing, Duty::of(scene).speed_rpm(0.0), scene.operation.outer_speed_rpm)
     }
 
     /// Kinematics of a scene's bearing at its mean speed over the run: where the speed changes, ratios of its frequencies to the
     /// shaft's are what holds.
     pub fn at_mean_speed(scene: &Scene) -> Self {
         let duration_s = 1e-3 * scene.solver.duration_ms;
-        Self::new(&scene.bearing, Duty::of(scene).mean_speed_rpm(duration_s))
+        let mean_rpm = Duty::of(scene).mean_speed_rpm(duration_s);
+        Self::between(&scene.bearing, mean_rpm, scene.operation.outer_speed_rpm)
     }
 
-    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive.
+    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive, and the outer one at rest.
     pub fn new(bearing: &BearingScene, speed_rpm: f64) -> Self {
-        let clockwise_hz = speed_rpm / 60.0;
-        let shaft_hz = clockwise_hz.abs();
+        Self::between(bearing, speed_rpm, 0.0)
+    }
+
+    /// Kinematics of `bearing` with the inner and the outer ring at these speeds [rpm], clockwise where they are positive.
+    pub fn between(bearing: &BearingScene, inner_rpm: f64, outer_rpm: f64) -> Self {
+        let (shaft, ring) = (inner_rpm / 60.0, outer_rpm / 60.0);
+        // Rollers see the difference; what they do in space has the outer ring's motion on top.
+        let clockwise_hz = shaft - ring;
+        let relative_hz = clockwise_hz.abs();
         let (outer, inner) = (bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm);
         let (roller, count) = (bearing.roller_diameter_mm, bearing.rollers as f64);
         let pitch = (outer + inner) / 2.0;
-        let cage_hz = shaft_hz * inner / (inner + outer);
-        let bpfo_hz = shaft_hz * count / 2.0 * (1.0 - roller / pitch);
+        let cage_on_outer_hz = relative_hz * inner / (inner + outer);
+        let bpfo_hz = relative_hz * count / 2.0 * (1.0 - roller / pitch);
         // Riding on the outer raceway, the roller touches the inner one at radius (D_o − 2 D_r)/2 in the load zone,
         // where the ring has come up by the clearance; the ring's surface speed is that of its own radius.
         let centre_path = (outer - roller) / 2.0;
-        let cage_outer_hz = shaft_hz * (inner / 2.0) / (2.0 * centre_path);
-        let cage_rad_s = -TAU * cage_outer_hz.copysign(clockwise_hz);
-        let roller_rad_s = -cage_rad_s * centre_path / (roller / 2.0);
+        let cage_outer_hz = relative_hz * (inner / 2.0) / (2.0 * centre_path);
+        let on_outer_rad_s = -TAU * cage_outer_hz.copysign(clockwise_hz);
+        let outer_rad_s = -TAU * ring;
+        let spin_on_outer = -on_outer_rad_s * centre_path / (roller / 2.0);
         Self {
-            shaft_hz,
-            cage_hz,
+            shaft_hz: shaft.abs(),
+            outer_ring_hz: ring.abs(),
+            cage_hz: (ring + cage_on_outer_hz.copysign(clockwise_hz)).abs(),
+            cage_on_outer_hz,
+            cage_on_inner_hz: relative_hz - cage_on_outer_hz,
             cage_equation_1_hz: bpfo_hz / count,
             cage_outer_hz,
             bpfo_hz,
-            bpfi_hz: shaft_hz * count / 2.0 * (1.0 + roller / pitch),
-            bsf_hz: shaft_hz * pitch / (2.0 * roller) * (1.0 - (roller / pitch).powi(2)),
-            roller_spin_hz: cage_hz * outer / roller,
-            shaft_rad_s: -TAU * clockwise_hz,
-            cage_rad_s,
-            roller_rad_s,
-            roller_relative_rad_s: roller_rad_s - cage_rad_s,
-            contact_speed_m_s: TAU * cage_hz * outer / 2.0 * 1e-3,
+            bpfi_hz: relative_hz * count / 2.0 * (1.0 + roller / pitch),
+            bsf_hz: relative_hz * pitch / (2.0 * roller) * (1.0 - (roller / pitch).powi(2)),
+            roller_spin_hz: cage_on_outer_hz * outer / roller,
+            shaft_rad_s: -TAU * shaft,
+            outer_rad_s,
+            cage_rad_s: outer_rad_s + on_outer_rad_s,
+            roller_rad_s: outer_rad_s + spin_on_outer,
+            roller_relative_rad_s: spin_on_outer - on_outer_rad_s,
+            contact_speed_m_s: TAU * cage_on_outer_hz * outer / 2.0 * 1e-3,
             bearing: Dimensions { outer_m: outer * 1e-3, inner_m: inner * 1e-3 },
         }
     }
 
-    /// 1 for a shaft that turns clockwise or stands, −1 for one that turns counter-clockwise.
+    /// 1 for an inner ring that turns clockwise against the outer one or stands, −1 for one that turns counter-clockwise.
     pub fn sense(&self) -> f64 {
-        if self.shaft_rad_s > 0.0 { -1.0 } else { 1.0 }
+        if self.shaft_rad_s > self.outer_rad_s { -1.0 } else { 1.0 }
     }
 
     /// Facet-passing tones of a mesh, THEORY §5.
@@ -155,8 +177,8 @@ impl Kinematics {
     pub fn facet_tones(&self, facets: FacetCounts) -> [Tone; 3] {
         [
             Tone { name: "roller_vertices", hz: facets.roller as f64 * self.roller_spin_hz },
-            Tone { name: "outer_race_nodes", hz: facets.outer * self.cage_hz },
-            Tone { name: "inner_race_nodes", hz: facets.inner * (self.shaft_hz - self.cage_hz) },
+            Tone { name: "outer_race_nodes", hz: facets.outer * self.cage_on_outer_hz },
+            Tone { name: "inner_race_nodes", hz: facets.inner * self.cage_on_inner_hz },
         ]
     }
 
@@ -166,7 +188,7 @@ impl Kinematics {
     /// The value for the inner raceway uses the cage's speed where the speed of the contact relative to the inner ring
     /// belongs, so it stands for no motion in the bearing.
     pub fn paper_noise_hz(&self, element_size: f64) -> (f64, f64) {
-        let tone = |diameter_m: f64| TAU * self.cage_hz * diameter_m / (2.0 * element_size);
+        let tone = |diameter_m: f64| TAU * self.cage_on_outer_hz * diameter_m / (2.0 * element_size);
         (tone(self.bearing.outer_m), tone(self.bearing.inner_m))
     }
 
@@ -174,13 +196,13 @@ impl Kinematics {
     ///
     /// They start at the angles `start_deg`, roller 1 first. As seen from the outer ring all move with the shaft: clockwise at
     /// a positive speed, where the leading edge is the one at the larger angle; as seen from the inner one, which turns
-    /// faster, the other way round. A roller that starts inside the defect has a negative entry time. Empty when the shaft
-    /// stands still.
+    /// faster, the other way round. A roller that starts inside the defect has a negative entry time. Empty when the rings
+    /// stand still against each other.
     pub fn crossings(&self, defect: &DefectScene, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
         let sense = self.sense();
         let (speed, diameter, ahead) = match defect.ring {
-            DefectRing::Outer => (360.0 * self.cage_hz, self.bearing.outer_m, sense),
-            DefectRing::Inner => (360.0 * (self.shaft_hz - self.cage_hz), self.bearing.inner_m, -sense),
+            DefectRing::Outer => (360.0 * self.cage_on_outer_hz, self.bearing.outer_m, sense),
+            DefectRing::Inner => (360.0 * self.cage_on_inner_hz, self.bearing.inner_m, -sense),
         };
         if !(speed > 0.0 && duration_s.is_finite()) {
             return Vec::new();
@@ -230,6 +252,32 @@ mod tests {
         assert_eq!(crossings[0].roller, 24);
         let length_m = k.contact_speed_m_s * (crossings[0].exit_s - crossings[0].entry_s);
         assert_close(length_m, 10e-3, 1e-9);
+    }
+
+    /// Source: in a frame that turns with the outer ring it stands still, and speeds add; THEORY §5.1.
+    #[test]
+    fn analytic_rings_that_turn_against_each_other() {
+        let bearing = BearingScene::default();
+        let still = Kinematics::new(&bearing, 700.0);
+        let both = Kinematics::between(&bearing, 500.0, -200.0);
+        for (a, b) in [
+            (still.bpfo_hz, both.bpfo_hz),
+            (still.bpfi_hz, both.bpfi_hz),
+            (still.bsf_hz, both.bsf_hz),
+            (still.cage_hz, both.cage_on_outer_hz),
+            (still.roller_relative_rad_s, both.roller_relative_rad_s),
+            (still.cage_rad_s, both.cage_rad_s - both.outer_rad_s),
+        ] {
+            assert_close(a, b, ROUNDING);
+        }
+        // Speeds of the contacts, (ω_i D_i + ω_o D_o)/(D_i + D_o), clockwise positive.
+        let (d_i, d_o) = (bearing.inner_race_diameter_mm, bearing.outer_race_diameter_mm);
+        assert_close(both.cage_hz, ((500.0 * d_i - 200.0 * d_o) / (60.0 * (d_i + d_o))).abs(), ROUNDING);
+        let hub = Kinematics::between(&bearing, 0.0, 600.0);
+        assert_close(hub.cage_hz, 10.0 * d_o / (d_i + d_o), ROUNDING);
+        assert_eq!((hub.shaft_hz, hub.outer_ring_hz, hub.sense()), (0.0, 10.0, -1.0));
+        let together = Kinematics::between(&bearing, 300.0, 300.0);
+        assert_eq!((together.bpfo_hz, together.cage_hz), (0.0, 5.0));
     }
 
     /// The notes print four or five digits.

@@ -60,6 +60,7 @@ pub mod error;
 mod faults;
 pub mod frames;
 pub mod geometry;
+pub mod housing;
 pub mod kinematics;
 mod line_contact;
 pub mod lubrication;

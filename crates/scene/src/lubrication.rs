@@ -35,7 +35,7 @@ pub fn loaded_films(scene: &Scene) -> Result<Option<[LoadedFilm; 2]>, Error> {
     let k = Kinematics::of(scene);
     // What sweeps over either surface is the contact: with the cage over the outer raceway, against the shaft over the inner.
     let speeds = [
-        k.cage_rad_s.abs() * g.outer_race_radius,
+        (k.cage_rad_s - k.outer_rad_s).abs() * g.outer_race_radius,
         (k.shaft_rad_s - k.cage_rad_s).abs() * g.inner_race_radius,
     ];
     let modulus = 2.0 * g.material.contact_modulus();

@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::housing;
+
 pub use crate::deviation::DeviationScene;
+pub use crate::housing::HousingScene;
 
 /// A complete scene. `()` in a file is the paper's bearing; every field has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,6 +21,9 @@ pub struct Scene {
     pub cage: Option<CageScene>,
     /// The block that carries the load to the outer ring.
     pub adapter: AdapterScene,
+    /// What holds the outer ring and takes the load; absent for `adapter`.
+    #[serde(skip_serializing_if = "HousingScene::is_adapter")]
+    pub housing: HousingScene,
     /// Spall on a raceway; `None` is a sound bearing.
     pub defect: Option<DefectScene>,
     /// Further defects of raceways and rolling elements, and other deviations from round.
@@ -77,6 +83,10 @@ pub struct BearingScene {
     pub inner_race_diameter_mm: f64,
     /// Radial thickness of the inner ring [mm].
     pub inner_ring_thickness_mm: f64,
+    /// What fits, temperature or an adjustment add to the diametral clearance that the diameters leave [µm]; below zero they take
+    /// from it, and beyond it they press the rollers between the raceways. The inner raceway has it; absent for 0.
+    #[serde(skip_serializing_if = "housing::is_zero")]
+    pub clearance_change_um: f64,
     /// Number of rolling elements.
     pub rollers: usize,
     /// Diameter of a rolling element [mm].
@@ -212,10 +222,17 @@ pub enum RollerCopies {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OperationScene {
-    /// Load on the top edge of the adapter, downwards [N].
+    /// Load on the top edge of the adapter, downwards, or on another housing [N].
     pub load_n: f64,
+    /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for 270, downwards, with
+    /// the load zone at the top. A pedestal and a housing from a mesh take 90, too, a rigid one and springs any.
+    #[serde(skip_serializing_if = "housing::is_down")]
+    pub load_angle_deg: f64,
     /// Speed of the inner ring [rpm]; positive clockwise, negative counter-clockwise.
     pub speed_rpm: f64,
+    /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise; absent for 0.
+    #[serde(skip_serializing_if = "housing::is_zero")]
+    pub outer_speed_rpm: f64,
     /// Gravity, downwards [m/s²].
     pub gravity_m_s2: f64,
     /// How the speed goes over time, in rpm; absent for `speed_rpm` all the time.
@@ -269,8 +286,8 @@ pub struct HarmonicScene {
     pub phase_deg: f64,
 }
 
-/// A force on the adapter's top edge that turns with the inner ring, as that of an unbalanced shaft. The edge is guided: it
-/// takes the vertical part; the horizontal one goes into the guide.
+/// A force on the housing that turns with the inner ring, as that of an unbalanced shaft. Where the housing is guided up and
+/// down it takes the vertical part; the horizontal one goes into the guide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RotatingLoadScene {
@@ -530,6 +547,7 @@ impl Default for Scene {
             bearing: BearingScene::default(),
             cage: Some(CageScene::default()),
             adapter: AdapterScene::default(),
+            housing: HousingScene::Adapter,
             defect: Some(DefectScene::default()),
             defects: Vec::new(),
             material: MaterialScene::default(),
@@ -558,6 +576,7 @@ impl Default for BearingScene {
             outer_ring_thickness_mm: 10.0,
             inner_race_diameter_mm: 163.96,
             inner_ring_thickness_mm: 10.0,
+            clearance_change_um: 0.0,
             rollers: 24,
             roller_diameter_mm: 18.0,
             thickness_mm: 30.0,
@@ -626,7 +645,9 @@ impl Default for OperationScene {
     fn default() -> Self {
         Self {
             load_n: 50_000.0,
+            load_angle_deg: housing::DOWN_DEG,
             speed_rpm: 500.0,
+            outer_speed_rpm: 0.0,
             gravity_m_s2: 9.81,
             speed_profile: None,
             load_profile: None,

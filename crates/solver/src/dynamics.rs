@@ -16,7 +16,7 @@ use crate::{
         sweep::{Scratch, StepEnergies},
         tile::{Tile, TileDamping},
     },
-    model::{Behaviour, Model, Motion, check_rate},
+    model::{Model, Motion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
     state::{Accumulated, Moment, NodeForces, State},
     structural_damping::{MAX_BRANCHES, StructuralDamping},
@@ -140,13 +140,14 @@ impl Dynamics {
         let mut tiles = Vec::new();
         let mut rigid = Vec::new();
         for t in &layout.tiles {
-            if model.behaviour[t.body] == Behaviour::Rigid {
-                rigid.push(RigidBody::new(t.body, t.slots.clone(), &state.x, &state.y, &mass));
+            let behaviour = model.behaviour[t.body];
+            if !behaviour.is_elastic() {
+                rigid.push(RigidBody::new(t.body, behaviour, t.slots.clone(), &state.x, &state.y, &mass));
             }
             let stiffness = model.stiffness(t.body);
             let (moves, pushed) = (&motion[t.slots.clone()], &is_loaded[t.slots.clone()]);
             let mut tile = Tile::new(t, &quads, &triangles, stiffness, moves, pushed);
-            if model.behaviour[t.body] == Behaviour::Rigid {
+            if !behaviour.is_elastic() {
                 tile.elastic = false;
                 tile.finish.clear();
                 tile.loaded.clear();
@@ -294,7 +295,8 @@ impl Dynamics {
         }
         self.sweep_tiles(since_placed);
         for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid) {
-            body.advance(at, &mut self.state, &mut self.forces, self.time_step, self.gravity);
+            let driven = body.advance(at, &mut self.state, &mut self.forces, self.time_step, self.gravity);
+            self.drive.add_to_step(driven);
         }
         self.state.step += 1;
         self.state.time = self.state.step as f64 * self.time_step;
@@ -455,10 +457,20 @@ impl Dynamics {
         }))
     }
 
-    /// Gives rigid body `at` (in mesh order of rigid bodies) a velocity [m/s] and spin [rad/s] about its centre.
+    /// Gives rigid body `at` (in mesh order of rigid bodies) a velocity [m/s] and spin [rad/s] about its centre; one that
+    /// turns at a prescribed rate keeps that.
     pub fn launch_rigid(&mut self, at: usize, velocity: [f64; 2], spin: f64) {
         self.rigid[at].velocity = velocity;
-        self.rigid[at].spin = spin;
+        if !self.rigid_bodies[at].turns() {
+            self.rigid[at].spin = spin;
+        }
+    }
+
+    /// Puts every body that turns at a prescribed rate where its nodes have been moved to.
+    pub(crate) fn follow_nodes(&mut self) {
+        for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid).filter(|(body, _)| body.turns()) {
+            body.follow_nodes(at, &self.state);
+        }
     }
 
     /// Mesh body number of each rigid body.
@@ -480,7 +492,7 @@ fn pad(layout: &Layout, state: &mut State) {
 impl Elements {
     fn new(model: &Model, layout: &Layout, quads: &[QuadReference], triangles: &[TriangleReference]) -> Self {
         let slot = |n: u32| layout.slot_of_node[n as usize];
-        let elastic = |b: &usize| model.behaviour[*b] == Behaviour::Elastic;
+        let elastic = |b: &usize| model.behaviour[*b].is_elastic();
         Self {
             quads: model.mesh.quads.iter().zip(quads).map(|(c, r)| (c.map(slot), *r)).collect(),
             triangles: model.mesh.triangles.iter().zip(triangles).map(|(c, r)| (c.map(slot), *r)).collect(),

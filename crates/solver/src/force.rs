@@ -23,6 +23,16 @@ pub trait Force {
         Energy::default()
     }
 
+    /// What it remembers from step to step beyond positions and velocities, for a snapshot.
+    fn memory(&self) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Takes over what [`Force::memory`] has given; false when that is another force's.
+    fn recall(&mut self, memory: &[f64]) -> bool {
+        memory.is_empty()
+    }
+
     /// Adds to each node an upper bound of the stiffness [N/m] that this force can give it, damping included:
     /// the sum over nodes of bound · |u|² is never below the force's own quadratic form (THEORY §2.4).
     fn stiffness_bound(&self, _dt: f64, _bound: &mut [f64]) {}

@@ -17,6 +17,18 @@ pub enum Behaviour {
     Elastic,
     /// Moves as one piece; its elements give mass only.
     Rigid,
+    /// The same, but it turns at `rate` whatever pushes on it: a ring that is fixed to its housing, or driven with it.
+    Turning {
+        /// Angular velocity [rad/s], counter-clockwise positive.
+        rate: f64,
+    },
+}
+
+impl Behaviour {
+    /// Whether the body deforms.
+    pub fn is_elastic(self) -> bool {
+        self == Self::Elastic
+    }
 }
 
 /// How a node may move.
@@ -138,7 +150,7 @@ impl Model {
             let node = match self.behaviour[b] {
                 Behaviour::Elastic => body.nodes.clone().find(massless),
                 // A rigid body may have nodes that only carry contact, but needs some mass.
-                Behaviour::Rigid => body.nodes.clone().all(|n| massless(&n)).then_some(body.nodes.start),
+                Behaviour::Rigid | Behaviour::Turning { .. } => body.nodes.clone().all(|n| massless(&n)).then_some(body.nodes.start),
             };
             if let Some(node) = node {
                 return Err(Error::MasslessNode { body: body.name.clone(), node });
@@ -188,6 +200,11 @@ impl Model {
         check("gravity y [m/s²]", self.gravity[1], true, "finite")?;
         for motion in &self.motion {
             if let Motion::Rotating { rate, .. } = motion {
+                check_rate(*rate)?;
+            }
+        }
+        for behaviour in &self.behaviour {
+            if let Behaviour::Turning { rate } = behaviour {
                 check_rate(*rate)?;
             }
         }

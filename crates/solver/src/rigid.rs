@@ -4,7 +4,10 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use crate::state::{NodeForces, State};
+use crate::{
+    model::Behaviour,
+    state::{NodeForces, State},
+};
 
 /// Place and motion of a rigid body.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -23,7 +26,9 @@ pub struct RigidState {
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
     pub(crate) body: usize,
-    slots: Range<usize>,
+    /// Angular velocity that it keeps whatever pushes on it [rad/s]; `None` for one that turns freely.
+    turning: Option<f64>,
+    pub(crate) slots: Range<usize>,
     /// Node positions relative to the centre of mass at angle zero [m].
     arm: Vec<[f64; 2]>,
     pub(crate) mass: f64,
@@ -34,6 +39,7 @@ impl RigidBody {
     /// From node positions and masses in `slots`.
     pub(crate) fn new(
         body: usize,
+        behaviour: Behaviour,
         slots: Range<usize>,
         x: &[f64],
         y: &[f64],
@@ -45,11 +51,20 @@ impl RigidBody {
         let arm: Vec<[f64; 2]> = slots.clone().map(|n| [x[n] - centre[0], y[n] - centre[1]]).collect();
         let inertia =
             slots.clone().zip(&arm).map(|(n, a)| mass[n] * (a[0] * a[0] + a[1] * a[1])).sum::<f64>();
-        let state = RigidState { centre, ..RigidState::default() };
-        (Self { body, slots, arm, mass: total, inertia }, state)
+        let turning = match behaviour {
+            Behaviour::Turning { rate } => Some(rate),
+            Behaviour::Elastic | Behaviour::Rigid => None,
+        };
+        let state = RigidState { centre, spin: turning.unwrap_or(0.0), ..RigidState::default() };
+        (Self { body, turning, slots, arm, mass: total, inertia }, state)
     }
 
-    /// One step under the forces on its nodes and gravity; moves the nodes.
+    /// Whether it turns at a prescribed rate.
+    pub(crate) fn turns(&self) -> bool {
+        self.turning.is_some()
+    }
+
+    /// One step under the forces on its nodes and gravity; moves the nodes. The work [J] of what keeps it turning.
     pub(crate) fn advance(
         &self,
         at: &mut RigidState,
@@ -57,7 +72,7 @@ impl RigidBody {
         forces: &mut NodeForces,
         dt: f64,
         gravity: [f64; 2],
-    ) {
+    ) -> f64 {
         let (mut fx, mut fy, mut torque) = (0.0, 0.0, 0.0);
         for n in self.slots.clone() {
             let (px, py) = (forces.fx[n], forces.fy[n]);
@@ -71,11 +86,25 @@ impl RigidBody {
         }
         at.velocity[0] += dt * (fx / self.mass + gravity[0]);
         at.velocity[1] += dt * (fy / self.mass + gravity[1]);
-        at.spin += dt * torque / self.inertia;
+        let driven = match self.turning {
+            Some(rate) => -dt * torque * rate,
+            None => {
+                at.spin += dt * torque / self.inertia;
+                0.0
+            }
+        };
         at.centre[0] += dt * at.velocity[0];
         at.centre[1] += dt * at.velocity[1];
         at.angle += dt * at.spin;
         self.place(at, state, dt);
+        driven
+    }
+
+    /// Puts the body where its nodes are, which have been moved without turning.
+    pub(crate) fn follow_nodes(&self, at: &mut RigidState, state: &State) {
+        let (s, c) = at.angle.sin_cos();
+        let (n, a) = (self.slots.start, self.arm[0]);
+        at.centre = [state.x[n] - (c * a[0] - s * a[1]), state.y[n] - (s * a[0] + c * a[1])];
     }
 
     /// Puts the nodes where the body is, a time step later.
@@ -102,7 +131,7 @@ impl RigidBody {
             translation += bound[n];
             rotation += bound[n] * (r[0] * r[0] + r[1] * r[1]);
         }
-        translation / self.mass + rotation / self.inertia
+        translation / self.mass + if self.turns() { 0.0 } else { rotation / self.inertia }
     }
 
     /// Kinetic energy [J] at the time of the positions, from the half steps before and after.

@@ -62,6 +62,12 @@ impl Accumulated {
         self.last = step;
     }
 
+    /// Adds to the last step.
+    pub(crate) fn add_to_step(&mut self, more: f64) {
+        self.total += more;
+        self.last += more;
+    }
+
     /// Adds a step that is not counted: it is taken to be like the last one that was.
     pub(crate) fn repeat(&mut self) {
         self.add(self.last);

@@ -39,7 +39,7 @@ pub struct Undecided {
 /// What to solve.
 #[derive(Debug, Clone)]
 pub struct Statics {
-    /// Slots of each elastic body, with its name.
+    /// Slots of each body that finds its place, with its name: elastic ones, and those that move as one piece without turning.
     pub bodies: Vec<(String, Vec<u32>)>,
     /// Motions left to inertia.
     pub undecided: Vec<Undecided>,
@@ -94,8 +94,19 @@ impl Equilibrator {
         forces: &mut [&mut dyn Force],
         statics: &Statics,
     ) -> Result<Equilibrium, Error> {
+        let solved = self.iterate(dynamics, forces, statics);
+        dynamics.follow_nodes();
+        solved
+    }
+
+    fn iterate(
+        &mut self,
+        dynamics: &mut Dynamics,
+        forces: &mut [&mut dyn Force],
+        statics: &Statics,
+    ) -> Result<Equilibrium, Error> {
         let mut residual = Residual::new(dynamics);
-        residual.evaluate(dynamics, forces, statics);
+        residual.evaluate(dynamics, forces, statics, &self.unknowns);
         let mut iterations = 0;
         let mut before = 0.0;
         loop {
@@ -147,16 +158,16 @@ impl Dynamics {
         step: &[[f64; 2]],
     ) {
         let start: Vec<[f64; 2]> =
-            unknowns.slots.iter().map(|&s| [self.state.x[s as usize], self.state.y[s as usize]]).collect();
+            unknowns.moving().map(|(slot, _)| [self.state.x[slot], self.state.y[slot]]).collect();
         let slope0 = residual.along(unknowns, step);
         let (mut low, mut slope_low) = (0.0, slope0);
         let (mut factor, mut high) = (1.0, f64::INFINITY);
         for _ in 0..12 {
-            for (i, &s) in unknowns.slots.iter().enumerate() {
-                self.state.x[s as usize] = start[i][0] + factor * step[i][0];
-                self.state.y[s as usize] = start[i][1] + factor * step[i][1];
+            for ((slot, i), [x, y]) in unknowns.moving().zip(&start) {
+                self.state.x[slot] = x + factor * step[i][0];
+                self.state.y[slot] = y + factor * step[i][1];
             }
-            residual.evaluate(self, forces, statics);
+            residual.evaluate(self, forces, statics, unknowns);
             let slope = residual.along(unknowns, step);
             // The potential is convex along a line: its slope falls through zero once.
             if slope.abs() <= 0.5 * slope0.abs() || (slope > 0.0 && high.is_infinite()) {

@@ -164,6 +164,36 @@ fn analytic_rigid_block_under_a_couple() {
     assert_close(couple_work(&mut d, &mut couple), 1.0, 1e-9, "work / energy");
 }
 
+/// Source: a body whose angle is prescribed, θ = Ω t; the drive supplies −M Ω a second (Newton's third law).
+#[test]
+fn analytic_block_that_turns_at_a_prescribed_rate() {
+    let mut model = body(&rectangle(0.04, 0.02, 4, 2));
+    let rate = 50.0;
+    model.behaviour[0] = Behaviour::Turning { rate };
+    let mut d = lay_out(&model);
+    d.set_time_step(1e-6).expect("a positive time step");
+    let (left, right) = (slot(&d, 5) as u32, slot(&d, 9) as u32);
+    // A couple that acts along y, and a force that moves the centre.
+    let (couple, push) = (3.0, 2.0);
+    let mut load = NodalLoad::new(vec![(left, 0.0, -couple), (right, push, couple)]);
+    let steps = 4000;
+    run(&mut d, &mut [&mut load], steps);
+    let time = d.state.time;
+    assert_close(d.rigid[0].angle, rate * time, 1e-12, "angle");
+    assert_eq!(d.rigid[0].spin, rate);
+    let mass = steel().density() * THICKNESS * 0.04 * 0.02;
+    let path = 0.5 * push / mass * d.time_step().powi(2) * (steps * (steps + 1)) as f64;
+    assert_close(d.rigid[0].centre[0] - 0.02, path, 1e-9, "path");
+    // ∫ Ω M dt with the couple's lever cos θ and the push's own torque about the centre, which is −push · ½ a sin θ.
+    let angle = rate * time;
+    let of_couple = couple * 0.04 * angle.sin();
+    let of_push = push * 0.02 * (angle.cos() - 1.0);
+    assert_close(d.drive.at_last_positions(), -(of_couple + of_push), 1e-3, "work of the drive");
+    // Nothing else turns it.
+    d.launch_rigid(0, [0.0; 2], 7.0);
+    assert_eq!(d.rigid[0].spin, rate);
+}
+
 /// Work supplied by a load over kinetic energy, at the same instant.
 fn couple_work(d: &mut Dynamics, load: &mut NodalLoad) -> f64 {
     use stribeck_solver::Force;

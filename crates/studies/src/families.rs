@@ -184,9 +184,9 @@ fn tally(runs: &[Finished]) -> Result<Tally> {
         for number in 0..FALSE_COMBS {
             let hz = true_hz + FALSE_REACH * (2.0 * dice.share() - 1.0) * motion.bpfo_hz;
             let source = if number % 2 == 0 {
-                Source::OuterNodes((hz / kinematics.cage_hz).round())
+                Source::OuterNodes((hz / kinematics.cage_on_outer_hz).round())
             } else {
-                Source::InnerNodes((hz / (kinematics.shaft_hz - kinematics.cage_hz)).round())
+                Source::InnerNodes((hz / kinematics.cage_on_inner_hz).round())
             };
             let nobody = Candidate { name: "nobody".into(), source };
             let judged = identify(motion, &[vertices.clone(), nobody], accelerations)?;

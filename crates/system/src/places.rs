@@ -1,9 +1,6 @@
 //! Where nodes and bodies are and how they move, in node numbers and names.
 
-use stribeck_solver::{
-    Behaviour,
-    rigid::{RigidMotion, RigidState},
-};
+use stribeck_solver::rigid::{RigidMotion, RigidState};
 
 use crate::{error::Error, names::nodes_of, system::System};
 
@@ -110,7 +107,7 @@ impl System {
     }
 
     fn rigid_number(&self, body: usize) -> Option<usize> {
-        if self.behaviour[body] == Behaviour::Elastic {
+        if self.behaviour[body].is_elastic() {
             return None;
         }
         self.dynamics.rigid_body_numbers().position(|b| b == body)

@@ -23,7 +23,8 @@ const ROUGH: f64 = 1e4;
 /// Most iterations of a stage.
 const ITERATIONS: usize = 80;
 
-/// How to find equilibrium. Elastic bodies move; rigid ones stay where they are.
+/// How to find equilibrium. Elastic bodies move, and those that turn at a prescribed rate, without turning; rigid ones stay
+/// where they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preload {
     /// The load that tolerances are shares of [N]; `None` takes the sum of all loads and weights.
@@ -80,8 +81,8 @@ impl System {
         let load = preload.load.unwrap_or_else(|| self.loads_and_weights());
         // Bodies that nothing pushes have no load to be exact against.
         let load = if load > 0.0 { load } else { 1.0 };
-        let elastic = self.names.bodies.iter().enumerate();
-        let elastic = elastic.filter(|(b, _)| self.behaviour[*b] == Behaviour::Elastic);
+        let moving = self.names.bodies.iter().enumerate();
+        let moving = moving.filter(|(b, _)| self.behaviour[*b] != Behaviour::Rigid);
         let undecided = preload.undecided.iter().map(|motion| Undecided {
             slots: self.body_slots(motion.body),
             along: motion.along,
@@ -94,7 +95,7 @@ impl System {
             nodes.zip(&preload.acceleration).for_each(|(n, a)| acceleration[self.slot(n)] = *a);
         }
         let statics = Statics {
-            bodies: elastic.map(|(b, body)| (body.name.clone(), self.body_slots(b))).collect(),
+            bodies: moving.map(|(b, body)| (body.name.clone(), self.body_slots(b))).collect(),
             undecided: undecided.collect(),
             acceleration,
             longest_step: preload.longest_step,

@@ -6,14 +6,15 @@ use stribeck_solver::snapshot::Snapshot as MotionSnapshot;
 
 use crate::{error::Error, forces::Forces, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
 
-/// What changes in time. Bodies, pairs, limits, the time step and damping are no part of it, and neither is what forces
-/// added by [`Plan::force`](crate::Plan::force) remember.
+/// What changes in time. Bodies, pairs, limits, the time step and damping are no part of it; of forces added by
+/// [`Plan::force`](crate::Plan::force) it is what they say that they remember.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     motion: MotionSnapshot,
     contacts: Option<ContactState>,
     films: Option<FilmState>,
     loads: Vec<LoadMemory>,
+    further: Vec<Vec<f64>>,
     balance: Balance,
     seen: Seen,
 }
@@ -34,6 +35,7 @@ impl System {
             contacts,
             films,
             loads: self.forces.loads.iter().map(|load| load.memory).collect(),
+            further: self.forces.further.iter().map(|(_, force)| force.memory()).collect(),
             balance: *self.balance(),
             seen: *self.seen(),
         }
@@ -44,26 +46,39 @@ impl System {
     /// # Errors
     /// When the snapshot has other nodes, bodies, contacts or loads; nothing is changed then.
     pub fn restore(&mut self, from: Snapshot) -> Result<(), Error> {
-        let Snapshot { motion, contacts, films, loads, balance, seen } = from;
+        let Snapshot { motion, contacts, films, loads, further, balance, seen } = from;
         if loads.len() != self.forces.loads.len() {
             return Err(Error::OtherSystem { what: "loads" });
         }
+        if further.len() != self.forces.further.len() {
+            return Err(Error::OtherSystem { what: "forces" });
+        }
         let (own_contacts, own_films) = self.contact_states();
+        let own_further: Vec<Vec<f64>> = self.forces.further.iter().map(|(_, force)| force.memory()).collect();
         let refused = if !self.restore_contacts(contacts) {
             Some(Error::OtherSystem { what: "contacts" })
         } else if !self.restore_films(films) {
             Some(Error::OtherSystem { what: "films" })
+        } else if !self.recall(&further) {
+            Some(Error::OtherSystem { what: "forces" })
         } else {
             self.dynamics.restore(motion).err().map(Error::from)
         };
         if let Some(refused) = refused {
             self.restore_contacts(own_contacts);
             self.restore_films(own_films);
+            self.recall(&own_further);
             return Err(refused);
         }
         self.forces.loads.iter_mut().zip(loads).for_each(|(load, memory)| load.memory = memory);
         (self.balance, self.seen) = (balance, seen);
         Ok(())
+    }
+
+    /// False when a force does not know what it is to remember.
+    fn recall(&mut self, further: &[Vec<f64>]) -> bool {
+        let mut forces = self.forces.further.iter_mut().zip(further);
+        forces.all(|((_, force), memory)| force.recall(memory))
     }
 
     fn contact_states(&self) -> (Option<ContactState>, Option<FilmState>) {

@@ -61,6 +61,7 @@ fn silent(samples: usize, slip: f64) -> Motion {
     Motion {
         interval_s: INTERVAL_S,
         shaft_rad_s: -TAU * SHAFT_HZ,
+        outer_rad_s: 0.0,
         bpfo_hz: CAGE_HZ * ROLLERS as f64,
         rollers: rollers.collect(),
     }

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use stribeck_scene::frames::{self, Window};
 use stribeck_scene::geometry::Geometry;
+use stribeck_scene::housing::HousingScene;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir};
 
@@ -39,7 +40,7 @@ impl Pictures {
             }
         };
         pictures.mesh =
-            vec![mesh::whole(&mesh), mesh::defect(&run.scene, &mesh), roller::picture(&run.scene, &mesh)];
+            vec![mesh::whole(&run.scene, &mesh), mesh::defect(&run.scene, &mesh), roller::picture(&run.scene, &mesh)];
         if findings.of_paper {
             let numbers = ["Fig. 1a: ", "Fig. 1b: ", "Fig. 4: "];
             for (picture, number) in pictures.mesh.iter_mut().zip(numbers) {
@@ -72,13 +73,21 @@ fn mesh_of(run: &Run, dir: &RunDir) -> Result<RunMesh, String> {
     // A picture as large as a forged mesh would take all memory.
     let geometry = Geometry::of(&run.scene);
     let ring = geometry.outer_race_radius + geometry.outer_ring_thickness;
-    let reach = 2.0 * (ring + geometry.adapter_width + geometry.adapter_height);
+    let reach = match &run.scene.housing {
+        HousingScene::Adapter => 2.0 * (ring + geometry.adapter_width + geometry.adapter_height),
+        HousingScene::Pedestal(p) => 2e-3 * (p.width_mm + p.base_mm + p.top_mm),
+        HousingScene::Mesh(_) => LARGEST_HOUSING * ring,
+        HousingScene::Rigid(_) | HousingScene::Springs(_) => 2.0 * ring,
+    };
     let fits = [0, 1].into_iter().all(|axis| {
         let [low, high] = mesh::range(mesh.reference.iter().map(|at| at[axis]));
         low >= -reach && high <= reach && high - low >= ring
     });
     fits.then_some(mesh).ok_or_else(|| "`mesh.vtu` is not as large as the scene's bearing".into())
 }
+
+/// A housing from a file is taken for one up to this many times as large as the ring.
+const LARGEST_HOUSING: f64 = 50.0;
 
 /// From metres to pixels: a rectangle of the bearing on a sheet.
 #[derive(Debug, Clone, Copy)]

@@ -74,11 +74,11 @@ pub(super) fn loads(summary: &Summary) -> Markup {
     let load = &summary.load;
     let kilo = |n: Option<f64>| n.map(|n| format!("{:.3} kN", 1e-3 * n));
     let rows = [
-        ("Vertical force, rollers on outer ring, mean", kilo(load.mean_n)),
-        ("Load and weight above the rollers", kilo(Some(load.expected_n))),
+        ("Rollers on outer ring along the load, mean", kilo(load.mean_n)),
+        ("Load and weight on the rollers", kilo(Some(load.expected_n))),
         ("Difference", load.relative_error.map(|e| format!("{:+.3} %", 100.0 * e).replace('-', "−"))),
-        ("Vertical force, rollers on inner ring, mean", kilo(load.inner_mean_n)),
-        ("Adapter on outer ring, mean", kilo(load.seat_mean_n)),
+        ("Rollers on inner ring along the load, mean", kilo(load.inner_mean_n)),
+        ("Housing on outer ring along the load, mean", kilo(load.seat_mean_n)),
         ("Largest roller force, mean over a facet period", kilo(load.max_roller_n)),
         ("Largest roller force, single sample", kilo(load.max_roller_peak_n)),
         ("Static, rigid rings, sound raceway", kilo(load.static_max_roller_n)),
@@ -114,6 +114,7 @@ pub(super) fn kinematics(summary: &Summary) -> Markup {
     let motion = &summary.kinematics;
     let rows = [
         ("Shaft", None, motion.shaft_hz, 4),
+        ("Outer ring", None, motion.outer_ring_hz, 4),
         ("Cage (FTF)", motion.cage_hz, motion.expected_cage_hz, 4),
         ("Rollers pass the outer raceway (BPFO)", motion.bpfo_hz, motion.expected_bpfo_hz, 2),
         (
@@ -129,6 +130,8 @@ pub(super) fn kinematics(summary: &Summary) -> Markup {
             3,
         ),
     ];
+    // A ring that stands still is no row.
+    let rows = rows.into_iter().filter(|(name, _, hz, _)| *name != "Outer ring" || *hz > 0.0);
     html! {
         table {
             thead { tr { th { "Frequency" } th class="n" { "Measured" } th class="n" { "Without slip" } th class="n" { "Difference" } } }

@@ -101,7 +101,8 @@ pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {
     let mut found = Gathered::default();
     let mut lines = Lines { all: text.lines().enumerate(), last: 0 };
     let mut names: BTreeMap<(u64, u64), String> = BTreeMap::new();
-    let mut of_surface: BTreeMap<u64, String> = BTreeMap::new();
+    // Names of curves and surfaces, by dimension and tag.
+    let mut named: BTreeMap<(u64, u64), String> = BTreeMap::new();
     while let Ok((line, head)) = lines.next() {
         let Some(section) = head.strip_prefix('$') else {
             return Err(fault(line, format!("`{head}` stands outside of a section; is this a Gmsh file?")));
@@ -131,9 +132,9 @@ pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {
                     names.insert(key, cells.next().unwrap_or_default().trim_matches('"').to_owned());
                 }
             }
-            "Entities" => entities(&mut lines, &names, &mut of_surface)?,
+            "Entities" => entities(&mut lines, &names, &mut named)?,
             "Nodes" => nodes(&mut lines, &mut found)?,
-            "Elements" => elements(&mut lines, &mut found, &of_surface)?,
+            "Elements" => elements(&mut lines, &mut found, &named)?,
             "Comments" => {}
             other => found.notes.push(format!("line {line}: section `${other}` is not read")),
         }
@@ -152,21 +153,23 @@ pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {
 fn entities(
     lines: &mut Lines<'_>,
     names: &BTreeMap<(u64, u64), String>,
-    of_surface: &mut BTreeMap<u64, String>,
+    named: &mut BTreeMap<(u64, u64), String>,
 ) -> Result<(), DeckError> {
     let (_, counts) = lines.numbers(4)?;
-    for _ in 0..counts[0].saturating_add(counts[1]) {
+    for _ in 0..counts[0] {
         lines.next()?;
     }
-    for _ in 0..counts[2] {
-        let (line, text) = lines.next()?;
-        let cells: Vec<&str> = text.split_whitespace().collect();
-        let tag = whole(cells.first().copied().unwrap_or_default(), line)?;
-        let physical = whole(cells.get(7).copied().unwrap_or("0"), line)?;
-        if physical > 0 {
-            let number = whole(cells.get(8).copied().unwrap_or_default(), line)?;
-            let name = names.get(&(2, number)).cloned().unwrap_or_else(|| format!("physical {number}"));
-            of_surface.insert(tag, name);
+    for dimension in [1, 2] {
+        for _ in 0..counts[dimension as usize] {
+            let (line, text) = lines.next()?;
+            let cells: Vec<&str> = text.split_whitespace().collect();
+            let tag = whole(cells.first().copied().unwrap_or_default(), line)?;
+            let physical = whole(cells.get(7).copied().unwrap_or("0"), line)?;
+            if physical > 0 {
+                let number = whole(cells.get(8).copied().unwrap_or_default(), line)?;
+                let name = names.get(&(dimension, number)).cloned();
+                named.insert((dimension, tag), name.unwrap_or_else(|| format!("physical {number}")));
+            }
         }
     }
     Ok(())
@@ -193,7 +196,7 @@ fn nodes(lines: &mut Lines<'_>, found: &mut Gathered) -> Result<(), DeckError> {
 fn elements(
     lines: &mut Lines<'_>,
     found: &mut Gathered,
-    of_surface: &BTreeMap<u64, String>,
+    named: &BTreeMap<(u64, u64), String>,
 ) -> Result<(), DeckError> {
     let (_, counts) = lines.numbers(4)?;
     for _ in 0..counts[0] {
@@ -210,11 +213,14 @@ fn elements(
         }
         for _ in 0..count {
             let (line, numbers) = lines.numbers(2)?;
-            // Points and lines bound the surfaces; nothing is made of them.
+            let name = named.get(&(dimension, tag));
             if plane {
                 found.element(numbers[0], numbers[1..].to_vec(), line)?;
-                let name = of_surface.get(&tag).cloned().unwrap_or_else(|| format!("surface {tag}"));
+                let name = name.cloned().unwrap_or_else(|| format!("surface {tag}"));
                 found.set(&name).push(numbers[0]);
+            } else if let (1, Some(name)) = (dimension, name) {
+                // Lines bound the surfaces; those of a named curve make a set of nodes.
+                found.node_sets.entry(name.clone()).or_default().extend(&numbers[1..]);
             }
         }
     }

@@ -7,6 +7,7 @@ use super::finding::{Finding, Remedy};
 use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, round_up, shown};
 use crate::duty::Duty;
+use crate::housing::HousingScene;
 use crate::scene::{ModelScene, ProfileScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
@@ -37,6 +38,10 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_twice,
         reduced_starts,
         reduced_oil,
+        reduced_housing,
+        load_direction,
+        outer_speed,
+        outer_speed_alone,
         speed_profile,
         load_profile,
         rotating_load,
@@ -51,9 +56,9 @@ fn layers(scene: &Scene) -> Option<Finding> {
     let bodies = [
         ("bearing.outer_ring_thickness_mm", b.outer_ring_thickness_mm),
         ("bearing.inner_ring_thickness_mm", b.inner_ring_thickness_mm),
-        ("adapter.height_mm", scene.adapter.height_mm),
     ];
-    let (body, thickness) = bodies.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let adapter = Some(("adapter.height_mm", scene.adapter.height_mm)).filter(|_| scene.housing.is_adapter());
+    let (body, thickness) = bodies.into_iter().chain(adapter).min_by(|a, b| a.1.total_cmp(&b.1))?;
     if size <= thickness {
         return None;
     }
@@ -136,9 +141,14 @@ fn too_many_elements(scene: &Scene) -> Option<Finding> {
 fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
     let (b, mesh) = (&scene.bearing, &scene.mesh);
     let layers = |thickness: f64| (thickness / mesh.size_mm).max(1.0);
-    let adapter = match &mesh.grading {
-        None => layers(scene.adapter.width_mm) * layers(scene.adapter.height_mm),
-        Some(g) => scene.adapter.width_mm * scene.adapter.height_mm / (g.coarse_mm * g.coarse_mm),
+    let [width, height] = match &scene.housing {
+        HousingScene::Adapter => [scene.adapter.width_mm, scene.adapter.height_mm],
+        HousingScene::Pedestal(pedestal) => [pedestal.width_mm, pedestal.base_mm + pedestal.top_mm],
+        HousingScene::Mesh(_) | HousingScene::Rigid(_) | HousingScene::Springs(_) => [0.0; 2],
+    };
+    let held = match &mesh.grading {
+        None => layers(width) * layers(height),
+        Some(g) => width * height / (g.coarse_mm * g.coarse_mm),
     };
     // The transition and the coarse rows of a graded ring cost as much as three fine layers.
     let layers_of_ring = |thickness: f64| {
@@ -161,7 +171,7 @@ fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
         ring("mesh.outer_facets", mesh.outer_facets, b.outer_race_diameter_mm, b.outer_ring_thickness_mm),
         ring("mesh.inner_facets", mesh.inner_facets, b.inner_race_diameter_mm, b.inner_ring_thickness_mm),
         ("mesh.roller_facets", rollers),
-        (if mesh.grading.is_some() { COARSE } else { SIZE }, adapter),
+        (if mesh.grading.is_some() { COARSE } else { SIZE }, held),
     ]
 }
 
@@ -204,6 +214,79 @@ fn reduced_oil(scene: &Scene) -> Option<Finding> {
         vec![
             Remedy::new("film", "`None`".to_owned()).value("None", ""),
             Remedy::new("model", "`full`".to_owned()).value("full", ""),
+        ],
+    ))
+}
+
+/// What holds the ring of a reduced model is elastic.
+fn reduced_housing(scene: &Scene) -> Option<Finding> {
+    if scene.model == ModelScene::Full || scene.housing.has_seat() {
+        return None;
+    }
+    let message = "the reduced model knows elastic housings that the outer ring sits in alone".to_owned();
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(HOUSING, "`adapter`, `pedestal(…)` or `mesh(…)`".to_owned()).value("adapter", "the paper's"),
+            Remedy::new("model", "`full`".to_owned()).value("full", ""),
+        ],
+    ))
+}
+
+const HOUSING: &str = "housing";
+const LOAD_ANGLE: &str = "operation.load_angle_deg";
+const OUTER_SPEED: &str = "operation.outer_speed_rpm";
+
+/// A load that the guide of its housing lets through.
+fn load_direction(scene: &Scene) -> Option<Finding> {
+    let angle = scene.operation.load_angle_deg;
+    let [across, up] = scene.load_direction();
+    let allowed = match scene.housing {
+        HousingScene::Adapter if up < 0.0 && across == 0.0 => return None,
+        HousingScene::Adapter => "270, downwards, as the adapter lies on top of the ring",
+        HousingScene::Pedestal(_) | HousingScene::Mesh(_) if across == 0.0 => return None,
+        HousingScene::Pedestal(_) | HousingScene::Mesh(_) => "270 or 90: what takes the load is guided up and down",
+        HousingScene::Rigid(_) | HousingScene::Springs(_) => return None,
+    };
+    let message = format!("`{LOAD_ANGLE}` is {}, and the housing does not take a load from there", number(angle));
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(LOAD_ANGLE, allowed.to_owned()).number(270.0, "downwards"),
+            Remedy::new(HOUSING, "`rigid(…)` or `springs(…)`, which take it from any side".to_owned()).value("rigid()", ""),
+        ],
+    ))
+}
+
+/// A housing that turns does not deform.
+fn outer_speed(scene: &Scene) -> Option<Finding> {
+    let rpm = scene.operation.outer_speed_rpm;
+    if rpm == 0.0 || scene.housing.is_rigid() {
+        return None;
+    }
+    let message = format!("`{OUTER_SPEED}` is {}, and the housing cannot turn", number(rpm));
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(OUTER_SPEED, "0".to_owned()).number(0.0, "a ring that stands still"),
+            Remedy::new(HOUSING, "`rigid(…)`".to_owned()).value("rigid()", ""),
+        ],
+    ))
+}
+
+/// What turns with two speeds keeps them.
+fn outer_speed_alone(scene: &Scene) -> Option<Finding> {
+    let o = &scene.operation;
+    if o.outer_speed_rpm == 0.0 || o.speed_profile.is_none() {
+        return None;
+    }
+    let message = format!("`{SPEED_PROFILE}` changes the speed of the inner ring, and `{OUTER_SPEED}` is not zero: one speed may change, \
+                           not against another one");
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(OUTER_SPEED, "0".to_owned()).number(0.0, "a ring that stands still"),
+            Remedy::new(SPEED_PROFILE, "left out".to_owned()),
         ],
     ))
 }

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
 use crate::geometry::CageGeometry;
+use crate::housing::HousingScene;
 use crate::scene::{CageScene, DefectRing, PocketWalls, Scene};
 
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
@@ -17,6 +18,8 @@ const ROLLER: &str = "bearing.roller_diameter_mm";
 
 /// A wider gap than this part of a roller is a mistake in a diameter, not a clearance.
 const MAX_CLEARANCE_RATIO: f64 = 0.1;
+/// Rollers that are pressed in by more than this part of their diameter are a mistake, too: they would yield.
+const MAX_PRELOAD_RATIO: f64 = 0.005;
 /// The clearance that is proposed, as a part of a roller: about that of the paper's bearing.
 const USUAL_CLEARANCE_RATIO: f64 = 0.002;
 /// Below the floor of a defect this part of the ring must be left to carry the load.
@@ -26,6 +29,8 @@ const WIDEST_WALL: f64 = 2.0;
 const WALL_OF_LENGTH: f64 = 0.4;
 /// Width of the paper's adapter over the outside diameter of its outer ring.
 const ADAPTER_RATIO: f64 = 0.727;
+/// Thinnest wall of a pedestal, as a part of the ring's outside radius.
+const LEAST_PEDESTAL: f64 = 0.02;
 /// How many roller counts below the limit are tried: a cage allows fewer than the pitch circle alone.
 const FEWER_ROLLERS: usize = 8;
 
@@ -33,12 +38,14 @@ const FEWER_ROLLERS: usize = 8;
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     let groups = [
         rings,
+        clearance_change,
         bore,
         pitch_circle,
         cage,
         pockets,
         places,
         adapter,
+        pedestal,
         defect_length,
         defect_edges,
         defect_depth,
@@ -109,6 +116,28 @@ fn rings(scene: &Scene) -> Option<Finding> {
                 .number(inner + 2.0 * roller, "no clearance"),
         ],
     ))
+}
+
+/// A clearance that fits and temperature leave.
+fn clearance_change(scene: &Scene) -> Option<Finding> {
+    const CHANGE: &str = "bearing.clearance_change_um";
+    let b = &scene.bearing;
+    let by_diameters = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
+    let clearance = by_diameters + 1e-3 * b.clearance_change_um;
+    let (least, most) = (-MAX_PRELOAD_RATIO * b.roller_diameter_mm, MAX_CLEARANCE_RATIO * b.roller_diameter_mm);
+    // Diameters that do not fit each other are found by themselves.
+    if b.clearance_change_um == 0.0 || (least..=most).contains(&clearance) {
+        return None;
+    }
+    let message = format!(
+        "`{CHANGE}` is {}, which leaves a clearance of {} µm: less than {} % of the roller's diameter either way is expected of fits and \
+         temperature",
+        number(b.clearance_change_um),
+        number(1e3 * clearance),
+        100.0 * if clearance < 0.0 { MAX_PRELOAD_RATIO } else { MAX_CLEARANCE_RATIO },
+    );
+    let [low, high] = [least, most].map(|limit| number((1e3 * (limit - by_diameters)).trunc()));
+    Some(Finding::new(message, vec![Remedy::new(CHANGE, format!("{low} to {high} µm")).number(0.0, "as the diameters say")]))
 }
 
 /// Something left inside the inner ring.
@@ -384,7 +413,7 @@ fn adapter(scene: &Scene) -> Option<Finding> {
     let b = &scene.bearing;
     let outside = b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
     let width = scene.adapter.width_mm;
-    if width < outside {
+    if width < outside || !scene.housing.is_adapter() {
         return None;
     }
     let message = format!(
@@ -401,6 +430,30 @@ fn adapter(scene: &Scene) -> Option<Finding> {
             Remedy::new(OUTER_RACE, more_than(width - 2.0 * b.outer_ring_thickness_mm, "mm")),
             Remedy::new(OUTER_RING, more_than(ring, "mm")).number(round_up(1.01 * ring, 2), ""),
         ],
+    ))
+}
+
+/// Material around the bore of a pedestal.
+fn pedestal(scene: &Scene) -> Option<Finding> {
+    let HousingScene::Pedestal(pedestal) = &scene.housing else { return None };
+    let b = &scene.bearing;
+    let outside = b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
+    let least = 0.5 * outside * (1.0 + LEAST_PEDESTAL);
+    let sides = [
+        ("housing.width_mm", pedestal.width_mm, 2.0),
+        ("housing.base_mm", pedestal.base_mm, 1.0),
+        ("housing.top_mm", pedestal.top_mm, 1.0),
+    ];
+    let (field, value, halves) = sides.into_iter().find(|(_, value, halves)| *value <= halves * least)?;
+    let message = format!(
+        "`{field}` is {}, which leaves no pedestal around the outer ring ({} mm across)",
+        number(value),
+        number(outside)
+    );
+    let wide = round_up(halves * 0.7 * outside, 2);
+    Some(Finding::new(
+        message,
+        vec![Remedy::new(field, more_than(round_up(halves * least, 3), "mm")).number(wide, "a fifth of the ring around it")],
     ))
 }
 

@@ -5,6 +5,7 @@ use std::fmt;
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
 use crate::deviation::{DeviationScene, FormScene, RollingSurface};
+use crate::housing::HousingScene;
 use crate::scene::{
     FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
@@ -63,7 +64,14 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
 
 /// What the number at `path` may be, `3 to 400`; `None` for a field that is no number.
 pub(crate) fn allowed(path: &str) -> Option<String> {
-    numbers(&with_everything()).iter().find(|number| number.path == path).map(Number::allowed)
+    let find = |scene: &Scene| numbers(scene).iter().find(|number| number.path == path).map(Number::allowed);
+    let mut scene = with_everything();
+    find(&scene).or_else(|| {
+        HousingScene::of_every_form().into_iter().find_map(|housing| {
+            scene.housing = housing;
+            find(&scene)
+        })
+    })
 }
 
 /// A scene in which no optional number is absent.
@@ -173,6 +181,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("bearing.outer_ring_thickness_mm", b.outer_ring_thickness_mm, positive(5_000.0), "mm");
     add("bearing.inner_race_diameter_mm", b.inner_race_diameter_mm, positive(20_000.0), "mm");
     add("bearing.inner_ring_thickness_mm", b.inner_ring_thickness_mm, positive(5_000.0), "mm");
+    add("bearing.clearance_change_um", b.clearance_change_um, within(-1_000.0, 1_000.0), "µm");
     add("bearing.rollers", b.rollers as f64, within(3.0, 400.0), "");
     add("bearing.roller_diameter_mm", b.roller_diameter_mm, positive(5_000.0), "mm");
     add("bearing.thickness_mm", b.thickness_mm, positive(10_000.0), "mm");
@@ -187,6 +196,21 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     }
     add("adapter.width_mm", adapter.width_mm, positive(50_000.0), "mm");
     add("adapter.height_mm", adapter.height_mm, positive(50_000.0), "mm");
+    match &scene.housing {
+        HousingScene::Pedestal(pedestal) => {
+            add("housing.width_mm", pedestal.width_mm, positive(50_000.0), "mm");
+            add("housing.base_mm", pedestal.base_mm, positive(50_000.0), "mm");
+            add("housing.top_mm", pedestal.top_mm, positive(50_000.0), "mm");
+        }
+        HousingScene::Rigid(rigid) => add("housing.mass_kg", rigid.mass_kg, within(0.0, 1e6), "kg"),
+        HousingScene::Springs(springs) => {
+            add("housing.stiffness_n_um", springs.stiffness_n_um, positive(1e6), "N/µm");
+            add("housing.damping_n_s_m", springs.damping_n_s_m, within(0.0, 1e9), "N s/m");
+            add("housing.mass_kg", springs.mass_kg, within(1e-3, 1e6), "kg");
+        }
+        HousingScene::Mesh(mesh) => add("housing.unit_mm", mesh.unit_mm, positive(1e6), "mm"),
+        HousingScene::Adapter => {}
+    }
     if let Some(defect) = &scene.defect {
         add("defect.length_mm", defect.length_mm, positive(20_000.0), "mm");
         add("defect.depth_mm", defect.depth_mm, positive(5_000.0), "mm");
@@ -251,7 +275,9 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("mesh.grading.fine_layers", grading.fine_layers as f64, within(1.0, 1_000.0), "");
     }
     add("operation.load_n", operation.load_n, LOAD, "N");
+    add("operation.load_angle_deg", operation.load_angle_deg, within(-360.0, 360.0), "°");
     add("operation.speed_rpm", operation.speed_rpm, SPEED, "rpm");
+    add("operation.outer_speed_rpm", operation.outer_speed_rpm, SPEED, "rpm");
     add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
     if let Some(profile) = &operation.speed_profile {
         in_profile(SPEED_PROFILE, profile, (SPEED, "rpm"), &mut add);

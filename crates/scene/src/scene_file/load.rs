@@ -6,8 +6,8 @@ use std::path::Path;
 use super::problem::{Place, Problem, SceneError};
 use super::suggest;
 
-/// A scene file holds some fifty numbers; a megabyte is something else.
-const MAX_BYTES: u64 = 1 << 20;
+/// A scene file holds some fifty numbers, and that of a run the mesh of a housing, too; more is something else.
+const MAX_BYTES: u64 = 8 << 20;
 
 /// The text of the scene file at `path`, refused when it cannot be one.
 pub(crate) fn load(path: &Path) -> Result<String, SceneError> {

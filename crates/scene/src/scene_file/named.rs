@@ -158,6 +158,7 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         thickness_mm: tidy(ROLLER_LENGTH * width_mm),
         // As far before the middle of its load zone, in parts of the pitch, as the paper's.
         first_roller_deg: tidy(90.0 + 4.0 * 24.0 / count as f64),
+        clearance_change_um: 0.0,
     })
 }
 

@@ -3,6 +3,7 @@
 use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
 use crate::deviation::DeviationScene;
+use crate::housing::HousingScene;
 use crate::scene::{
     FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
@@ -21,8 +22,22 @@ const OPTIONAL_GROUPS: [&str; 7] = [
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
+    /// A scene with everything, and one for each further form of the housing: a field is looked for in their order.
+    scenes: Vec<Complete>,
+}
+
+/// A complete scene as text.
+struct Complete {
     text: String,
     outline: Outline,
+}
+
+impl Complete {
+    fn of(scene: &Scene) -> Self {
+        let text = scene.to_ron();
+        let outline = Outline::of(&text);
+        Self { text, outline }
+    }
 }
 
 impl Schema {
@@ -40,35 +55,48 @@ impl Schema {
         scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
         scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
         scene.operation.rotating_load = Some(RotatingLoadScene::default());
-        let text = scene.to_ron();
-        let outline = Outline::of(&text);
-        Self { text, outline }
+        // Not written by default.
+        (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (0.5, 0.5);
+        scene.bearing.clearance_change_um = 0.5;
+        let of_housing = |housing| {
+            let mut scene = scene.clone();
+            // What a file held is no field to write.
+            scene.housing = housing;
+            Complete::of(&scene)
+        };
+        Self { scenes: HousingScene::of_every_form().into_iter().map(of_housing).collect() }
     }
 
     /// Dotted paths of all fields, list items left out.
     pub(crate) fn paths(&self) -> Vec<&str> {
-        self.outline
-            .entries
-            .iter()
-            .map(|entry| entry.path.as_str())
-            .filter(|path| !path.contains('['))
-            .collect()
+        let mut paths: Vec<&str> = Vec::new();
+        for path in self.scenes.iter().flat_map(|scene| &scene.outline.entries).map(|entry| entry.path.as_str()) {
+            if !path.contains('[') && !paths.contains(&path) {
+                paths.push(path);
+            }
+        }
+        paths
+    }
+
+    /// Text of a scene that has such a field, and where its value stands in it.
+    fn find(&self, path: &str) -> Option<(&str, std::ops::Range<usize>)> {
+        self.scenes.iter().find_map(|scene| Some((scene.text.as_str(), scene.outline.get(path)?.value.clone())))
     }
 
     /// The path of the first item of a list that has such a field.
     fn item_with(&self, path: &str) -> String {
         let first = first_item(path);
-        if self.outline.get(&first).is_some() {
+        if self.find(&first).is_some() {
             return first;
         }
-        forms_of(&first).find(|path| self.outline.get(path).is_some()).unwrap_or(first)
+        forms_of(&first).find(|path| self.find(path).is_some()).unwrap_or(first)
     }
 
     /// The default of `path` as text; any item of a list stands for its siblings.
     pub(crate) fn default_of(&self, path: &str) -> Option<&str> {
         let path = self.item_with(path);
-        let entry = self.outline.get(&path).or_else(|| self.outline.get(&in_other_profile(&path)?));
-        entry.map(|entry| &self.text[entry.value.clone()])
+        let (text, value) = self.find(&path).or_else(|| self.find(&in_other_profile(&path)?))?;
+        Some(&text[value])
     }
 
     /// The default of `path` where it is one word, text or number of its own.
@@ -83,7 +111,8 @@ impl Schema {
         let prefixes = std::iter::once(prefix.clone()).chain(forms_of(&prefix));
         let mut names: Vec<&str> = Vec::new();
         for prefix in prefixes {
-            let inside = self.outline.entries.iter().filter_map(|entry| entry.path.strip_prefix(&prefix));
+            let entries = self.scenes.iter().flat_map(|scene| &scene.outline.entries);
+            let inside = entries.filter_map(|entry| entry.path.strip_prefix(&prefix));
             for name in inside.filter(|name| !name.contains(['.', '['])) {
                 if !names.contains(&name) {
                     names.push(name);
@@ -123,8 +152,8 @@ impl Schema {
 
     /// The complete default scene with `value` at `path`, as text; `None` for a field that no scene has.
     pub(crate) fn text_with(&self, path: &str, value: &str) -> Option<String> {
-        let place = self.outline.get(&self.item_with(path))?.value.clone();
-        Some(format!("{}{value}{}", &self.text[..place.start], &self.text[place.end..]))
+        let (text, place) = self.find(&self.item_with(path))?;
+        Some(format!("{}{value}{}", &text[..place.start], &text[place.end..]))
     }
 }
 

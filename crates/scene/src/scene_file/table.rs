@@ -1,4 +1,5 @@
-//! Profiles from CSV files: a scene that was read holds their points, so that a run holds all of its scene.
+//! Profiles from CSV files, and meshes of housings: a scene that was read holds what is in them, so that a run holds all of its
+//! scene.
 //!
 //! ```text
 //! time_ms, value
@@ -18,10 +19,13 @@ use super::origin::Origin;
 use super::problem::{Problem, SceneError, place_in_file};
 use super::wording::{number, shown};
 use crate::deviation::{FormScene, PointScene};
+use crate::housing::HousingScene;
 use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
 const MAX_BYTES: u64 = 1 << 20;
+/// Largest mesh of a housing [bytes]: some fifty thousand elements. The scene of the run holds it.
+const MAX_MESH_BYTES: u64 = 4 << 20;
 /// Most rows: the scene of the run holds them all.
 const MAX_ROWS: usize = 10_000;
 /// What a table is for.
@@ -43,6 +47,22 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Res
         let table = Table { path, columns: ["time_ms", "value"], refuses: &refuses };
         *profile = Some(ProfileScene::Points(table.read(folder, name, origin)?));
     }
+    if let HousingScene::Mesh(housing) = &mut scene.housing
+        && housing.text.is_empty()
+    {
+        const PATH: &str = "housing.file";
+        let file = folder.join(&housing.file);
+        housing.text = text_of(&file, MAX_MESH_BYTES).map_err(|why| {
+            let mut problem = Problem::new(
+                format!("cannot read the mesh `{}`: {why}", shown(&housing.file)),
+                origin.place(PATH),
+            );
+            PATH.clone_into(&mut problem.field);
+            "a Gmsh (`.msh`), Abaqus (`.inp`) or LS-DYNA (`.k`) file".clone_into(&mut problem.allowed);
+            "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
+            problem
+        })?;
+    }
     for (i, deviation) in scene.defects.iter_mut().enumerate() {
         let FormScene::Profile(profile) = &mut deviation.form else { continue };
         // The scene of a run holds the points.
@@ -61,7 +81,7 @@ impl Table<'_> {
     /// Its points, from the file of that name; `folder` is where its path counts from.
     fn read(&self, folder: &Path, name: &str, origin: &Origin<'_>) -> Result<Vec<(f64, f64)>, SceneError> {
         let file = folder.join(name);
-        let text = text_of(&file).map_err(|why| {
+        let text = text_of(&file, MAX_BYTES).map_err(|why| {
             let place = origin.place(self.path);
             let mut problem = Problem::new(format!("cannot read the table `{}`: {why}", shown(name)), place);
             self.path.clone_into(&mut problem.field);
@@ -148,18 +168,18 @@ impl Table<'_> {
     }
 }
 
-fn text_of(file: &Path) -> Result<String, String> {
+fn text_of(file: &Path, most: u64) -> Result<String, String> {
     let open = || -> std::io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         if std::fs::metadata(file)?.is_dir() {
             return Err(std::io::Error::other("it is a folder"));
         }
-        File::open(file)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+        File::open(file)?.take(most + 1).read_to_end(&mut bytes)?;
         Ok(bytes)
     };
     let bytes = open().map_err(|why| why.to_string())?;
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(format!("it is larger than {MAX_BYTES} bytes, the limit for a table"));
+    if bytes.len() as u64 > most {
+        return Err(format!("it is larger than {most} bytes, the limit"));
     }
     String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
 }

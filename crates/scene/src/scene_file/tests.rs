@@ -8,6 +8,7 @@ use proptest::prelude::*;
 use stribeck_testing::Scratch;
 
 use super::{Place, Problem, SceneError};
+use crate::housing::HousingScene;
 use crate::scene::{
     ContactMethod, DampingFrame, HarmonicScene, ProfileScene, RampScene, RollerCopies, Scene, Start,
 };
@@ -368,6 +369,58 @@ fn refuses_profiles_that_cannot_be_followed() {
 }
 
 #[test]
+fn example_housings_are_written_in_files_and_behind_set() {
+    let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid");
+    let pedestal = parse("(housing: pedestal(width_mm: 300, base_mm: 150))").expect("valid");
+    let HousingScene::Pedestal(of) = &pedestal.housing else { panic!("{:?}", pedestal.housing) };
+    assert_eq!([of.width_mm, of.base_mm, of.top_mm], [300.0, 150.0, 140.0]);
+    assert_eq!(parse(&pedestal.to_ron()).expect("valid"), pedestal);
+    let turning = set(&["housing=rigid(mass_kg: 3)", "operation.outer_speed_rpm=-200", "operation.load_angle_deg=10"]);
+    assert_eq!(parse(&turning.to_ron()).expect("valid"), turning);
+    assert_eq!(turning.load_zone_deg(), 190.0);
+    let springs = set(&["housing=springs()", "housing.stiffness_n_um=50"]);
+    assert!(matches!(springs.housing, HousingScene::Springs(ref s) if s.stiffness_n_um == 50.0));
+    // What is not said is not written: hashes of older scenes stay.
+    let text = Scene::default().to_ron();
+    assert!(!text.contains("housing") && !text.contains("load_angle") && !text.contains("outer_speed"), "{text}");
+}
+
+#[test]
+fn refuses_housings_that_do_not_fit() {
+    for (scene, field, words) in [
+        ("housing: pedestal(width_mm: 200)", "housing.width_mm", "no pedestal around the outer ring (220 mm across)"),
+        ("housing: pedestal(top_mm: -1)", "housing.top_mm", "outside its range"),
+        ("housing: pedestal(height_mm: 1)", "", "unknown field `height_mm`"),
+        ("housing: pedestral()", "housing", "not one of its words"),
+        ("housing: mesh(file: \"none.msh\")", "housing.file", "cannot read the mesh `none.msh`"),
+        ("housing: springs(stiffness_n_um: 0)", "housing.stiffness_n_um", "outside its range"),
+        ("housing: rigid(mass_kg: -1)", "housing.mass_kg", "outside its range"),
+        ("operation: (load_angle_deg: 90)", "operation.load_angle_deg", "does not take a load from there"),
+        (
+            "housing: pedestal(), operation: (load_angle_deg: 45)",
+            "operation.load_angle_deg",
+            "what takes the load is guided up and down",
+        ),
+        ("operation: (outer_speed_rpm: 100)", "operation.outer_speed_rpm", "the housing cannot turn"),
+        (
+            "housing: rigid(), operation: (outer_speed_rpm: 100, speed_profile: ramp())",
+            "operation.outer_speed_rpm",
+            "one speed may change",
+        ),
+        ("model: reduced(), film: None, housing: rigid()", "housing", "elastic housings"),
+        (
+            "bearing: (clearance_change_um: -200)",
+            "bearing.clearance_change_um",
+            "leaves a clearance of -160 µm",
+        ),
+    ] {
+        let problem = only(parse(&format!("({scene})")));
+        assert!(field.is_empty() || problem.field == field, "{scene}\n{problem}");
+        assert!(problem.to_string().contains(words), "{scene}\n{problem}");
+    }
+}
+
+#[test]
 fn refuses_overrides_and_points_at_the_command_line() {
     let refuse = |argument: &str| only(Scene::default().with_overrides(&[argument]));
     for (argument, words) in [
@@ -418,7 +471,7 @@ fn refuses_files_that_are_no_scene() {
         only(Scene::read(&path)).to_string()
     };
     assert!(refuse("nul", b"(\0)").contains("not a text file: byte 1 is 0x00"));
-    assert!(refuse("huge", &vec![b' '; (1 << 20) + 1]).contains("larger than 1048576 bytes"));
+    assert!(refuse("huge", &vec![b' '; (8 << 20) + 1]).contains("larger than 8388608 bytes"));
     assert!(refuse("empty", b"").contains("the scene is empty"));
     assert!(refuse("cut", b"(bearing: (rollers: 2").contains("ends too early"));
     assert!(only(Scene::read(folder.join("missing.ron"))).to_string().contains("cannot read scene"));

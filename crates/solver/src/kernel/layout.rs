@@ -78,7 +78,7 @@ pub(crate) fn lay_out(model: &Model, quads: &[QuadReference], triangles: &[Trian
     let groups = congruent_groups(model, quads, triangles);
     let alone_or_together = groups.iter().flat_map(|group| group.chunks(LANES)).collect();
     let elements = |bodies: &&[usize]| {
-        let elastic = bodies.iter().filter(|b| model.behaviour[**b] == Behaviour::Elastic);
+        let elastic = bodies.iter().filter(|b| model.behaviour[**b].is_elastic());
         elastic.map(|&b| mesh.bodies[b].quads.len() + mesh.bodies[b].triangles.len()).sum()
     };
     for bodies in small_ones_inwards(alone_or_together, elements) {
@@ -171,7 +171,7 @@ impl Layout {
         let body = &mesh.bodies[b];
         let tile_of_node = match model.behaviour[b] {
             Behaviour::Elastic => bisect(mesh, body),
-            Behaviour::Rigid => vec![0; body.nodes.len()],
+            Behaviour::Rigid | Behaviour::Turning { .. } => vec![0; body.nodes.len()],
         };
         let tiles = tile_of_node.iter().max().map_or(0, |&t| t + 1);
         let of = |n: u32| tile_of_node[n as usize - body.nodes.start];
@@ -183,7 +183,7 @@ impl Layout {
         }
         let mut quads: Vec<Vec<usize>> = vec![Vec::new(); tiles];
         let mut triangles: Vec<Vec<usize>> = vec![Vec::new(); tiles];
-        if model.behaviour[b] == Behaviour::Elastic {
+        if model.behaviour[b].is_elastic() {
             for e in body.quads.clone() {
                 each_tile(&mesh.quads[e].map(of), |t| quads[t].push(e));
             }
@@ -230,7 +230,7 @@ impl Layout {
                 local[n as usize - body.nodes.start] = (self.len() - start) as u32;
                 self.node_of_slot.push(Some(n));
             }
-            if model.behaviour[b] == Behaviour::Elastic {
+            if model.behaviour[b].is_elastic() {
                 // A kernel may read and write a whole group of lanes from the last node on.
                 self.node_of_slot.extend([None; LANES]);
                 self.pad();
@@ -349,8 +349,8 @@ fn congruent_groups(
     let congruent = |a: usize, b: usize| {
         let (p, q) = (&bodies[a], &bodies[b]);
         let same_corner = |m: u32, n: u32| m - p.nodes.start as u32 == n - q.nodes.start as u32;
-        model.behaviour[a] == Behaviour::Elastic
-            && model.behaviour[b] == Behaviour::Elastic
+        model.behaviour[a].is_elastic()
+            && model.behaviour[b].is_elastic()
             && model.materials[a] == model.materials[b]
             && p.nodes.len() == q.nodes.len()
             && p.nodes.clone().chain(q.nodes.clone()).all(|n| model.motion[n] == Motion::Free)

@@ -19,7 +19,13 @@ impl Residual {
         Self { force: NodeForces::zeros(n) }
     }
 
-    pub(super) fn evaluate(&mut self, d: &Dynamics, forces: &mut [&mut dyn Force], statics: &Statics) {
+    pub(super) fn evaluate(
+        &mut self,
+        d: &Dynamics,
+        forces: &mut [&mut dyn Force],
+        statics: &Statics,
+        unknowns: &Unknowns,
+    ) {
         let NodeForces { fx, fy } = &mut self.force;
         fx.fill(0.0);
         fy.fill(0.0);
@@ -40,6 +46,15 @@ impl Residual {
         }
         for motion in &statics.undecided {
             motion.take_from_forces(d, fx, fy);
+        }
+        // What moves as one piece answers to the sum.
+        for piece in &unknowns.pieces {
+            let slots = piece.start as usize..piece.end as usize;
+            for force in [&mut *fx, &mut *fy] {
+                let sum = force[slots.clone()].iter().sum();
+                force[slots.clone()].fill(0.0);
+                force[slots.start] = sum;
+            }
         }
     }
 

@@ -1,17 +1,22 @@
 //! What is solved for, and in which order it is eliminated.
 
+use std::ops::Range;
+
 use super::graph::Graph;
 use crate::dynamics::Dynamics;
 
 /// Stands for a slot that does not move.
 const FIXED: u32 = u32::MAX;
 
-/// Nodes that may move, two equations each; a held component has one of its own that says nothing.
+/// Nodes that may move, two equations each; a held component has one of its own that says nothing. Nodes of a body that
+/// moves as one piece without turning share the equations of its first one.
 pub(super) struct Unknowns {
     /// Their slots, in the order of elimination.
     pub(super) slots: Vec<u32>,
     /// Which of (x, y) may move.
     pub(super) free: Vec<[bool; 2]>,
+    /// Slots of each body that moves as one piece, the first of which is among `slots`.
+    pub(super) pieces: Vec<Range<u32>>,
     /// Position in `slots` of each slot.
     index: Vec<u32>,
 }
@@ -19,7 +24,13 @@ pub(super) struct Unknowns {
 impl Unknowns {
     pub(super) fn new(d: &Dynamics) -> Self {
         let slots: Vec<u32> = d.elastic_slots().into_iter().map(|slot| slot as u32).collect();
-        Self::of_slots(d, &slots)
+        let mut unknowns = Self::of_slots(d, &slots);
+        let turning = d.rigid_bodies().iter().filter(|body| body.turns());
+        unknowns.pieces = turning.map(|body| body.slots.start as u32..body.slots.end as u32).collect();
+        unknowns.slots.extend(unknowns.pieces.iter().map(|piece| piece.start));
+        unknowns.free.resize(unknowns.slots.len(), [true; 2]);
+        unknowns.number();
+        unknowns
     }
 
     /// Those of these slots that may move.
@@ -27,7 +38,7 @@ impl Unknowns {
         let moves = |slot: &u32| d.free_components(*slot as usize) != [false; 2];
         let slots: Vec<u32> = slots.iter().copied().filter(moves).collect();
         let free = slots.iter().map(|&slot| d.free_components(slot as usize)).collect();
-        let mut unknowns = Self { slots, free, index: vec![FIXED; d.state.x.len()] };
+        let mut unknowns = Self { slots, free, pieces: Vec::new(), index: vec![FIXED; d.state.x.len()] };
         unknowns.number();
         unknowns
     }
@@ -36,6 +47,17 @@ impl Unknowns {
         for (i, &slot) in self.slots.iter().enumerate() {
             self.index[slot as usize] = i as u32;
         }
+        for piece in &self.pieces {
+            let first = self.index[piece.start as usize];
+            self.index[piece.start as usize..piece.end as usize].fill(first);
+        }
+    }
+
+    /// Every slot that moves with an unknown, and the position of that among `slots`.
+    pub(super) fn moving(&self) -> impl Iterator<Item = (usize, usize)> {
+        let own = self.slots.iter().enumerate().map(|(i, &slot)| (slot as usize, i));
+        let of_piece = |piece: &Range<u32>| piece.start as usize + 1..piece.end as usize;
+        own.chain(self.pieces.iter().flat_map(of_piece).map(|slot| (slot, self.index[slot] as usize)))
     }
 
     /// Position of a slot among the unknowns, if it may move.

@@ -2,7 +2,7 @@
 //! must be when facets, speed, load and orientation change. A bearing without a defect, so that nothing knocks.
 
 use anyhow::Result;
-use stribeck_analysis::load::vertical_sum;
+use stribeck_analysis::load::support;
 use stribeck_analysis::lumped::{Lumped, pattern_hz};
 use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::record::Record;
@@ -137,7 +137,7 @@ fn off(run: &Finished) -> Option<f64> {
 fn force_line(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
     let record = Record::new(&read);
-    signal::amplitude(&vertical_sum(&record), record.sample_rate_hz(), lumped(run)?.frequency_hz)
+    signal::amplitude(&support(&record, run.scene.load_direction()), record.sample_rate_hz(), lumped(run)?.frequency_hz)
 }
 
 /// Table, pictures, conclusions.

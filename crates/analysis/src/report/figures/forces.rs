@@ -78,7 +78,7 @@ pub(super) fn sums(run: &Run) -> Option<Figure> {
     if record.rollers().is_empty() || record.is_empty() {
         return None;
     }
-    let sum = load::vertical_sum(&record);
+    let sum = load::support(&record, run.scene.load_direction());
     let supported = run.info.expected_support_n;
     let off = |n: f64| 100.0 * (n / supported - 1.0);
     let count = sum.len() as f64;
@@ -88,21 +88,21 @@ pub(super) fn sums(run: &Run) -> Option<Figure> {
     let time = record.time_s();
     let mut figure = Figure::new(
         "load-sum",
-        "Vertical force of all rollers on the outer ring",
+        "What all rollers carry together",
         Axis::si("Time", "s"),
-        Axis::si("Sum of the vertical forces", "N"),
+        Axis::si("Sum of the forces along the load", "N"),
     )
     .synced("time")
     .with(Series::sampled("sum, each sample", Colour::Blue, time[0], record.interval_s(), sum.clone()))
     .caption(format!(
         "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by {:.1} % (RMS), between \
-         {:+.0} and {:+.0} %, because ring and adapter have mass.",
+         {:+.0} and {:+.0} %, because ring and housing have mass.",
         off(mean),
         100.0 * rms / supported,
         off(low),
         off(high)
     ).replace('-', "−"))
-    .note("The difference accelerates the outer ring and the adapter. Load plus their weight is the dashed line.");
+    .note("The difference accelerates the outer ring and its housing. Load plus their weight is the dashed line.");
     figure.levels = vec![Level { y: supported, label: "load and weight".into(), colour: Colour::Orange }];
     Some(figure)
 }

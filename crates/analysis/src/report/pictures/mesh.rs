@@ -34,11 +34,14 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
+/// Names of bodies that hold the outer ring.
+const HOLDING: [&str; 4] = ["adapter", "pedestal", "housing", "frame"];
+
 fn colour(body: &str) -> Colour {
     match body {
         "outer ring" => Colour::Blue,
         "inner ring" => Colour::Green,
-        "adapter" => Colour::Brown,
+        name if HOLDING.contains(&name) => Colour::Brown,
         "cage" => Colour::Red,
         _ => Colour::Orange,
     }
@@ -54,7 +57,7 @@ fn draw(sheet: &mut Sheet, mesh: &RunMesh, view: &View, width: f64, seen: impl F
 }
 
 /// All bodies.
-pub(super) fn whole(mesh: &RunMesh) -> Picture {
+pub(super) fn whole(scene: &Scene, mesh: &RunMesh) -> Picture {
     let [[x0, x1], [y0, y1]] = [0, 1].map(|axis| {
         let [low, high] = range(mesh.reference.iter().map(|at| at[axis]));
         [low - 0.004, high + 0.004]
@@ -62,11 +65,17 @@ pub(super) fn whole(mesh: &RunMesh) -> Picture {
     let view = View::new([x0, y0], [x1, y1], [0.0, 0.0], WIDTH);
     let mut sheet = Sheet::new(WIDTH, view.height.ceil());
     draw(&mut sheet, mesh, &view, 0.25, |_| true);
-    let names =
-        [("adapter", 0.5 * (y1 + 0.11)), ("outer ring", -0.105), ("inner ring", 0.077), ("roller", 0.0)];
-    for (name, y) in names {
-        let x = if name == "roller" { 0.091 } else { 0.0 };
-        let at = view.place([x, y]);
+    let g = Geometry::of(scene);
+    let outside = g.outer_race_radius + g.outer_ring_thickness;
+    let holds = mesh.bodies.iter().map(|body| body.name.as_str()).find(|name| HOLDING.contains(name));
+    let named = [
+        holds.map(|name| (name, [0.0, 0.5 * (y1 - 0.004 + outside)])),
+        Some(("outer ring", [0.0, -0.5 * (outside + g.outer_race_radius)])),
+        Some(("inner ring", [0.0, g.inner_race_radius - 0.5 * g.inner_ring_thickness])),
+        Some(("roller", [g.path_radius(), 0.0])),
+    ];
+    for (name, at) in named.into_iter().flatten() {
+        let at = view.place(at);
         let half = 4.0 * name.len() as f64;
         let ground = [
             [at[0] - half, at[1] - 12.0],
@@ -81,7 +90,8 @@ pub(super) fn whole(mesh: &RunMesh) -> Picture {
     let mut picture = Picture::new("mesh", "The mesh", sheet);
     picture.dense = true;
     picture.caption = format!(
-        "Adapter, outer ring, {} rollers, cage and inner ring: {} elements.",
+        "{}uter ring, {} rollers, cage and inner ring: {} elements.",
+        holds.map_or("O".to_owned(), |name| format!("{}{}, o", name[..1].to_uppercase(), &name[1..])),
         mesh.bodies.iter().filter(|b| b.name.starts_with("roller")).count(),
         mesh.elements()
     );

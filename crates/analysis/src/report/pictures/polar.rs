@@ -73,11 +73,11 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
     }
     let mut picture = Picture::new("load-polar", "Load zone", sheet);
     picture.caption = format!(
-        "The upper half carries the load; over the defect nothing is carried, and the neighbours take it over. Largest mean in motion {:.1} kN, at rest {} kN.",
+        "The side towards the load carries it; over a spall nothing is carried, and the neighbours take it over. Largest mean in motion {:.1} kN, at rest {} kN.",
         1e-3 * finite(&dynamic.mean_n),
         static_curve.map_or("–".into(), |c| format!("{:.1}", 1e-3 * c.largest_n))
     );
-    picture.note = "In motion: mean over all rollers and samples in bins of 1°. At rest: Stribeck and Sjövall, rigid rings with clearance; the elastic ring, which bears on the edges of its adapter, spreads the load otherwise.".into();
+    picture.note = "In motion: mean over all rollers and samples in bins of 1°. At rest: Stribeck and Sjövall, rigid rings with clearance; an elastic ring, which bears on the edges of an adapter, spreads the load otherwise.".into();
     Some(picture)
 }
 

@@ -1,0 +1,150 @@
+//! Housings other than the paper's adapter: what they carry, how energy balances, what the rings do.
+
+mod common;
+
+use std::ops::ControlFlow;
+
+use common::host;
+use stribeck_bearing::{
+    assembly::Assembly,
+    simulation::{extend, simulate},
+    start::preload,
+};
+use stribeck_scene::{
+    geometry::Geometry,
+    kinematics::Kinematics,
+    run_dir::{Run, RunDir},
+    run_info::{RunInfo, Status},
+    scene::Scene,
+    static_load::{self, RigidRings, angles_to_load_deg},
+};
+use stribeck_testing::Scratch;
+
+/// A small bearing whose sides are quickly meshed.
+fn scene(more: &[&str]) -> Scene {
+    let base = "(name: \"housing\", bearing: \"NU 205\", film: None, defect: None, output: (frames: None),
+        operation: (load_n: 5000, speed_rpm: 1500), mesh: (size_mm: 0.5, roller_facets: 48, grading: (coarse_mm: 1.5)),
+        solver: (duration_ms: 2))";
+    let scene = Scene::parse(base, "here").expect("valid");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/housings/pillow_block.msh");
+    let more: Vec<String> = more.iter().map(|set| set.replace("FILE", folder)).collect();
+    scene.with_overrides(&more.iter().map(String::as_str).collect::<Vec<_>>()).expect("valid")
+}
+
+fn run(scene: &Scene, folder: &Scratch) -> RunInfo {
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    simulate(scene, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("the scene runs")
+}
+
+/// Mean of a channel over the second half.
+fn mean(run: &Run, name: &str) -> f64 {
+    let channel = run.trace.get(name).unwrap_or_else(|| panic!("no channel {name}"));
+    let late = &channel[channel.len() / 2..];
+    late.iter().sum::<f64>() / late.len() as f64
+}
+
+const PEDESTAL: &str = "housing=pedestal(width_mm: 90, base_mm: 45, top_mm: 38)";
+const MESH: &str = "housing=mesh(file: \"FILE\", unit_mm: 1)";
+const SPRINGS: &str = "housing=springs(stiffness_n_um: 500, damping_n_s_m: 3000, mass_kg: 2)";
+const RIGID: &str = "housing=rigid(mass_kg: 2)";
+
+/// Source: the sum of the rollers' forces along the load is the load and the weight along it, in any direction that the
+/// housing takes; THEORY §4.
+#[test]
+fn analytic_every_housing_hands_its_load_to_the_rollers() {
+    for (housing, angle) in [
+        (PEDESTAL, 270.0),
+        (PEDESTAL, 90.0),
+        (MESH, 270.0),
+        (SPRINGS, 200.0),
+        (RIGID, 270.0),
+        (RIGID, 35.0),
+    ] {
+        let scene = scene(&[housing, &format!("operation.load_angle_deg={angle}")]);
+        let folder = Scratch::new("housing");
+        let info = run(&scene, &folder);
+        assert_eq!((info.status, info.warnings.len()), (Status::Complete, 0), "{housing} {:?}", info.warnings);
+        assert!(info.energy.max_relative_error < 1e-3, "{housing}: {}", info.energy.max_relative_error);
+        let run = Run::read(folder.path()).expect("readable");
+        let [x, y] = scene.load_direction();
+        let along = |i: usize| {
+            x * mean(&run, &format!("roller.{i}.outer_fx_n")) + y * mean(&run, &format!("roller.{i}.outer_fy_n"))
+        };
+        let carried: f64 = (1..=scene.bearing.rollers).map(along).sum();
+        assert!((carried / info.expected_support_n - 1.0).abs() < 0.02, "{housing} {angle}: {carried}");
+        let sits = scene.housing.has_seat();
+        assert_eq!(run.trace.get("seat.fx_n").is_some(), sits, "{housing}");
+    }
+}
+
+/// Source: Stribeck and Sjövall's distribution between rigid rings, THEORY §6, with the compliance that each contact of the
+/// model has at that load.
+#[test]
+fn analytic_rollers_between_rigid_rings() {
+    for bearing in ["NU 205", "NU 208", "6205", "NU 305"] {
+        let text = format!(
+            "(bearing: \"{bearing}\", film: None, defect: None, housing: rigid(), operation: (speed_rpm: 0, gravity_m_s2: 0),
+              mesh: (size_mm: 0.25, roller_facets: 96, grading: (coarse_mm: 2)), contact: (surface: arc, penalty_scale: 0.5))"
+        );
+        let scene = Scene::parse(&text, "here").expect("valid");
+        let assembly = Assembly::new(&scene).expect("a mesh");
+        let mut machine = assembly.machine(&scene, 1).expect("a machine");
+        let warning = preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");
+        assert_eq!(warning, None);
+        let _ = machine.system.contact_forces();
+        let force: Vec<f64> = machine.system.resultants().map(|r| r.force[0].hypot(r.force[1])).collect();
+        let found: Vec<f64> = (0..scene.bearing.rollers).map(|i| force[machine.pairs.outer(i)]).collect();
+        let theory = static_load::at_start(&scene).expect("an equilibrium").roller_n;
+        let largest = theory.iter().copied().fold(0.0, f64::max);
+        println!("{bearing}: {found:.0?} by theory {theory:.0?}");
+        for (found, theory) in found.iter().zip(&theory) {
+            assert!((found - theory).abs() < 0.02 * largest, "{bearing}: {found} instead of {theory}");
+        }
+        let _ = (Geometry::of(&scene), RigidRings::new(&Geometry::of(&scene)), angles_to_load_deg(&scene));
+    }
+}
+
+/// Source: rolling without slip between two rings that turn: the cage at (ω_i D_i + ω_o D_o)/(D_i + D_o), THEORY §5.1.
+#[test]
+fn analytic_rollers_between_turning_rings() {
+    for (inner, outer) in [(0.0, 1500.0), (1500.0, -800.0), (600.0, 600.0)] {
+        let scene = scene(&[
+            RIGID,
+            &format!("operation.speed_rpm={inner}"),
+            &format!("operation.outer_speed_rpm={outer}"),
+            "contact.friction=0.1",
+        ]);
+        let folder = Scratch::new("turning");
+        let info = run(&scene, &folder);
+        assert_eq!(info.status, Status::Complete, "{:?}", info.warnings);
+        assert!(info.energy.max_relative_error < 2e-3, "{inner} {outer}: {}", info.energy.max_relative_error);
+        let run = Run::read(folder.path()).expect("readable");
+        let k = Kinematics::of(&scene);
+        let angle = run.trace.get("cage.angle_rad").expect("a cage");
+        let time = run.trace.get("time_s").expect("a time");
+        let last = angle.len() - 1;
+        let rate = (angle[last] - angle[0]) / (time[last] - time[0]);
+        let fastest = k.shaft_rad_s.abs().max(k.outer_rad_s.abs());
+        assert!((rate - k.cage_rad_s).abs() < 5e-3 * fastest, "{inner} {outer}: {rate} and {}", k.cage_rad_s);
+        let spin = run.trace.get("roller.3.spin_rad").expect("a roller");
+        let rate = (spin[last] - spin[0]) / (time[last] - time[0]);
+        assert!((rate - k.roller_rad_s).abs() < 0.05 * fastest, "{inner} {outer}: {rate} and {}", k.roller_rad_s);
+    }
+}
+
+#[test]
+fn invariant_a_run_on_springs_goes_on_with_the_same_bytes() {
+    let whole = Scratch::new("springs-whole");
+    let long = scene(&[SPRINGS, "solver.duration_ms=1", "operation.rotating_load=(force_n: 500, angle_deg: 0)"]);
+    run(&long, &whole);
+    let broken = Scratch::new("springs-broken");
+    let mut short = long.clone();
+    short.solver.duration_ms = 0.5;
+    run(&short, &broken);
+    let dir = RunDir::open(broken.path()).expect("a run");
+    extend(&dir, 1.0, &host(1), &mut |_| ControlFlow::Continue(())).expect("goes on");
+    for file in ["trace.npy", "energy.npy"] {
+        let [a, b] = [&whole, &broken].map(|folder| std::fs::read(folder.path().join(file)).expect("there"));
+        assert_eq!(a, b, "{file}");
+    }
+}
