@@ -40,6 +40,7 @@ const CHECKS: &[Check] = &[
     ("links in the documents lead somewhere", documents::check_links),
     ("commands in the documents exist", documents::check_commands),
     ("scenes in the documents can be run", documents::check_scenes),
+    ("the guide lists the fields that scenes have", crate::fields::check),
     ("tests have a prefix, and a source where they need one", test_names::check),
     ("crates can be published", packages::check),
     ("VALIDATION says what the tests say", validation::check),

@@ -5,6 +5,7 @@
 
 mod ci;
 mod compare;
+mod fields;
 mod fuzz;
 mod study;
 mod workspace;
@@ -30,6 +31,8 @@ enum Command {
     Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
     Compare(compare::Options),
+    /// Writes the guide's page of all fields of a scene from their types
+    Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
     Fuzz(fuzz::Options),
     /// Checks format, lints, tests and documents
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
         Command::Program(command) => command.run(&Place::repository("cargo xtask", workspace::root())),
         Command::Study(options) => study::run(&options),
         Command::Compare(options) => compare::run(&options),
+        Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
         Command::Ci(options) => ci::run(&options),
     })

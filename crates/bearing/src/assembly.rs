@@ -317,6 +317,11 @@ impl Assembly {
         Ok(Some(damping))
     }
 
+    /// What elastic bodies are made of: the inner ring always is one.
+    pub(crate) fn steel(&self) -> &Elastic {
+        &self.model.materials[self.inner.body]
+    }
+
     /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if every body had
     /// them: an estimate before anything is laid out.
     pub fn element_time_step_s(&self, scene: &Scene) -> f64 {
@@ -334,7 +339,7 @@ impl Assembly {
         // What cannot be damped is refused when it is laid out.
         let damping = self.structural_damping(scene).ok().flatten();
         let stiffer = damping.map_or(1.0, |damping| damping.stiffening(f64::INFINITY));
-        let undamped = shortest / (self.model.materials[0].dilatational_speed() * stiffer.sqrt());
+        let undamped = shortest / (self.steel().dilatational_speed() * stiffer.sqrt());
         damped_time_step(undamped, Geometry::of(scene).stiffness_damping)
     }
 

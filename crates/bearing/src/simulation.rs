@@ -121,7 +121,7 @@ pub fn simulate(
     };
     let mut info = setup.info(scene, host);
     info.warnings.extend(preloaded);
-    info.warnings.extend(Guards::before(scene, &assembly.model.materials[0], &info));
+    info.warnings.extend(Guards::before(scene, assembly.steel(), &info));
     dir.start(scene, &info)?;
     write_mesh(&assembly, &machine, dir)?;
     let full = Full::start(scene, &assembly, machine, dir);

@@ -21,6 +21,8 @@ pub struct Geometry {
     pub outer_race_radius: f64,
     /// Radial thickness of the outer ring [m].
     pub outer_ring_thickness: f64,
+    /// Whether the outer ring does not deform.
+    pub outer_ring_rigid: bool,
     /// Radius of the inner raceway [m].
     pub inner_race_radius: f64,
     /// Radial thickness of the inner ring [m].
@@ -158,6 +160,7 @@ impl Geometry {
         Self {
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
             outer_ring_thickness: 1e-3 * b.outer_ring_thickness_mm,
+            outer_ring_rigid: scene.housing.is_rigid(),
             inner_race_radius: 0.5e-3 * b.inner_race_diameter_mm - 0.5e-6 * b.clearance_change_um,
             inner_ring_thickness: 1e-3 * b.inner_ring_thickness_mm,
             rollers: b.rollers,

@@ -13,8 +13,8 @@ pub(crate) struct LineContacts {
     poisson: f64,
     /// Radius of the roller [m].
     roller: f64,
-    /// Outer and inner contact: effective radius and ring thickness [m].
-    sides: [(f64, f64); 2],
+    /// Outer and inner contact: effective radius and ring thickness [m]; no thickness of a ring that does not deform.
+    sides: [(f64, Option<f64>); 2],
 }
 
 impl LineContacts {
@@ -27,8 +27,8 @@ impl LineContacts {
             poisson: nu,
             roller: g.roller_radius,
             sides: [
-                (g.outer_contact_radius(), g.outer_ring_thickness),
-                (g.inner_contact_radius(), g.inner_ring_thickness),
+                (g.outer_contact_radius(), Some(g.outer_ring_thickness).filter(|_| !g.outer_ring_rigid)),
+                (g.inner_contact_radius(), Some(g.inner_ring_thickness)),
             ],
         }
     }
@@ -42,12 +42,16 @@ impl LineContacts {
     pub(crate) fn approach(&self, w: f64) -> (f64, f64) {
         let mut sum = (0.0, 0.0);
         for (radius, depth) in self.sides {
-            let half_width = (4.0 * w * radius / (std::f64::consts::PI * self.modulus)).sqrt();
+            // Against a rigid ring the contact is half as soft.
+            let modulus = if depth.is_some() { self.modulus } else { 2.0 * self.modulus };
+            let half_width = (4.0 * w * radius / (std::f64::consts::PI * modulus)).sqrt();
             let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
-            let ring = 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
+            let of_ring = |depth: f64| 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
+            let ring = depth.map_or(0.0, of_ring);
             sum.0 += w * self.softness * (roller + ring);
             // b grows with the root of w, so each logarithm loses 1/(2w).
-            sum.1 += self.softness * (roller + ring - 2.0);
+            let logarithms = if depth.is_some() { 2.0 } else { 1.0 };
+            sum.1 += self.softness * (roller + ring - logarithms);
         }
         sum
     }

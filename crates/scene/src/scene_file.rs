@@ -17,6 +17,7 @@ mod named;
 mod origin;
 mod outline;
 mod overrides;
+mod reference;
 mod problem;
 mod schema;
 mod suggest;
@@ -33,6 +34,7 @@ use origin::Origin;
 use outline::Outline;
 use problem::place_in_file;
 pub use problem::{Place, Problem, SceneError};
+pub use reference::{FieldReference, Field};
 
 impl Scene {
     /// Reads and checks the scene file at `path`.

@@ -154,7 +154,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             shop.say(&format!("warning: {why}"));
         }
     });
-    conclude(&folder, &campaign, &interrupt)
+    conclude(&folder, &campaign, &interrupt, mine)
 }
 
 /// Makes the folder, or finds the same campaign in it.
@@ -176,18 +176,30 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
     Ok(())
 }
 
-/// Makes the tables when every run has come to an end, and says how matters stand.
-fn conclude(folder: &Folder, campaign: &Campaign, interrupt: &Interrupt) -> Result<ExitCode> {
+/// Makes the tables when every run has come to an end, and says how matters stand. A part of a campaign has done what it was
+/// asked for when the runs that are its own, `mine`, have.
+fn conclude(
+    folder: &Folder,
+    campaign: &Campaign,
+    interrupt: &Interrupt,
+    mine: impl Fn(&&Variant) -> bool,
+) -> Result<ExitCode> {
     let mut stages = Vec::with_capacity(campaign.runs.len());
+    let (mut left, mut left_here) = (0, 0);
     for variant in &campaign.runs {
-        stages.push(stage(folder, variant)?);
+        let stage = stage(folder, variant)?;
+        let due = matches!(stage, Stage::Due(_));
+        left += usize::from(due);
+        left_here += usize::from(due && mine(&variant));
+        stages.push(stage);
     }
-    let left = stages.iter().filter(|stage| matches!(stage, Stage::Due(_))).count();
     if left > 0 {
-        eprintln!(
-            "{left} of {} runs are not at their end; the same command goes on. Tables are made when all are",
-            campaign.runs.len()
-        );
+        let all = campaign.runs.len();
+        if left_here == 0 {
+            eprintln!("this part is done; {left} of {all} runs of others are not at their end. Whichever part ends last makes the tables");
+            return Ok(ExitCode::SUCCESS);
+        }
+        eprintln!("{left} of {all} runs are not at their end; the same command goes on. Tables are made when all are");
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let rows = tables::rows(folder, campaign, &stages)?;

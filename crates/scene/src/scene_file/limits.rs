@@ -64,14 +64,18 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
 
 /// What the number at `path` may be, `3 to 400`; `None` for a field that is no number.
 pub(crate) fn allowed(path: &str) -> Option<String> {
-    let find = |scene: &Scene| numbers(scene).iter().find(|number| number.path == path).map(Number::allowed);
     let mut scene = with_everything();
-    find(&scene).or_else(|| {
+    allowed_in(&scene, path).or_else(|| {
         HousingScene::of_every_form().into_iter().find_map(|housing| {
             scene.housing = housing;
-            find(&scene)
+            allowed_in(&scene, path)
         })
     })
+}
+
+/// The same in a scene that has the field.
+pub(crate) fn allowed_in(scene: &Scene, path: &str) -> Option<String> {
+    numbers(scene).iter().find(|number| number.path == path).map(Number::allowed)
 }
 
 /// A scene in which no optional number is absent.

@@ -181,8 +181,28 @@ fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
         }
         // The other model than the one that has such fields is a word, not a group.
         Some(("model", name)) => write(text, outline, "model", &format!("reduced({name}: {value})")),
+        // A housing of another form than the one that has such fields.
+        Some((HOUSING, name)) => {
+            write(text, outline, HOUSING, &format!("{}({name}: {value})", housing_with(name)))
+        }
         Some((section, name)) => write(text, outline, section, &format!("({name}: {value})")),
-        None => text.to_owned(),
+        // A field that the scene lacks beside others.
+        None => {
+            let inside = text.find('(').map_or(0, |at| at + 1);
+            format!("{}{path}: {value}, {}", &text[..inside], &text[inside..])
+        }
+    }
+}
+
+const HOUSING: &str = "housing";
+
+/// The form of housing that has a field of this name.
+fn housing_with(name: &str) -> &'static str {
+    match name {
+        "width_mm" | "base_mm" | "top_mm" => "pedestal",
+        "stiffness_n_um" | "damping_n_s_m" => "springs",
+        "mass_kg" => "rigid",
+        _ => "mesh",
     }
 }
 

@@ -26,8 +26,9 @@ pub(crate) struct Schema {
     scenes: Vec<Complete>,
 }
 
-/// A complete scene as text.
+/// A complete scene, and the same as text.
 struct Complete {
+    scene: Scene,
     text: String,
     outline: Outline,
 }
@@ -36,7 +37,7 @@ impl Complete {
     fn of(scene: &Scene) -> Self {
         let text = scene.to_ron();
         let outline = Outline::of(&text);
-        Self { text, outline }
+        Self { scene: scene.clone(), text, outline }
     }
 }
 
@@ -99,6 +100,20 @@ impl Schema {
         Some(&text[value])
     }
 
+    /// The field `name` of the group behind `word` at `path`: the scene that has such a group, the field's path there and its
+    /// value.
+    pub(crate) fn behind(&self, path: &str, word: &str, name: &str) -> Option<(&Scene, String, &str)> {
+        let groups: Vec<String> =
+            std::iter::once(path.to_owned()).chain(in_other_profile(path)).chain(forms_of(path)).collect();
+        self.scenes.iter().find_map(|complete| {
+            let value = |path: &str| Some(&complete.text[complete.outline.get(path)?.value.clone()]);
+            let is_word = |group: &&String| value(group).is_some_and(|v| v.split('(').next() == Some(word));
+            let field = format!("{}.{name}", groups.iter().find(is_word)?);
+            let default = value(&field)?;
+            Some((&complete.scene, field, default))
+        })
+    }
+
     /// The default of `path` where it is one word, text or number of its own.
     pub(crate) fn plain_default(&self, path: &str) -> Option<&str> {
         self.default_of(path).filter(|default| !default.contains(['(', '[']) && !path.contains('['))
@@ -159,7 +174,10 @@ impl Schema {
 
 /// The same field of the other profile.
 fn in_other_profile(path: &str) -> Option<String> {
-    let other = |from: &str, to: &str| Some(format!("{to}.{}", path.strip_prefix(from)?.strip_prefix('.')?));
+    let other = |from: &str, to: &str| {
+        let rest = path.strip_prefix(from)?;
+        (rest.is_empty() || rest.starts_with('.')).then(|| format!("{to}{rest}"))
+    };
     other(SPEED_PROFILE, LOAD_PROFILE).or_else(|| other(LOAD_PROFILE, SPEED_PROFILE))
 }
 

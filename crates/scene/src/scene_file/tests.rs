@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use stribeck_testing::Scratch;
 
 use super::{Place, Problem, SceneError};
-use crate::housing::HousingScene;
+use crate::housing::{HousingScene, RigidHousingScene};
 use crate::scene::{
     ContactMethod, DampingFrame, HarmonicScene, ProfileScene, RampScene, RollerCopies, Scene, Start,
 };
@@ -378,6 +378,8 @@ fn example_housings_are_written_in_files_and_behind_set() {
     let turning = set(&["housing=rigid(mass_kg: 3)", "operation.outer_speed_rpm=-200", "operation.load_angle_deg=10"]);
     assert_eq!(parse(&turning.to_ron()).expect("valid"), turning);
     assert_eq!(turning.load_zone_deg(), 190.0);
+    assert!(turning.housing.is_rigid() && turning.operation.outer_speed_rpm == -200.0);
+    assert_eq!(set(&["housing.mass_kg=3"]).housing, HousingScene::Rigid(RigidHousingScene { mass_kg: 3.0 }));
     let springs = set(&["housing=springs()", "housing.stiffness_n_um=50"]);
     assert!(matches!(springs.housing, HousingScene::Springs(ref s) if s.stiffness_n_um == 50.0));
     // What is not said is not written: hashes of older scenes stay.
