@@ -130,7 +130,7 @@ pub use peak::{Peak, Sinusoid};
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};
-pub use spacing::{Spacing, event_spacing};
+pub use spacing::{EventSpacing, Spacing, event_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
