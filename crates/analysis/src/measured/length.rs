@@ -43,7 +43,9 @@ pub(super) fn estimate(
         Ok(EventSpacing::Alone { clear_from_s }) => {
             let high = RANGE.1 * speed * clear_from_s;
             let why = format!(
-                "no second event follows each knock: the spall is shorter than {high:.2} mm, and its length is the middle of what that leaves"
+                "no second event follows each knock: if entry and exit both knock, the spall is shorter than {high:.2} mm; its length is \
+                 given as the middle of what that leaves. One that is shallow, or crossed under so heavy a load that no element comes \
+                 free, knocks once whatever its length"
             );
             (Some(Interval { value: 0.5 * high, low: 0.0, high }), Some(why))
         }

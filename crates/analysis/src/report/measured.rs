@@ -76,7 +76,7 @@ fn spall_in_words(spall: &Interval) -> String {
             spall.value, spall.low, spall.high
         )
     } else {
-        format!("Length of the spall: less than {:.2} mm.", spall.high)
+        format!("Length of the spall: less than {:.2} mm, if entry and exit both knock.", spall.high)
     }
 }
 
