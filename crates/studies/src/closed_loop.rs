@@ -284,7 +284,7 @@ fn lengths(sheet: &mut Sheet, records: &[Measured]) {
         verdict(covered >= COVERED),
     ));
     sheet.say(
-        "An interval that begins at 0 is a bound: no second event follows the knock, and a spall longer than its end would show one. The estimate is then its middle.",
+        "An interval that begins at 0 is a bound: no second event follows the knock, and a spall longer than its end whose entry and exit both knock would show one. The estimate is then its middle.",
     );
 }
 
