@@ -54,6 +54,10 @@ const SAME: f64 = 0.1;
 const AGREED: f64 = 0.05;
 /// The weakest second event that is missed, over the energy of the first.
 const WEAKEST: f64 = 0.2;
+/// Samples beyond the smoothing at which single events must still be correlated with themselves, and how much.
+const BEYOND: usize = 3;
+/// The least such correlation: events stand above the noise.
+const RINGS: f64 = 0.1;
 /// Ringing that lasts longer than this part of the longest distance leaves too little to look at.
 const CLEAR: f64 = 0.5;
 
@@ -83,8 +87,10 @@ pub fn event_spacing(
             EventSpacing::Pairs(Spacing { lag_s: wide.0 / sample_rate_hz, correlation: wide.1 })
         }
         _ if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
-            let clear =
-                bands.iter().map(|band| clear_from(band, &lags)).try_fold(0, |most, n| Some(n?.max(most)));
+            let clear = bands
+                .iter()
+                .map(|band| clear_from(band, &lags, sample_rate_hz))
+                .try_fold(0, |most, n| Some(n?.max(most)));
             clear.map_or(EventSpacing::Unknown, |n| EventSpacing::Alone {
                 clear_from_s: n as f64 / sample_rate_hz,
             })
@@ -95,13 +101,20 @@ pub fn event_spacing(
 
 /// The lag from which on a second event would have shown, where there is none; `None` where one might have been missed. Two
 /// events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
-fn clear_from(values: &[f64], lags: &std::ops::Range<usize>) -> Option<usize> {
-    if values[0] * WEAKEST / (1.0 + WEAKEST * WEAKEST) < LEAST {
+fn clear_from(values: &[f64], lags: &std::ops::Range<usize>, sample_rate_hz: f64) -> Option<usize> {
+    // Noise is correlated with itself within the smoothing, and only there.
+    let beyond = values.get(smoothing(sample_rate_hz) + BEYOND)?;
+    if values[0] * WEAKEST / (1.0 + WEAKEST * WEAKEST) < LEAST || *beyond < RINGS {
         return None;
     }
     let last = (0..lags.end).rev().find(|n| values[*n] >= LEAST)?;
     let clear = (last + 1).max(lags.start);
     ((clear as f64) < CLEAR * lags.end as f64).then_some(clear)
+}
+
+/// Half of the smoothing [samples].
+fn smoothing(sample_rate_hz: f64) -> usize {
+    ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1)
 }
 
 /// Correlation of the squared envelope of the pre-whitened signal above a frequency, smoothed, for lags up to `longest`.
@@ -129,7 +142,7 @@ fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -
     lines.iter_mut().for_each(|z| *z = Complex::new(z.norm_sqr(), 0.0));
     inverse.process(&mut lines);
     let power = lines[0].re;
-    let half = ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1);
+    let half = smoothing(sample_rate_hz);
     let weight =
         |k: usize| 0.5 + 0.5 * (std::f64::consts::PI * (k as f64 - half as f64) / (half + 1) as f64).cos();
     let sum: f64 = (0..=2 * half).map(weight).sum();
@@ -169,8 +182,8 @@ mod tests {
         }
     }
 
-    /// Pairs of bursts `apart_s` from one another, 60 times a second and never quite on time, in noise.
-    fn pairs(apart_s: f64) -> Vec<f64> {
+    /// Pairs of bursts `apart_s` from one another that die away with `decay_s`, 60 times a second and never quite on time, in noise.
+    fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
         let mut uniform = uniform(11);
         let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();
         for k in 1..170 {
@@ -179,7 +192,7 @@ mod tests {
                 let first = (start * RATE_HZ).ceil() as usize;
                 for n in first..(first + 80).min(signal.len()) {
                     let since = n as f64 / RATE_HZ - start;
-                    signal[n] += strength * (-since / 0.2e-3).exp() * (TAU * hz * since).sin();
+                    signal[n] += strength * (-since / decay_s).exp() * (TAU * hz * since).sin();
                 }
             }
         }
@@ -189,7 +202,7 @@ mod tests {
     #[test]
     fn example_the_distance_of_pairs_is_found() {
         for apart_s in [1.5e-3, 3.1e-3] {
-            let found = event_spacing(&pairs(apart_s), RATE_HZ, 0.5e-3, 7e-3).unwrap();
+            let found = event_spacing(&pairs(apart_s, 0.2e-3), RATE_HZ, 0.5e-3, 7e-3).unwrap();
             let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
             // Bursts rise within a quarter of a period, and not alike: a few samples.
             assert!((found.lag_s - apart_s).abs() < 0.1e-3, "{found:?}");
@@ -198,21 +211,21 @@ mod tests {
 
     #[test]
     fn example_single_events_say_what_would_have_shown() {
-        let found = event_spacing(&pairs(0.0), RATE_HZ, 0.5e-3, 7e-3).unwrap();
-        // Bursts die away with 0.2 ms.
+        let found = event_spacing(&pairs(0.0, 0.6e-3), RATE_HZ, 0.5e-3, 7e-3).unwrap();
+        // Bursts die away with 0.6 ms, their energy with 0.3 ms.
         assert!(
             matches!(found, EventSpacing::Alone { clear_from_s } if (0.5e-3..1.5e-3).contains(&clear_from_s)),
             "{found:?}"
         );
         // Ringing that lasts beyond half of what is looked at hides a second event.
-        let found = event_spacing(&pairs(0.0), RATE_HZ, 0.5e-3, 0.9e-3).unwrap();
+        let found = event_spacing(&pairs(0.0, 0.6e-3), RATE_HZ, 0.5e-3, 0.9e-3).unwrap();
         assert_eq!(found, EventSpacing::Unknown);
     }
 
     #[test]
     fn example_noise_cannot_tell() {
         let mut uniform = uniform(7);
-        let quiet: Vec<f64> = pairs(3e-3).iter().map(|x| 0.02 * x + uniform()).collect();
+        let quiet: Vec<f64> = pairs(3e-3, 0.2e-3).iter().map(|x| 0.02 * x + uniform()).collect();
         assert_eq!(event_spacing(&quiet, RATE_HZ, 0.5e-3, 7e-3).unwrap(), EventSpacing::Unknown);
     }
 
