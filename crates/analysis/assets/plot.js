@@ -115,6 +115,7 @@
         });
         ctx.globalAlpha = 1;
         ctx.setLineDash([5 * ratio, 4 * ratio]);
+        const named = [];
         for (const level of spec.levels) {
           if (level.y < u.scales.y.min || level.y > u.scales.y.max) continue;
           const up = u.valToPos(level.y, "y", true), right = bbox.left + bbox.width;
@@ -125,13 +126,18 @@
           ctx.stroke();
           if (!level.label) continue;
           const wide = widthOf(level.label) * ratio;
+          // Names of levels that are close to each other stand side by side.
+          let end = right;
+          const covers = (other) => Math.abs(other.up - up) < 15 * ratio && end - wide < other.end && other.start < end;
+          for (let other; (other = named.find(covers)); ) end = other.start;
+          named.push({ up, start: end - wide, end });
           ctx.globalAlpha = 0.8;
           ctx.fillStyle = theme("--paper");
-          ctx.fillRect(right - wide, up - 15 * ratio, wide, 13 * ratio);
+          ctx.fillRect(end - wide, up - 15 * ratio, wide, 13 * ratio);
           ctx.globalAlpha = 1;
           ctx.fillStyle = theme(level.colour);
           ctx.textAlign = "right";
-          ctx.fillText(level.label, right - 4 * ratio, up - 4 * ratio);
+          ctx.fillText(level.label, end - 4 * ratio, up - 4 * ratio);
           ctx.textAlign = "center";
         }
         ctx.setLineDash([]);

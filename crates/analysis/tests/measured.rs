@@ -200,9 +200,10 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
     // HIT-SM (2020), a self-built rig of Harbin Institute of Technology: bearing 6205, defects over 2, 5 and 8° of arc.
     let Some(folder) = measured("hit-sm") else { return };
     let mut hits = [0, 0];
-    let (mut errors, mut covered) = (Vec::new(), 0);
+    let (mut errors, mut covered, mut unordered) = (Vec::new(), 0, Vec::new());
     for speed in [600.0, 900.0, 1200.0] {
         for (at, (fault, name)) in [("OR", "BPFO"), ("IR", "BPFI")].into_iter().enumerate() {
+            let mut last = 0.0;
             for size in [2, 5, 8] {
                 let found = of_file(&folder.join(format!("{fault}{size}_{speed}.mat")), "", 51_200.0, speed);
                 let family = found.families.iter().find(|f| f.name == name).unwrap();
@@ -212,6 +213,10 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
                 if let Some(length) = found.spall_mm {
                     errors.push((length.value / truth - 1.0).abs());
                     covered += u32::from(length.low <= truth && truth <= length.high);
+                    if length.value <= last {
+                        unordered.push(format!("{fault}{size}_{speed}"));
+                    }
+                    last = length.value;
                 }
                 // Whatever is claimed is what is there.
                 assert!(claimed(&found).iter().all(|c| *c == name), "{found:#?}");
@@ -233,11 +238,9 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
         errors.len(),
         100.0 * median
     );
-    // The spalls of 2° are not resolved; all others are, and no interval misses more than one in ten.
-    assert!(
-        errors.len() >= 10 && median <= 0.2 && 10 * covered as usize >= 9 * errors.len(),
-        "{errors:?} {covered}"
-    );
+    // One record of eighteen claims no defect, and so has no length.
+    assert!(errors.len() >= 17 && median <= 0.2 && covered >= 16, "{errors:?} {covered}");
+    assert!(unordered.is_empty(), "{unordered:?}");
     assert!(hits[0] >= 8 && hits[1] >= 7, "{hits:?}");
 }
 

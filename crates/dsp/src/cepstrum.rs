@@ -20,7 +20,7 @@ pub fn cepstral_prewhitening(signal: &[f64]) -> Result<Vec<f64>> {
     let mut lines = forward.make_output_vec();
     forward.process(&mut signal.to_vec(), &mut lines).expect("both buffers have the plan's lengths");
     for line in &mut lines {
-        let magnitude = line.norm();
+        let magnitude = line.norm_sqr().sqrt();
         *line = if magnitude > 0.0 { *line / magnitude } else { Complex::default() };
     }
     let mut whitened = inverse.make_output_vec();

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
@@ -14,12 +15,15 @@ use crate::{Detrend, Error, Resolution, Result, Scaling, Spectrum, Welch, WelchO
 /// The record is taken as periodic, so the ends are not to be trusted. Its mean stays in the envelope: remove
 /// it, or choose a band.
 pub struct Envelope {
-    forward: Arc<dyn Fft<f64>>,
+    forward: Arc<dyn RealToComplex<f64>>,
     inverse: Arc<dyn Fft<f64>>,
-    /// Factor of each bin: 0 for negative frequencies and outside the band, 2/N for positive ones.
+    /// Factor of each bin that is not negative: 2/N, half of it at the ends, 0 outside the band.
     weights: Vec<f64>,
+    /// The record, which its transform destroys.
+    record: Vec<f64>,
     data: Vec<Complex<f64>>,
-    scratch: Vec<Complex<f64>>,
+    /// Of the forward and of the inverse transform.
+    scratch: [Vec<Complex<f64>>; 2],
 }
 
 impl Envelope {
@@ -35,18 +39,18 @@ impl Envelope {
         let weight = |bin: usize| match bin {
             0 => scale,
             _ if 2 * bin == record => scale,
-            _ if 2 * bin < record => 2.0 * scale,
-            _ => 0.0,
+            _ => 2.0 * scale,
         };
-        let mut planner = FftPlanner::new();
-        let (forward, inverse) = (planner.plan_fft_forward(record), planner.plan_fft_inverse(record));
-        let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
+        let forward = RealFftPlanner::new().plan_fft_forward(record);
+        let inverse = FftPlanner::new().plan_fft_inverse(record);
+        let scratch = [forward.get_scratch_len(), inverse.get_inplace_scratch_len()];
         Ok(Self {
             forward,
             inverse,
-            weights: (0..record).map(weight).collect(),
+            weights: (0..=record / 2).map(weight).collect(),
+            record: vec![0.0; record],
             data: vec![Complex::default(); record],
-            scratch: vec![Complex::default(); scratch],
+            scratch: scratch.map(|len| vec![Complex::default(); len]),
         })
     }
 
@@ -86,14 +90,19 @@ impl Envelope {
     /// [`Error::WrongLength`] for a slice of another length than planned, [`Error::NotFinite`] for a bad
     /// sample.
     pub fn process(&mut self, signal: &[f64], out: &mut [f64]) -> Result<()> {
-        check_len("signal", signal.len(), self.weights.len())?;
-        check_len("out", out.len(), self.weights.len())?;
+        check_len("signal", signal.len(), self.record.len())?;
+        check_len("out", out.len(), self.record.len())?;
         check_signal(signal, 1, "an envelope")?;
-        self.data.iter_mut().zip(signal).for_each(|(z, &x)| *z = Complex::new(x, 0.0));
-        self.forward.process_with_scratch(&mut self.data, &mut self.scratch);
-        self.data.iter_mut().zip(&self.weights).for_each(|(z, &w)| *z *= w);
-        self.inverse.process_with_scratch(&mut self.data, &mut self.scratch);
-        out.iter_mut().zip(&self.data).for_each(|(a, z)| *a = z.norm());
+        self.record.copy_from_slice(signal);
+        let (kept, negative) = self.data.split_at_mut(self.weights.len());
+        self.forward
+            .process_with_scratch(&mut self.record, kept, &mut self.scratch[0])
+            .expect("all buffers have the plan's lengths");
+        kept.iter_mut().zip(&self.weights).for_each(|(z, &w)| *z *= w);
+        negative.fill(Complex::default());
+        self.inverse.process_with_scratch(&mut self.data, &mut self.scratch[1]);
+        // Not the norm, which guards against magnitudes beyond 10¹⁵⁴ at three times the price.
+        out.iter_mut().zip(&self.data).for_each(|(a, z)| *a = z.norm_sqr().sqrt());
         Ok(())
     }
 }
@@ -229,10 +238,12 @@ mod tests {
         let mut plan = EnvelopeSpectrum::new(1000.0, 997, Some((100.0, 400.0))).unwrap();
         let mut out = plan.blank();
         let addresses = |plan: &EnvelopeSpectrum, out: &Spectrum| {
-            let Envelope { data, scratch, .. } = &plan.envelope;
+            let Envelope { record, data, scratch: [forward, inverse], .. } = &plan.envelope;
             [
+                (record.as_ptr() as usize, record.capacity()),
                 (data.as_ptr() as usize, data.capacity()),
-                (scratch.as_ptr() as usize, scratch.capacity()),
+                (forward.as_ptr() as usize, forward.capacity()),
+                (inverse.as_ptr() as usize, inverse.capacity()),
                 (plan.squared.as_ptr() as usize, plan.squared.capacity()),
                 (out.values.as_ptr() as usize, out.values.capacity()),
             ]

@@ -41,6 +41,7 @@
 //! | how far apart two events are that follow each other | [`event_spacing`] |
 //! | what is locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | a smooth density of a short record | [`multitaper`] |
+//! | the record at another rate | [`resample_poly`] |
 //! | what a sensor and its recorder would have made of a computed signal | [`Sensor`] |
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
 //!
@@ -103,6 +104,7 @@ mod deconvolution;
 mod infogram;
 mod kurtogram;
 mod multitaper;
+mod resample;
 mod ridge;
 mod separation;
 mod spacing;
@@ -127,10 +129,11 @@ pub use multitaper::{dpss, multitaper};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
 pub use peak::{Peak, Sinusoid};
+pub use resample::resample_poly;
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};
-pub use spacing::{Spacing, event_spacing};
+pub use spacing::{EventSpacing, Spacing, event_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;

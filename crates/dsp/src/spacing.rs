@@ -1,7 +1,8 @@
 //! Two events that follow each other at a fixed distance, as when something enters and leaves a gap: how far apart?
 //!
 //! Pre-whitening makes both broad-banded and equally sharp; the squared envelope of what is left is correlated with itself.
-//! A distance is taken for one only if two bands agree on it: ringing has another lag in every band.
+//! A distance is taken for one only if two bands agree on it: ringing has another lag in every band. Where there is none, the
+//! correlation says from which distance on a second event would have shown.
 //!
 //! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in the cepstrum of
 //! the enhanced signal; the comparison of bands is ours.
@@ -21,20 +22,44 @@ pub struct Spacing {
     pub correlation: f64,
 }
 
+/// What a record says of the distance of two events.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EventSpacing {
+    /// Events come in pairs.
+    Pairs(Spacing),
+    /// Events come alone: at this distance [s] and above, a second one would show if it had a fifth of the first one's energy.
+    Alone {
+        /// Where ringing has died away.
+        clear_from_s: f64,
+    },
+    /// The record cannot tell: it is too noisy, it rings too long, or its bands contradict each other.
+    Unknown,
+}
+
 /// Lower ends of the two bands over half the sample rate; both reach to its end.
 const BANDS: [f64; 2] = [0.02, 0.25];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
 /// The envelope is cut off above this quantile, so that a few loud events do not decide.
 const LOUDEST: f64 = 0.999;
-/// Least correlation.
+/// Least correlation in one of the bands.
 const LEAST: f64 = 0.05;
+/// Least correlation in the other, at the same lag: it only confirms.
+const CONFIRMS: f64 = 0.025;
 /// Another peak must be lower than this part of the highest.
 const SECOND: f64 = 0.5;
 /// Lags closer than this part of one another are one peak.
 const SAME: f64 = 0.1;
 /// Bands agree when their lags differ by less than this part.
 const AGREED: f64 = 0.05;
+/// The weakest second event that is missed, over the energy of the first.
+const WEAKEST: f64 = 0.2;
+/// Samples beyond the smoothing at which single events must still be correlated with themselves, and how much.
+const BEYOND: usize = 3;
+/// The least such correlation: events stand above the noise.
+const RINGS: f64 = 0.1;
+/// Ringing that lasts longer than this part of the longest distance leaves too little to look at.
+const CLEAR: f64 = 0.5;
 
 /// The distance between `shortest_s` and `longest_s` that pairs of events keep, if there is one.
 ///
@@ -46,7 +71,7 @@ pub fn event_spacing(
     sample_rate_hz: f64,
     shortest_s: f64,
     longest_s: f64,
-) -> Result<Option<Spacing>> {
+) -> Result<EventSpacing> {
     check_positive("sample_rate_hz", sample_rate_hz)?;
     check_positive("shortest_s", shortest_s)?;
     if longest_s.is_nan() || longest_s <= shortest_s {
@@ -55,11 +80,41 @@ pub fn event_spacing(
     }
     let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
-    let [wide, high] =
-        BANDS.map(|from| peak(&correlation(signal, from, sample_rate_hz, lags.end), lags.clone()));
-    let (Some(wide), Some(high)) = (wide, high) else { return Ok(None) };
-    let agree = (high.0 / wide.0 - 1.0).abs() < AGREED;
-    Ok(agree.then_some(Spacing { lag_s: wide.0 / sample_rate_hz, correlation: wide.1 }))
+    let bands = BANDS.map(|from| correlation(signal, from, sample_rate_hz, lags.end));
+    let found = bands.each_ref().map(|band| peak(band, lags.clone()));
+    Ok(match found {
+        [Some(wide), Some(high)] if wide.1.max(high.1) >= LEAST && (high.0 / wide.0 - 1.0).abs() < AGREED => {
+            EventSpacing::Pairs(Spacing { lag_s: wide.0 / sample_rate_hz, correlation: wide.1 })
+        }
+        _ if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
+            let clear = bands
+                .iter()
+                .map(|band| clear_from(band, &lags, sample_rate_hz))
+                .try_fold(0, |most, n| Some(n?.max(most)));
+            clear.map_or(EventSpacing::Unknown, |n| EventSpacing::Alone {
+                clear_from_s: n as f64 / sample_rate_hz,
+            })
+        }
+        _ => EventSpacing::Unknown,
+    })
+}
+
+/// The lag from which on a second event would have shown, where there is none; `None` where one might have been missed. Two
+/// events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
+fn clear_from(values: &[f64], lags: &std::ops::Range<usize>, sample_rate_hz: f64) -> Option<usize> {
+    // Noise is correlated with itself within the smoothing, and only there.
+    let beyond = values.get(smoothing(sample_rate_hz) + BEYOND)?;
+    if values[0] * WEAKEST / (1.0 + WEAKEST * WEAKEST) < LEAST || *beyond < RINGS {
+        return None;
+    }
+    let last = (0..lags.end).rev().find(|n| values[*n] >= LEAST)?;
+    let clear = (last + 1).max(lags.start);
+    ((clear as f64) < CLEAR * lags.end as f64).then_some(clear)
+}
+
+/// Half of the smoothing [samples].
+fn smoothing(sample_rate_hz: f64) -> usize {
+    ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1)
 }
 
 /// Correlation of the squared envelope of the pre-whitened signal above a frequency, smoothed, for lags up to `longest`.
@@ -87,7 +142,7 @@ fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -
     lines.iter_mut().for_each(|z| *z = Complex::new(z.norm_sqr(), 0.0));
     inverse.process(&mut lines);
     let power = lines[0].re;
-    let half = ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1);
+    let half = smoothing(sample_rate_hz);
     let weight =
         |k: usize| 0.5 + 0.5 * (std::f64::consts::PI * (k as f64 - half as f64) / (half + 1) as f64).cos();
     let sum: f64 = (0..=2 * half).map(weight).sum();
@@ -96,14 +151,14 @@ fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -
     (0..=longest).map(|lag| if power > 0.0 { smooth(lag) / (sum * power) } else { 0.0 }).collect()
 }
 
-/// The highest peak and its place, between samples, when no other comes near it.
+/// The place of the highest peak, between samples, and its height, when it is one and no other comes near it.
 fn peak(values: &[f64], lags: std::ops::Range<usize>) -> Option<(f64, f64)> {
     let rises = |n: usize| values[n] > values[n - 1] && values[n] >= values[n + 1];
     let peaks: Vec<usize> = (lags.start..lags.end.min(values.len() - 1)).filter(|n| rises(*n)).collect();
     let best = *peaks.iter().max_by(|a, b| values[**a].total_cmp(&values[**b]))?;
     let apart = |n: &&usize| (**n as f64 / best as f64 - 1.0).abs() > SAME;
     let second = peaks.iter().filter(apart).map(|n| values[*n]).fold(0.0, f64::max);
-    if values[best] < LEAST || second > SECOND * values[best] {
+    if values[best] < CONFIRMS || second > SECOND * values[best] {
         return None;
     }
     let (left, right) = (values[best - 1], values[best + 1]);
@@ -119,13 +174,17 @@ mod tests {
 
     const RATE_HZ: f64 = 40_000.0;
 
-    /// Pairs of bursts `apart_s` from one another, 60 times a second and never quite on time, in noise.
-    fn pairs(apart_s: f64) -> Vec<f64> {
-        let mut seed = 11_u64;
-        let mut uniform = || {
+    /// Even numbers between −1 and 1.
+    fn uniform(mut seed: u64) -> impl FnMut() -> f64 {
+        move || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        };
+        }
+    }
+
+    /// Pairs of bursts `apart_s` from one another that die away with `decay_s`, 60 times a second and never quite on time, in noise.
+    fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
+        let mut uniform = uniform(11);
         let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();
         for k in 1..170 {
             let at = (f64::from(k) + 0.02 * uniform()) / 60.0;
@@ -133,7 +192,7 @@ mod tests {
                 let first = (start * RATE_HZ).ceil() as usize;
                 for n in first..(first + 80).min(signal.len()) {
                     let since = n as f64 / RATE_HZ - start;
-                    signal[n] += strength * (-since / 0.2e-3).exp() * (TAU * hz * since).sin();
+                    signal[n] += strength * (-since / decay_s).exp() * (TAU * hz * since).sin();
                 }
             }
         }
@@ -143,15 +202,35 @@ mod tests {
     #[test]
     fn example_the_distance_of_pairs_is_found() {
         for apart_s in [1.5e-3, 3.1e-3] {
-            let found = event_spacing(&pairs(apart_s), RATE_HZ, 0.5e-3, 7e-3).unwrap().unwrap();
+            let found = event_spacing(&pairs(apart_s, 0.2e-3), RATE_HZ, 0.5e-3, 7e-3).unwrap();
+            let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
             // Bursts rise within a quarter of a period, and not alike: a few samples.
             assert!((found.lag_s - apart_s).abs() < 0.1e-3, "{found:?}");
         }
     }
 
     #[test]
-    fn example_single_events_and_noise_have_no_distance() {
-        assert_eq!(event_spacing(&pairs(0.0), RATE_HZ, 0.5e-3, 7e-3).unwrap(), None);
+    fn example_single_events_say_what_would_have_shown() {
+        let found = event_spacing(&pairs(0.0, 0.6e-3), RATE_HZ, 0.5e-3, 7e-3).unwrap();
+        // Bursts die away with 0.6 ms, their energy with 0.3 ms.
+        assert!(
+            matches!(found, EventSpacing::Alone { clear_from_s } if (0.5e-3..1.5e-3).contains(&clear_from_s)),
+            "{found:?}"
+        );
+        // Ringing that lasts beyond half of what is looked at hides a second event.
+        let found = event_spacing(&pairs(0.0, 0.6e-3), RATE_HZ, 0.5e-3, 0.9e-3).unwrap();
+        assert_eq!(found, EventSpacing::Unknown);
+    }
+
+    #[test]
+    fn example_noise_cannot_tell() {
+        let mut uniform = uniform(7);
+        let quiet: Vec<f64> = pairs(3e-3, 0.2e-3).iter().map(|x| 0.02 * x + uniform()).collect();
+        assert_eq!(event_spacing(&quiet, RATE_HZ, 0.5e-3, 7e-3).unwrap(), EventSpacing::Unknown);
+    }
+
+    #[test]
+    fn refuses_distances_that_are_not_ordered_and_short_records() {
         let ramp: Vec<f64> = (0..4000).map(|n| f64::from(n * n % 977)).collect();
         assert!(event_spacing(&ramp, RATE_HZ, 0.5e-3, 0.4e-3).is_err());
         assert!(event_spacing(&ramp[..100], RATE_HZ, 0.5e-3, 7e-3).is_err());

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use serde_json::Value;
 use stribeck_dsp::{
     Cyclic, Scaling, WelchOptions, cepstral_prewhitening, dpss, fast_kurtogram, infogram,
-    magnitude_spectrogram, momeda, multitaper, separate, spectral_correlation, spectrogram,
+    magnitude_spectrogram, momeda, multitaper, resample_poly, separate, spectral_correlation, spectrogram,
 };
 
 /// Both sides round in a different order; tapers and filters are made on either side.
@@ -130,6 +130,17 @@ fn peer_spectral_correlation_and_coherence() {
         let (re, im): (Vec<f64>, Vec<f64>) = ours.values.iter().map(|v| (v.re, v.im)).unzip();
         assert_equal(name, &re, &numbers(&theirs["re"]));
         assert_equal(name, &im, &numbers(&theirs["im"]));
+    }
+}
+
+#[test]
+fn peer_other_sample_rates() {
+    // scipy.signal.resample_poly.
+    let theirs = vectors();
+    for (up, down) in [(1, 2), (3, 2), (7, 9), (5, 1)] {
+        let case = format!("{up}/{down}");
+        let ours = resample_poly(&input(200), up, down).unwrap();
+        assert_near(&case, &ours, &numbers(&theirs["resampled"][&case]), 1e-12);
     }
 }
 

@@ -332,6 +332,12 @@ fn print(analysis: &Analysis) {
             f.reason
         );
     }
+    if let Some(spall) = findings.spall_mm {
+        println!(
+            "  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm",
+            spall.value, spall.low, spall.high
+        );
+    }
     for note in &findings.notes {
         println!("  note: {note}");
     }

@@ -12,6 +12,7 @@ pub mod integrators;
 pub mod reference;
 
 mod atlas;
+mod closed_loop;
 mod families;
 mod host;
 mod impulse;
@@ -57,6 +58,8 @@ pub enum Study {
     Families(families::Options),
     /// Many bearings, many defects: whether each comes out as what it is
     Atlas(atlas::Options),
+    /// Lengths of measured spalls, and whether simulated ones of these lengths knock alike
+    Loop(closed_loop::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -77,6 +80,7 @@ impl Study {
             Self::Noise(options) => noise::run(options, host),
             Self::Families(options) => families::run(options, host),
             Self::Atlas(options) => atlas::run(options, host),
+            Self::Loop(options) => closed_loop::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_dsp::event_spacing;
+use stribeck_dsp::{EventSpacing, event_spacing};
 use stribeck_scene::catalogue::CatalogueBearing;
 
 use super::{Family, Interval, Machine};
@@ -36,16 +36,22 @@ pub(super) fn estimate(
     }
     let found = event_spacing(samples, rate_hz, SHORTEST_S, LONGEST / passing_hz);
     Ok(match found {
-        Ok(Some(spacing)) => {
+        Ok(EventSpacing::Pairs(spacing)) => {
             let run = speed * spacing.lag_s;
             (Some(Interval { value: run, low: RANGE.0 * run, high: RANGE.1 * run }), None)
         }
-        Ok(None) => {
+        Ok(EventSpacing::Alone { clear_from_s }) => {
+            let high = RANGE.1 * speed * clear_from_s;
             let why = format!(
-                "no length of a spall: no second event follows each knock; it may be shorter than {:.2} mm, or the record too noisy",
-                speed * SHORTEST_S * RANGE.1
+                "no second event follows each knock: if entry and exit both knock, the spall is shorter than {high:.2} mm; its length is \
+                 given as the middle of what that leaves. One that is shallow, or crossed under so heavy a load that no element comes \
+                 free, knocks once whatever its length"
             );
-            (None, Some(why))
+            (Some(Interval { value: 0.5 * high, low: 0.0, high }), Some(why))
+        }
+        Ok(EventSpacing::Unknown) => {
+            let why = "no length of a spall: the record is too noisy, or rings too long, to tell a second event after each knock";
+            (None, Some(why.to_owned()))
         }
         Err(why) => (None, Some(format!("no length of a spall: {why}"))),
     })

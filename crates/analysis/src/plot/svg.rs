@@ -176,6 +176,7 @@ impl Figure {
         x: (f64, f64),
         y: (f64, f64),
     ) -> Result<(), Box<dyn std::error::Error>> {
+        let mut named: Vec<Named> = Vec::new();
         for level in self.levels.iter().filter(|l| (y.0..=y.1).contains(&l.y)) {
             let (left, up) = chart.backend_coord(&(x.0, level.y));
             let (right, _) = chart.backend_coord(&(x.1, level.y));
@@ -185,9 +186,18 @@ impl Figure {
             }
             if !level.label.is_empty() {
                 let width = (CHARACTER * level.label.chars().count() as f64) as i32;
-                let ground = [(right - px(4) - width, up - px(15)), (right - px(2), up - px(2))];
+                let name = Named { up, end: right, width: width + px(4) }.beside(&named);
+                let ground = [(name.end - name.width, up - px(15)), (name.end - px(2), up - px(2))];
                 root.draw(&Rectangle::new(ground, WHITE.mix(0.8).filled()))?;
-                text(root, &level.label, (right - px(4), up - px(15)), 12, HPos::Right, &level.colour.rgb())?;
+                text(
+                    root,
+                    &level.label,
+                    (name.end - px(4), up - px(15)),
+                    12,
+                    HPos::Right,
+                    &level.colour.rgb(),
+                )?;
+                named.push(name);
             }
         }
         Ok(())
@@ -212,6 +222,29 @@ impl Figure {
             left += width(name);
         }
         Ok(())
+    }
+}
+
+/// Where the name of a level stands: above `up`, to the left of `end`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Named {
+    up: i32,
+    end: i32,
+    width: i32,
+}
+
+impl Named {
+    /// Moved to the left until it covers none of the others.
+    fn beside(mut self, others: &[Self]) -> Self {
+        let covers = |one: &Self, other: &Self| {
+            (one.up - other.up).abs() < px(15)
+                && one.end - one.width < other.end
+                && other.end - other.width < one.end
+        };
+        while let Some(other) = others.iter().find(|other| covers(&self, other)) {
+            self.end = other.end - other.width;
+        }
+        self
     }
 }
 
@@ -323,6 +356,16 @@ fn text(
 mod tests {
     use super::*;
     use crate::plot::{Band, Mark, Series};
+
+    #[test]
+    fn example_names_of_levels_stand_side_by_side_where_they_are_close() {
+        let name = |up| Named { up, end: 500, width: 100 };
+        let first = name(200).beside(&[]);
+        let close = name(200 + px(15) - 1).beside(&[first]);
+        let third = name(200 + 1).beside(&[first, close]);
+        let far = name(200 + 2 * px(15)).beside(&[first, close, third]);
+        assert_eq!([first.end, close.end, third.end, far.end], [500, 400, 300, 500]);
+    }
 
     #[test]
     fn example_ticks_of_counted_things_are_whole() {

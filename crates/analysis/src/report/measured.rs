@@ -8,7 +8,7 @@ use stribeck_scene::run_dir::write_atomic;
 
 use super::{course, head, json, sentence};
 use crate::Error;
-use crate::measured::{Analysis, Enhanced, Family};
+use crate::measured::{Analysis, Enhanced, Family, Interval};
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
 
 /// Lowest cyclic frequency drawn [Hz].
@@ -47,6 +47,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                     "."
                 }
                 p { strong { (findings.verdict) } }
+                @if let Some(spall) = &findings.spall_mm { p { (spall_in_words(spall)) } }
                 h2 #families { "Defect families" }
                 @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
                 h2 #signal { "Signal" }
@@ -65,6 +66,18 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
             }
         }
     })
+}
+
+/// The length of a spall with its interval.
+fn spall_in_words(spall: &Interval) -> String {
+    if spall.low > 0.0 {
+        format!(
+            "Length of the spall: {:.2} mm, 90 % between {:.2} and {:.2} mm.",
+            spall.value, spall.low, spall.high
+        )
+    } else {
+        format!("Length of the spall: less than {:.2} mm, if entry and exit both knock.", spall.high)
+    }
 }
 
 fn families(families: &[Family]) -> Markup {
@@ -218,8 +231,11 @@ fn spectrum_of(band: &BandEnvelope, id: &str, title: &str, to_hz: f64) -> Figure
     let values = band.values.iter().take(lines).skip(1).map(|v| decibel(*v)).collect();
     Figure::new(id, title, Axis::si("Frequency", "Hz"), Axis::plain("Power over the mean power²", "dB"))
         .note(format!(
-            "Band {:.0} to {:.0} Hz, {} segments, resolution {:.3} Hz, Hann window.",
-            band.low_hz, band.high_hz, band.segments, band.grid_hz
+            "Band {:.0} to {:.0} Hz, {}, resolution {:.3} Hz, Hann window.",
+            band.low_hz,
+            band.high_hz,
+            if band.segments == 1 { "one segment".to_owned() } else { format!("{} segments", band.segments) },
+            band.grid_hz
         ))
         .with(Series::sampled("envelope", Colour::Blue, band.grid_hz, band.grid_hz, values))
 }
