@@ -55,7 +55,8 @@ fn page(root: &Path) -> Result<String> {
     let mut types = BTreeMap::new();
     for source in SOURCES {
         let path = root.join("crates/scene/src").join(source);
-        let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        let text =
+            std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
         let file = syn::parse_file(&text).with_context(|| format!("cannot parse {}", path.display()))?;
         for item in &file.items {
             types.extend(described(item));
@@ -76,7 +77,12 @@ fn described(item: &Item) -> Option<(String, Described)> {
             let Fields::Named(fields) = &of.fields else { return None };
             let part = |field: &syn::Field| {
                 let (of, is_list) = inner(&field.ty);
-                Part { name: field.ident.as_ref().map(ToString::to_string).unwrap_or_default(), doc: doc(&field.attrs), of, is_list }
+                Part {
+                    name: field.ident.as_ref().map(ToString::to_string).unwrap_or_default(),
+                    doc: doc(&field.attrs),
+                    of,
+                    is_list,
+                }
             };
             let parts = fields.named.iter().map(part).collect();
             Some((of.ident.to_string(), Described { doc: doc(&of.attrs), parts, is_words: false }))
@@ -109,11 +115,12 @@ fn inner(of: &Type) -> (Option<String>, bool) {
 
 /// The comment of an item as one line.
 fn doc(attributes: &[Attribute]) -> String {
-    let lines = attributes.iter().filter(|attribute| attribute.path().is_ident("doc")).filter_map(|attribute| {
-        let Meta::NameValue(meta) = &attribute.meta else { return None };
-        let Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) = &meta.value else { return None };
-        Some(text.value().trim().to_owned())
-    });
+    let lines =
+        attributes.iter().filter(|attribute| attribute.path().is_ident("doc")).filter_map(|attribute| {
+            let Meta::NameValue(meta) = &attribute.meta else { return None };
+            let Expr::Lit(ExprLit { lit: Lit::Str(text), .. }) = &meta.value else { return None };
+            Some(text.value().trim().to_owned())
+        });
     plain(&lines.collect::<Vec<_>>().join(" "))
 }
 
@@ -165,7 +172,13 @@ fn section(
         let field = fields.of(&at(part));
         let shown = field.default.filter(|default| !default.contains(['(', '[', '\n']));
         let default = shown.map(|default| format!("`{default}`")).unwrap_or_default();
-        writeln!(text, "| `{}` | {default} | {} | {} |", part.name, field.range.unwrap_or_default(), part.doc)?;
+        writeln!(
+            text,
+            "| `{}` | {default} | {} | {} |",
+            part.name,
+            field.range.unwrap_or_default(),
+            part.doc
+        )?;
     }
     for part in &of.parts {
         if let Some(inner) = &part.of {
@@ -191,12 +204,22 @@ fn words(
     }
     for word in &of.parts {
         let Some(inner) = word.of.as_ref().and_then(|name| types.get(name)) else { continue };
-        write!(text, "\n### `{path}: {}(…)`\n\n| field | default | range | |\n|---|---|---|---|\n", word.name)?;
+        write!(
+            text,
+            "\n### `{path}: {}(…)`\n\n| field | default | range | |\n|---|---|---|---|\n",
+            word.name
+        )?;
         for part in &inner.parts {
             let field = fields.inside(path, &word.name, &part.name);
             let shown = field.default.filter(|default| !default.contains(['(', '[', '\n']));
             let default = shown.map(|default| format!("`{default}`")).unwrap_or_default();
-            writeln!(text, "| `{}` | {default} | {} | {} |", part.name, field.range.unwrap_or_default(), part.doc)?;
+            writeln!(
+                text,
+                "| `{}` | {default} | {} | {} |",
+                part.name,
+                field.range.unwrap_or_default(),
+                part.doc
+            )?;
         }
     }
     Ok(())

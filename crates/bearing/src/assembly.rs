@@ -527,7 +527,12 @@ fn area_of(mesh: &Mesh, body: usize) -> f64 {
     let place = |n: &u32| [mesh.x[*n as usize], mesh.y[*n as usize]];
     let area = |corners: &[u32]| {
         let next = corners.iter().cycle().skip(1);
-        corners.iter().zip(next).map(|(a, b)| (place(a), place(b))).map(|([ax, ay], [bx, by])| 0.5 * (ax * by - bx * ay)).sum::<f64>()
+        corners
+            .iter()
+            .zip(next)
+            .map(|(a, b)| (place(a), place(b)))
+            .map(|([ax, ay], [bx, by])| 0.5 * (ax * by - bx * ay))
+            .sum::<f64>()
     };
     let body = &mesh.bodies[body];
     let quads: f64 = mesh.quads[body.quads.clone()].iter().map(|q| area(q)).sum();

@@ -58,9 +58,13 @@ pub(crate) fn housing(
             loaded: "base",
             density: 1.0,
         },
-        HousingScene::Mesh(file) => {
-            Housing { name: "housing", part: from_file(file)?, seat: Some("bore"), loaded: "loaded", density: 1.0 }
-        }
+        HousingScene::Mesh(file) => Housing {
+            name: "housing",
+            part: from_file(file)?,
+            seat: Some("bore"),
+            loaded: "loaded",
+            density: 1.0,
+        },
         HousingScene::Springs(springs) => frame(springs, g, back)?,
         HousingScene::Rigid(_) => return Ok(None),
     };
@@ -90,14 +94,8 @@ fn adapter_rows(g: &Geometry, size: f64) -> usize {
 }
 
 /// A pedestal whose bore is the polygon of the outer ring.
-fn pedestal_part(
-    pedestal: &PedestalScene,
-    g: &Geometry,
-    mesh: &Mesh,
-    back: &Surface,
-) -> Result<Part, Error> {
-    let bore: Vec<[f64; 2]> =
-        back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
+fn pedestal_part(pedestal: &PedestalScene, g: &Geometry, mesh: &Mesh, back: &Surface) -> Result<Part, Error> {
+    let bore: Vec<[f64; 2]> = back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
     let [width, base, top] = [pedestal.width_mm, pedestal.base_mm, pedestal.top_mm].map(|mm| 1e-3 * mm);
     let wall = (0.5 * width).min(base).min(top) - (g.outer_race_radius + g.outer_ring_thickness);
     let size = g.coarse_size.unwrap_or(g.element_size);
@@ -145,7 +143,9 @@ fn from_file(housing: &MeshHousingScene) -> Result<Part, Error> {
         };
         if surface == "bore" && !(longest.closed && pieces.len() == 1) {
             let places = pieces.len();
-            return Err(refuse(format!("the set `{name}` is no closed bore, but {places} pieces of boundary")));
+            return Err(refuse(format!(
+                "the set `{name}` is no closed bore, but {places} pieces of boundary"
+            )));
         }
         part.surfaces.push((surface.to_owned(), longest.clone()));
     }

@@ -81,7 +81,8 @@ impl BoredBlock<'_> {
         let half = 0.5 * self.width;
         let end = |[x, y]: &[f64; 2]| {
             let across = half / x.abs();
-            let along = if *y > 0.0 { self.top / y } else { -self.base / y };
+            let along =
+                if *y == 0.0 { f64::INFINITY } else { (if *y > 0.0 { self.top } else { -self.base }) / y };
             let far = across.min(along);
             // Exactly on the side that is hit.
             if across < along { [half.copysign(*x), far * y] } else { [far * x, along * y] }
@@ -89,7 +90,8 @@ impl BoredBlock<'_> {
         let mut outline: Vec<[f64; 2]> = self.bore.iter().map(end).collect();
         for corner in [[half, self.top], [-half, self.top], [-half, -self.base], [half, -self.base]] {
             let along = |[x, y]: &[f64; 2]| (x * corner[0] + y * corner[1]) / x.hypot(*y);
-            let nearest = (0..self.bore.len()).max_by(|&a, &b| along(&self.bore[a]).total_cmp(&along(&self.bore[b])));
+            let nearest =
+                (0..self.bore.len()).max_by(|&a, &b| along(&self.bore[a]).total_cmp(&along(&self.bore[b])));
             if let Some(nearest) = nearest {
                 outline[nearest] = corner;
             }
@@ -103,11 +105,12 @@ mod tests {
     use super::*;
 
     fn circle(n: usize, radius: f64) -> Vec<[f64; 2]> {
-        let at = |i: usize| (0.3 + std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+        // The first node lies on the x axis, as those of rings do.
+        let at = |i: usize| (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
         (0..n).map(at).map(|(s, c)| [radius * c, radius * s]).collect()
     }
 
-    /// Source: area of a rectangle less that of a regular polygon, n/2 r² sin(2π/n).
+    /// Source: Bronshtein and Semendyayev 2015, §3.1.4: a regular polygon has the area n/2 r² sin(2π/n).
     #[test]
     fn analytic_area_and_surfaces_of_a_bored_block() {
         let bore = circle(90, 0.1);

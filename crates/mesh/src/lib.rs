@@ -83,8 +83,8 @@
 //! | What is refused? | `error.rs` |
 
 mod mesh;
-mod part;
 mod outline;
+mod part;
 
 mod annulus;
 mod form;

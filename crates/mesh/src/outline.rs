@@ -17,7 +17,8 @@ impl Part {
             *facets.entry(facet).or_default() += 1;
         }
         let on_boundary = |[a, b]: &[u32; 2]| !facets.contains_key(&[*b, *a]);
-        let along = facets.keys().filter(|facet| on_boundary(facet) && facet.iter().all(|n| wanted.contains(n)));
+        let along =
+            facets.keys().filter(|facet| on_boundary(facet) && facet.iter().all(|n| wanted.contains(n)));
         let mut next: BTreeMap<u32, u32> = along.map(|[a, b]| (*a, *b)).collect();
         let mut pieces = Vec::new();
         while let Some(start) = first_of(&next) {
@@ -51,7 +52,8 @@ mod tests {
     #[test]
     fn example_the_boundary_of_a_ring_and_of_a_block() {
         let (facets, layers) = (24, 3);
-        let ring = Annulus { inner_radius: 1.0, outer_radius: 1.5, facets, layers, start_angle: 0.0, groove: None };
+        let ring =
+            Annulus { inner_radius: 1.0, outer_radius: 1.5, facets, layers, start_angle: 0.0, groove: None };
         let ring = ring.part().expect("a ring");
         let all: Vec<u32> = (0..ring.x.len() as u32).collect();
         let both = ring.boundary_along(&all);

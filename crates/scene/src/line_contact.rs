@@ -46,7 +46,8 @@ impl LineContacts {
             let modulus = if depth.is_some() { self.modulus } else { 2.0 * self.modulus };
             let half_width = (4.0 * w * radius / (std::f64::consts::PI * modulus)).sqrt();
             let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
-            let of_ring = |depth: f64| 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
+            let of_ring =
+                |depth: f64| 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
             let ring = depth.map_or(0.0, of_ring);
             sum.0 += w * self.softness * (roller + ring);
             // b grows with the root of w, so each logarithm loses 1/(2w).

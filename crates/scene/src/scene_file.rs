@@ -17,8 +17,8 @@ mod named;
 mod origin;
 mod outline;
 mod overrides;
-mod reference;
 mod problem;
+mod reference;
 mod schema;
 mod suggest;
 mod syntax;
@@ -34,7 +34,7 @@ use origin::Origin;
 use outline::Outline;
 use problem::place_in_file;
 pub use problem::{Place, Problem, SceneError};
-pub use reference::{FieldReference, Field};
+pub use reference::{Field, FieldReference};
 
 impl Scene {
     /// Reads and checks the scene file at `path`.

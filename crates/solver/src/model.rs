@@ -150,7 +150,9 @@ impl Model {
             let node = match self.behaviour[b] {
                 Behaviour::Elastic => body.nodes.clone().find(massless),
                 // A rigid body may have nodes that only carry contact, but needs some mass.
-                Behaviour::Rigid | Behaviour::Turning { .. } => body.nodes.clone().all(|n| massless(&n)).then_some(body.nodes.start),
+                Behaviour::Rigid | Behaviour::Turning { .. } => {
+                    body.nodes.clone().all(|n| massless(&n)).then_some(body.nodes.start)
+                }
             };
             if let Some(node) = node {
                 return Err(Error::MasslessNode { body: body.name.clone(), node });

@@ -164,7 +164,7 @@ fn analytic_rigid_block_under_a_couple() {
     assert_close(couple_work(&mut d, &mut couple), 1.0, 1e-9, "work / energy");
 }
 
-/// Source: a body whose angle is prescribed, θ = Ω t; the drive supplies −M Ω a second (Newton's third law).
+/// Source: THEORY §6.5: the angle is Ω t, and the drive supplies −M Ω a second.
 #[test]
 fn analytic_block_that_turns_at_a_prescribed_rate() {
     let mut model = body(&rectangle(0.04, 0.02, 4, 2));

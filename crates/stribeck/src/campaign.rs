@@ -196,10 +196,14 @@ fn conclude(
     if left > 0 {
         let all = campaign.runs.len();
         if left_here == 0 {
-            eprintln!("this part is done; {left} of {all} runs of others are not at their end. Whichever part ends last makes the tables");
+            eprintln!(
+                "this part is done; {left} of {all} runs of others are not at their end. Whichever part ends last makes the tables"
+            );
             return Ok(ExitCode::SUCCESS);
         }
-        eprintln!("{left} of {all} runs are not at their end; the same command goes on. Tables are made when all are");
+        eprintln!(
+            "{left} of {all} runs are not at their end; the same command goes on. Tables are made when all are"
+        );
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let rows = tables::rows(folder, campaign, &stages)?;

@@ -171,9 +171,13 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
 fn peer_dask_and_snakemake_run_the_parts_to_the_same_bytes() {
     // Dask 2026.8.0 and Snakemake 9.27.1, where the interpreter in STRIBECK_PYTHON (or python3) has them.
     let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let (program, recipes) = (env!("CARGO_BIN_EXE_stribeck"), concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/clusters"));
-    let dask = [&format!("{recipes}/campaign_dask.py"), program, "campaign.ron", "B", "4"].map(str::to_owned).to_vec();
-    let settings = [&format!("program={program}"), "campaign=campaign.ron", "out=B", "parts=4"].map(str::to_owned);
+    let (program, recipes) =
+        (env!("CARGO_BIN_EXE_stribeck"), concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/clusters"));
+    let dask = [&format!("{recipes}/campaign_dask.py"), program, "campaign.ron", "B", "4"]
+        .map(str::to_owned)
+        .to_vec();
+    let settings =
+        [&format!("program={program}"), "campaign=campaign.ron", "out=B", "parts=4"].map(str::to_owned);
     let snakefile = format!("{recipes}/Snakefile");
     let snakemake = ["-m", "snakemake", "-s", &snakefile, "--cores", "2", "--config"].map(str::to_owned);
     let snakemake = snakemake.into_iter().chain(settings).collect();

@@ -54,7 +54,8 @@ impl System {
             return Err(Error::OtherSystem { what: "forces" });
         }
         let (own_contacts, own_films) = self.contact_states();
-        let own_further: Vec<Vec<f64>> = self.forces.further.iter().map(|(_, force)| force.memory()).collect();
+        let own_further: Vec<Vec<f64>> =
+            self.forces.further.iter().map(|(_, force)| force.memory()).collect();
         let refused = if !self.restore_contacts(contacts) {
             Some(Error::OtherSystem { what: "contacts" })
         } else if !self.restore_films(films) {

@@ -39,8 +39,11 @@ impl Pictures {
                 return Ok(pictures);
             }
         };
-        pictures.mesh =
-            vec![mesh::whole(&run.scene, &mesh), mesh::defect(&run.scene, &mesh), roller::picture(&run.scene, &mesh)];
+        pictures.mesh = vec![
+            mesh::whole(&run.scene, &mesh),
+            mesh::defect(&run.scene, &mesh),
+            roller::picture(&run.scene, &mesh),
+        ];
         if findings.of_paper {
             let numbers = ["Fig. 1a: ", "Fig. 1b: ", "Fig. 4: "];
             for (picture, number) in pictures.mesh.iter_mut().zip(numbers) {

@@ -227,7 +227,8 @@ fn reduced_housing(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(HOUSING, "`adapter`, `pedestal(…)` or `mesh(…)`".to_owned()).value("adapter", "the paper's"),
+            Remedy::new(HOUSING, "`adapter`, `pedestal(…)` or `mesh(…)`".to_owned())
+                .value("adapter", "the paper's"),
             Remedy::new("model", "`full`".to_owned()).value("full", ""),
         ],
     ))
@@ -245,15 +246,19 @@ fn load_direction(scene: &Scene) -> Option<Finding> {
         HousingScene::Adapter if up < 0.0 && across == 0.0 => return None,
         HousingScene::Adapter => "270, downwards, as the adapter lies on top of the ring",
         HousingScene::Pedestal(_) | HousingScene::Mesh(_) if across == 0.0 => return None,
-        HousingScene::Pedestal(_) | HousingScene::Mesh(_) => "270 or 90: what takes the load is guided up and down",
+        HousingScene::Pedestal(_) | HousingScene::Mesh(_) => {
+            "270 or 90: what takes the load is guided up and down"
+        }
         HousingScene::Rigid(_) | HousingScene::Springs(_) => return None,
     };
-    let message = format!("`{LOAD_ANGLE}` is {}, and the housing does not take a load from there", number(angle));
+    let message =
+        format!("`{LOAD_ANGLE}` is {}, and the housing does not take a load from there", number(angle));
     Some(Finding::new(
         message,
         vec![
             Remedy::new(LOAD_ANGLE, allowed.to_owned()).number(270.0, "downwards"),
-            Remedy::new(HOUSING, "`rigid(…)` or `springs(…)`, which take it from any side".to_owned()).value("rigid()", ""),
+            Remedy::new(HOUSING, "`rigid(…)` or `springs(…)`, which take it from any side".to_owned())
+                .value("rigid()", ""),
         ],
     ))
 }
@@ -280,8 +285,10 @@ fn outer_speed_alone(scene: &Scene) -> Option<Finding> {
     if o.outer_speed_rpm == 0.0 || o.speed_profile.is_none() {
         return None;
     }
-    let message = format!("`{SPEED_PROFILE}` changes the speed of the inner ring, and `{OUTER_SPEED}` is not zero: one speed may change, \
-                           not against another one");
+    let message = format!(
+        "`{SPEED_PROFILE}` changes the speed of the inner ring, and `{OUTER_SPEED}` is not zero: one speed may change, \
+                           not against another one"
+    );
     Some(Finding::new(
         message,
         vec![

@@ -124,7 +124,8 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
     let b = &scene.bearing;
     let by_diameters = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
     let clearance = by_diameters + 1e-3 * b.clearance_change_um;
-    let (least, most) = (-MAX_PRELOAD_RATIO * b.roller_diameter_mm, MAX_CLEARANCE_RATIO * b.roller_diameter_mm);
+    let (least, most) =
+        (-MAX_PRELOAD_RATIO * b.roller_diameter_mm, MAX_CLEARANCE_RATIO * b.roller_diameter_mm);
     // Diameters that do not fit each other are found by themselves.
     if b.clearance_change_um == 0.0 || (least..=most).contains(&clearance) {
         return None;
@@ -137,7 +138,10 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
         100.0 * if clearance < 0.0 { MAX_PRELOAD_RATIO } else { MAX_CLEARANCE_RATIO },
     );
     let [low, high] = [least, most].map(|limit| number((1e3 * (limit - by_diameters)).trunc()));
-    Some(Finding::new(message, vec![Remedy::new(CHANGE, format!("{low} to {high} µm")).number(0.0, "as the diameters say")]))
+    Some(Finding::new(
+        message,
+        vec![Remedy::new(CHANGE, format!("{low} to {high} µm")).number(0.0, "as the diameters say")],
+    ))
 }
 
 /// Something left inside the inner ring.
@@ -453,7 +457,10 @@ fn pedestal(scene: &Scene) -> Option<Finding> {
     let wide = round_up(halves * 0.7 * outside, 2);
     Some(Finding::new(
         message,
-        vec![Remedy::new(field, more_than(round_up(halves * least, 3), "mm")).number(wide, "a fifth of the ring around it")],
+        vec![
+            Remedy::new(field, more_than(round_up(halves * least, 3), "mm"))
+                .number(wide, "a fifth of the ring around it"),
+        ],
     ))
 }
 

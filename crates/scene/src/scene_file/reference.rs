@@ -47,7 +47,9 @@ impl FieldReference {
 
     /// The field `name` of the group behind `word` at `path`: `inside("housing", "springs", "mass_kg")`.
     pub fn inside(&self, path: &str, word: &str, name: &str) -> Field {
-        let Some((scene, path, default)) = self.schema.behind(path, word, name) else { return Field::default() };
+        let Some((scene, path, default)) = self.schema.behind(path, word, name) else {
+            return Field::default();
+        };
         Field { default: Some(default.to_owned()), range: limits::allowed_in(scene, &path) }
     }
 }

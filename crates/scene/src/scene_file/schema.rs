@@ -71,7 +71,9 @@ impl Schema {
     /// Dotted paths of all fields, list items left out.
     pub(crate) fn paths(&self) -> Vec<&str> {
         let mut paths: Vec<&str> = Vec::new();
-        for path in self.scenes.iter().flat_map(|scene| &scene.outline.entries).map(|entry| entry.path.as_str()) {
+        for path in
+            self.scenes.iter().flat_map(|scene| &scene.outline.entries).map(|entry| entry.path.as_str())
+        {
             if !path.contains('[') && !paths.contains(&path) {
                 paths.push(path);
             }
@@ -81,7 +83,9 @@ impl Schema {
 
     /// Text of a scene that has such a field, and where its value stands in it.
     fn find(&self, path: &str) -> Option<(&str, std::ops::Range<usize>)> {
-        self.scenes.iter().find_map(|scene| Some((scene.text.as_str(), scene.outline.get(path)?.value.clone())))
+        self.scenes
+            .iter()
+            .find_map(|scene| Some((scene.text.as_str(), scene.outline.get(path)?.value.clone())))
     }
 
     /// The path of the first item of a list that has such a field.

@@ -375,7 +375,8 @@ fn example_housings_are_written_in_files_and_behind_set() {
     let HousingScene::Pedestal(of) = &pedestal.housing else { panic!("{:?}", pedestal.housing) };
     assert_eq!([of.width_mm, of.base_mm, of.top_mm], [300.0, 150.0, 140.0]);
     assert_eq!(parse(&pedestal.to_ron()).expect("valid"), pedestal);
-    let turning = set(&["housing=rigid(mass_kg: 3)", "operation.outer_speed_rpm=-200", "operation.load_angle_deg=10"]);
+    let turning =
+        set(&["housing=rigid(mass_kg: 3)", "operation.outer_speed_rpm=-200", "operation.load_angle_deg=10"]);
     assert_eq!(parse(&turning.to_ron()).expect("valid"), turning);
     assert_eq!(turning.load_zone_deg(), 190.0);
     assert!(turning.housing.is_rigid() && turning.operation.outer_speed_rpm == -200.0);
@@ -384,13 +385,20 @@ fn example_housings_are_written_in_files_and_behind_set() {
     assert!(matches!(springs.housing, HousingScene::Springs(ref s) if s.stiffness_n_um == 50.0));
     // What is not said is not written: hashes of older scenes stay.
     let text = Scene::default().to_ron();
-    assert!(!text.contains("housing") && !text.contains("load_angle") && !text.contains("outer_speed"), "{text}");
+    assert!(
+        !text.contains("housing") && !text.contains("load_angle") && !text.contains("outer_speed"),
+        "{text}"
+    );
 }
 
 #[test]
 fn refuses_housings_that_do_not_fit() {
     for (scene, field, words) in [
-        ("housing: pedestal(width_mm: 200)", "housing.width_mm", "no pedestal around the outer ring (220 mm across)"),
+        (
+            "housing: pedestal(width_mm: 200)",
+            "housing.width_mm",
+            "no pedestal around the outer ring (220 mm across)",
+        ),
         ("housing: pedestal(top_mm: -1)", "housing.top_mm", "outside its range"),
         ("housing: pedestal(height_mm: 1)", "", "unknown field `height_mm`"),
         ("housing: pedestral()", "housing", "not one of its words"),

@@ -137,7 +137,11 @@ fn off(run: &Finished) -> Option<f64> {
 fn force_line(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
     let record = Record::new(&read);
-    signal::amplitude(&support(&record, run.scene.load_direction()), record.sample_rate_hz(), lumped(run)?.frequency_hz)
+    signal::amplitude(
+        &support(&record, run.scene.load_direction()),
+        record.sample_rate_hz(),
+        lumped(run)?.frequency_hz,
+    )
 }
 
 /// Table, pictures, conclusions.

@@ -40,10 +40,15 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
     if let Some(load) = record.channel("adapter.load_n").filter(|load| load.len() > 1) {
         let kilo = load.iter().map(|n| 1e-3 * n).collect();
         figures.push(
-            Figure::new("load", "Load on the housing", Axis::si("Time", "s"), Axis::plain("Along its direction", "kN"))
-                .synced("time")
-                .with(Series::sampled("load", Colour::Blue, interval_s, interval_s, kilo))
-                .caption("As prescribed."),
+            Figure::new(
+                "load",
+                "Load on the housing",
+                Axis::si("Time", "s"),
+                Axis::plain("Along its direction", "kN"),
+            )
+            .synced("time")
+            .with(Series::sampled("load", Colour::Blue, interval_s, interval_s, kilo))
+            .caption("As prescribed."),
         );
     }
     figures.extend(orders(findings));
