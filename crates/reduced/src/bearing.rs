@@ -1,5 +1,6 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
+use pulp::Simd;
 use stribeck_bearing::recorder::Tacho;
 use stribeck_contact::Law;
 use stribeck_mesh::{Circle, FormDeviation};
@@ -13,9 +14,10 @@ use stribeck_scene::{
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 
 use crate::{
-    compliance::Compliance,
+    compliance::{Compliance, Curve},
     error::Error,
-    overlap::{Outline, Overlap, Sides, View, overlap},
+    outline::{Outline, View},
+    overlap::{Overlap, Pair, Sides},
     reduction::{Reduction, STICKING},
     state::State,
 };
@@ -86,6 +88,7 @@ pub(crate) struct Track {
     pub(crate) angle: Vec<f64>,
     pub(crate) sides: Sides,
     pub(crate) compliance: Compliance,
+    pub(crate) curve: Curve,
     /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
     /// one around.
     pub(crate) bound: f64,
@@ -107,8 +110,19 @@ pub(crate) struct Cage {
 /// A wall from its inner to its outer end, with the normal that points into the pocket.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wall {
-    pub(crate) ends: [[f64; 2]; 2],
+    pub(crate) inner: [f64; 2],
+    /// From the inner to the outer end [m], and the same over its square [1/m].
+    pub(crate) edge: [f64; 2],
+    pub(crate) per_length: [f64; 2],
     pub(crate) normal: [f64; 2],
+}
+
+impl Wall {
+    fn new([a, b]: [[f64; 2]; 2], normal: [f64; 2]) -> Self {
+        let edge = [b[0] - a[0], b[1] - a[1]];
+        let square = edge[0] * edge[0] + edge[1] * edge[1];
+        Self { inner: a, edge, per_length: [edge[0] / square, edge[1] / square], normal }
+    }
 }
 
 /// One contact of a roller with a raceway in the present step.
@@ -161,6 +175,7 @@ impl Bearing {
                 sides: sides(along, relative),
                 angle: per_angle(&outline),
                 outline,
+                curve: compliance.curve(),
                 compliance: compliance.clone(),
                 bound,
                 relative: 1.0 / relative,
@@ -221,8 +236,10 @@ impl Bearing {
     /// Contact of a roller with a raceway: everything in the frame of the raceway's outline. `hints` are the facets found
     /// last, `before` the force of the step before.
     #[inline(always)]
-    pub(crate) fn touch(
+    #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and leaves")]
+    pub(crate) fn touch<S: Simd>(
         &self,
+        simd: S,
         track: &Track,
         rim: &Rim,
         centre: [f64; 2],
@@ -245,11 +262,12 @@ impl Bearing {
         *hints = [facet as u32, under as u32];
         let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
+        let pair = Pair::new(simd, roller, raceway, track.sides);
         let mut force = before;
         let mut found = Overlap::default();
         let (mut give, mut given) = (0.0, 0.0);
         for _ in 0..SEARCHES {
-            let [shift, slope] = track.compliance.approach(force);
+            let ([shift, slope], piece) = track.curve.approach(force);
             give = slope;
             let depth = most - shift;
             if depth <= 0.0 {
@@ -257,7 +275,7 @@ impl Bearing {
                 continue;
             }
             let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
-            found = overlap(roller, raceway, track.sides, shift, reach);
+            found = pair.overlap(shift, reach);
             // Newton's method with what the overlap becomes by a further shift.
             let start = force;
             let (mut further, mut now) = (0.0, [found.area, found.length]);
@@ -265,7 +283,7 @@ impl Bearing {
                 let [area, length] = now;
                 let left = self.penalty * area - force;
                 force = (force + left / (1.0 + self.penalty * length * give)).max(0.0);
-                let [there, slope] = track.compliance.approach(force);
+                let [there, slope] = track.curve.approach_near(force, piece);
                 (further, give) = (there - shift, slope);
                 now = found.shifted_area(further);
             }
@@ -389,7 +407,7 @@ impl Cage {
                         // Ahead of the pocket's axis, counter-clockwise, with side +1.
                         [along * c - side * half * s - centre[0], along * s + side * half * c - centre[1]]
                     };
-                    Wall { ends: [end(inner), end(outer)], normal: [side * s, -side * c] }
+                    Wall::new([end(inner), end(outer)], [side * s, -side * c])
                 };
                 [wall(-1.0), wall(1.0)]
             })
