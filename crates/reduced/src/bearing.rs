@@ -1,6 +1,5 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
-use pulp::Simd;
 use stribeck_bearing::recorder::Tacho;
 use stribeck_contact::Law;
 use stribeck_mesh::{Circle, FormDeviation};
@@ -16,20 +15,11 @@ use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 use crate::{
     compliance::{Compliance, Curve},
     error::Error,
-    outline::{Outline, View},
-    overlap::{Overlap, Pair, Sides},
+    outline::Outline,
+    overlap::Sides,
     reduction::{Reduction, STICKING},
     state::State,
 };
-
-/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
-const SEARCHES: usize = 4;
-const NEWTON: usize = 2;
-
-/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap was integrated, its
-/// series leaves an error of the third power.
-const ENOUGH: f64 = 3e-2;
-const LITTLE: f64 = 1e-2;
 
 /// What does not change during a run.
 #[derive(Debug, Clone)]
@@ -125,18 +115,18 @@ impl Wall {
     }
 }
 
-/// One contact of a roller with a raceway in the present step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Touch {
-    /// Normal force of penalty and compliance [N].
-    pub(crate) normal: f64,
-    /// Force of the same along t [N].
-    pub(crate) across: f64,
-    /// Derivative of the compliance's approach there [m/N].
-    pub(crate) give: f64,
-    /// What overlaps at that force.
-    pub(crate) overlap: Overlap,
-    pub(crate) d: [f64; 2],
+impl Track {
+    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before it.
+    #[inline(always)]
+    pub(crate) fn outwards(&self) -> f64 {
+        if self.sides.along { 1.0 } else { -1.0 }
+    }
+
+    /// How far from its middle a contact may reach that is `depth` deep between the circles around both [m].
+    #[inline(always)]
+    pub(crate) fn reach(&self, depth: f64) -> f64 {
+        (2.0 * self.relative * depth).sqrt() * 1.001
+    }
 }
 
 impl Bearing {
@@ -231,72 +221,6 @@ impl Bearing {
             rim_of,
             reduction,
         })
-    }
-
-    /// Contact of a roller with a raceway: everything in the frame of the raceway's outline. `hints` are the facets found
-    /// last, `before` the force of the step before.
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and leaves")]
-    pub(crate) fn touch<S: Simd>(
-        &self,
-        simd: S,
-        track: &Track,
-        rim: &Rim,
-        centre: [f64; 2],
-        spin: [f64; 2],
-        hints: &mut [u32; 2],
-        before: f64,
-    ) -> Touch {
-        let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
-        let outwards = if track.sides.along { 1.0 } else { -1.0 };
-        let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
-        let most = outwards * (distance - track.bound) + rim.top;
-        if most <= 0.0 {
-            return Touch { d, ..Touch::default() };
-        }
-        // The roller's own frame: turned back by its spin.
-        let [c, s] = spin;
-        let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
-        let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
-        let under = track.outline.facet_along(centre, d, hints[1] as usize, outwards);
-        *hints = [facet as u32, under as u32];
-        let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
-        let raceway = View { outline: &track.outline, from: centre, d, facet: under };
-        let pair = Pair::new(simd, roller, raceway, track.sides);
-        let mut force = before;
-        let mut found = Overlap::default();
-        let (mut give, mut given) = (0.0, 0.0);
-        for _ in 0..SEARCHES {
-            let ([shift, slope], piece) = track.curve.approach(force);
-            give = slope;
-            let depth = most - shift;
-            if depth <= 0.0 {
-                (found, force) = (Overlap::default(), 0.0);
-                continue;
-            }
-            let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
-            found = pair.overlap(shift, reach);
-            // Newton's method with what the overlap becomes by a further shift.
-            let start = force;
-            let (mut further, mut now) = (0.0, [found.area, found.length]);
-            for _ in 0..NEWTON {
-                let [area, length] = now;
-                let left = self.penalty * area - force;
-                force = (force + left / (1.0 + self.penalty * length * give)).max(0.0);
-                let [there, slope] = track.curve.approach_near(force, piece);
-                (further, give) = (there - shift, slope);
-                now = found.shifted_area(further);
-            }
-            found = found.shifted(further, now);
-            given = shift + further;
-            if (force - start).abs() <= ENOUGH * force + LITTLE {
-                break;
-            }
-        }
-        // d turns as the roller moves along, and what the bodies have given way by with it.
-        let turning = outwards * (0.5 * found.skew + given * found.across) / distance;
-        let across = self.penalty * (found.across - turning);
-        Touch { normal: force, across, give, overlap: found, d }
     }
 
     /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the

@@ -101,7 +101,15 @@ impl Curve {
         (self.on(piece, force, y), piece)
     }
 
-    /// The same, most likely on a piece that is known.
+    /// Where a piece begins over √F, g there, by how much it grows with √F, and where the piece ends.
+    #[inline(always)]
+    pub fn piece(&self, piece: usize) -> [f64; 4] {
+        let [first, slope] = self.pieces[piece];
+        let next = if piece + 1 < self.pieces.len() { (piece + 1) as f64 } else { f64::INFINITY };
+        [self.spacing * piece as f64, first, slope, self.spacing * next]
+    }
+
+    /// Approach and derivative, most likely on a piece that is known.
     #[inline(always)]
     pub fn approach_near(&self, force: f64, piece: usize) -> [f64; 2] {
         let y = force.sqrt();

@@ -20,7 +20,7 @@ pub(crate) struct Place<'a> {
 }
 
 /// How the outer raceway moves at a place.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Moved {
     /// Displacement [m].
     pub(crate) by: [f64; 2],
@@ -41,14 +41,20 @@ impl Bearing {
     pub(crate) fn place_along(&self, radial: [f64; 2], hint: u32) -> Place<'_> {
         let outline = &self.outer.outline;
         let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
-        let second = if facet + 1 == outline.len() { 0 } else { facet + 1 };
+        self.place(facet, outline.share(facet, radial))
+    }
+
+    /// The place on a facet with this share of its second vertex.
+    #[inline(always)]
+    pub(crate) fn place(&self, facet: usize, share: f64) -> Place<'_> {
+        let second = if facet + 1 == self.outer.outline.len() { 0 } else { facet + 1 };
         let groups = self.reduction.padded / LANES;
         let shapes = |vertex: usize| {
             let both =
                 &self.reduction.shapes.as_chunks::<LANES>().0[2 * groups * vertex..2 * groups * (vertex + 1)];
             [&both[..groups], &both[groups..2 * groups]]
         };
-        Place { facet, share: outline.share(facet, radial), shapes: [shapes(facet), shapes(second)] }
+        Place { facet, share, shapes: [shapes(facet), shapes(second)] }
     }
 
     /// How the raceway moves at a place. Both vertices are summed over all modes, and what lies between follows from the sums.

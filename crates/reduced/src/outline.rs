@@ -146,6 +146,13 @@ impl Facet {
     }
 }
 
+/// What becomes of the parts between two places where neither boundary has a vertex. A trait, because what a closure does is
+/// compiled without the vectors' instruction set.
+pub(crate) trait Parts {
+    /// Takes the part between two places along t [m], below these facets of roller and raceway.
+    fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet);
+}
+
 /// Walks along vertices with growing u.
 pub(crate) struct Walk<'a> {
     view: View<'a>,

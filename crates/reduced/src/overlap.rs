@@ -5,7 +5,7 @@
 use pulp::Simd;
 
 use crate::{
-    outline::{Facet, View, Walk},
+    outline::{Facet, Parts, View, Walk},
     window::{self, Window},
 };
 
@@ -111,30 +111,29 @@ impl<'a> Pair<'a> {
     /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
     #[inline(always)]
     pub fn overlap(&self, shift: f64, reach: f64) -> Overlap {
-        let mut sum = Overlap::default();
         let sides = self.sides;
-        let straight = sides.bulge == 0.0 && sides.curvature == 0.0;
-        if let Some(windows) = &self.windows {
-            let seen = if straight {
-                window::segments(windows, reach, |ends, r, w| chords(&mut sum, ends, r, w, shift))
-            } else {
-                window::segments(windows, reach, |ends, r, w| arcs(&mut sum, ends, r, w, sides, shift))
-            };
-            if seen {
-                return sum;
-            }
-        }
-        if straight {
-            self.walk(reach, |ends, r, w| chords(&mut sum, ends, r, w, shift));
+        if sides.bulge == 0.0 && sides.curvature == 0.0 {
+            self.taken(reach, Chords { sum: Overlap::default(), shift }).sum
         } else {
-            self.walk(reach, |ends, r, w| arcs(&mut sum, ends, r, w, sides, shift));
+            self.taken(reach, Arcs { sum: Overlap::default(), sides, shift }).sum
         }
-        sum
     }
 
-    /// Walks along both boundaries, and shows what lies between two places where neither has a vertex.
     #[inline(always)]
-    fn walk(&self, reach: f64, mut show: impl FnMut([f64; 2], Facet, Facet)) {
+    fn taken<P: Parts>(&self, reach: f64, mut parts: P) -> P {
+        let in_windows = match &self.windows {
+            Some(windows) => window::segments(windows, reach, &mut parts),
+            None => false,
+        };
+        if !in_windows {
+            self.walk(reach, &mut parts);
+        }
+        parts
+    }
+
+    /// Walks along both boundaries, and hands over what lies between two places where neither has a vertex.
+    #[inline(always)]
+    fn walk(&self, reach: f64, parts: &mut impl Parts) {
         let mut u = -reach;
         let mut r = Walk::new(self.roller, true, u);
         let mut w = Walk::new(self.raceway, self.sides.along, u);
@@ -142,7 +141,7 @@ impl<'a> Pair<'a> {
         for _ in 0..most {
             let end = r.b[0].min(w.end).min(reach);
             if end > u {
-                show([u, end], r.facet(), w.facet());
+                parts.add([u, end], r.facet(), w.facet());
                 u = end;
             }
             if end >= reach {
@@ -151,6 +150,33 @@ impl<'a> Pair<'a> {
             // Walls of a groove may lean over: their facets hold no u.
             if r.b[0] <= w.end { r.step() } else { w.step() }
         }
+    }
+}
+
+/// Adds up what lies between straight lines.
+struct Chords {
+    sum: Overlap,
+    shift: f64,
+}
+
+impl Parts for Chords {
+    #[inline(always)]
+    fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
+        chords(&mut self.sum, ends, roller, raceway, self.shift);
+    }
+}
+
+/// Adds up what lies between parabolas.
+struct Arcs {
+    sum: Overlap,
+    sides: Sides,
+    shift: f64,
+}
+
+impl Parts for Arcs {
+    #[inline(always)]
+    fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
+        arcs(&mut self.sum, ends, roller, raceway, self.sides, self.shift);
     }
 }
 

@@ -4,10 +4,11 @@ use pulp::{Arch, Simd, WithSimd};
 use stribeck_scene::scene::DampingFrame;
 
 use crate::{
-    bearing::{Bearing, Touch, Track},
+    bearing::{Bearing, Track},
     modes::Moved,
     pocket::PlacedCage,
     state::{Spent, State, Stored, count},
+    touch::{Begun, Near, Sought, Touch},
 };
 
 /// Room for what a step computes, and sums over the steps of a sample.
@@ -15,6 +16,8 @@ use crate::{
 pub struct Scratch {
     /// Directions of vertex 0 of each roller.
     turned: Vec<[f64; 2]>,
+    seats: Vec<Seat>,
+    sought: Sought,
     /// Forces on the modes.
     push: Vec<f64>,
     /// Forces on each roller by outer raceway, inner raceway and cage, in this step [N].
@@ -32,6 +35,20 @@ pub struct Scratch {
     pub(crate) deepest: f64,
 }
 
+/// Where a roller is in this step.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seat {
+    /// From the bearing's centre [m], and the direction there.
+    distance: f64,
+    radial: [f64; 2],
+    /// The place on the outer raceway, and how that moves.
+    facet: usize,
+    share: f64,
+    moved: Moved,
+    outer: Begun,
+    inner: Begun,
+}
+
 /// A force that sensors hear beyond the modes: its facet, the share of the facet's second vertex, and how large it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Heard {
@@ -45,6 +62,8 @@ impl Scratch {
         let (n, r) = (bearing.rollers, bearing.reduction.padded);
         let mut scratch = Self {
             turned: vec![[1.0, 0.0]; n],
+            seats: vec![Seat::default(); n],
+            sought: Sought::new(2 * n),
             push: vec![0.0; r],
             on_roller: vec![[[0.0; 2]; 3]; n],
             sums: vec![[[0.0; 2]; 3]; n],
@@ -121,23 +140,41 @@ impl Bearing {
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
         let placed =
             PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
+        let (ss, sc) = shaft;
+        // The inner raceway turns about the origin: everything is turned back.
+        let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
+
+        // Where rollers are, and what overlaps there.
+        scratch.sought.clear();
+        for i in 0..self.rollers {
+            let centre = [state.x[i], state.y[i]];
+            let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
+            let radial = [centre[0] / distance, centre[1] / distance];
+            // The outer raceway has moved with the modes.
+            let place = self.place_along(radial, state.hints[0][i][1]);
+            let moved = self.moved(simd, &place, state);
+            state.hints[0][i][1] = place.facet as u32;
+            let Seat { outer, inner, .. } = &mut scratch.seats[i];
+            let near = self.at_outer(state, i, moved.by, scratch.turned[i]);
+            *outer = self.begin(simd, near, &mut state.hints[0][i], &mut scratch.sought);
+            let near = self.at_inner(state, i, back(centre), back(scratch.turned[i]));
+            *inner = self.begin(simd, near, &mut state.hints[1][i], &mut scratch.sought);
+            let seat = &mut scratch.seats[i];
+            (seat.distance, seat.radial, seat.moved) = (distance, radial, moved);
+            (seat.facet, seat.share) = (place.facet, place.share);
+        }
+        scratch.sought.solve(simd, self.penalty);
+
+        // What presses on each of them, and how it moves.
         for i in 0..self.rollers {
             let centre = [state.x[i], state.y[i]];
             let velocity = [state.vx[i], state.vy[i]];
             let omega = state.spin[i];
-            let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
-            let radial = [centre[0] / distance, centre[1] / distance];
-
-            // The outer raceway has moved with the modes.
-            let place = self.place_along(radial, state.hints[0][i][1]);
-            let Moved { by: moved, velocity: moving, tilt } = self.moved(simd, &place, state);
-            state.hints[0][i][1] = place.facet as u32;
             let turned = scratch.turned[i];
-            let mut hints = state.hints[0][i];
-            let seen = [centre[0] - moved[0], centre[1] - moved[1]];
-            let touch =
-                self.touch(simd, &self.outer, self.rim(i), seen, turned, &mut hints, state.force[0][i]);
-            state.hints[0][i] = hints;
+            let Seat { distance, radial, facet, share, moved, outer, inner } = scratch.seats[i];
+            let Moved { velocity: moving, tilt, .. } = moved;
+            let near = self.at_outer(state, i, moved.by, turned);
+            let touch = self.end(simd, near, &outer, &mut state.hints[0][i], &scratch.sought);
             state.force[0][i] = touch.normal;
             let mut force = [0.0, -self.gravity * roller_mass];
             let mut moment = 0.0;
@@ -159,10 +196,10 @@ impl Bearing {
             );
             let [fx, fy] = pushed.force;
             if pushed.force != [0.0; 2] {
-                self.press(simd, &place, pushed.force, &mut scratch.push);
+                self.press(simd, &self.place(facet, share), pushed.force, &mut scratch.push);
             }
             scratch.on_roller[i][0] = pushed.force;
-            scratch.heard[i] = Heard { facet: place.facet as u32, share: place.share, force: touch.normal };
+            scratch.heard[i] = Heard { facet: facet as u32, share, force: touch.normal };
             scratch.deepest = scratch.deepest.max(touch.overlap.deepest);
             // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY §9.3).
             let downhill = -(fx * tilt[0] + fy * tilt[1]) / distance;
@@ -170,20 +207,8 @@ impl Bearing {
             force = [force[0] + ex, force[1] + ey];
             moment += pushed.moment;
 
-            // The inner raceway turns about the origin: everything is turned back.
-            let (ss, sc) = shaft;
-            let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
-            let mut hints = state.hints[1][i];
-            let touch = self.touch(
-                simd,
-                &self.inner,
-                self.rim(i),
-                back(centre),
-                back(turned),
-                &mut hints,
-                state.force[1][i],
-            );
-            state.hints[1][i] = hints;
+            let near = self.at_inner(state, i, back(centre), back(turned));
+            let touch = self.end(simd, near, &inner, &mut state.hints[1][i], &scratch.sought);
             state.force[1][i] = touch.normal;
             let mut on_inner = [0.0; 2];
             if touch.normal > 0.0 || state.passive[1][i] != [0.0; 3] {
@@ -319,6 +344,19 @@ impl Bearing {
         if last {
             scratch.energy = energy;
         }
+    }
+
+    /// A roller by the outer raceway, which has moved.
+    #[inline(always)]
+    fn at_outer(&self, state: &State, i: usize, [x, y]: [f64; 2], spin: [f64; 2]) -> Near<'_> {
+        let centre = [state.x[i] - x, state.y[i] - y];
+        Near { track: &self.outer, rim: self.rim(i), centre, spin, before: state.force[0][i] }
+    }
+
+    /// A roller by the inner raceway, seen from there.
+    #[inline(always)]
+    fn at_inner(&self, state: &State, i: usize, centre: [f64; 2], spin: [f64; 2]) -> Near<'_> {
+        Near { track: &self.inner, rim: self.rim(i), centre, spin, before: state.force[1][i] }
     }
 
     /// What a raceway does to a roller, in the frame in which it was touched. `relative` is the velocity of the roller's

@@ -3,7 +3,10 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-use crate::outline::{Facet, PAD, View};
+use crate::outline::{Facet, PAD, Parts, View};
+
+/// Ends of eight facets.
+const ENDS: usize = LANES + 1;
 
 /// Facets before the one that the ray along d goes through.
 const BEFORE: usize = 3;
@@ -31,7 +34,8 @@ impl Window {
             (PAD + n - 2 - view.facet, view.outline.back())
         };
         let start = start - BEFORE;
-        let (x, y) = (&x[start..=start + LANES], &y[start..=start + LANES]);
+        // Vertices are repeated at both ends of a boundary.
+        let [Some(x), Some(y)] = [x, y].map(|all| all[start..].first_chunk::<ENDS>()) else { return None };
         let all = |value: f64| Vector::all(simd, value);
         let (dx, dy, minus) = (all(view.d[0]), all(view.d[1]), all(-view.d[1]));
         let (cx, cy) = (all(view.from[0]), all(view.from[1]));
@@ -80,14 +84,10 @@ impl Window {
     }
 }
 
-/// Goes along roller and raceway up to `reach` [m] to either side, and shows what lies between two places where neither has a
-/// vertex. False, and nothing shown, where the windows do not reach so far.
+/// Goes along roller and raceway up to `reach` [m] to either side, and hands over what lies between two places where neither
+/// has a vertex. False, and nothing handed over, where the windows do not reach so far.
 #[inline(always)]
-pub(crate) fn segments(
-    [roller, raceway]: &[Window; 2],
-    reach: f64,
-    mut show: impl FnMut([f64; 2], Facet, Facet),
-) -> bool {
+pub(crate) fn segments([roller, raceway]: &[Window; 2], reach: f64, parts: &mut impl Parts) -> bool {
     if !(roller.holds(reach) && raceway.holds(reach)) {
         return false;
     }
@@ -98,7 +98,7 @@ pub(crate) fn segments(
         let end = if of_roller < of_raceway { of_roller } else { of_raceway };
         let end = if end < reach { end } else { reach };
         if end > u {
-            show([u, end], roller.facet(i), raceway.facet(j));
+            parts.add([u, end], roller.facet(i), raceway.facet(j));
             u = end;
         }
         if end >= reach {
