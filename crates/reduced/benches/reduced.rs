@@ -20,7 +20,7 @@ const FIRST: usize = 2000;
 
 fn step(criterion: &mut Criterion) {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes");
-    let scene = Scene::read(&scenes.join("reduced.ron")).expect("the scene is sound");
+    let scene = Scene::read(scenes.join("reduced.ron")).expect("the scene is sound");
     let (polygons, arcs) = ("polygons", "arcs");
     let arcs = (arcs, scene.clone().with_overrides(&["contact.surface=arc".to_owned()]).expect("a scene"));
     let mut group = criterion.benchmark_group("step of the reduced bearing");

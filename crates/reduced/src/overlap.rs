@@ -93,19 +93,20 @@ pub struct Pair<'a> {
     pub raceway: View<'a>,
     /// How the raceway lies to the roller.
     pub sides: Sides,
-    /// Roller and raceway again, where their facets can be seen at once.
-    pub windows: Option<[Window; 2]>,
+    /// Roller and raceway again, eight facets at once.
+    windows: [Window; 2],
+    /// Whether they can be seen so.
+    pub in_windows: bool,
 }
 
 impl<'a> Pair<'a> {
     /// Of two views, looked at in vectors where it can be.
     #[inline(always)]
     pub fn new<S: Simd>(simd: S, roller: View<'a>, raceway: View<'a>, sides: Sides) -> Self {
-        let windows = match Window::of(simd, &roller, true) {
-            Some(first) => Window::of(simd, &raceway, sides.along).map(|second| [first, second]),
-            None => None,
-        };
-        Self { roller, raceway, sides, windows }
+        let mut windows = [Window::default(); 2];
+        let [first, second] = &mut windows;
+        let in_windows = first.look(simd, &roller, true) && second.look(simd, &raceway, sides.along);
+        Self { roller, raceway, sides, windows, in_windows }
     }
 
     /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
@@ -121,11 +122,7 @@ impl<'a> Pair<'a> {
 
     #[inline(always)]
     fn taken<P: Parts>(&self, reach: f64, mut parts: P) -> P {
-        let in_windows = match &self.windows {
-            Some(windows) => window::segments(windows, reach, &mut parts),
-            None => false,
-        };
-        if !in_windows {
+        if !(self.in_windows && window::segments(&self.windows, reach, &mut parts)) {
             self.walk(reach, &mut parts);
         }
         parts

@@ -12,7 +12,7 @@ const ENDS: usize = LANES + 1;
 const BEFORE: usize = 3;
 
 /// Eight neighbouring facets with growing u.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct Window {
     from: [f64; LANES],
@@ -22,10 +22,10 @@ pub struct Window {
 }
 
 impl Window {
-    /// The facets about that of a view, unless a wall or the far side of the boundary is among them. `along` says whether vertices
-    /// go by along +t.
+    /// Sees the facets about that of a view; false where a wall or the far side of the boundary is among them. `along` says
+    /// whether vertices go by along +t.
     #[inline(always)]
-    pub fn of<S: Simd>(simd: S, view: &View<'_>, along: bool) -> Option<Self> {
+    pub(crate) fn look<S: Simd>(&mut self, simd: S, view: &View<'_>, along: bool) -> bool {
         let n = view.outline.len();
         let (start, [x, y]) = if along {
             (PAD + view.facet, view.outline.ahead())
@@ -35,12 +35,10 @@ impl Window {
         };
         let start = start - BEFORE;
         // Vertices are repeated at both ends of a boundary.
-        let [Some(x), Some(y)] = [x, y].map(|all| all[start..].first_chunk::<ENDS>()) else { return None };
+        let [Some(x), Some(y)] = [x, y].map(|all| all[start..].first_chunk::<ENDS>()) else { return false };
         let all = |value: f64| Vector::all(simd, value);
         let (dx, dy, minus) = (all(view.d[0]), all(view.d[1]), all(-view.d[1]));
         let (cx, cy) = (all(view.from[0]), all(view.from[1]));
-        let mut window =
-            Self { from: [0.0; LANES], to: [0.0; LANES], slope: [0.0; LANES], base: [0.0; LANES] };
         let mut rising = 0;
         let mut at = 0;
         while at < LANES {
@@ -50,14 +48,14 @@ impl Window {
             let (h0, h1) = (dx.times_plus(x0, dy * y0), dx.times_plus(x1, dy * y1));
             let width = u1 - u0;
             let slope = (h1 - h0) / width;
-            u0.store(&mut window.from, at);
-            u1.store(&mut window.to, at);
-            slope.store(&mut window.slope, at);
-            (-slope).times_plus(u0, h0).store(&mut window.base, at);
+            u0.store(&mut self.from, at);
+            u1.store(&mut self.to, at);
+            slope.store(&mut self.slope, at);
+            (-slope).times_plus(u0, h0).store(&mut self.base, at);
             rising |= all(0.0).choose_below(width, all(1.0), all(0.0)).bits() << at;
             at += Vector::<S>::LEN;
         }
-        (rising == (1 << LANES) - 1).then_some(window)
+        rising == (1 << LANES) - 1
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 use stribeck_reduced::outline::{Outline, View};
 use stribeck_reduced::overlap::{Overlap, Pair, Sides};
 use stribeck_testing::{Noise, ledger::compare};
@@ -35,7 +35,9 @@ fn pressed(
     let under = raceway.facet_along([x, y], d, nearest(raceway, d), 1.0);
     let roller = View { outline: roller, from: [0.0; 2], d: own, facet };
     let raceway = View { outline: raceway, from: [x, y], d, facet: under };
-    Pair { roller, raceway, sides, windows: None }.overlap(0.0, 2e-3)
+    let mut pair = Pair::new(Scalar::new(), roller, raceway, sides);
+    pair.in_windows = false;
+    pair.overlap(0.0, 2e-3)
 }
 
 /// Two arcs that approach by δ overlap by (4/3) δ √(2Rδ), with the relative radius R (Johnson 1985, §4.2, of the gap x²/2R).
@@ -219,8 +221,9 @@ impl WithSimd for Both<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let pair = Pair::new(simd, self.roller, self.raceway, self.sides);
-        let stepwise = Pair { windows: None, ..pair };
-        pair.windows.map(|_| [pair.overlap(self.shift, 1e-3), stepwise.overlap(self.shift, 1e-3)])
+        let mut stepwise = pair;
+        stepwise.in_windows = false;
+        pair.in_windows.then(|| [pair.overlap(self.shift, 1e-3), stepwise.overlap(self.shift, 1e-3)])
     }
 }
 
