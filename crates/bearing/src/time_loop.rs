@@ -166,6 +166,14 @@ impl<M: Motion> Run<M> {
         let earlier = (self.info.wall_s, self.info.cpu_s, self.info.loop_cpu_s);
         let workers = Workers::new(host.threads)?;
         let (began, set_up_cpu) = ((host.wall_s)(), (host.cpu_s)());
+        // Read when they are written: asking the system for processor time takes as long as several steps of a small model.
+        let note_times = |info: &mut RunInfo| {
+            // Clocks may jump; times that are written only grow.
+            info.wall_s = info.wall_s.max(earlier.0 + (host.wall_s)() - began);
+            let cpu = (host.cpu_s)();
+            info.cpu_s = info.cpu_s.max(earlier.1 + cpu);
+            info.loop_cpu_s = info.loop_cpu_s.max(earlier.2 + cpu - set_up_cpu);
+        };
         let mut saved = Saved { sample: self.info.samples, wall_s: began, ..Saved::default() };
         if self.info.samples == 0 {
             // The preload need not be repeated, whatever happens from now on.
@@ -181,11 +189,6 @@ impl<M: Motion> Run<M> {
             self.info.steps = self.motion.steps();
             self.info.samples = sample;
             self.info.simulated_s = sample as f64 * self.info.interval_s;
-            // Clocks may jump; times that are written only grow.
-            self.info.wall_s = self.info.wall_s.max(earlier.0 + (host.wall_s)() - began);
-            let cpu = (host.cpu_s)();
-            self.info.cpu_s = self.info.cpu_s.max(earlier.1 + cpu);
-            self.info.loop_cpu_s = self.info.loop_cpu_s.max(earlier.2 + cpu - set_up_cpu);
             progress.step = self.motion.steps();
             progress.time_s = self.motion.time();
             progress.energy_error = ledger.relative_error;
@@ -201,9 +204,11 @@ impl<M: Motion> Run<M> {
                 break;
             }
             if saved.is_due(sample, (host.wall_s)()) {
+                note_times(&mut self.info);
                 self.save(dir, &mut saved, host)?;
             }
         }
+        note_times(&mut self.info);
         // A diverged run keeps the one before: that is the state before things went wrong. A complete one can be made longer.
         if self.info.status != Status::Diverged {
             self.save(dir, &mut saved, host)?;

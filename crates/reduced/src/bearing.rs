@@ -13,21 +13,13 @@ use stribeck_scene::{
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 
 use crate::{
-    compliance::Compliance,
+    compliance::{Compliance, Curve},
     error::Error,
-    overlap::{Outline, Overlap, Sides, View, overlap},
+    outline::Outline,
+    overlap::Sides,
     reduction::{Reduction, STICKING},
     state::State,
 };
-
-/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
-const SEARCHES: usize = 4;
-const NEWTON: usize = 2;
-
-/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap was integrated, its
-/// series leaves an error of the third power.
-const ENOUGH: f64 = 3e-2;
-const LITTLE: f64 = 1e-2;
 
 /// What does not change during a run.
 #[derive(Debug, Clone)]
@@ -86,6 +78,7 @@ pub(crate) struct Track {
     pub(crate) angle: Vec<f64>,
     pub(crate) sides: Sides,
     pub(crate) compliance: Compliance,
+    pub(crate) curve: Curve,
     /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
     /// one around.
     pub(crate) bound: f64,
@@ -107,22 +100,33 @@ pub(crate) struct Cage {
 /// A wall from its inner to its outer end, with the normal that points into the pocket.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wall {
-    pub(crate) ends: [[f64; 2]; 2],
+    pub(crate) inner: [f64; 2],
+    /// From the inner to the outer end [m], and the same over its square [1/m].
+    pub(crate) edge: [f64; 2],
+    pub(crate) per_length: [f64; 2],
     pub(crate) normal: [f64; 2],
 }
 
-/// One contact of a roller with a raceway in the present step.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Touch {
-    /// Normal force of penalty and compliance [N].
-    pub(crate) normal: f64,
-    /// Force of the same along t [N].
-    pub(crate) across: f64,
-    /// Derivative of the compliance's approach there [m/N].
-    pub(crate) give: f64,
-    /// What overlaps at that force.
-    pub(crate) overlap: Overlap,
-    pub(crate) d: [f64; 2],
+impl Wall {
+    fn new([a, b]: [[f64; 2]; 2], normal: [f64; 2]) -> Self {
+        let edge = [b[0] - a[0], b[1] - a[1]];
+        let square = edge[0] * edge[0] + edge[1] * edge[1];
+        Self { inner: a, edge, per_length: [edge[0] / square, edge[1] / square], normal }
+    }
+}
+
+impl Track {
+    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before it.
+    #[inline(always)]
+    pub(crate) fn outwards(&self) -> f64 {
+        if self.sides.along { 1.0 } else { -1.0 }
+    }
+
+    /// How far from its middle a contact may reach that is `depth` deep between the circles around both [m].
+    #[inline(always)]
+    pub(crate) fn reach(&self, depth: f64) -> f64 {
+        (2.0 * self.relative * depth).sqrt() * 1.001
+    }
 }
 
 impl Bearing {
@@ -161,6 +165,7 @@ impl Bearing {
                 sides: sides(along, relative),
                 angle: per_angle(&outline),
                 outline,
+                curve: compliance.curve(),
                 compliance: compliance.clone(),
                 bound,
                 relative: 1.0 / relative,
@@ -216,69 +221,6 @@ impl Bearing {
             rim_of,
             reduction,
         })
-    }
-
-    /// Contact of a roller with a raceway: everything in the frame of the raceway's outline. `hints` are the facets found
-    /// last, `before` the force of the step before.
-    #[inline(always)]
-    pub(crate) fn touch(
-        &self,
-        track: &Track,
-        rim: &Rim,
-        centre: [f64; 2],
-        spin: [f64; 2],
-        hints: &mut [u32; 2],
-        before: f64,
-    ) -> Touch {
-        let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
-        let outwards = if track.sides.along { 1.0 } else { -1.0 };
-        let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
-        let most = outwards * (distance - track.bound) + rim.top;
-        if most <= 0.0 {
-            return Touch { d, ..Touch::default() };
-        }
-        // The roller's own frame: turned back by its spin.
-        let [c, s] = spin;
-        let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
-        let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
-        let under = track.outline.facet_along(centre, d, hints[1] as usize, outwards);
-        *hints = [facet as u32, under as u32];
-        let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
-        let raceway = View { outline: &track.outline, from: centre, d, facet: under };
-        let mut force = before;
-        let mut found = Overlap::default();
-        let (mut give, mut given) = (0.0, 0.0);
-        for _ in 0..SEARCHES {
-            let [shift, slope] = track.compliance.approach(force);
-            give = slope;
-            let depth = most - shift;
-            if depth <= 0.0 {
-                (found, force) = (Overlap::default(), 0.0);
-                continue;
-            }
-            let reach = (2.0 * track.relative * depth).sqrt() * 1.001;
-            found = overlap(roller, raceway, track.sides, shift, reach);
-            // Newton's method with what the overlap becomes by a further shift.
-            let start = force;
-            let (mut further, mut now) = (0.0, [found.area, found.length]);
-            for _ in 0..NEWTON {
-                let [area, length] = now;
-                let left = self.penalty * area - force;
-                force = (force + left / (1.0 + self.penalty * length * give)).max(0.0);
-                let [there, slope] = track.compliance.approach(force);
-                (further, give) = (there - shift, slope);
-                now = found.shifted_area(further);
-            }
-            found = found.shifted(further, now);
-            given = shift + further;
-            if (force - start).abs() <= ENOUGH * force + LITTLE {
-                break;
-            }
-        }
-        // d turns as the roller moves along, and what the bodies have given way by with it.
-        let turning = outwards * (0.5 * found.skew + given * found.across) / distance;
-        let across = self.penalty * (found.across - turning);
-        Touch { normal: force, across, give, overlap: found, d }
     }
 
     /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the
@@ -389,7 +331,7 @@ impl Cage {
                         // Ahead of the pocket's axis, counter-clockwise, with side +1.
                         [along * c - side * half * s - centre[0], along * s + side * half * c - centre[1]]
                     };
-                    Wall { ends: [end(inner), end(outer)], normal: [side * s, -side * c] }
+                    Wall::new([end(inner), end(outer)], [side * s, -side * c])
                 };
                 [wall(-1.0), wall(1.0)]
             })

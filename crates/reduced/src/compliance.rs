@@ -55,34 +55,73 @@ impl Compliance {
             .sum()
     }
 
-    #[inline(always)]
-    fn place(&self, force: f64) -> (usize, f64, f64) {
-        let y = force.sqrt();
-        let last = self.flexibility.len() - 2;
-        let i = ((y / self.spacing) as usize).min(last);
-        (i, y, y - self.spacing * i as f64)
-    }
-
-    /// Approach [m] and its derivative [m/N] at a force that is not negative [N].
-    #[inline(always)]
-    pub fn approach(&self, force: f64) -> [f64; 2] {
-        let (i, y, z) = self.place(force);
-        let slope = (self.flexibility[i + 1] - self.flexibility[i]) / self.spacing;
-        let g = self.flexibility[i] + slope * z;
-        [force * g, g + 0.5 * y * slope]
+    /// The curve as a step evaluates it.
+    pub fn curve(&self) -> Curve {
+        let slope = |i: usize| (self.flexibility[i + 1] - self.flexibility[i]) / self.spacing;
+        Curve {
+            spacing: self.spacing,
+            per_spacing: 1.0 / self.spacing,
+            pieces: (0..self.flexibility.len() - 1).map(|i| [self.flexibility[i], slope(i)]).collect(),
+        }
     }
 
     /// Stiffness of penalty and compliance in series at the largest load that the curve holds [N/m].
     pub fn stiffest(&self, penalty: f64, radius: f64) -> f64 {
         let most = (self.spacing * (self.flexibility.len() - 2) as f64).powi(2);
         let half = (1.5 * most * radius / penalty).cbrt();
-        1.0 / (1.0 / (2.0 * penalty * half) + self.approach(most)[1].max(0.0))
+        1.0 / (1.0 / (2.0 * penalty * half) + self.curve().approach(most).0[1].max(0.0))
     }
 
     /// Energy stored at a force [J]: ∫ F dC.
     pub fn energy(&self, force: f64) -> f64 {
-        let (i, _, z) = self.place(force);
-        force * self.approach(force)[0] - self.integral[i] - self.between(i, z)
+        let y = force.sqrt();
+        let i = ((y / self.spacing) as usize).min(self.flexibility.len() - 2);
+        let z = y - self.spacing * i as f64;
+        let slope = (self.flexibility[i + 1] - self.flexibility[i]) / self.spacing;
+        force * force * (self.flexibility[i] + slope * z) - self.integral[i] - self.between(i, z)
+    }
+}
+
+/// The curve C(F), piece by piece.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Curve {
+    /// Distance of the knots over y = √F [√N], and one over it.
+    spacing: f64,
+    per_spacing: f64,
+    /// g at the beginning of each piece [m/N], and by how much it grows with y.
+    pieces: Vec<[f64; 2]>,
+}
+
+impl Curve {
+    /// Approach [m] and its derivative [m/N] at a force that is not negative [N], and the piece that it lies on.
+    #[inline(always)]
+    pub fn approach(&self, force: f64) -> ([f64; 2], usize) {
+        let y = force.sqrt();
+        let piece = ((y * self.per_spacing) as usize).min(self.pieces.len() - 1);
+        (self.on(piece, force, y), piece)
+    }
+
+    /// Where a piece begins over √F, g there, by how much it grows with √F, and where the piece ends.
+    #[inline(always)]
+    pub fn piece(&self, piece: usize) -> [f64; 4] {
+        let [first, slope] = self.pieces[piece];
+        let next = if piece + 1 < self.pieces.len() { (piece + 1) as f64 } else { f64::INFINITY };
+        [self.spacing * piece as f64, first, slope, self.spacing * next]
+    }
+
+    /// Approach and derivative, most likely on a piece that is known.
+    #[inline(always)]
+    pub fn approach_near(&self, force: f64, piece: usize) -> [f64; 2] {
+        let y = force.sqrt();
+        let beyond = y * self.per_spacing - piece as f64;
+        if (0.0..1.0).contains(&beyond) { self.on(piece, force, y) } else { self.approach(force).0 }
+    }
+
+    #[inline(always)]
+    fn on(&self, piece: usize, force: f64, y: f64) -> [f64; 2] {
+        let [first, slope] = self.pieces[piece];
+        let g = first + slope * (y - self.spacing * piece as f64);
+        [force * g, g + 0.5 * y * slope]
     }
 }
 

@@ -13,8 +13,8 @@
 //! | What is kept of the finite elements? | `reduction.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
 //! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `start.rs` |
 //! | What changes in time? | `state.rs` |
-//! | What is one step? | `step.rs` |
-//! | How deep does a polygon sink into a raceway? | `overlap.rs` |
+//! | What is one step? | `step.rs`; its parts: `modes.rs`, `touch.rs`, `pocket.rs` |
+//! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` and, in vectors, `window.rs` |
 //! | What is recorded, and what is watched? | `recorder.rs`, `guards.rs`; both in the time loop, `motion.rs` |
 
 pub mod simulation;
@@ -24,10 +24,16 @@ pub mod compliance;
 pub mod reduction;
 
 pub mod bearing;
+pub mod outline;
 pub mod overlap;
 pub mod start;
 pub mod state;
+pub mod window;
+
+mod modes;
+mod pocket;
 pub mod step;
+mod touch;
 
 mod guards;
 pub mod motion;

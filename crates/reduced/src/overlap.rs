@@ -1,81 +1,13 @@
 //! How far a roller sinks into a raceway, integrated exactly over the facets that overlap (THEORY §9.3).
 //!
-//! Seen from the roller's centre, d points to the raceway and t is d turned by a right angle; a point is (u, h), u along t and
-//! h along d. Both boundaries are heights over u, and the penetration p(u) is the roller's less the raceway's.
+//! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
 
-/// Closed boundary of a raceway or roller, counter-clockwise, in the frame of its body.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Outline {
-    /// Abscissae of the vertices [m].
-    pub x: Vec<f64>,
-    /// Ordinates of the vertices [m].
-    pub y: Vec<f64>,
-}
+use pulp::Simd;
 
-impl Outline {
-    /// Of vertices in counter-clockwise order.
-    pub fn new(vertices: &[[f64; 2]]) -> Self {
-        Self { x: vertices.iter().map(|v| v[0]).collect(), y: vertices.iter().map(|v| v[1]).collect() }
-    }
-
-    /// Vertices.
-    pub fn len(&self) -> usize {
-        self.x.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.x.is_empty()
-    }
-
-    #[inline(always)]
-    fn next(&self, i: usize) -> usize {
-        if i + 1 == self.x.len() { 0 } else { i + 1 }
-    }
-
-    #[inline(always)]
-    fn before(&self, i: usize) -> usize {
-        if i == 0 { self.x.len() - 1 } else { i - 1 }
-    }
-
-    /// The facet that the ray from `from` along `d` goes through, near facet `hint`. With `sign` −1 seen from outside, where
-    /// vertices go by the other way.
-    #[inline(always)]
-    pub fn facet_along(&self, from: [f64; 2], d: [f64; 2], hint: usize, sign: f64) -> usize {
-        let side = |i: usize| sign * (d[0] * (self.y[i] - from[1]) - d[1] * (self.x[i] - from[0]));
-        let mut facet = if hint < self.x.len() { hint } else { 0 };
-        // A whole turn at most, should nothing fit.
-        for _ in 0..self.x.len() {
-            if side(facet) > 0.0 {
-                facet = self.before(facet);
-            } else if side(self.next(facet)) <= 0.0 {
-                facet = self.next(facet);
-            } else {
-                break;
-            }
-        }
-        facet
-    }
-
-    /// Where the ray from the origin along `d` goes through a facet: the share of its second vertex.
-    #[inline(always)]
-    pub fn share(&self, facet: usize, d: [f64; 2]) -> f64 {
-        let side = |i: usize| d[0] * self.y[i] - d[1] * self.x[i];
-        let [a, b] = [side(facet), side(self.next(facet))];
-        if b > a { (-a / (b - a)).clamp(0.0, 1.0) } else { 0.0 }
-    }
-
-    /// How deep the point at `distance` from the centre in the direction `d` lies within a regular polygon [m], and the sine of
-    /// the angle from `d` to the normal of the facet above it.
-    #[inline(always)]
-    pub fn depth(&self, d: [f64; 2], distance: f64) -> (f64, f64) {
-        let n = self.x.len();
-        let facet = std::f64::consts::TAU / n as f64;
-        let middle = ((d[1].atan2(d[0]) / facet).floor() + 0.5) * facet;
-        let tilt = middle - d[1].atan2(d[0]);
-        (self.x[0] * (0.5 * facet).cos() - distance * tilt.cos(), tilt.sin())
-    }
-}
+use crate::{
+    outline::{Facet, Parts, View, Walk},
+    window::{self, Window},
+};
 
 /// How a raceway lies to a roller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -152,129 +84,149 @@ impl Overlap {
     }
 }
 
-/// A roller or a raceway, seen from the roller's centre.
+/// A roller and a raceway near their contact.
 #[derive(Debug, Clone, Copy)]
-pub struct View<'a> {
-    /// The boundary.
-    pub outline: &'a Outline,
-    /// The roller's centre in its frame [m].
-    pub from: [f64; 2],
-    /// The direction d in its frame.
-    pub d: [f64; 2],
-    /// The facet that the ray along d goes through.
-    pub facet: usize,
+pub struct Pair<'a> {
+    /// The roller.
+    pub roller: View<'a>,
+    /// The raceway.
+    pub raceway: View<'a>,
+    /// How the raceway lies to the roller.
+    pub sides: Sides,
+    /// Roller and raceway again, eight facets at once.
+    windows: [Window; 2],
+    /// Whether they can be seen so.
+    pub in_windows: bool,
 }
 
-impl View<'_> {
+impl<'a> Pair<'a> {
+    /// Of two views, looked at in vectors where it can be.
     #[inline(always)]
-    fn see(&self, vertex: usize) -> [f64; 2] {
-        let [x, y] = [self.outline.x[vertex] - self.from[0], self.outline.y[vertex] - self.from[1]];
-        [self.d[0] * y - self.d[1] * x, self.d[0] * x + self.d[1] * y]
+    pub fn new<S: Simd>(simd: S, roller: View<'a>, raceway: View<'a>, sides: Sides) -> Self {
+        let mut windows = [Window::default(); 2];
+        let [first, second] = &mut windows;
+        let in_windows = first.look(simd, &roller, true) && second.look(simd, &raceway, sides.along);
+        Self { roller, raceway, sides, windows, in_windows }
     }
-}
 
-/// Walks along vertices with growing u.
-struct Walk<'a> {
-    view: View<'a>,
-    along: bool,
-    /// The vertex that comes next.
-    vertex: usize,
-    /// Ends of the present facet, and where the next one ends.
-    a: [f64; 2],
-    b: [f64; 2],
-    next: [f64; 2],
-    slope: f64,
-    /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its slope, as a series.
-    stretch: f64,
-    /// How far the facet is seen: a wall behind it may lean over it.
-    end: f64,
-}
-
-impl<'a> Walk<'a> {
-    /// Begins with the facet that holds u = `start`, which is negative.
+    /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
     #[inline(always)]
-    fn new(view: View<'a>, along: bool, start: f64) -> Self {
-        let outline = view.outline;
-        // The end of the facet with the smaller u.
-        let mut first = if along { view.facet } else { outline.next(view.facet) };
-        let mut a = view.see(first);
-        for _ in 0..outline.len() {
-            if a[0] <= start {
+    pub fn overlap(&self, shift: f64, reach: f64) -> Overlap {
+        let sides = self.sides;
+        if sides.bulge == 0.0 && sides.curvature == 0.0 {
+            self.taken(reach, Chords { sum: Overlap::default(), shift }).sum
+        } else {
+            self.taken(reach, Arcs { sum: Overlap::default(), sides, shift }).sum
+        }
+    }
+
+    #[inline(always)]
+    fn taken<P: Parts>(&self, reach: f64, mut parts: P) -> P {
+        if !(self.in_windows && window::segments(&self.windows, reach, &mut parts)) {
+            self.walk(reach, &mut parts);
+        }
+        parts
+    }
+
+    /// Walks along both boundaries, and hands over what lies between two places where neither has a vertex.
+    #[inline(always)]
+    fn walk(&self, reach: f64, parts: &mut impl Parts) {
+        let mut u = -reach;
+        let mut r = Walk::new(self.roller, true, u);
+        let mut w = Walk::new(self.raceway, self.sides.along, u);
+        let most = self.roller.outline.len() + self.raceway.outline.len();
+        for _ in 0..most {
+            let end = r.b[0].min(w.end).min(reach);
+            if end > u {
+                parts.add([u, end], r.facet(), w.facet());
+                u = end;
+            }
+            if end >= reach {
                 break;
             }
-            first = if along { outline.before(first) } else { outline.next(first) };
-            a = view.see(first);
+            // Walls of a groove may lean over: their facets hold no u.
+            if r.b[0] <= w.end { r.step() } else { w.step() }
         }
-        let mut walk =
-            Self { view, along, vertex: first, a, b: a, next: a, slope: 0.0, stretch: 1.0, end: a[0] };
-        walk.look();
-        walk.step();
-        walk
     }
+}
 
-    /// Sees one vertex further.
+/// Adds up what lies between straight lines.
+struct Chords {
+    sum: Overlap,
+    shift: f64,
+}
+
+impl Parts for Chords {
     #[inline(always)]
-    fn look(&mut self) {
-        self.vertex = if self.along {
-            self.view.outline.next(self.vertex)
+    fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
+        chords(&mut self.sum, ends, roller, raceway, self.shift);
+    }
+}
+
+/// Adds up what lies between parabolas.
+struct Arcs {
+    sum: Overlap,
+    sides: Sides,
+    shift: f64,
+}
+
+impl Parts for Arcs {
+    #[inline(always)]
+    fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
+        arcs(&mut self.sum, ends, roller, raceway, self.sides, self.shift);
+    }
+}
+
+/// Adds what lies between two straight lines.
+#[inline(always)]
+fn chords(sum: &mut Overlap, [u1, u2]: [f64; 2], r: Facet, w: Facet, shift: f64) {
+    let Facet { slope, base, .. } = r;
+    let (steep, gap) = (slope - w.slope, (base - w.base) - shift);
+    let [p1, p2] = [gap + steep * u1, gap + steep * u2];
+    if p1 <= 0.0 && p2 <= 0.0 {
+        return;
+    }
+    let ([mut a, mut z], [mut pa, mut pz]) = ([u1, u2], [p1, p2]);
+    if pa < 0.0 || pz < 0.0 {
+        let flat = 1.0 / steep.abs();
+        sum.ends += flat;
+        if pa < 0.0 {
+            (a, pa) = (a - pa * flat, 0.0);
         } else {
-            self.view.outline.before(self.vertex)
-        };
-        self.next = self.view.see(self.vertex);
+            (z, pz) = (z + pz * flat, 0.0);
+        }
     }
-
-    /// Goes on to the next facet.
-    #[inline(always)]
-    fn step(&mut self) {
-        (self.a, self.b) = (self.b, self.next);
-        self.look();
-        let width = self.b[0] - self.a[0];
-        self.slope = if width > 0.0 { (self.b[1] - self.a[1]) / width } else { 0.0 };
-        let square = self.slope * self.slope;
-        // Walls are no part of a circle.
-        self.stretch = if square > 1.0 { 0.0 } else { 1.0 + square * (1.5 + 0.375 * square) };
-        let hidden = self.next[0] < self.b[0] && self.next[1] < self.b[1];
-        self.end = if hidden { self.next[0] } else { self.b[0] };
-    }
+    // p is linear from a to z: Simpson's rule is exact.
+    let (width, middle, mean) = (z - a, 0.5 * (a + z), 0.5 * (pa + pz));
+    let area = width * mean;
+    let sixth = width * (1.0 / 6.0);
+    let first = area * middle + sixth * (0.5 * width) * (pz - pa);
+    let square = sixth * (pa * pa + pz * pz + 4.0 * mean * mean);
+    let (lever, stand) = (base * slope, 1.0 + slope * slope);
+    sum.area += area;
+    sum.square += square;
+    sum.length += width;
+    sum.first += width * middle;
+    sum.second += sixth * (a * a + z * z + 4.0 * middle * middle);
+    sum.across += slope * area;
+    sum.moment += lever * area + stand * first;
+    sum.skew += slope * square;
+    sum.slope += slope * width;
+    sum.arm += width * (lever + stand * middle);
+    let higher = if p1 > p2 { p1 } else { p2 };
+    sum.deepest = if sum.deepest > higher { sum.deepest } else { higher };
 }
 
-/// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
+/// Adds what lies between two parabolas on chords.
 #[inline(always)]
-pub fn overlap(roller: View<'_>, raceway: View<'_>, sides: Sides, shift: f64, reach: f64) -> Overlap {
-    let mut sum = Overlap::default();
-    let mut u = -reach;
-    let mut r = Walk::new(roller, true, u);
-    let mut w = Walk::new(raceway, sides.along, u);
-    let most = roller.outline.len() + raceway.outline.len();
-    for _ in 0..most {
-        let end = r.b[0].min(w.end).min(reach);
-        if end > u {
-            segment(&mut sum, [u, end], &r, &w, sides, shift);
-            u = end;
-        }
-        if end >= reach {
-            break;
-        }
-        // Walls of a groove may lean over: their facets hold no u.
-        if r.b[0] <= w.end { r.step() } else { w.step() }
-    }
-    sum
-}
-
-/// Adds what lies between two places where neither boundary has a vertex.
-#[inline(always)]
-fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, sides: Sides, shift: f64) {
-    let [of_roller, of_raceway] = [r.slope, w.slope];
-    let base = r.a[1] - of_roller * r.a[0];
-    let curvature = sides.curvature * r.stretch;
-    let bulge = 0.5 * curvature + (sides.bulge - 0.5 * sides.curvature) * w.stretch;
+fn arcs(sum: &mut Overlap, [u1, u2]: [f64; 2], r: Facet, w: Facet, sides: Sides, shift: f64) {
+    let (of_roller, base) = (r.slope, r.base);
+    let curvature = sides.curvature * r.stretch();
+    let bulge = 0.5 * curvature + (sides.bulge - 0.5 * sides.curvature) * w.stretch();
     let height = |u: f64| {
-        let chords = base + of_roller * u - (w.a[1] + of_raceway * (u - w.a[0])) - shift;
-        if sides.bulge == 0.0 {
-            return chords;
-        }
+        let chords = (base - w.base) - shift + (of_roller - w.slope) * u;
         // What the arcs stand out from their chords.
-        let of = |walk: &Walk<'_>| (u - walk.a[0]) * (walk.b[0] - u);
+        let of = |facet: Facet| (u - facet.from) * (facet.to - u);
         chords + 0.5 * curvature * of(r) + (bulge - 0.5 * curvature) * of(w)
     };
     let [p1, p2] = [height(u1), height(u2)];
@@ -330,24 +282,16 @@ fn segment(sum: &mut Overlap, [u1, u2]: [f64; 2], r: &Walk<'_>, w: &Walk<'_>, si
     sum.square += square;
     sum.length += width;
     sum.first += width * middle;
-    if sides.curvature == 0.0 {
-        sum.across += of_roller * i0;
-        sum.moment += base * of_roller * i0 + (1.0 + of_roller * of_roller) * first;
-        sum.skew += of_roller * square;
-        sum.slope += of_roller * width;
-        sum.arm += width * (base * of_roller + (1.0 + of_roller * of_roller) * middle);
-    } else {
-        // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
-        // The height is taken in the middle: the part is short.
-        let lean = of_roller + 0.5 * curvature * (r.a[0] + r.b[0]);
-        let high = base + of_roller * middle + 0.5 * curvature * (middle - r.a[0]) * (r.b[0] - middle);
-        let rest = 1.0 - curvature * high;
-        sum.across += lean * i0 - curvature * first;
-        sum.moment += lean * high * i0 + rest * first;
-        sum.skew += (lean - curvature * middle) * square;
-        sum.slope += width * (lean - curvature * middle);
-        sum.arm += width * (lean * high + rest * middle);
-    }
+    // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
+    // The height is taken in the middle: the part is short.
+    let lean = of_roller + 0.5 * curvature * (r.from + r.to);
+    let high = base + of_roller * middle + 0.5 * curvature * (middle - r.from) * (r.to - middle);
+    let rest = 1.0 - curvature * high;
+    sum.across += lean * i0 - curvature * first;
+    sum.moment += lean * high * i0 + rest * first;
+    sum.skew += (lean - curvature * middle) * square;
+    sum.slope += width * (lean - curvature * middle);
+    sum.arm += width * (lean * high + rest * middle);
     sum.second += (z * z * z - a * a * a) / 3.0;
     sum.deepest = sum.deepest.max(p1).max(p2);
 }

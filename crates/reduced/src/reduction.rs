@@ -10,6 +10,7 @@ use stribeck_bearing::{
 };
 use stribeck_mesh::Mesh;
 use stribeck_scene::{geometry::Geometry, run_info::MeshInfo, scene::Scene, static_load};
+use stribeck_simd::lanes::LANES;
 use stribeck_solver::{
     Dynamics, Force,
     state::NodeForces,
@@ -19,11 +20,8 @@ use stribeck_solver::{
 use crate::{
     compliance::{Compliance, Pressed},
     error::Error,
-    overlap::Outline,
+    outline::Outline,
 };
-
-/// Sums over modes run in groups of so many.
-pub(crate) const LANES: usize = 8;
 
 /// Shift of the factorised matrix K + σM [rad²/s²]: (2π · 200 Hz)², far above rounding and far below the lowest mode that bends.
 const SHIFT: f64 = 1.6e6;

@@ -70,7 +70,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     write_atomic(&dir.mesh(), &picture)?;
     let saved = Saved::first(&bearing, state);
     let motion = Motion::new(scene, bearing, saved);
-    Ok(Run::start(scene, motion, info, dir)?.finish(dir, host, progress, watch)?)
+    Ok(Run::start(scene, motion, info, dir)?.finish(dir, &on_one_thread(host), progress, watch)?)
 }
 
 /// Continues the run in `dir` from its checkpoint, as [`stribeck_bearing::simulation::resume`].
@@ -139,7 +139,20 @@ fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Resul
     let motion = Motion::new(&scene, bearing, saved);
     let run = Run::resume(&scene, motion, info, dir)?;
     dir.go_on(&scene, &run.info)?;
-    Ok(run.finish(dir, host, progress, watch)?)
+    Ok(run.finish(dir, &on_one_thread(host), progress, watch)?)
+}
+
+/// A step is too short to share: further threads would wait, and keep their cores busy with it.
+fn on_one_thread<'a>(host: &Host<'a>) -> Host<'a> {
+    let Host { version, commit, machine, wall_s, cpu_s, .. } = host;
+    Host {
+        threads: 1,
+        version: version.clone(),
+        commit: commit.clone(),
+        machine: machine.clone(),
+        wall_s: *wall_s,
+        cpu_s: *cpu_s,
+    }
 }
 
 /// A whole number of steps, none longer than the scene allows.

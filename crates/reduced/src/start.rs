@@ -1,9 +1,10 @@
 //! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
 
 use faer::{Mat, linalg::solvers::Solve};
+use pulp::Scalar;
 use stribeck_scene::{duty::Duty, scene::Scene};
 
-use crate::{bearing::Bearing, error::Error, state::State};
+use crate::{bearing::Bearing, error::Error, state::State, touch::Near};
 
 /// Newton iterations for modes and rollers.
 const ITERATIONS: usize = 60;
@@ -152,12 +153,20 @@ impl Bearing {
         let centre = [state.x[i], state.y[i]];
         let seen = [centre[0] - moved[0], centre[1] - moved[1]];
         let mut hints = [state.hints[0][i], state.hints[1][i]];
+        let simd = Scalar::new();
         // A force found with steps of Newton's method: from the one before until it stands.
         let mut forces = [state.force[0][i], state.force[1][i]];
         for _ in 0..40 {
-            let outer = self.touch(&self.outer, self.rim(i), seen, [c, s], &mut hints[0], forces[0]);
-            let inner =
-                self.touch(&self.inner, self.rim(i), back(centre), back([c, s]), &mut hints[1], forces[1]);
+            let [before, other] = forces;
+            let rim = self.rim(i);
+            let near = Near { track: &self.outer, rim, centre: seen, spin: [c, s], before };
+            let outer = self.touch(simd, near, &mut hints[0]);
+            let (centre, spin) = (back(centre), back([c, s]));
+            let inner = self.touch(
+                simd,
+                Near { track: &self.inner, rim, centre, spin, before: other },
+                &mut hints[1],
+            );
             let next = [outer.normal, inner.normal];
             let still = (0..2).all(|k| (next[k] - forces[k]).abs() <= 1e-12 * next[k].abs());
             forces = next;

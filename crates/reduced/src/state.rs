@@ -72,3 +72,26 @@ pub(crate) fn count(sum: &mut [f64; 2], step: f64) {
 pub(crate) fn at_positions(sum: [f64; 2]) -> f64 {
     sum[0] - 0.5 * sum[1]
 }
+
+/// Energies at the positions before a step [J].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Stored {
+    pub(crate) kinetic: f64,
+    pub(crate) strain: f64,
+    pub(crate) contact: f64,
+    /// The part of `contact` in springs of friction: no heat yet.
+    pub(crate) sticking: f64,
+}
+
+/// Energy that goes in or out in one step [J].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Spent {
+    /// Twice the power against friction and contact damping [W] (2.24).
+    pub(crate) heat: [f64; 2],
+    /// Work of load and gravity.
+    pub(crate) external: f64,
+    /// Work of the drive.
+    pub(crate) drive: f64,
+    /// Against mass, stiffness and structural damping.
+    pub(crate) damped: f64,
+}

@@ -17,7 +17,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
     ("scene", &[]),
     ("system", &["contact", "mesh", "solver"]),
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
-    ("reduced", &["bearing", "contact", "mesh", "scene", "solver", "system"]),
+    ("reduced", &["bearing", "contact", "mesh", "scene", "simd", "solver", "system"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),

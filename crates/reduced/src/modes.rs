@@ -1,0 +1,183 @@
+//! Modes of outer ring and adapter in a step, in vectors over modes: how the raceway moves under a roller, what the roller does
+//! to them, and how they move on (THEORY §9.3, §9.4).
+
+use pulp::Simd;
+use stribeck_scene::scene::DampingFrame;
+use stribeck_simd::lanes::{LANES, Number, Vector};
+
+use crate::{
+    bearing::Bearing,
+    state::{Spent, State, Stored},
+};
+
+/// A place on the outer raceway: a facet, the share of its second vertex, and the shapes at both of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) facet: usize,
+    pub(crate) share: f64,
+    /// Of x and of y, in groups of modes.
+    shapes: [[&'a [[f64; LANES]]; 2]; 2],
+}
+
+/// How the outer raceway moves at a place.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Moved {
+    /// Displacement [m].
+    pub(crate) by: [f64; 2],
+    /// Velocity [m/s].
+    pub(crate) velocity: [f64; 2],
+    /// Change of the displacement with the angle [m/rad].
+    pub(crate) tilt: [f64; 2],
+}
+
+#[inline(always)]
+fn groups_of(values: &[f64], groups: usize) -> &[[f64; LANES]] {
+    &values.as_chunks().0[..groups]
+}
+
+impl Bearing {
+    /// The place on the outer raceway that a ray from the origin meets, near the facet `hint`.
+    #[inline(always)]
+    pub(crate) fn place_along(&self, radial: [f64; 2], hint: u32) -> Place<'_> {
+        let outline = &self.outer.outline;
+        let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
+        self.place(facet, outline.share(facet, radial))
+    }
+
+    /// The place on a facet with this share of its second vertex.
+    #[inline(always)]
+    pub(crate) fn place(&self, facet: usize, share: f64) -> Place<'_> {
+        let second = if facet + 1 == self.outer.outline.len() { 0 } else { facet + 1 };
+        let groups = self.reduction.padded / LANES;
+        let shapes = |vertex: usize| {
+            let both =
+                &self.reduction.shapes.as_chunks::<LANES>().0[2 * groups * vertex..2 * groups * (vertex + 1)];
+            [&both[..groups], &both[groups..2 * groups]]
+        };
+        Place { facet, share, shapes: [shapes(facet), shapes(second)] }
+    }
+
+    /// How the raceway moves at a place. Both vertices are summed over all modes, and what lies between follows from the sums.
+    #[inline(always)]
+    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, state: &State) -> Moved {
+        let groups = self.reduction.padded / LANES;
+        let [[ax, ay], [bx, by]] = place.shapes;
+        let (q, v) = (groups_of(&state.q, groups), groups_of(&state.v, groups));
+        let zero = Vector::all(simd, 0.0);
+        let (mut first, mut second) = ([zero; 4], [zero; 4]);
+        for n in 0..groups {
+            let mut at = 0;
+            while at < LANES {
+                let (q, v) = (Vector::load(simd, &q[n], at), Vector::load(simd, &v[n], at));
+                let (x, y) = (Vector::load(simd, &ax[n], at), Vector::load(simd, &ay[n], at));
+                first[0] = x.times_plus(q, first[0]);
+                first[1] = y.times_plus(q, first[1]);
+                first[2] = x.times_plus(v, first[2]);
+                first[3] = y.times_plus(v, first[3]);
+                let (x, y) = (Vector::load(simd, &bx[n], at), Vector::load(simd, &by[n], at));
+                second[0] = x.times_plus(q, second[0]);
+                second[1] = y.times_plus(q, second[1]);
+                second[2] = x.times_plus(v, second[2]);
+                second[3] = y.times_plus(v, second[3]);
+                at += Vector::<S>::LEN;
+            }
+        }
+        let share = Vector::all(simd, place.share);
+        let (dx, dy) = (second[0] - first[0], second[1] - first[1]);
+        let by = [share.times_plus(dx, first[0]).sum(), share.times_plus(dy, first[1]).sum()];
+        let velocity = [
+            share.times_plus(second[2] - first[2], first[2]).sum(),
+            share.times_plus(second[3] - first[3], first[3]).sum(),
+        ];
+        let angle = self.outer.angle[place.facet];
+        Moved { by, velocity, tilt: [dx.sum() * angle, dy.sum() * angle] }
+    }
+
+    /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
+    #[inline(always)]
+    pub(crate) fn press<S: Simd>(&self, simd: S, place: &Place<'_>, force: [f64; 2], push: &mut [f64]) {
+        let groups = self.reduction.padded / LANES;
+        let [[ax, ay], [bx, by]] = place.shapes;
+        let push = &mut push.as_chunks_mut::<LANES>().0[..groups];
+        let [first, second] = [place.share - 1.0, -place.share];
+        let (fx, fy) = (Vector::all(simd, first * force[0]), Vector::all(simd, first * force[1]));
+        let (sx, sy) = (Vector::all(simd, second * force[0]), Vector::all(simd, second * force[1]));
+        for n in 0..groups {
+            let mut at = 0;
+            while at < LANES {
+                let here = Vector::load(simd, &ax[n], at).times_plus(fx, Vector::load(simd, &push[n], at));
+                let here = Vector::load(simd, &ay[n], at).times_plus(fy, here);
+                let there = Vector::load(simd, &bx[n], at) * sx;
+                let there = Vector::load(simd, &by[n], at).times_plus(sy, there);
+                (here + there).store(&mut push[n], at);
+                at += Vector::<S>::LEN;
+            }
+        }
+    }
+
+    /// Modes move under the forces `push`; `further` is what the load exceeds that of the preload by, in shares of it.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "one motion, with all that it reads and adds to")]
+    pub(crate) fn move_modes<S: Simd>(
+        &self,
+        simd: S,
+        state: &mut State,
+        push: &[f64],
+        further: f64,
+        last: bool,
+        energy: &mut Stored,
+        spent: &mut Spent,
+    ) {
+        let dt = self.time_step;
+        let r = self.reduction.padded;
+        let h = match self.frame {
+            DampingFrame::RigidMotion => 0.0,
+            _ => 0.5 * self.alpha * dt,
+        };
+        let along_load =
+            |state: &State| state.v.iter().zip(&self.reduction.load.0).map(|(v, load)| v * load).sum::<f64>();
+        let before = if further != 0.0 { along_load(state) } else { 0.0 };
+        for (branch, stretch) in self.branches.iter().zip(&mut state.branches) {
+            let e = (-dt / branch.relaxation_time).exp();
+            for (u, v) in stretch.iter_mut().zip(&state.v) {
+                *u = e * *u + branch.relaxation_time * (1.0 - e) * v;
+            }
+        }
+        let all = |value: f64| Vector::all(simd, value);
+        let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(dt / (1.0 + h)));
+        let (alpha, beta, half, step) = (all(2.0 * h / dt), all(self.beta), all(0.5), all(dt));
+        let (squares, push) = (&self.reduction.squares[..r], &push[..r]);
+        let (external, constant) = (&self.reduction.external[..r], &self.reduction.constant[..r]);
+        let mut sums = [all(0.0); 4];
+        for at in (0..r).step_by(Vector::<S>::LEN) {
+            let (q, v) = (Vector::load(simd, &state.q, at), Vector::load(simd, &state.v, at));
+            let square = Vector::load(simd, squares, at);
+            let mut ahead = beta * v;
+            for (branch, stretch) in self.branches.iter().zip(&state.branches) {
+                ahead = all(branch.stiffness).times_plus(Vector::load(simd, stretch, at), ahead);
+            }
+            let a = (-square).times_plus(q + ahead, Vector::load(simd, push, at));
+            let new = kept.times_plus(v, gain * a);
+            let mean = half * (v + new);
+            let outside = Vector::load(simd, external, at);
+            sums[0] = mean.times_plus(outside, sums[0]);
+            sums[1] = alpha.times_plus(mean, square * ahead).times_plus(mean, sums[1]);
+            if last {
+                sums[2] = v.times_plus(new, sums[2]);
+                let held = outside - Vector::load(simd, constant, at);
+                sums[3] = (half * square).times_plus(q, held).times_plus(q, sums[3]);
+            }
+            new.store(&mut state.v, at);
+            step.times_plus(new, q).store(&mut state.q, at);
+        }
+        spent.external += dt * sums[0].sum();
+        if further != 0.0 {
+            spent.external += 0.5 * dt * further * (before + along_load(state));
+        }
+        spent.damped += dt * sums[1].sum();
+        if last {
+            energy.kinetic += 0.5 * sums[2].sum();
+            energy.strain += self.reduction.strain + sums[3].sum();
+        }
+    }
+}
