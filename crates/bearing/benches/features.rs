@@ -79,7 +79,8 @@ impl Moving {
     fn new(variant: Variant) -> Self {
         let (mut machine, elements) = machine(&variant.scene, 1);
         if let Some(rate) = variant.damping {
-            let mut frames = vec![(machine.outer, Frame::Rest), (machine.adapter, Frame::Rest)];
+            let held = std::iter::once(machine.outer).chain(machine.housing);
+            let mut frames: Vec<_> = held.map(|body| (body, Frame::Rest)).collect();
             frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Tangential { centre: [0.0; 2] })));
             machine.system.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
         }

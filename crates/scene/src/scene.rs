@@ -54,7 +54,7 @@ pub enum ModelScene {
     #[default]
     Full,
     /// Outer ring and adapter in their modes below a frequency, rollers and cage rigid with local compliance: a second in
-    /// some ten seconds.
+    /// a few seconds.
     Reduced(ReducedScene),
 }
 
