@@ -92,6 +92,9 @@ fn with_everything() -> Scene {
     scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
     scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
     scene.operation.rotating_load = Some(RotatingLoadScene::default());
+    // Not written where they are what they are by default.
+    (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (90.0, 100.0);
+    scene.bearing.clearance_change_um = -10.0;
     scene
 }
 
@@ -394,16 +397,18 @@ mod tests {
 
     #[test]
     fn example_every_number_of_a_scene_has_a_range() {
-        let scene = with_everything();
-        let text = scene.to_ron();
-        let outline = super::super::outline::Outline::of(&text);
-        let listed: Vec<String> = numbers(&scene).into_iter().map(|number| number.path).collect();
-        for entry in &outline.entries {
-            let is_number = text[entry.value.clone()].parse::<f64>().is_ok();
-            assert_eq!(is_number, listed.contains(&entry.path), "{}", entry.path);
-        }
-        for path in &listed {
-            assert!(outline.get(path).is_some(), "{path} is not a field");
+        for housing in HousingScene::of_every_form() {
+            let scene = Scene { housing, ..with_everything() };
+            let text = scene.to_ron();
+            let outline = super::super::outline::Outline::of(&text);
+            let listed: Vec<String> = numbers(&scene).into_iter().map(|number| number.path).collect();
+            for entry in &outline.entries {
+                let is_number = text[entry.value.clone()].parse::<f64>().is_ok();
+                assert_eq!(is_number, listed.contains(&entry.path), "{}", entry.path);
+            }
+            for path in &listed {
+                assert!(outline.get(path).is_some(), "{path} is not a field");
+            }
         }
     }
 

@@ -11,7 +11,7 @@ use crate::duty::Duty;
 use crate::geometry::Geometry;
 use crate::line_contact::LineContacts;
 use crate::point_contact;
-use crate::scene::{BearingScene, CageScene, DefectScene, FramesScene, GradingScene, Scene};
+use crate::scene::{BearingScene, CageScene, DefectScene, FramesScene, GradingScene, PocketWalls, Scene};
 
 /// Circumference of the pitch circle over the rolling elements side by side, where their number is not known: cages of E
 /// design leave about a quarter.
@@ -54,6 +54,13 @@ pub(crate) fn designation(value: &str) -> Option<String> {
     (!inner.contains('"')).then(|| inner.to_owned())
 }
 
+/// Room between the outer raceway and a cage with corners, and its thickness, in diameters of a roller: it lies outside of the
+/// pitch circle then, as that of the paper's bearing.
+const OFF_RACE: f64 = 0.22;
+
+/// Friction of steel on steel in oil. That of the paper's scene, a tenth of it, lets small bearings skid.
+const FRICTION: f64 = 0.05;
+
 /// Puts the bearing into the scene, and around it what the user did not write; `given` has the paths of what was.
 ///
 /// # Errors
@@ -77,8 +84,16 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     };
     if let Some(cage) = &mut scene.cage {
         let roller = bearing.roller_diameter_mm;
-        follow("cage.outer_diameter_mm", &mut cage.outer_diameter_mm, known.pitch_mm + 0.4 * roller);
-        follow("cage.thickness_mm", &mut cage.thickness_mm, 0.4 * roller);
+        if !given("cage.pocket") {
+            cage.pocket = PocketWalls::Corners;
+        }
+        // Corners hold a cage across where they touch rollers above their middles, straight walls where they reach to both sides.
+        let [outer, thick] = match cage.pocket {
+            PocketWalls::Corners => [bearing.outer_race_diameter_mm - OFF_RACE * roller, OFF_RACE * roller],
+            PocketWalls::Straight => [known.pitch_mm + 0.4 * roller, 0.4 * roller],
+        };
+        follow("cage.outer_diameter_mm", &mut cage.outer_diameter_mm, outer);
+        follow("cage.thickness_mm", &mut cage.thickness_mm, thick);
         let room = size * CageScene::default().pocket_clearance_um;
         follow("cage.pocket_clearance_um", &mut cage.pocket_clearance_um, room);
     }
@@ -93,6 +108,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     if let Some(grading) = &mut scene.mesh.grading {
         follow("mesh.grading.coarse_mm", &mut grading.coarse_mm, size * GradingScene::default().coarse_mm);
     }
+    follow("contact.friction", &mut scene.contact.friction, FRICTION);
     // The same pressure where rollers carry the same share.
     let area = |b: &BearingScene| b.rollers as f64 * b.roller_diameter_mm * b.thickness_mm;
     let load = paper.operation.load_n * area(&bearing) / area(&paper.bearing);

@@ -10,7 +10,8 @@ use stribeck_testing::Scratch;
 use super::{Place, Problem, SceneError};
 use crate::housing::{HousingScene, RigidHousingScene};
 use crate::scene::{
-    ContactMethod, DampingFrame, HarmonicScene, ProfileScene, RampScene, RollerCopies, Scene, Start,
+    ContactMethod, DampingFrame, HarmonicScene, PocketWalls, ProfileScene, RampScene, RollerCopies, Scene,
+    Start,
 };
 
 /// The only problem of `result`.
@@ -567,6 +568,11 @@ fn example_a_bearing_by_its_name() {
     assert_eq!((own.bearing.rollers, own.mesh.size_mm), (12, 0.4));
     let cage = own.cage.as_ref().unwrap();
     assert!(cage.pocket_clearance_um == 80.0 && cage.outer_diameter_mm < 46.5, "{cage:?}");
+    assert_eq!((cage.pocket, own.contact.friction), (PocketWalls::Corners, 0.05));
+    let straight =
+        Scene::parse("(bearing: \"NU 205\", cage: (pocket: straight), contact: (friction: 0.1))", "mine")
+            .unwrap();
+    assert_eq!((straight.cage.map(|cage| cage.thickness_mm), straight.contact.friction), (Some(2.99), 0.1));
     assert_eq!(Scene::parse(&own.to_ron(), "complete").unwrap(), own);
     let set = ["operation.load_n=1000", "bearing=NU 205"];
     let other = Scene::default().with_overrides(&set).unwrap();

@@ -20,8 +20,11 @@ pub(crate) fn round_down(value: f64, digits: i32) -> f64 {
     to_digits(value, digits, f64::floor)
 }
 
-/// Rounds a positive number to `digits` significant digits.
+/// Rounds a positive number to `digits` significant digits; what is too small for that stays.
 fn to_digits(value: f64, digits: i32, round: fn(f64) -> f64) -> f64 {
+    if !value.is_normal() {
+        return value;
+    }
     let power = digits - 1 - value.log10().floor() as i32;
     // A negative power of ten is no binary fraction; dividing by its inverse leaves less dust.
     if power >= 0 {
