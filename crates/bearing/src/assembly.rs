@@ -15,17 +15,12 @@ use stribeck_solver::{
 };
 use stribeck_system::{Film, Pair, Plan, System};
 
-use crate::{
-    error::Error,
-    grading,
-    housing::housing,
-    suspension::{Suspension, Tie},
-};
+use crate::{error::Error, grading, housing::housing, suspension::suspend};
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
     geometry::{CageGeometry, Geometry},
-    housing::{HousingScene, SpringHousingScene},
+    housing::HousingScene,
     kinematics::{FacetCounts, Kinematics},
     lubrication,
     run_info::MeshInfo,
@@ -184,7 +179,7 @@ impl Assembly {
             groove: groove_in(&g, DefectRing::Outer),
         };
         let outer = formed(made(&outer, &outer_grading)?, "inner", Circle::Inner, g.outer_relief.as_ref())?;
-        let outer = mesh.add("outer ring", &outer);
+        let (outer_area, outer) = (outer.area(), mesh.add("outer ring", &outer));
 
         let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
         let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
@@ -257,8 +252,7 @@ impl Assembly {
         match (&scene.housing, &held) {
             (HousingScene::Rigid(housing), _) => {
                 model.behaviour[outer.body] = Behaviour::Turning { rate: kinematics.outer_rad_s };
-                let area = area_of(&model.mesh, outer.body);
-                let heavier = 1.0 + housing.mass_kg / (area * g.thickness * m.density);
+                let heavier = 1.0 + housing.mass_kg / (outer_area * g.thickness * m.density);
                 model.materials[outer.body] =
                     Elastic::new(m.youngs_modulus, m.poissons_ratio, heavier * m.density)?;
             }
@@ -400,7 +394,7 @@ impl Assembly {
             plan.load_nodes(ACROSS, across.collect())?;
         }
         if let (HousingScene::Springs(springs), Some(housing)) = (&scene.housing, &self.housing) {
-            suspend(&mut plan, springs, back, housing)?;
+            suspend(&mut plan, springs, back, mesh.bodies[housing.body].nodes.start as u32)?;
         }
         let pairs = self.touch(&mut plan, scene)?;
         oil(&mut plan, scene, &rollers)?;
@@ -484,59 +478,6 @@ pub(crate) fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> 
         system.scale_load(ACROSS, across / load_n)?;
     }
     Ok(())
-}
-
-/// Ties the outer ring's back to the frame, node by node.
-fn suspend(
-    plan: &mut Plan,
-    springs: &SpringHousingScene,
-    back: &Surface,
-    frame: &PlacedHousing,
-) -> Result<(), Error> {
-    let mesh = &plan.model.mesh;
-    let place = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
-    let length: Vec<f64> = (0..back.facets())
-        .map(|f| back.facet(f).map(place))
-        .map(|[[ax, ay], [bx, by]]| (bx - ax).hypot(by - ay))
-        .collect();
-    let (whole, n) = (length.iter().sum::<f64>(), back.nodes.len());
-    let held = plan.model.mesh.bodies[frame.body].nodes.start as u32;
-    let ties = (0..n).map(|i| {
-        let share = 0.5 * (length[i] + length[(i + n - 1) % n]) / whole;
-        (back.nodes[i], 1e6 * share * springs.stiffness_n_um, share * springs.damping_n_s_m)
-    });
-    let ties: Vec<(u32, f64, f64)> = ties.collect();
-    let nodes: Vec<u32> = ties.iter().map(|tie| tie.0).chain([held]).collect();
-    let (x, y) = (mesh.x.clone(), mesh.y.clone());
-    plan.force("springs of the housing", nodes.clone(), move |slots| {
-        let (of_ring, frame) = slots.split_at(slots.len() - 1);
-        let apart = |n: u32| [x[n as usize] - x[held as usize], y[n as usize] - y[held as usize]];
-        let suspended = of_ring.iter().zip(&ties).map(|(&slot, &(node, stiffness, damping))| Tie {
-            slot,
-            apart: apart(node),
-            stiffness,
-            damping,
-        });
-        Box::new(Suspension::new(suspended.collect(), frame[0]))
-    })?;
-    Ok(())
-}
-
-/// Area of a body of the mesh [m²].
-fn area_of(mesh: &Mesh, body: usize) -> f64 {
-    let place = |n: &u32| [mesh.x[*n as usize], mesh.y[*n as usize]];
-    let area = |corners: &[u32]| {
-        let next = corners.iter().cycle().skip(1);
-        corners
-            .iter()
-            .zip(next)
-            .map(|(a, b)| (place(a), place(b)))
-            .map(|([ax, ay], [bx, by])| 0.5 * (ax * by - bx * ay))
-            .sum::<f64>()
-    };
-    let body = &mesh.bodies[body];
-    let quads: f64 = mesh.quads[body.quads.clone()].iter().map(|q| area(q)).sum();
-    quads + mesh.triangles[body.triangles.clone()].iter().map(|t| area(t)).sum::<f64>()
 }
 
 /// Puts oil between every roller and both raceways, the outer one first.

@@ -1,27 +1,67 @@
 //! Springs and dampers between the nodes of a ring and a frame that moves without turning.
 
+use stribeck_mesh::Surface;
+use stribeck_scene::housing::SpringHousingScene;
 use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
 };
+use stribeck_system::Plan;
+
+use crate::error::Error;
+
+/// Ties every node of the ring's back to the frame, of which `held` is a node: each by its share of the circumference.
+///
+/// # Errors
+/// When a node is not in the mesh of the plan.
+pub(crate) fn suspend(
+    plan: &mut Plan,
+    springs: &SpringHousingScene,
+    back: &Surface,
+    held: u32,
+) -> Result<(), Error> {
+    let mesh = &plan.model.mesh;
+    let between =
+        |a: u32, b: u32| [mesh.x[b as usize] - mesh.x[a as usize], mesh.y[b as usize] - mesh.y[a as usize]];
+    let facets = (0..back.facets()).map(|f| back.facet(f)).map(|[a, b]| between(a, b));
+    let length: Vec<f64> = facets.map(|[x, y]| x.hypot(y)).collect();
+    let (around, n) = (length.iter().sum::<f64>(), length.len());
+    let tie = |(i, &node): (usize, &u32)| {
+        let share = 0.5 * (length[i] + length[(i + n - 1) % n]) / around;
+        Tie {
+            slot: node,
+            apart: between(held, node),
+            stiffness: 1e6 * share * springs.stiffness_n_um,
+            damping: share * springs.damping_n_s_m,
+        }
+    };
+    let ties: Vec<Tie> = back.nodes.iter().enumerate().map(tie).collect();
+    let nodes = ties.iter().map(|tie| tie.slot).chain([held]).collect();
+    plan.force("springs of the housing", nodes, move |slots| {
+        let frame = slots[slots.len() - 1];
+        let ties = ties.into_iter().zip(slots).map(|(tie, &slot)| Tie { slot, ..tie });
+        Box::new(Suspension::new(ties.collect(), frame))
+    })?;
+    Ok(())
+}
 
 /// A spring and a damper from a node to the frame, at rest in the place where the node is at first.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Tie {
-    /// Slot of the node.
-    pub(crate) slot: u32,
+struct Tie {
+    /// The node, in the mesh first and its slot from when it is laid out.
+    slot: u32,
     /// From the frame's node to this one at rest [m].
-    pub(crate) apart: [f64; 2],
+    apart: [f64; 2],
     /// Stiffness in every direction [N/m].
-    pub(crate) stiffness: f64,
+    stiffness: f64,
     /// Damping in every direction [N s/m].
-    pub(crate) damping: f64,
+    damping: f64,
 }
 
 /// All ties of a ring to one frame.
 #[derive(Debug, Clone)]
-pub(crate) struct Suspension {
+struct Suspension {
     ties: Vec<Tie>,
     /// Slot of the node that stands for the frame.
     frame: usize,
@@ -31,7 +71,7 @@ pub(crate) struct Suspension {
 }
 
 impl Suspension {
-    pub(crate) fn new(ties: Vec<Tie>, frame: u32) -> Self {
+    fn new(ties: Vec<Tie>, frame: u32) -> Self {
         Self { ties, frame: frame as usize, stored: 0.0, heat: 0.0 }
     }
 }
