@@ -228,7 +228,9 @@ fn housing(scene: &Scene) -> String {
     match &scene.housing {
         HousingScene::Adapter => String::new(),
         HousingScene::Pedestal(_) => " in a pedestal".to_owned(),
-        HousingScene::Mesh(housing) => format!(" in a housing (`{}`)", housing.file),
+        HousingScene::Mesh(housing) => {
+            format!(" in a housing ({})", Path::new(&housing.file).file_stem().unwrap_or_default().display())
+        }
         HousingScene::Rigid(_) => " in a rigid housing".to_owned(),
         HousingScene::Springs(springs) => {
             format!(" in a housing on springs of {} N/µm", springs.stiffness_n_um)
