@@ -52,7 +52,7 @@ impl Schema {
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
         scene.defects = DeviationScene::of_every_form();
         scene.film = Some(FilmScene::default());
-        // One profile shows the fields of a ramp, the other those of a sine; either may be both.
+        // One profile shows the fields of a ramp, the other those of a sine.
         scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
         scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
         scene.operation.rotating_load = Some(RotatingLoadScene::default());
@@ -60,10 +60,10 @@ impl Schema {
         (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (0.5, 0.5);
         scene.bearing.clearance_change_um = 0.5;
         let of_housing = |housing| {
-            let mut scene = scene.clone();
-            // What a file held is no field to write.
-            scene.housing = housing;
-            Complete::of(&scene)
+            let complete = Complete::of(&Scene { housing, ..scene.clone() });
+            // The next one shows the other kind of each profile.
+            std::mem::swap(&mut scene.operation.speed_profile, &mut scene.operation.load_profile);
+            complete
         };
         Self { scenes: HousingScene::of_every_form().into_iter().map(of_housing).collect() }
     }
@@ -109,12 +109,14 @@ impl Schema {
     pub(crate) fn behind(&self, path: &str, word: &str, name: &str) -> Option<(&Scene, String, &str)> {
         let groups: Vec<String> =
             std::iter::once(path.to_owned()).chain(in_other_profile(path)).chain(forms_of(path)).collect();
-        self.scenes.iter().find_map(|complete| {
-            let value = |path: &str| Some(&complete.text[complete.outline.get(path)?.value.clone()]);
-            let is_word = |group: &&String| value(group).is_some_and(|v| v.split('(').next() == Some(word));
-            let field = format!("{}.{name}", groups.iter().find(is_word)?);
-            let default = value(&field)?;
-            Some((&complete.scene, field, default))
+        groups.iter().find_map(|group| {
+            self.scenes.iter().find_map(|complete| {
+                let value = |path: &str| Some(&complete.text[complete.outline.get(path)?.value.clone()]);
+                value(group).filter(|value| value.split('(').next() == Some(word))?;
+                let field = format!("{group}.{name}");
+                let default = value(&field)?;
+                Some((&complete.scene, field, default))
+            })
         })
     }
 
