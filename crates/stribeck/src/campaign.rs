@@ -157,6 +157,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     conclude(&folder, &campaign, &interrupt, mine)
 }
 
+/// Writes a file that other parts may write at the same time.
+fn replace(path: &Path, text: &str) -> Result<()> {
+    tables::replace(path, |beside| Ok(write_atomic(beside, text.as_bytes())?))
+}
+
 /// Makes the folder, or finds the same campaign in it.
 fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
     let path = folder.file();
@@ -170,7 +175,7 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
         Err(_) => {
             std::fs::create_dir_all(folder.0.join("runs"))
                 .with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
-            write_atomic(&path, campaign.text.as_bytes())?;
+            replace(&path, &campaign.text)?;
         }
     }
     Ok(())
@@ -208,7 +213,7 @@ fn conclude(
     }
     let rows = tables::rows(folder, campaign, &stages)?;
     let written = tables::write(folder, campaign, &rows)?;
-    write_atomic(&folder.0.join("DATASHEET.md"), datasheet::text(campaign, &rows, &written).as_bytes())?;
+    replace(&folder.0.join("DATASHEET.md"), &datasheet::text(campaign, &rows, &written))?;
     let complete = rows.iter().filter(|row| row.status == "complete").count();
     for row in rows.iter().filter(|row| row.status != "complete").take(3) {
         let why = row.reason.as_deref().unwrap_or_default();

@@ -73,6 +73,18 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     }
     assert!(run(&desk, &["--out=C", "--shard=3/3"]).status.success());
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("C")));
+    // Eight parts that begin at the same time in a folder that is not there yet.
+    let parts: Vec<_> = (1..=8)
+        .map(|part| {
+            campaign(&desk, &["--out=D", "--jobs=1", &format!("--shard={part}/8")])
+                .spawn()
+                .expect("it starts")
+        })
+        .collect();
+    for mut part in parts {
+        assert!(part.wait().expect("it ends").success());
+    }
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("D")));
     let table = Recording::open(desk.join("A/runs.parquet")).expect("a table");
     let loads = table.channel("scene.operation.load_n").expect("a column").read().expect("numbers");
     assert_eq!(loads.len(), 8);

@@ -102,8 +102,9 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
     Ok(columns.into_iter().map(|column| column.name).collect())
 }
 
-/// Lets `write` make a file beside `path`, then puts it in its place.
-fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
+/// Lets `write` make a file beside `path`, then puts it in its place. Parts that write the same file at once do not meet: each has
+/// a name of its own until then.
+pub(super) fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     let beside = path.with_extension(format!("{}.new", std::process::id()));
     write(&beside)?;
     std::fs::rename(&beside, path).with_context(|| format!("cannot replace `{}`", path.display()))
