@@ -19,6 +19,9 @@ const FLATTEST: f64 = 0.91;
 const FRAME_GAP: f64 = 0.02;
 const FRAME_THICKNESS: f64 = 0.04;
 
+/// Nodes of a bore lie within this part of its radius around the outer ring.
+const LOOSE: f64 = 0.01;
+
 /// A body around or on top of the outer ring.
 pub(crate) struct Housing {
     /// Its name in files and messages.
@@ -60,7 +63,7 @@ pub(crate) fn housing(
         },
         HousingScene::Mesh(file) => Housing {
             name: "housing",
-            part: from_file(file)?,
+            part: from_file(file, g)?,
             seat: Some("bore"),
             loaded: "loaded",
             density: 1.0,
@@ -121,7 +124,7 @@ fn frame(springs: &SpringHousingScene, g: &Geometry, back: &Surface) -> Result<H
 }
 
 /// The mesh of a file, with its bore and its loaded edge.
-fn from_file(housing: &MeshHousingScene) -> Result<Part, Error> {
+fn from_file(housing: &MeshHousingScene, g: &Geometry) -> Result<Part, Error> {
     let refuse = |what: String| Error::HousingFile { file: housing.file.clone(), what };
     let extension = Path::new(&housing.file).extension().and_then(|e| e.to_str()).unwrap_or_default();
     let deck = Deck::of_extension(extension)
@@ -146,6 +149,19 @@ fn from_file(housing: &MeshHousingScene) -> Result<Part, Error> {
             return Err(refuse(format!(
                 "the set `{name}` is no closed bore, but {places} pieces of boundary"
             )));
+        }
+        if surface == "bore" {
+            let ring = g.outer_race_radius + g.outer_ring_thickness;
+            let radius = |n: &u32| part.x[*n as usize].hypot(part.y[*n as usize]);
+            let off = longest.nodes.iter().map(radius).find(|radius| (radius / ring - 1.0).abs() > LOOSE);
+            if let Some(radius) = off {
+                return Err(refuse(format!(
+                    "its bore does not fit the outer ring: a node lies {:.4} mm from the centre, the ring is {:.4} mm in radius. Look at \
+                     `housing.unit_mm`; the bearing's centre is the origin of the mesh",
+                    1e3 * radius,
+                    1e3 * ring
+                )));
+            }
         }
         part.surfaces.push((surface.to_owned(), longest.clone()));
     }

@@ -136,6 +136,19 @@ fn analytic_rollers_between_turning_rings() {
 }
 
 #[test]
+fn refuses_a_mesh_that_is_no_housing_of_the_bearing() {
+    for (set, words) in [
+        ("housing.bore=boar", "no set of nodes `boar`, which `housing.bore` names; sets: `bore`, `loaded`"),
+        ("housing.bore=loaded", "is no closed bore"),
+        ("housing.unit_mm=1000", "the outer ring: a node lies 26000.000"),
+        ("housing.text=rubbish", "line 1"),
+    ] {
+        let said = Assembly::new(&scene(&[MESH, set])).expect_err(set).to_string();
+        assert!(said.contains(words) && said.contains("pillow_block.msh"), "{set}: {said}");
+    }
+}
+
+#[test]
 fn invariant_a_run_on_springs_goes_on_with_the_same_bytes() {
     let whole = Scratch::new("springs-whole");
     let long =
