@@ -1,6 +1,6 @@
 //! When a roller unloads at the leading edge of a defect and when it is loaded again at the trailing edge.
 //!
-//! **The rule.** The normal force of the outer raceway on the roller (compression positive) is passed through a
+//! **The rule.** The normal force of the spall's raceway on the roller (compression positive) is passed through a
 //! running median as wide as one facet period, at most a tenth of the traverse: a median keeps steps where they are, and takes out both the facet
 //! tone and shocks shorter than half its width. The level before the defect is the median over half a traverse
 //! before the expected entry, less its last tenth. The record around the passage is split where the roller is in

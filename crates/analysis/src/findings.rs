@@ -96,6 +96,8 @@ pub struct SensorSignal {
 pub struct CrossingForce {
     /// Roller, from 1.
     pub roller: usize,
+    /// Whether it is the vertical force of the outer raceway, as in the paper, or that along the normal of the spall's raceway.
+    pub vertical: bool,
     /// As recorded, mean over each interval.
     pub raw_n: Vec<f64>,
     /// Behind the notch; empty when there is none.
@@ -160,7 +162,7 @@ impl Findings {
 
         let mut events = picked_events(&run.scene, &record, &prediction, &mut notes);
         let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
-        let crossings = crossing_forces(&record, &events, filter.as_ref())?;
+        let crossings = crossing_forces(&record, &prediction, &events, filter.as_ref())?;
         let notch = filter.as_ref().zip(sensors.first()).map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g));
         let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
         let mut load = load::measure(

@@ -24,15 +24,26 @@ pub struct Prediction {
     pub kinematics: Kinematics,
     /// Names and frequencies [Hz] of the fundamental facet-passing lines, from the actual mesh counts.
     pub facet_lines: Vec<(String, f64)>,
-    /// Edges of the defect, when there is one on the outer raceway; one on the inner raceway has no fixed place.
-    pub defect: Option<DefectEdges>,
+    /// Spalls of raceways, in the order of [`Scene::spalls`].
+    pub spalls: Vec<SpallCourse>,
     /// What a defect strikes: the name and the frequency [Hz] of its family; `None` where the speed changes and it has none.
     pub family: Option<(&'static str, f64)>,
-    /// Passages over the defect that begin in the simulated time, in order of entry.
+}
+
+/// A spall of a raceway, and who should cross it when.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpallCourse {
+    /// The spall.
+    pub spall: DefectScene,
+    /// Its edges at the start; they turn with its ring.
+    pub edges: DefectEdges,
+    /// Whether its ring turns.
+    pub turns: bool,
+    /// Passages that begin in the simulated time, in order of entry.
     pub passages: Vec<Crossing>,
 }
 
-/// Angles [°] between which a roller's centre is over the defect, counter-clockwise from the x axis.
+/// Angles [°] between which a roller's centre is over a spall, counter-clockwise from the x axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DefectEdges {
     /// Where rollers arrive.
@@ -69,8 +80,12 @@ impl Prediction {
         };
         let facet_lines = kinematics.facet_tones(counts).map(|tone| (tone.name.to_owned(), tone.hz)).to_vec();
         let edges = |defect: &DefectScene| {
-            let half_deg = (defect.length_mm / scene.bearing.outer_race_diameter_mm).to_degrees();
-            let ahead_deg = kinematics.sense() * half_deg;
+            // Rollers pass either raceway from opposite sides.
+            let (diameter_mm, ahead) = match defect.ring {
+                DefectRing::Outer => (scene.bearing.outer_race_diameter_mm, kinematics.sense()),
+                DefectRing::Inner => (scene.bearing.inner_race_diameter_mm, -kinematics.sense()),
+            };
+            let ahead_deg = ahead * (defect.length_mm / diameter_mm).to_degrees();
             DefectEdges {
                 leading_deg: defect.angle_deg + ahead_deg,
                 middle_deg: defect.angle_deg,
@@ -87,21 +102,32 @@ impl Prediction {
             let until_s = Geometry::of(scene).duration + traverse_s;
             kinematics.crossings(defect, &roller_angles_deg(scene), until_s)
         };
-        let spall = scene.leading_spall();
+        let course = |spall: DefectScene| SpallCourse {
+            edges: edges(&spall),
+            turns: spall.ring == DefectRing::Inner || scene.operation.outer_speed_rpm != 0.0,
+            passages: passages(&spall),
+            spall,
+        };
         Self {
             facet_lines,
-            defect: spall
-                .as_ref()
-                .filter(|d| d.ring == DefectRing::Outer && scene.operation.outer_speed_rpm == 0.0)
-                .map(edges),
+            spalls: scene.spalls().into_iter().map(course).collect(),
             family: scene.faults().first().filter(|_| !scene.operation.speed_varies()).map(|on| match on {
                 RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
                 RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
                 RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
             }),
-            passages: spall.as_ref().map(passages).unwrap_or_default(),
             kinematics,
         }
+    }
+
+    /// Edges of the first spall, when it stands still.
+    pub fn standing(&self) -> Option<DefectEdges> {
+        self.spalls.first().filter(|spall| !spall.turns).map(|spall| spall.edges)
+    }
+
+    /// Passages over the first spall.
+    pub fn passages(&self) -> &[Crossing] {
+        self.spalls.first().map_or(&[], |spall| &spall.passages)
     }
 
     /// The defect's frequency in a bearing whose rollers were seen to pass the outer raceway at `bpfo_hz`: they pass either
@@ -181,7 +207,7 @@ impl Prediction {
     }
 
     fn over_defect(&self, angle_deg: f64) -> bool {
-        self.defect.is_some_and(|d| {
+        self.standing().is_some_and(|d| {
             let from_middle = (angle_deg - d.middle_deg + 180.0).rem_euclid(360.0) - 180.0;
             from_middle.abs() < (d.leading_deg - d.middle_deg).abs()
         })
@@ -234,8 +260,8 @@ mod tests {
         const EXPECTED_MS: [(f64, f64); 3] =
             [(0.839_98, 5.079_51), (11.939_03, 16.178_56), (23.038_08, 27.277_61)];
         let prediction = Prediction::of(&Scene::default(), &mesh(1257, 1030));
-        assert_eq!(prediction.passages.len(), 3);
-        for (roller, (found, (entry, exit))) in prediction.passages.iter().zip(EXPECTED_MS).enumerate() {
+        assert_eq!(prediction.passages().len(), 3);
+        for (roller, (found, (entry, exit))) in prediction.passages().iter().zip(EXPECTED_MS).enumerate() {
             assert_eq!(found.roller, roller + 1);
             assert!((1e3 * found.entry_s - entry).abs() < 1e-4, "{found:?}");
             assert!((1e3 * found.exit_s - exit).abs() < 1e-4, "{found:?}");
@@ -268,7 +294,7 @@ mod tests {
     fn example_a_sound_bearing_has_no_passage() {
         let scene = Scene { defect: None, ..Scene::default() };
         let prediction = Prediction::of(&scene, &mesh(0, 0));
-        assert!(prediction.passages.is_empty() && prediction.defect.is_none());
+        assert!(prediction.passages().is_empty() && prediction.standing().is_none());
         assert!((prediction.facet_period_s() - 1.0 / 4672.0).abs() < 1e-6);
     }
 }

@@ -1,6 +1,7 @@
 //! The channels of a run under their names, cut where they stop being numbers.
 
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::DefectRing;
 
 use crate::levels::STANDARD_GRAVITY;
 
@@ -128,6 +129,14 @@ impl Roller<'_> {
                 angle + turns * std::f64::consts::TAU
             })
             .collect()
+    }
+
+    /// Normal force between roller and the raceway of a ring [N], compression positive.
+    pub fn normal(&self, ring: DefectRing) -> Vec<f64> {
+        match ring {
+            DefectRing::Outer => self.outer_normal(),
+            DefectRing::Inner => self.inner_normal(),
+        }
     }
 
     /// Normal force between roller and outer raceway [N], compression positive.

@@ -2,10 +2,10 @@
 //!
 //! Between the two the contact has run `v (t_exit − t_entry)`. That is too short: a roller pressed together by δ is not
 //! free when its centre stands over the edge. The rings hold the sum of all approaches; with the centre at the distance s
-//! behind the edge the outer contact is a strip that ends at the edge,
+//! behind the edge the contact with the spall's raceway is a strip that ends at the edge,
 //!
 //! ```text
-//! δ(Q) = e(q) + d_i(q) + d            d_i(q) = (3q / (4k √(2R_i)))^⅔
+//! δ(Q) = e(q) + d_i(q) + d            d_i(q) = (3q / (4k √(2R_i)))^⅔ at the other raceway
 //! q = k ∫ (d − x²/2R) dx              x from −√(2Rd) to −s
 //! ```
 //!
@@ -20,7 +20,7 @@
 //! The corner of the edge is taken as stiff as the raceway, which it is not quite (own).
 
 use stribeck_scene::geometry::Geometry;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{DefectRing, Scene};
 use stribeck_scene::static_load::RigidRings;
 
 /// Halvings of the bracket: beyond rounding.
@@ -30,7 +30,7 @@ const HALVINGS: usize = 60;
 #[derive(Debug, Clone, Copy)]
 pub struct Edge {
     rings: RigidRings,
-    /// Effective radii at the outer and the inner raceway [m].
+    /// Effective radii at the raceway with the spall and at the other one [m].
     radius: [f64; 2],
     /// Penalty stiffness [Pa/m].
     stiffness: f64,
@@ -39,12 +39,16 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// From a scene.
-    pub fn of(scene: &Scene) -> Self {
+    /// Of a spall on the raceway of `ring`.
+    pub fn of(scene: &Scene, ring: DefectRing) -> Self {
         let g = Geometry::of(scene);
+        let (outer, inner) = (g.outer_contact_radius(), g.inner_contact_radius());
         Self {
             rings: RigidRings::new(&g),
-            radius: [g.outer_contact_radius(), g.inner_contact_radius()],
+            radius: match ring {
+                DefectRing::Outer => [outer, inner],
+                DefectRing::Inner => [inner, outer],
+            },
             stiffness: g.penalty_stiffness,
             thickness: g.thickness,
         }
@@ -106,7 +110,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
         scene.contact.penalty_scale = 1e4;
-        let edge = Edge::of(&scene);
+        let edge = Edge::of(&scene, DefectRing::Outer);
         let sunk = edge.rings.approach_m(10_400.0) - edge.rings.approach_m(5_200.0);
         let expected = (2.0 * 9.890e-3 * sunk).sqrt();
         let s = edge.half_load_m(10_400.0);
@@ -118,7 +122,7 @@ mod tests {
 
     #[test]
     fn analytic_a_strip_cut_in_its_middle_carries_half() {
-        let edge = Edge::of(&Scene::default());
+        let edge = Edge::of(&Scene::default(), DefectRing::Outer);
         let depth = edge.penetration(5e5, edge.radius[0]);
         let half = (2.0 * edge.radius[0] * depth).sqrt();
         assert!((edge.cut_strip(depth, -half) / 5e5 - 1.0).abs() < 1e-9);

@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::Resolution;
 use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
+use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Artefact;
 use crate::diagnosis::DiagnosisFinding;
@@ -130,6 +131,12 @@ pub struct EnergyFinding {
 pub struct Event {
     /// Roller, from 1.
     pub roller: usize,
+    /// Which spall of a raceway, from 1: `defect` of the scene first, then those of its `defects`.
+    #[serde(default = "first")]
+    pub spall: usize,
+    /// Whose raceway the spall is on.
+    #[serde(default)]
+    pub ring: DefectRing,
     /// Unloading read from the force [ms].
     pub entry_ms: Option<f64>,
     /// Re-stressing read from the force [ms].
@@ -158,6 +165,11 @@ pub struct Event {
     pub compensation_gain: Option<f64>,
     /// Length of the defect estimated from both times and the speed without slip [mm].
     pub spall_mm: Option<f64>,
+}
+
+/// Events that were written before there were several spalls are of the first.
+fn first() -> usize {
+    1
 }
 
 /// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None` where the

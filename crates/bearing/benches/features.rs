@@ -10,6 +10,7 @@ use std::time::Instant;
 
 use motion::{CLOSING, machine};
 use stribeck_contact::Contacts;
+use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface, SpallScene, WavinessScene};
 use stribeck_scene::scene::Scene;
 use stribeck_solver::{
     Dynamics, Force, Velocities,
@@ -30,7 +31,7 @@ struct Variant {
     scene: Scene,
     contact: bool,
     /// Rate of the mass damping [1/s]; `None` sets none.
-    damping: Option<f64>,
+    mass_damping: Option<f64>,
     /// Energies at every sample.
     energies: bool,
 }
@@ -47,38 +48,49 @@ struct Moving {
     rounds: Vec<f64>,
 }
 
+/// A deviation from round, where deviations are by default.
+fn on(on: RollingSurface, form: FormScene) -> DeviationScene {
+    DeviationScene { on, form, ..DeviationScene::default() }
+}
+
 fn variants(scene: &Scene) -> Vec<Variant> {
-    let rate = Some(scene.solver.mass_damping_per_s);
     let full = |name, change: fn(&mut Scene)| {
         let mut scene = scene.clone();
         change(&mut scene);
-        Variant { name, scene, contact: true, damping: rate, energies: false }
+        Variant { name, scene, contact: true, mass_damping: None, energies: false }
     };
-    let bare = |name, change: fn(&mut Scene)| Variant { contact: false, damping: None, ..full(name, change) };
+    let bare = |name, change: fn(&mut Scene)| Variant { contact: false, ..full(name, change) };
     let light = |s: &mut Scene| {
-        s.cage = None;
+        (s.cage, s.film, s.solver.structural_damping) = (None, None, None);
         s.operation.gravity_m_s2 = 0.0;
     };
     vec![
         full("everything", |_| ()),
         Variant { energies: true, ..full("everything, and energies at every sample", |_| ()) },
-        Variant { damping: None, ..full("without mass damping", |_| ()) },
+        Variant { mass_damping: Some(5000.0), ..full("and mass damping", |_| ()) },
+        full("and waviness of the outer raceway", |s| s.defects.push(on(RollingSurface::Outer, FormScene::Waviness(WavinessScene::default())))),
+        full("dry, with spalls of the inner raceway and a roller", |s| {
+            s.film = None;
+            s.defects.push(on(RollingSurface::Inner, FormScene::Spall(SpallScene::default())));
+            s.defects.push(on(RollingSurface::Roller(1), FormScene::Spall(SpallScene::default())));
+        }),
+        full("and another load angle", |s| s.operation.load_angle_deg = -80.0),
+        full("without oil", |s| s.film = None),
+        full("without structural damping", |s| s.solver.structural_damping = None),
         full("without contact damping", |s| s.contact.damping_ratio = 0.0),
         full("without friction", |s| (s.contact.friction, s.contact.seat_friction) = (0.0, 0.0)),
         full("without gravity", |s| s.operation.gravity_m_s2 = 0.0),
         full("without cage", |s| s.cage = None),
-        Variant { contact: false, ..full("without contact", |_| ()) },
+        bare("without contact", |_| ()),
         bare("elements and load alone", light),
-        Variant { damping: Some(0.0), ..bare("the same with mass damping of rate 0", light) },
-        bare("the same with gravity", |s| s.cage = None),
-        bare("the same with a cage", |s| s.operation.gravity_m_s2 = 0.0),
+        Variant { mass_damping: Some(0.0), ..bare("the same with mass damping of rate 0", light) },
     ]
 }
 
 impl Moving {
     fn new(variant: Variant) -> Self {
         let (mut machine, elements) = machine(&variant.scene, 1);
-        if let Some(rate) = variant.damping {
+        if let Some(rate) = variant.mass_damping {
             let held = std::iter::once(machine.outer).chain(machine.housing);
             let mut frames: Vec<_> = held.map(|body| (body, Frame::Rest)).collect();
             frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Tangential { centre: [0.0; 2] })));

@@ -148,6 +148,8 @@ struct Memory {
     /// The gap when each node stands at the origin [m]: it grows as the force would move nodes.
     offset: f64,
     speed_places: [Place; 2],
+    /// Speeds at which the places sweep over the track and the round body [m/s].
+    swept: [f64; 2],
     speed_step: u64,
     next_look: u64,
     /// Share of the force that the land leaves.
@@ -285,6 +287,7 @@ impl Memory {
             shares: [[0.0; 2]; 4],
             offset: 0.0,
             speed_places: places,
+            swept: [0.0; 2],
             speed_step: 0,
             next_look: 0,
             share: 1.0,
@@ -315,7 +318,12 @@ impl Film {
         // forces along it turn nothing.
         let normal = round.normal.map(|n| -n);
         let gap = normal[0] * (round.at[0] - track.at[0]) + normal[1] * (round.at[1] - track.at[1]);
-        let ([a, b], [c, d]) = (track.shares(round.normal), round.shares(normal));
+        // The film stays at these points until the next look, so they lie where it is half-way till then. Points that fall
+        // behind turn what rolls, with a gap that opens while bodies roll away from it and closes at the next look: energy
+        // from nowhere.
+        let half = 0.5 * LOOK_EVERY as f64 * at.dt;
+        let [on_track, on_round] = [0, 1].map(|i| m.places[i].ahead(both[i], at.x, at.y, half * m.swept[i]));
+        let ([a, b], [c, d]) = (on_track.shares(round.normal), on_round.shares(normal));
         m.shares = [a, b, c, d];
         let ([a, b], [c, d]) = (track.ends, round.ends);
         self.nodes = [a, b, c, d];
@@ -329,11 +337,12 @@ impl Film {
             (m.above, begins) = (Some(gap.max(0.0)), true);
         }
         if begins || m.above.is_none() || m.speed_step + REST < at.step {
-            (m.speed_places, m.speed_step) = (m.places, at.step);
+            (m.speed_places, m.speed_step, m.swept) = (m.places, at.step, [0.0; 2]);
         } else if at.step >= m.speed_step + LOOK_EVERY * SPEED_EVERY {
             // The nearest places sweep over both surfaces at the speeds with which these draw oil in.
-            let [swept, swept_round] = [0, 1].map(|i| m.places[i].since(both[i], m.speed_places[i]));
-            m.speed = 0.5 * (swept_round - swept) / (at.dt * (at.step - m.speed_step) as f64);
+            let time = at.dt * (at.step - m.speed_step) as f64;
+            m.swept = [0, 1].map(|i| m.places[i].since(both[i], m.speed_places[i]) / time);
+            m.speed = 0.5 * (m.swept[1] - m.swept[0]);
             (m.speed_places, m.speed_step) = (m.places, at.step);
         }
         m.next_look = at.step + if m.above.is_some() { LOOK_EVERY } else { REST };

@@ -6,27 +6,31 @@ use crate::deviation::{FormScene, RollingSurface};
 use crate::scene::{DefectRing, DefectScene, Scene};
 
 impl Scene {
-    /// The spall whose entries and exits a report looks for: `defect`, or else the first spall of `defects` on a raceway.
-    pub fn leading_spall(&self) -> Option<DefectScene> {
-        self.defect.clone().or_else(|| {
-            self.defects.iter().find_map(|deviation| {
-                let FormScene::Spall(spall) = &deviation.form else { return None };
-                let ring = match deviation.on {
-                    RollingSurface::Outer => DefectRing::Outer,
-                    RollingSurface::Inner => DefectRing::Inner,
-                    RollingSurface::Roller(_) => return None,
-                };
-                let [_, facet] = rolling_circle(self, deviation.on);
-                let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { facet };
-                Some(DefectScene {
-                    ring,
-                    length_mm: spall.length_mm,
-                    depth_mm: spall.depth_mm,
-                    angle_deg: deviation.angle_deg,
-                    edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
-                })
+    /// Spalls of raceways, whose entries and exits a report looks for: `defect`, then those of `defects` in their order.
+    pub fn spalls(&self) -> Vec<DefectScene> {
+        let of_defects = self.defects.iter().filter_map(|deviation| {
+            let FormScene::Spall(spall) = &deviation.form else { return None };
+            let ring = match deviation.on {
+                RollingSurface::Outer => DefectRing::Outer,
+                RollingSurface::Inner => DefectRing::Inner,
+                RollingSurface::Roller(_) => return None,
+            };
+            let [_, facet] = rolling_circle(self, deviation.on);
+            let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { facet };
+            Some(DefectScene {
+                ring,
+                length_mm: spall.length_mm,
+                depth_mm: spall.depth_mm,
+                angle_deg: deviation.angle_deg,
+                edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
             })
-        })
+        });
+        self.defect.iter().cloned().chain(of_defects).collect()
+    }
+
+    /// The first of [`Scene::spalls`].
+    pub fn leading_spall(&self) -> Option<DefectScene> {
+        self.spalls().into_iter().next()
     }
 
     /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, the outer raceway first

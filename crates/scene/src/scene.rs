@@ -153,13 +153,24 @@ pub struct DefectScene {
 }
 
 /// One of the two rings.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DefectRing {
     /// The outer ring, which stands still.
+    #[default]
     Outer,
     /// The inner ring, which turns with the shaft.
     Inner,
+}
+
+impl DefectRing {
+    /// In words: `outer` or `inner`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Outer => "outer",
+            Self::Inner => "inner",
+        }
+    }
 }
 
 /// Linear elastic, isotropic, plane strain.

@@ -6,10 +6,11 @@ use stribeck_analysis::{enveloping, report, summary::Summary, tones};
 use stribeck_bearing::simulation::Host;
 use stribeck_reduced::simulation::simulate;
 use stribeck_scene::{
+    deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::Status,
-    scene::Scene,
+    scene::{DefectRing, Scene},
 };
 use stribeck_testing::Scratch;
 
@@ -110,4 +111,42 @@ fn invariant_a_mirrored_run_has_the_same_report() {
     assert!(there.duty.is_none() && back.duty.is_none());
     let page = std::fs::read_to_string(folder.join("back").join("report.html")).expect("a page");
     assert!(page.contains("500 rpm counter-clockwise"));
+}
+
+/// A spall that turns with the shaft and one that stands: the centres of loaded rollers pass their edges when rolling without slip
+/// says, and the lengths that the forces give are those of the scene.
+/// Source: THEORY §5.1 and §7.5.
+#[test]
+fn analytic_spalls_of_both_raceways_have_events_and_lengths() {
+    /// What a roller may move in its pocket, 0.2 mm at 2.4 m/s [ms].
+    const POCKET_MS: f64 = 0.1;
+    let folder = Scratch::create("both");
+    let mut set = vec!["model=reduced(modes_khz: 30.0)", "film=None", "solver.duration_ms=60"];
+    set.extend(["defect.ring=inner", "defect.angle_deg=120"]);
+    let mut scene = scene("quick.ron", &set);
+    let sloped = SpallScene { length_mm: 8.0, depth_mm: 0.1, ..SpallScene::default() };
+    let form = FormScene::Spall(sloped);
+    scene.defects.push(DeviationScene { on: RollingSurface::Outer, angle_deg: 75.0, form });
+    let summary = run(&scene, &folder.join("run"));
+    // Walls are upright, or fall over a facet.
+    let expected = [(DefectRing::Inner, 2, 10.0, 0.5), (DefectRing::Outer, 24, 8.0, scene.mesh.size_mm)];
+    for (spall, (ring, roller, length_mm, off_mm)) in (1..).zip(expected) {
+        let mut of_spall = summary.events.iter().filter(|event| event.spall == spall);
+        let event = of_spall.find(|event| event.roller == roller).expect("a passage");
+        assert_eq!(event.ring, ring);
+        for (path, expected) in [
+            (event.path_entry_ms, event.expected_entry_ms),
+            (event.path_exit_ms, event.expected_exit_ms),
+        ] {
+            let path = path.expect("a path");
+            assert!((path - expected).abs() < POCKET_MS, "spall {spall}: {path} ms, {expected} ms without slip");
+        }
+        // A roller that is pressed together comes free behind the first edge and is caught before the second.
+        let (entry, exit) = (event.entry_ms.expect("an entry"), event.exit_ms.expect("an exit"));
+        assert!(event.expected_entry_ms < entry && exit < event.expected_exit_ms, "{event:?}");
+        let found = event.spall_mm.expect("a length");
+        assert!((found - length_mm).abs() < off_mm, "spall {spall}: {found} mm");
+    }
+    // Rollers that pass it on the other side of the bearing carry nothing.
+    assert!(summary.notes.iter().any(|note| note.contains("outside the load zone")), "{:?}", summary.notes);
 }

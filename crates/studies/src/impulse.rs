@@ -266,7 +266,7 @@ fn picture(sheet: &mut Sheet, prefix: &str, sensor: &str, family: &str, groups: 
 fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
     run.numbers()?;
     let read = Run::read(&run.folder).ok()?;
-    let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages.first()?.exit_s;
+    let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages().first()?.exit_s;
     let (record, name) = (Record::new(&read), &read.scene.output.sensors.get(sensor)?.name);
     let interval = record.interval_s();
     let all = record.acceleration_g(name, "ay")?;

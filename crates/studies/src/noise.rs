@@ -160,7 +160,7 @@ fn noise(run: &Finished, sensor: usize) -> Option<Noise> {
 fn noise_at(run: &Finished, sensor: usize, hz: Option<f64>) -> Option<Noise> {
     let read = Run::read(&run.folder).ok()?;
     let prediction = Prediction::of(&read.scene, &read.info.mesh);
-    let passages: Vec<(f64, f64)> = prediction.passages.iter().map(|p| (p.entry_s, p.exit_s)).collect();
+    let passages: Vec<(f64, f64)> = prediction.passages().iter().map(|p| (p.entry_s, p.exit_s)).collect();
     let name = read.scene.output.sensors.get(sensor)?.name.clone();
     let line = prediction.facet_lines.first()?.1;
     measure(&Record::new(&read), &name, &passages, hz.unwrap_or(line))

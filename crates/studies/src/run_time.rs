@@ -106,7 +106,7 @@ fn measure(choice: &Choice, finished: &Finished) -> Option<Measured> {
     let force_n = Sample::of(&pushed.collect::<Vec<f64>>()).mean;
     let first = summary.events.iter().find(|event| event.roller == 1)?;
     let events_ms = first.entry_ms.zip(first.exit_ms).map(|(entry, exit)| [entry, exit]);
-    let exit_s = Prediction::of(&run.scene, &run.info.mesh).passages.first()?.exit_s;
+    let exit_s = Prediction::of(&run.scene, &run.info.mesh).passages().first()?.exit_s;
     let sensor = &run.scene.output.sensors.first()?.name;
     let elements = (info.mesh.quads + info.mesh.triangles) as f64;
     Some(Measured {

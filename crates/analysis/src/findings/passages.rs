@@ -1,83 +1,136 @@
 //! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
 
+use stribeck_scene::duty::Duty;
 use stribeck_scene::kinematics::Crossing;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{DefectRing, Scene};
 
 use super::{CrossingForce, SensorSignal};
 use crate::Error;
 use crate::events::{self, Passage};
 use crate::filtering::Filter;
 use crate::levels::{self, Phase, Visit};
-use crate::prediction::Prediction;
+use crate::prediction::{Prediction, SpallCourse};
 use crate::record::Record;
 use crate::spall::Edge;
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
 
-/// One event for every passage that begins within the record.
+/// Of a spall on a raceway that turns, passages of rollers that carry less than this part of the largest load are left out: they
+/// lie outside the load zone.
+const LOADED: f64 = 0.05;
+
+/// One event for every passage that begins within the record, in order of expected entry.
 pub(super) fn picked_events(
     scene: &Scene,
     record: &Record<'_>,
     prediction: &Prediction,
     notes: &mut Vec<String>,
 ) -> Vec<Event> {
-    let Some(edges) = prediction.defect else { return Vec::new() };
+    let mut events = Vec::new();
+    for (number, course) in prediction.spalls.iter().enumerate() {
+        let mut of_spall = events_of(scene, record, prediction, course, notes);
+        of_spall.iter_mut().for_each(|event| event.spall = number + 1);
+        events.extend(of_spall);
+    }
+    events.sort_by(|a, b| a.expected_entry_ms.total_cmp(&b.expected_entry_ms));
+    events
+}
+
+/// Events of one spall.
+fn events_of(
+    scene: &Scene,
+    record: &Record<'_>,
+    prediction: &Prediction,
+    course: &SpallCourse,
+    notes: &mut Vec<String>,
+) -> Vec<Event> {
     let time = record.time_s();
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
-    let edge = Edge::of(scene);
-    let [depth_m, length_m] =
-        scene.leading_spall().map_or([0.0; 2], |spall| [1e-3 * spall.depth_mm, 1e-3 * spall.length_mm]);
+    let ring = course.spall.ring;
+    let edge = Edge::of(scene, ring);
+    let turned = turned_rad(scene, prediction, course, time);
     let mut events = Vec::new();
-    for passage in prediction.passages.iter().filter(|p| p.entry_s < last) {
-        let mut event = Event::expected(passage);
+    for passage in course.passages.iter().filter(|p| p.entry_s < last) {
+        let mut event = Event::expected(passage, ring);
+        let Some(roller) = record.roller(passage.roller) else {
+            notes.push(format!("roller {} is not in the trace", passage.roller));
+            events.push((event, Vec::new()));
+            continue;
+        };
+        let traverse = passage.exit_s - passage.entry_s;
         // A shaft whose speed changes has another one at each passage.
         let speed_m_s = if scene.operation.speed_varies() {
-            length_m / (passage.exit_s - passage.entry_s)
+            1e-3 * course.spall.length_mm / traverse
         } else {
             prediction.kinematics.contact_speed_m_s
         };
-        let floor_s = edge.floor_m(depth_m) / speed_m_s;
-        match record.roller(passage.roller) {
-            None => notes.push(format!("roller {} is not in the trace", passage.roller)),
-            Some(roller) => {
-                let orbit = roller.orbit();
-                let traverse = passage.exit_s - passage.entry_s;
-                let near = |edge: f64, expected: f64| {
-                    let all = events::crossings(time, &orbit, edge.to_radians());
-                    let gap = |t: &f64| (t - expected).abs();
-                    all.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).filter(|t| gap(t) < traverse)
-                };
-                let path_entry = near(edges.leading_deg, passage.entry_s);
-                let path_exit = near(edges.trailing_deg, passage.exit_s);
-                // The cage slips a little, so that in a long record the path says better when to look.
-                let late = path_entry.or(path_exit.map(|t| t - traverse)).unwrap_or(passage.entry_s)
-                    - passage.entry_s;
-                let late = if late.abs() > 0.1 * traverse { late } else { 0.0 };
-                let seen = Passage {
-                    entry_s: passage.entry_s + late,
-                    exit_s: passage.exit_s + late,
-                    middle_s: near(edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
-                    smoothing_s: prediction.smoothing_s(passage.exit_s - passage.entry_s),
-                };
-                let normal = roller.outer_normal();
-                let picked = events::pick(time, &normal, &seen);
-                notes.extend(picked.notes.iter().map(|n| format!("roller {}: {n}", passage.roller)));
-                event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
-                event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
-                event.level_n = picked.level_n;
-                let floor = picked.floor_impact(time, &normal, &seen, floor_s);
-                event.floor_ms = floor.map(|(at_s, _)| 1e3 * at_s);
-                event.floor_n = floor.map(|(_, force_n)| force_n);
-                let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
-                let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
-                event.spall_mm = run_s.zip(picked.level_n).map(length);
-                event.path_entry_ms = path_entry.map(|t| 1e3 * t);
-                event.path_exit_ms = path_exit.map(|t| 1e3 * t);
-            }
-        }
-        events.push(event);
+        let floor_s = edge.floor_m(1e-3 * course.spall.depth_mm) / speed_m_s;
+        // As the raceway sees it.
+        let mut orbit = roller.orbit();
+        orbit.iter_mut().zip(&turned).for_each(|(angle, turned)| *angle -= turned);
+        let near = |edge: f64, expected: f64| {
+            let all = events::crossings(time, &orbit, edge.to_radians());
+            let gap = |t: &f64| (t - expected).abs();
+            all.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).filter(|t| gap(t) < traverse)
+        };
+        let path_entry = near(course.edges.leading_deg, passage.entry_s);
+        let path_exit = near(course.edges.trailing_deg, passage.exit_s);
+        // The cage slips a little, so that in a long record the path says better when to look.
+        let late =
+            path_entry.or(path_exit.map(|t| t - traverse)).unwrap_or(passage.entry_s) - passage.entry_s;
+        let late = if late.abs() > 0.1 * traverse { late } else { 0.0 };
+        let seen = Passage {
+            entry_s: passage.entry_s + late,
+            exit_s: passage.exit_s + late,
+            middle_s: near(course.edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
+            smoothing_s: prediction.smoothing_s(traverse),
+        };
+        let normal = roller.normal(ring);
+        let picked = events::pick(time, &normal, &seen);
+        event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
+        event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
+        event.level_n = picked.level_n;
+        let floor = picked.floor_impact(time, &normal, &seen, floor_s);
+        event.floor_ms = floor.map(|(at_s, _)| 1e3 * at_s);
+        event.floor_n = floor.map(|(_, force_n)| force_n);
+        let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
+        let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
+        event.spall_mm = run_s.zip(picked.level_n).map(length);
+        event.path_entry_ms = path_entry.map(|t| 1e3 * t);
+        event.path_exit_ms = path_exit.map(|t| 1e3 * t);
+        events.push((event, picked.notes));
     }
-    compensate(record, prediction, &mut events);
-    events
+    if course.turns {
+        let all = events.len();
+        let most = events.iter().filter_map(|(event, _)| event.level_n).fold(0.0, f64::max);
+        events.retain(|(event, _)| event.level_n.is_none_or(|level| level > LOADED * most));
+        if events.len() < all {
+            notes.push(format!(
+                "{} of {all} passages over the spall of the {} raceway lie outside the load zone and are no events",
+                all - events.len(),
+                ring.name()
+            ));
+        }
+    }
+    let mut of_spall = Vec::new();
+    for (event, picked) in events {
+        notes.extend(picked.into_iter().map(|note| format!("roller {}: {note}", event.roller)));
+        of_spall.push(event);
+    }
+    // Where the spall turns a neighbour's load changes by its way through the load zone.
+    if !course.turns {
+        compensate(record, prediction, &mut of_spall);
+    }
+    of_spall
+}
+
+/// By what angle [rad] the ring of a spall has turned at each sample since the start; nothing where it stands.
+fn turned_rad(scene: &Scene, prediction: &Prediction, course: &SpallCourse, time: &[f64]) -> Vec<f64> {
+    let duty = Duty::of(scene);
+    let turned = |&t: &f64| match course.spall.ring {
+        DefectRing::Inner => duty.shaft_rad(t),
+        DefectRing::Outer => prediction.kinematics.outer_rad_s * t,
+    };
+    if course.turns { time.iter().map(turned).collect() } else { Vec::new() }
 }
 
 /// Event #3: the largest force that a roller carries while a neighbour is in the defect.
@@ -217,24 +270,33 @@ fn components(sensor: &SensorSignal, phases: &[Phase]) -> Vec<ComponentLevels> {
 
 pub(super) fn crossing_forces(
     record: &Record<'_>,
+    prediction: &Prediction,
     events: &[Event],
     filter: Option<&Filter>,
 ) -> Result<Vec<CrossingForce>, Error> {
     let mut forces = Vec::new();
     for event in events {
         let Some(roller) = record.roller(event.roller) else { continue };
-        let raw_n: Vec<f64> = roller.outer_fy.iter().map(|f| -f).collect();
+        // The paper's figure has the vertical force; only over a spall that stands still is it the one that tells.
+        let vertical = event.ring == DefectRing::Outer && prediction.standing().is_some();
+        let raw_n: Vec<f64> = if vertical {
+            roller.outer_fy.iter().map(|f| -f).collect()
+        } else {
+            roller.normal(event.ring)
+        };
         let filtered_n = filter.map(|f| f.force(&raw_n)).transpose()?.unwrap_or_default();
-        forces.push(CrossingForce { roller: event.roller, raw_n, filtered_n });
+        forces.push(CrossingForce { roller: event.roller, vertical, raw_n, filtered_n });
     }
     Ok(forces)
 }
 
 impl Event {
     /// An event of which only the expected times are known.
-    fn expected(passage: &Crossing) -> Self {
+    fn expected(passage: &Crossing, ring: DefectRing) -> Self {
         Self {
             roller: passage.roller,
+            spall: 1,
+            ring,
             entry_ms: None,
             exit_ms: None,
             expected_entry_ms: 1e3 * passage.entry_s,

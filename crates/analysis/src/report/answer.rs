@@ -3,7 +3,6 @@
 use maud::{Markup, html};
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::run_dir::Run;
-use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Family;
 use crate::duty::DutyFinding;
@@ -44,7 +43,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
         return format!("Raceways and rollers are sound, so there is none to see.{level}");
     }
     let events = &summary.events;
-    let spall = run.scene.leading_spall().filter(|spall| spall.ring == DefectRing::Outer);
+    let spalls = run.scene.spalls();
     let families: Vec<String> = faults
         .iter()
         .map(|on| match on {
@@ -55,12 +54,13 @@ fn defect(run: &Run, summary: &Summary) -> String {
             }
         })
         .collect();
-    if spall.is_none() {
+    if spalls.is_empty() {
         return format!(
-            "Entries and exits are picked for a spall of the outer raceway, and there is none. Look for the families in the spectra: {}.",
+            "Entries and exits are picked for spalls of raceways, and there is none. Look for the families in the spectra: {}.",
             families.join("; ")
         );
     }
+    let it = if spalls.len() == 1 { "it" } else { "them" };
     let others = match faults.len() {
         1 => String::new(),
         _ => {
@@ -72,7 +72,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
             .into();
     }
     if events.is_empty() {
-        return format!("No roller reaches it on this record.{others}");
+        return format!("No roller reaches {it} on this record.{others}");
     }
     let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
@@ -80,9 +80,9 @@ fn defect(run: &Run, summary: &Summary) -> String {
         events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
     let rollers = run.scene.bearing.rollers;
     let crossed = match events.len() {
-        1 => "1 roller crosses it".to_owned(),
-        times if times > rollers => format!("Rollers cross it {times} times"),
-        few => format!("{few} rollers cross it"),
+        1 => format!("1 roller crosses {it}"),
+        times if times > rollers || spalls.len() > 1 => format!("Rollers cross {it} {times} times"),
+        few => format!("{few} rollers cross {it}"),
     };
     let floor = match floors.len() {
         0 => "none touches the floor".to_owned(),

@@ -2,12 +2,11 @@
 
 use maud::{Markup, html};
 use stribeck_scene::run_dir::Run;
-use stribeck_scene::scene::DefectRing;
 
 use super::figures::spoken;
 use super::tables::cell;
 use crate::artefacts::Family;
-use crate::summary::Summary;
+use crate::summary::{Event, Summary};
 
 /// Quantity, paper, ours, difference, why.
 pub(super) fn paper(summary: &Summary) -> Markup {
@@ -327,13 +326,11 @@ pub(super) fn diagnosis(summary: &Summary) -> Markup {
 
 /// Length of the defect from the event times, beside the truth.
 pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
-    let truth = match &run.scene.leading_spall() {
-        None => return html! { p { "No spall lies on a raceway." } },
-        Some(defect) if defect.ring == DefectRing::Inner => {
-            return html! { p { "Entries and exits are picked on outer raceways only." } };
-        }
-        Some(defect) => defect.length_mm,
-    };
+    let spalls = run.scene.spalls();
+    if spalls.is_empty() {
+        return html! { p { "No spall lies on a raceway." } };
+    }
+    let truth = |event: &Event| spalls.get(event.spall - 1).map_or(f64::NAN, |spall| spall.length_mm);
     let off = |found: Option<f64>, truth: f64| found.map(|t| format!("{:+.3}", t - truth).replace('-', "−"));
     html! {
         h3 { "Length of the defect, from the events" }
@@ -352,8 +349,8 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
                             (cell(off(e.entry_ms, e.expected_entry_ms)))
                             (cell(off(e.exit_ms, e.expected_exit_ms)))
                             (cell(e.spall_mm.map(|mm| format!("{mm:.2}"))))
-                            td class="n" { (truth) }
-                            (cell(e.spall_mm.map(|mm| format!("{:+.1} %", 100.0 * (mm / truth - 1.0)).replace('-', "−"))))
+                            td class="n" { (truth(e)) }
+                            (cell(e.spall_mm.map(|mm| format!("{:+.1} %", 100.0 * (mm / truth(e) - 1.0)).replace('-', "−"))))
                         }
                     }
                 }

@@ -13,11 +13,13 @@ pub(super) fn events(summary: &Summary) -> Markup {
     }
     let ms = |t: Option<f64>| t.map(|t| format!("{t:.2}"));
     let kilo = |n: Option<f64>| n.map(|n| format!("{:.2}", 1e-3 * n));
+    let several = summary.events.iter().any(|event| event.spall > 1);
     html! {
         div class="scroll" {
             table {
                 thead {
                     tr {
+                        @if several { th { "Spall" } }
                         th { "Roller" } th class="n" { "Load before kN" } th class="n" { "#1 unloads ms" } th class="n" { "no slip ms" }
                         th class="n" { "#2 floor ms" } th class="n" { "floor kN" }
                         th class="n" { "#3 neighbour in the defect ms" } th class="n" { "carries kN" }
@@ -27,6 +29,7 @@ pub(super) fn events(summary: &Summary) -> Markup {
                 tbody {
                     @for event in &summary.events {
                         tr {
+                            @if several { td { (event.spall) ", " (event.ring.name()) } }
                             td { (event.roller) }
                             (cell(kilo(event.level_n)))
                             (cell(ms(event.entry_ms)))

@@ -209,6 +209,13 @@ impl Point {
 }
 
 impl Place {
+    /// The point so far on along the facet's curve [m], which goes on beyond its ends.
+    pub(crate) fn ahead(self, surface: &Surface, x: &[f64], y: &[f64], by: f64) -> Point {
+        let facet = self.facet as usize;
+        let arc = Arc::new(surface, x, y, facet);
+        arc.point(facet, self.along + by / arc.length)
+    }
+
     /// Distance along the surface from another place, the shorter way round [m].
     pub(crate) fn since(self, surface: &Surface, other: Self) -> f64 {
         let facets = surface.facets() as f64;

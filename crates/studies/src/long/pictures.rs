@@ -102,7 +102,7 @@ fn vertices(findings: &Findings) -> Vec<Mark> {
 
 fn family(findings: &Findings) -> Vec<Mark> {
     let bpfo = findings.prediction.kinematics.bpfo_hz;
-    if findings.prediction.defect.is_none() || bpfo <= 0.0 {
+    if findings.prediction.standing().is_none() || bpfo <= 0.0 {
         return Vec::new();
     }
     let multiples = (1..).take_while(|n| f64::from(*n) * bpfo < FAMILY_TOP_HZ);

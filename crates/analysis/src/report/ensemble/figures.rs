@@ -215,7 +215,7 @@ fn families(findings: &EnsembleFindings, first: &Findings) -> Vec<Mark> {
     items.iter().zip(&first.prediction.facet_lines).zip(colours.into_iter().cycle()).map(carrier).collect()
 }
 
-/// Force of the outer raceway on each of the first rollers, from before its entry to after its exit.
+/// Force of the raceway on each of the first rollers, from before its entry to after its exit.
 fn forces(findings: &EnsembleFindings) -> Vec<Figure> {
     let Some((_, first)) = findings.complete.first() else { return Vec::new() };
     let rollers = first.summary.events.iter().map(|e| e.roller).take(ROLLERS);
@@ -248,7 +248,7 @@ fn force(findings: &EnsembleFindings, first: &Findings, roller: usize) -> Option
     let time = Axis::si("Time after the entry without slip", "s");
     let mut figure = Figure::new(
         &format!("force-{roller}"),
-        &format!("Vertical force of the outer raceway on roller {roller}"),
+        &format!("Force of the {} raceway on roller {roller}", event(first)?.ring.name()),
         time,
         Axis::si("Force", "N"),
     )

@@ -15,16 +15,18 @@ const DRAWN: usize = 3;
 /// A record of more roller spacings is drawn about each passage only.
 const LONG_SPACINGS: f64 = 6.0;
 
-/// Vertical force of the outer raceway on each roller that crosses the defect.
+/// Force of the raceway on each roller that crosses its spall.
 pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
     let crossings = findings.crossings.iter().zip(&findings.summary.events).take(DRAWN);
     crossings.enumerate().map(|(at, (crossing, event))| force(findings, crossing, event, at)).collect()
 }
 
 fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize) -> Figure {
-    let vertical = Axis::si("Vertical force, compression positive", "N");
-    let title = format!("Outer raceway on roller {}", crossing.roller);
-    let mut figure = Figure::new(&format!("force-{}", at + 1), &title, Axis::si("Time", "s"), vertical)
+    let direction = if crossing.vertical { "Vertical force" } else { "Normal force" };
+    let force = Axis::si(&format!("{direction}, compression positive"), "N");
+    let raceway = event.ring.name();
+    let title = format!("{}{} raceway on roller {}", raceway[..1].to_uppercase(), &raceway[1..], crossing.roller);
+    let mut figure = Figure::new(&format!("force-{}", at + 1), &title, Axis::si("Time", "s"), force)
         .synced("time")
         .with(sampled(findings, "raw", Colour::Grey, &crossing.raw_n));
     if !crossing.filtered_n.is_empty() {
