@@ -68,7 +68,9 @@ fn variants(scene: &Scene) -> Vec<Variant> {
         full("everything", |_| ()),
         Variant { energies: true, ..full("everything, and energies at every sample", |_| ()) },
         Variant { mass_damping: Some(5000.0), ..full("and mass damping", |_| ()) },
-        full("and waviness of the outer raceway", |s| s.defects.push(on(RollingSurface::Outer, FormScene::Waviness(WavinessScene::default())))),
+        full("and waviness of the outer raceway", |s| {
+            s.defects.push(on(RollingSurface::Outer, FormScene::Waviness(WavinessScene::default())))
+        }),
         full("dry, with spalls of the inner raceway and a roller", |s| {
             s.film = None;
             s.defects.push(on(RollingSurface::Inner, FormScene::Spall(SpallScene::default())));

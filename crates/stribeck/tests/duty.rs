@@ -134,12 +134,14 @@ fn analytic_spalls_of_both_raceways_have_events_and_lengths() {
         let mut of_spall = summary.events.iter().filter(|event| event.spall == spall);
         let event = of_spall.find(|event| event.roller == roller).expect("a passage");
         assert_eq!(event.ring, ring);
-        for (path, expected) in [
-            (event.path_entry_ms, event.expected_entry_ms),
-            (event.path_exit_ms, event.expected_exit_ms),
-        ] {
+        for (path, expected) in
+            [(event.path_entry_ms, event.expected_entry_ms), (event.path_exit_ms, event.expected_exit_ms)]
+        {
             let path = path.expect("a path");
-            assert!((path - expected).abs() < POCKET_MS, "spall {spall}: {path} ms, {expected} ms without slip");
+            assert!(
+                (path - expected).abs() < POCKET_MS,
+                "spall {spall}: {path} ms, {expected} ms without slip"
+            );
         }
         // A roller that is pressed together comes free behind the first edge and is caught before the second.
         let (entry, exit) = (event.entry_ms.expect("an entry"), event.exit_ms.expect("an exit"));

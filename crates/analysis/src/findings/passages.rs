@@ -279,11 +279,8 @@ pub(super) fn crossing_forces(
         let Some(roller) = record.roller(event.roller) else { continue };
         // The paper's figure has the vertical force; only over a spall that stands still is it the one that tells.
         let vertical = event.ring == DefectRing::Outer && prediction.standing().is_some();
-        let raw_n: Vec<f64> = if vertical {
-            roller.outer_fy.iter().map(|f| -f).collect()
-        } else {
-            roller.normal(event.ring)
-        };
+        let raw_n: Vec<f64> =
+            if vertical { roller.outer_fy.iter().map(|f| -f).collect() } else { roller.normal(event.ring) };
         let filtered_n = filter.map(|f| f.force(&raw_n)).transpose()?.unwrap_or_default();
         forces.push(CrossingForce { roller: event.roller, vertical, raw_n, filtered_n });
     }

@@ -25,7 +25,8 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
     let direction = if crossing.vertical { "Vertical force" } else { "Normal force" };
     let force = Axis::si(&format!("{direction}, compression positive"), "N");
     let raceway = event.ring.name();
-    let title = format!("{}{} raceway on roller {}", raceway[..1].to_uppercase(), &raceway[1..], crossing.roller);
+    let title =
+        format!("{}{} raceway on roller {}", raceway[..1].to_uppercase(), &raceway[1..], crossing.roller);
     let mut figure = Figure::new(&format!("force-{}", at + 1), &title, Axis::si("Time", "s"), force)
         .synced("time")
         .with(sampled(findings, "raw", Colour::Grey, &crossing.raw_n));

@@ -117,17 +117,18 @@ fn moments(
         })
     });
     moments.extend(loaded);
-    let exit = findings.prediction.standing().zip(findings.summary.events.first()).and_then(|(edges, event)| {
-        let focus = on_race(edges.trailing_deg);
-        let exit_s = 1e-3 * event.exit_ms?;
-        let half_ms = 0.5e-3;
-        let near = |cell: &&Cell| distance(centre(cell, window), focus) < 2e-3;
-        let highest = |cells: &[Cell]| cells.iter().filter(near).map(|c| c.von_mises).fold(0.0, f64::max);
-        let about = all.iter().filter(|f| (f.0 - exit_s).abs() <= half_ms);
-        let (time_s, cells) = about.max_by(|a, b| highest(&a.1).total_cmp(&highest(&b.1)))?;
-        let title = format!("roller {} at the exit edge", event.roller);
-        Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus, hertz: None })
-    });
+    let exit =
+        findings.prediction.standing().zip(findings.summary.events.first()).and_then(|(edges, event)| {
+            let focus = on_race(edges.trailing_deg);
+            let exit_s = 1e-3 * event.exit_ms?;
+            let half_ms = 0.5e-3;
+            let near = |cell: &&Cell| distance(centre(cell, window), focus) < 2e-3;
+            let highest = |cells: &[Cell]| cells.iter().filter(near).map(|c| c.von_mises).fold(0.0, f64::max);
+            let about = all.iter().filter(|f| (f.0 - exit_s).abs() <= half_ms);
+            let (time_s, cells) = about.max_by(|a, b| highest(&a.1).total_cmp(&highest(&b.1)))?;
+            let title = format!("roller {} at the exit edge", event.roller);
+            Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus, hertz: None })
+        });
     moments.extend(exit);
     moments
 }
