@@ -115,7 +115,6 @@
         });
         ctx.globalAlpha = 1;
         ctx.setLineDash([5 * ratio, 4 * ratio]);
-        const named = [];
         for (const level of spec.levels) {
           if (level.y < u.scales.y.min || level.y > u.scales.y.max) continue;
           const up = u.valToPos(level.y, "y", true), right = bbox.left + bbox.width;
@@ -124,21 +123,6 @@
           ctx.moveTo(bbox.left, up);
           ctx.lineTo(right, up);
           ctx.stroke();
-          if (!level.label) continue;
-          const wide = widthOf(level.label) * ratio;
-          // Names of levels that are close to each other stand side by side.
-          let end = right;
-          const covers = (other) => Math.abs(other.up - up) < 15 * ratio && end - wide < other.end && other.start < end;
-          for (let other; (other = named.find(covers)); ) end = other.start;
-          named.push({ up, start: end - wide, end });
-          ctx.globalAlpha = 0.8;
-          ctx.fillStyle = theme("--paper");
-          ctx.fillRect(end - wide, up - 15 * ratio, wide, 13 * ratio);
-          ctx.globalAlpha = 1;
-          ctx.fillStyle = theme(level.colour);
-          ctx.textAlign = "right";
-          ctx.fillText(level.label, end - 4 * ratio, up - 4 * ratio);
-          ctx.textAlign = "center";
         }
         ctx.setLineDash([]);
         // Labels come after all lines, on ground of their own, so that no line crosses a word.

@@ -17,7 +17,7 @@ struct Sent<'a> {
     series: Vec<SentSeries<'a>>,
     marks: Vec<SentMark<'a>>,
     bands: Vec<(f64, f64)>,
-    levels: Vec<SentLevel<'a>>,
+    levels: Vec<SentLevel>,
     sync: Option<&'a str>,
 }
 
@@ -55,9 +55,8 @@ struct SentMark<'a> {
 }
 
 #[derive(Serialize)]
-struct SentLevel<'a> {
+struct SentLevel {
     y: f64,
-    label: &'a str,
     colour: &'static str,
 }
 
@@ -76,9 +75,12 @@ impl Figure {
                 p class="caption" { (self.caption) }
                 div class="chart" tabindex="0" role="img" aria-label=(self.title) {}
                 div class="still" { (PreEscaped(still)) }
-                @if !self.bands.is_empty() {
+                @if !self.bands.is_empty() || !self.levels.is_empty() {
                     p class="key" {
                         @for band in &self.bands { span class="shade" {} (band.label) " " }
+                        @for level in self.levels.iter().filter(|level| !level.label.is_empty()) {
+                            span class="level" style=(format!("border-color: var({})", level.colour.name())) {} (level.label) " "
+                        }
                     }
                 }
                 @if !self.note.is_empty() || shortened {
@@ -104,11 +106,7 @@ impl Figure {
                 .map(|m| SentMark { x: m.x, label: &m.label, colour: m.colour.name(), dashed: m.dashed })
                 .collect(),
             bands: self.bands.iter().map(|b| (b.from, b.to)).collect(),
-            levels: self
-                .levels
-                .iter()
-                .map(|l| SentLevel { y: l.y, label: &l.label, colour: l.colour.name() })
-                .collect(),
+            levels: self.levels.iter().map(|l| SentLevel { y: l.y, colour: l.colour.name() }).collect(),
             sync: self.sync.as_deref(),
         };
         let text = serde_json::to_string(&sent)

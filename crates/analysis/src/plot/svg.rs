@@ -176,7 +176,6 @@ impl Figure {
         x: (f64, f64),
         y: (f64, f64),
     ) -> Result<(), Box<dyn std::error::Error>> {
-        let mut named: Vec<Named> = Vec::new();
         for level in self.levels.iter().filter(|l| (y.0..=y.1).contains(&l.y)) {
             let (left, up) = chart.backend_coord(&(x.0, level.y));
             let (right, _) = chart.backend_coord(&(x.1, level.y));
@@ -184,31 +183,18 @@ impl Figure {
                 let line = [(start, up), ((start + px(5)).min(right), up)];
                 root.draw(&PathElement::new(line, level.colour.rgb().stroke_width(FINE)))?;
             }
-            if !level.label.is_empty() {
-                let width = (CHARACTER * level.label.chars().count() as f64) as i32;
-                let name = Named { up, end: right, width: width + px(4) }.beside(&named);
-                let ground = [(name.end - name.width, up - px(15)), (name.end - px(2), up - px(2))];
-                root.draw(&Rectangle::new(ground, WHITE.mix(0.8).filled()))?;
-                text(
-                    root,
-                    &level.label,
-                    (name.end - px(4), up - px(15)),
-                    12,
-                    HPos::Right,
-                    &level.colour.rgb(),
-                )?;
-                named.push(name);
-            }
         }
         Ok(())
     }
 
-    /// Names of series and bands in one row that ends at the chart's right edge.
+    /// Names of series, bands and levels in one row that ends at the chart's right edge.
     fn draw_legend(&self, root: &Area<'_>) -> Result<(), Box<dyn std::error::Error>> {
         let lines = self.series.iter().map(|s| (s.name.as_str(), s.colour.rgb()));
         let bands = self.bands.iter().map(|b| (b.label.as_str(), RGBColor(205, 205, 205)));
+        let levels = self.levels.iter().map(|l| (l.label.as_str(), l.colour.rgb()));
+        let dashed = |name: &str| self.levels.iter().any(|l| l.label == name);
         let mut entries: Vec<(&str, RGBColor)> = Vec::new();
-        for entry in lines.chain(bands) {
+        for entry in lines.chain(bands).chain(levels) {
             if !entry.0.is_empty() && entries.iter().all(|e| e.0 != entry.0) {
                 entries.push(entry);
             }
@@ -216,35 +202,17 @@ impl Figure {
         let width = |name: &str| (CHARACTER * name.chars().count() as f64) as i32 + px(34);
         let mut left = (SIZE.0 - RIGHT) as i32 - entries.iter().map(|e| width(e.0)).sum::<i32>();
         for (name, colour) in entries {
-            let key = [(left + px(14), px(38)), (left + px(28), px(42))];
-            root.draw(&Rectangle::new(key, colour.filled()))?;
+            // A level's key is dashed and fine, as its line.
+            let (parts, upper, lower) = if dashed(name) { (2, 39, 41) } else { (1, 38, 42) };
+            for part in 0..parts {
+                let from = left + px(14) + part * px(9);
+                let key = [(from, px(upper)), (from + px(14 / (2 * parts - 1)), px(lower))];
+                root.draw(&Rectangle::new(key, colour.filled()))?;
+            }
             text(root, name, (left + px(33), px(34)), 12, HPos::Left, &BLACK)?;
             left += width(name);
         }
         Ok(())
-    }
-}
-
-/// Where the name of a level stands: above `up`, to the left of `end`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Named {
-    up: i32,
-    end: i32,
-    width: i32,
-}
-
-impl Named {
-    /// Moved to the left until it covers none of the others.
-    fn beside(mut self, others: &[Self]) -> Self {
-        let covers = |one: &Self, other: &Self| {
-            (one.up - other.up).abs() < px(15)
-                && one.end - one.width < other.end
-                && other.end - other.width < one.end
-        };
-        while let Some(other) = others.iter().find(|other| covers(&self, other)) {
-            self.end = other.end - other.width;
-        }
-        self
     }
 }
 
@@ -356,16 +324,6 @@ fn text(
 mod tests {
     use super::*;
     use crate::plot::{Band, Mark, Series};
-
-    #[test]
-    fn example_names_of_levels_stand_side_by_side_where_they_are_close() {
-        let name = |up| Named { up, end: 500, width: 100 };
-        let first = name(200).beside(&[]);
-        let close = name(200 + px(15) - 1).beside(&[first]);
-        let third = name(200 + 1).beside(&[first, close]);
-        let far = name(200 + 2 * px(15)).beside(&[first, close, third]);
-        assert_eq!([first.end, close.end, third.end, far.end], [500, 400, 300, 500]);
-    }
 
     #[test]
     fn example_ticks_of_counted_things_are_whole() {
