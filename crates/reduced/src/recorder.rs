@@ -93,16 +93,16 @@ impl Bearing {
             let centre = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
             row.extend([centre[0] + state.cage[0], centre[1] + state.cage[1], state.cage[2]]);
         }
-        row.extend(self.seat_force(state));
+        row.extend(self.seat_force(state).into_iter().flatten());
         row.extend(self.tacho.sample(state.steps as f64 * dt));
     }
 
-    /// Force of the adapter on the outer ring [N].
-    fn seat_force(&self, state: &State) -> [f64; 2] {
+    /// Force of the housing on the outer ring that sits in it [N].
+    fn seat_force(&self, state: &State) -> Option<[f64; 2]> {
         let r = self.reduction.padded;
-        let (at_rest, shapes) = (self.reduction.seat, &self.reduction.seat_shapes);
-        std::array::from_fn(|c| {
-            at_rest[c] + shapes[c * r..(c + 1) * r].iter().zip(&state.q).map(|(s, q)| s * q).sum::<f64>()
-        })
+        let shapes = &self.reduction.seat_shapes;
+        let further =
+            |c: usize| shapes[c * r..(c + 1) * r].iter().zip(&state.q).map(|(s, q)| s * q).sum::<f64>();
+        self.reduction.seat.map(|at_rest| [0, 1].map(|c| at_rest[c] + further(c)))
     }
 }

@@ -72,8 +72,8 @@ pub struct Reduction {
     pub structure_mass: f64,
     /// Force of each roller on the outer raceway at the preload of the full model [N].
     pub preload: Vec<f64>,
-    /// Force of the adapter on the outer ring at the preload [N].
-    pub seat: [f64; 2],
+    /// Force of the housing on the outer ring that sits in it, at the preload [N].
+    pub seat: Option<[f64; 2]>,
     /// By how much it grows with each mode [N/(√kg m)]: x of all modes, then y.
     pub seat_shapes: Vec<f64>,
     /// Counts of the mesh.
@@ -91,6 +91,85 @@ pub struct Sensor {
     pub shape: Vec<f64>,
     /// Displacement (x, y) by a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
     pub residual: Vec<[f64; 2]>,
+}
+
+/// Outer ring and housing, and how they move.
+enum Structure {
+    /// In their natural modes.
+    Elastic { motions: SmallMotions, modes: Modes, slots: Vec<u32> },
+    /// As one piece that does not turn: the square root of its mass [√kg].
+    Rigid { root_mass: f64, slots: Vec<u32> },
+}
+
+impl Structure {
+    /// ω² of each mode [rad²/s²].
+    fn squares(&self) -> &[f64] {
+        match self {
+            Self::Elastic { modes, .. } => &modes.squares,
+            Self::Rigid { .. } => &[0.0; 2],
+        }
+    }
+
+    /// Shapes at a slot [1/√kg], filled up to `padded` modes: x of all, then y.
+    fn shape_at(&self, slot: u32, padded: usize) -> Vec<f64> {
+        let mut shape = vec![0.0; 2 * padded];
+        match self {
+            Self::Elastic { motions, modes, .. } => {
+                if let Some(at) = motions.equation(slot) {
+                    for (k, mode) in modes.shapes.iter().enumerate() {
+                        (shape[k], shape[padded + k]) = (mode[at], mode[at + 1]);
+                    }
+                }
+            }
+            Self::Rigid { root_mass, .. } => {
+                (shape[0], shape[padded + 1]) = (1.0 / root_mass, 1.0 / root_mass)
+            }
+        }
+        shape
+    }
+
+    /// What forces by slot do to each mode [N/√kg].
+    fn generalised(&self, force: &NodeForces, padded: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; padded];
+        match self {
+            Self::Elastic { motions, modes, slots } => {
+                let field = field(motions, slots, force);
+                for (sum, mode) in sums.iter_mut().zip(&modes.shapes) {
+                    *sum = mode.iter().zip(&field).map(|(u, f)| u * f).sum();
+                }
+            }
+            Self::Rigid { root_mass, slots } => {
+                for &slot in slots {
+                    sums[0] += force.fx[slot as usize] / root_mass;
+                    sums[1] += force.fy[slot as usize] / root_mass;
+                }
+            }
+        }
+        sums
+    }
+
+    /// Displacements of slots `at` [m] by forces, beyond the modes.
+    fn residual(&mut self, force: &NodeForces, at: &[u32]) -> Vec<[f64; 2]> {
+        let Self::Elastic { motions, modes, slots } = self else { return vec![[0.0; 2]; at.len()] };
+        let mut moved = field(motions, slots, force);
+        residual(motions, modes, &mut moved);
+        at.iter().map(|&n| motions.equation(n).map_or([0.0; 2], |at| [moved[at], moved[at + 1]])).collect()
+    }
+
+    /// As [`flexibility`], beyond the modes.
+    fn flexibility(
+        &mut self,
+        nodes: &[u32],
+        slot_of: &dyn Fn(u32) -> u32,
+        direction: &dyn Fn(u32) -> [f64; 2],
+    ) -> Vec<Vec<f64>> {
+        match self {
+            Self::Elastic { motions, modes, .. } => {
+                flexibility(motions, Some(modes), nodes, slot_of, direction)
+            }
+            Self::Rigid { .. } => vec![vec![0.0; nodes.len()]; nodes.len()],
+        }
+    }
 }
 
 /// Node numbers, while the system still knows them by name.
@@ -124,8 +203,7 @@ impl Reduction {
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
         let preload =
             (0..g.rollers).map(|i| resultants[machine.pairs.outer(i)]).map(|[x, y]| x.hypot(y)).collect();
-        // A housing without a seat is refused before.
-        let seat = machine.pairs.seat().map_or([0.0; 2], |seat| resultants[seat]);
+        let seat = machine.pairs.seat().map(|seat| resultants[seat]);
         let nodes = Nodes::of(&machine, &g)?;
         let on_ring: Vec<u32> = machine.system.nodes_of(machine.outer).collect();
         let of_roller = machine.system.motion_of(machine.rollers[0].body);
@@ -134,7 +212,7 @@ impl Reduction {
             (0..machine.system.node_count() as u32).map(|n| machine.system.position(n)).collect();
         let place = |n: &u32| places[*n as usize];
         let centre = place(&machine.rollers[0].centre);
-        let structure_mass = nodes.structure.iter().map(|&n| machine.system.mass(n)).sum();
+        let structure_mass: f64 = nodes.structure.iter().map(|&n| machine.system.mass(n)).sum();
 
         let mut parts = machine.system.into_parts();
         let strain = parts.dynamics.elastic_energy();
@@ -156,10 +234,10 @@ impl Reduction {
         let mut springs = Vec::new();
         if let Some(contacts) = &mut parts.contacts {
             contacts.accumulate(parts.dynamics.moment(), &mut all);
-            let structure: BTreeSet<u32> = slots(&nodes.structure).into_iter().collect();
+            let of_structure: BTreeSet<u32> = slots(&nodes.structure).into_iter().collect();
             let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
             contacts.tangent(x, y, &mut |piece| {
-                if piece.nodes.iter().all(|slot| structure.contains(slot)) {
+                if piece.nodes.iter().all(|slot| of_structure.contains(slot)) {
                     springs.push(Spring::from(piece));
                 }
             });
@@ -177,67 +255,52 @@ impl Reduction {
             all.fy[n] += outside.fy[n];
         }
 
-        let mut motions = SmallMotions::new(&parts.dynamics, &slots(&nodes.structure), &springs, SHIFT)?;
-        let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
-        let kept = modes.squares.len();
+        let of_structure = slots(&nodes.structure);
+        let mut structure = if scene.housing.is_rigid() {
+            Structure::Rigid { root_mass: structure_mass.sqrt(), slots: of_structure }
+        } else {
+            let mut motions = SmallMotions::new(&parts.dynamics, &of_structure, &springs, SHIFT)?;
+            let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
+            Structure::Elastic { motions, modes, slots: of_structure }
+        };
+        let kept = structure.squares().len();
         let padded = kept.next_multiple_of(LANES);
-        let shape_at = |motions: &SmallMotions, node: u32| -> Vec<f64> {
-            let at = motions.equation(slot_of[node as usize]);
-            let mut shape = vec![0.0; 2 * padded];
-            for (k, mode) in modes.shapes.iter().enumerate() {
-                if let Some(at) = at {
-                    (shape[k], shape[padded + k]) = (mode[at], mode[at + 1]);
-                }
-            }
-            shape
-        };
-        let generalised = |motions: &SmallMotions, fx: &[f64], fy: &[f64]| -> Vec<f64> {
-            let field = field(motions, &slots(&nodes.structure), fx, fy);
-            let mut sums = vec![0.0; padded];
-            for (sum, mode) in sums.iter_mut().zip(&modes.shapes) {
-                *sum = mode.iter().zip(&field).map(|(u, f)| u * f).sum();
-            }
-            sums
-        };
         // What the rollers do to the outer raceway at the preload.
         let mut pressed = NodeForces::zeros(count);
         for &n in &nodes.outer {
             let slot = slot_of[n as usize] as usize;
             [pressed.fx[slot], pressed.fy[slot]] = forces[n as usize];
         }
-        let by_rollers = generalised(&motions, &pressed.fx, &pressed.fy);
-        let unbalanced = generalised(&motions, &all.fx, &all.fy);
+        let by_rollers = structure.generalised(&pressed, padded);
+        let unbalanced = structure.generalised(&all, padded);
         let constant = unbalanced.iter().zip(&by_rollers).map(|(all, rollers)| all - rollers).collect();
-        let external = generalised(&motions, &outside.fx, &outside.fy);
-        let load = (generalised(&motions, &loaded.fx, &loaded.fy), g.load);
+        let external = structure.generalised(&outside, padded);
+        let load = (structure.generalised(&loaded, padded), g.load);
 
         // The raceway without the dents of the rollers, which the local compliance makes anew.
-        let mut dents = field(&motions, &slots(&nodes.structure), &pressed.fx, &pressed.fy);
-        residual(&mut motions, &modes, &mut dents);
-        let without_dent = |n: &u32| {
+        let on_raceway = slots(&nodes.outer);
+        let dents = structure.residual(&pressed, &on_raceway);
+        let without_dent = |(n, [dx, dy]): (&u32, &[f64; 2])| {
             let [x, y] = place(n);
-            motions.equation(slot_of[*n as usize]).map_or([x, y], |at| [x - dents[at], y - dents[at + 1]])
+            [x - dx, y - dy]
         };
-        let outer: Vec<[f64; 2]> = nodes.outer.iter().map(without_dent).collect();
-        let shapes = nodes.outer.iter().flat_map(|&n| shape_at(&motions, n)).collect();
+        let outer: Vec<[f64; 2]> = nodes.outer.iter().zip(&dents).map(without_dent).collect();
+        let shapes = on_raceway.iter().flat_map(|&slot| structure.shape_at(slot, padded)).collect();
 
         let direction = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
         let mut sensors = Vec::new();
         for &n in &nodes.sensors {
-            let shape = shape_at(&motions, n);
+            let shape = structure.shape_at(slot_of[n as usize], padded);
             let mut heard = vec![[0.0; 2]; nodes.outer.len()];
             for component in 0..2 {
                 // By reciprocity: a unit force at the sensor moves the raceway as one there moves the sensor.
-                let mut unit = vec![0.0; motions.equations()];
-                if let Some(at) = motions.equation(slot_of[n as usize]) {
-                    unit[at + component] = 1.0;
-                }
-                residual(&mut motions, &modes, &mut unit);
-                for (heard, (node, place)) in heard.iter_mut().zip(nodes.outer.iter().zip(&outer)) {
+                let mut unit = NodeForces::zeros(count);
+                let along = if component == 0 { &mut unit.fx } else { &mut unit.fy };
+                along[slot_of[n as usize] as usize] = 1.0;
+                let moved = structure.residual(&unit, &on_raceway);
+                for ((heard, [x, y]), place) in heard.iter_mut().zip(&moved).zip(&outer) {
                     let [nx, ny] = direction(*place);
-                    if let Some(at) = motions.equation(slot_of[*node as usize]) {
-                        heard[component] = nx * unit[at] + ny * unit[at + 1];
-                    }
+                    heard[component] = nx * x + ny * y;
                 }
             }
             sensors.push(Sensor { shape, residual: heard });
@@ -252,12 +315,13 @@ impl Reduction {
             for (_, along) in ends.clone().filter(|(slot, _)| on_ring.contains(slot)) {
                 on = [on[0] - spring.stiffness * along[0], on[1] - spring.stiffness * along[1]];
             }
-            for (k, mode) in modes.shapes.iter().enumerate() {
-                let stretch: f64 = ends
-                    .clone()
-                    .filter_map(|(slot, along)| Some((motions.equation(*slot)?, along)))
-                    .map(|(at, along)| along[0] * mode[at] + along[1] * mode[at + 1])
-                    .sum();
+            let mut stretch = vec![0.0; padded];
+            for (&slot, along) in ends {
+                let shape = structure.shape_at(slot, padded);
+                let (x, y) = shape.split_at(padded);
+                stretch.iter_mut().zip(x).zip(y).for_each(|((s, x), y)| *s += along[0] * x + along[1] * y);
+            }
+            for (k, stretch) in stretch.iter().enumerate() {
                 seat_shapes[k] += on[0] * stretch;
                 seat_shapes[padded + k] += on[1] * stretch;
             }
@@ -290,9 +354,7 @@ impl Reduction {
         };
         let at = node_at(&outer, beside);
         let outer_spacing = facet(&outer, at);
-        let flexible_outer = flexibility(
-            &mut motions,
-            Some(&modes),
+        let flexible_outer = structure.flexibility(
             &patch(&nodes.outer, at, half_count(ro, outer_spacing)),
             &|n| slot_of[n as usize],
             &|n| direction(place(&n)),
@@ -354,7 +416,7 @@ impl Reduction {
             .map(|(s, c)| [g.roller_radius * c, g.roller_radius * s])
             .collect();
         let mut squares = vec![0.0; padded];
-        squares[..kept].copy_from_slice(&modes.squares);
+        squares[..kept].copy_from_slice(structure.squares());
         Ok(Self {
             modes: kept,
             padded,
@@ -425,11 +487,11 @@ impl Nodes {
 }
 
 /// Forces by slot as a field.
-fn field(motions: &SmallMotions, slots: &[u32], fx: &[f64], fy: &[f64]) -> Vec<f64> {
+fn field(motions: &SmallMotions, slots: &[u32], force: &NodeForces) -> Vec<f64> {
     let mut field = vec![0.0; motions.equations()];
     for &slot in slots {
         if let Some(at) = motions.equation(slot) {
-            (field[at], field[at + 1]) = (fx[slot as usize], fy[slot as usize]);
+            (field[at], field[at + 1]) = (force.fx[slot as usize], force.fy[slot as usize]);
         }
     }
     field

@@ -50,8 +50,9 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
         from_cache,
     };
     let (mesh, picture) = (reduction.mesh.clone(), reduction.picture.clone());
+    let [_, up] = scene.load_direction();
     let expected = Duty::of(scene).mean_load_n(Geometry::of(scene).duration)
-        + scene.operation.gravity_m_s2 * reduction.structure_mass;
+        - up * scene.operation.gravity_m_s2 * reduction.structure_mass;
     let bearing = Bearing::new(scene, reduction, step)?;
     let state = bearing.at_start(scene)?;
     let setup = Setup {

@@ -12,6 +12,7 @@ use stribeck_scene::{
         HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene, RotatingLoadScene,
         Scene,
     },
+    static_load,
     trace::Trace,
 };
 use stribeck_testing::Scratch;
@@ -325,5 +326,44 @@ fn invariant_a_run_over_a_profile_in_pieces_writes_the_same_bytes() {
     resume(&dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("it goes on");
     for file in ["trace.npy", "energy.npy"] {
         assert!(bytes(&folder, "whole", file) == bytes(&folder, "pieces", file), "{file}");
+    }
+}
+
+/// A ring that does not deform leaves the compliance to the rollers and the inner ring, which theory takes as two half-spaces.
+/// Source: Stribeck and Sjövall's distribution between rigid rings with Johnson's approach of line contacts, THEORY §6.2; the load
+/// comes back as the sum of the rollers' forces.
+#[test]
+fn analytic_rollers_in_a_rigid_housing() {
+    for bearing in ["NU 205", "6305"] {
+        let text = format!(
+            "(bearing: \"{bearing}\", model: reduced(step_us: 0.5), film: None, defect: None, housing: rigid(mass_kg: 1),
+              operation: (load_n: 3000, load_angle_deg: 215, speed_rpm: 100, gravity_m_s2: 0), output: (frames: None),
+              mesh: (size_mm: 0.2, roller_facets: 160, grading: (coarse_mm: 2)), contact: (surface: arc, penalty_scale: 10),
+              solver: (duration_ms: 2))"
+        );
+        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let folder = Scratch::create("reduced-rigid");
+        let info = run(&scene, &folder, "run", 1);
+        assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+        assert_eq!(info.reduced.expect("what was kept").modes, 2);
+        assert!(info.energy.max_relative_error < 1e-3, "{bearing}: {}", info.energy.max_relative_error);
+        let trace = trace(&folder, "run");
+        assert!(trace.get("seat.fx_n").is_none());
+        let force = |roller: usize, n: usize| {
+            ["x", "y"].map(|c| channel(&trace, &format!("roller.{roller}.outer_f{c}_n"))[n])
+        };
+        let theory = static_load::at_start(&scene).expect("an equilibrium");
+        for (i, expected) in theory.roller_n.iter().enumerate() {
+            let [x, y] = force(i + 1, 0);
+            let off = (x.hypot(y) - expected).abs() / theory.max_roller_n();
+            assert!(off < 0.02, "{bearing}, roller {}: {} N instead of {expected}", i + 1, x.hypot(y));
+        }
+        let [lx, ly] = scene.load_direction();
+        let samples = channel(&trace, "time_s").len();
+        let sums = (0..samples).map(|n| {
+            (1..=scene.bearing.rollers).map(|i| force(i, n)).map(|[x, y]| lx * x + ly * y).sum::<f64>()
+        });
+        let mean = sums.sum::<f64>() / samples as f64;
+        assert!((mean / info.expected_support_n - 1.0).abs() < 1e-3, "{bearing}: {mean} N");
     }
 }

@@ -218,20 +218,27 @@ fn reduced_oil(scene: &Scene) -> Option<Finding> {
     ))
 }
 
-/// What holds the ring of a reduced model is elastic.
+/// What holds the ring of a reduced model is elastic, or rigid and stands.
 fn reduced_housing(scene: &Scene) -> Option<Finding> {
-    if scene.model == ModelScene::Full || scene.housing.has_seat() {
+    if scene.model == ModelScene::Full {
         return None;
     }
-    let message = "the reduced model knows elastic housings that the outer ring sits in alone".to_owned();
-    Some(Finding::new(
-        message,
-        vec![
-            Remedy::new(HOUSING, "`adapter`, `pedestal(…)` or `mesh(…)`".to_owned())
-                .value("adapter", "the paper's"),
-            Remedy::new("model", "`full`".to_owned()).value("full", ""),
-        ],
-    ))
+    let full = || Remedy::new("model", "`full`".to_owned()).value("full", "");
+    let operation = &scene.operation;
+    let (message, remedy) = if matches!(scene.housing, HousingScene::Springs(_)) {
+        let others = "`adapter`, `rigid(…)`, `pedestal(…)` or `mesh(…)`".to_owned();
+        let remedy = Remedy::new(HOUSING, others).value("adapter", "the paper's");
+        ("the reduced model knows no springs and dampers about the outer ring", remedy)
+    } else if scene.housing.is_rigid() && operation.outer_speed_rpm != 0.0 {
+        let remedy = Remedy::new(OUTER_SPEED, "`0`".to_owned()).value("0.0", "it stands");
+        ("the reduced model knows outer rings that stand still alone", remedy)
+    } else if scene.housing.is_rigid() && operation.rotating_load.is_some() {
+        let remedy = Remedy::new("operation.rotating_load", "`None`".to_owned()).value("None", "");
+        ("the reduced model knows a load that turns with the shaft in guided housings alone", remedy)
+    } else {
+        return None;
+    };
+    Some(Finding::new(message.to_owned(), vec![remedy, full()]))
 }
 
 const HOUSING: &str = "housing";
