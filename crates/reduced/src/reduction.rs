@@ -96,7 +96,7 @@ pub struct Sensor {
 /// Outer ring and housing, and how they move.
 enum Structure {
     /// In their natural modes.
-    Elastic { motions: SmallMotions, modes: Modes, slots: Vec<u32> },
+    Elastic { motions: Box<SmallMotions>, modes: Modes, slots: Vec<u32> },
     /// As one piece that does not turn: the square root of its mass [√kg].
     Rigid { root_mass: f64, slots: Vec<u32> },
 }
@@ -261,7 +261,7 @@ impl Reduction {
         } else {
             let mut motions = SmallMotions::new(&parts.dynamics, &of_structure, &springs, SHIFT)?;
             let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
-            Structure::Elastic { motions, modes, slots: of_structure }
+            Structure::Elastic { motions: Box::new(motions), modes, slots: of_structure }
         };
         let kept = structure.squares().len();
         let padded = kept.next_multiple_of(LANES);

@@ -107,12 +107,26 @@ const OTHERS: [Row; 7] = [
     ("UER204", Element::Ball, Some(8), 7.92, 34.55, 0.0, Some([20.0, 47.0, 17.0]), XJTU),
 ];
 
+/// Cylindrical roller bearings by where their flanges are, which a plane does not see: rollers and raceways are the same.
+const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
+
 /// All bearings that have a name here.
 pub fn all() -> Vec<CatalogueBearing> {
-    let cylindrical = CYLINDRICAL.iter().map(|&(name, f, e, boundary)| {
-        (name, Element::Roller, None, 0.5 * (e - f), 0.5 * (e + f), 0.0, Some(boundary), E_TYPE)
+    let cylindrical = FLANGES.iter().flat_map(|flanges| {
+        CYLINDRICAL.iter().map(move |&(name, f, e, boundary)| {
+            let [diameter, pitch] = [0.5 * (e - f), 0.5 * (e + f)];
+            let row = (name, Element::Roller, None, diameter, pitch, 0.0, Some(boundary), E_TYPE);
+            CatalogueBearing { name: name.replace("NU", flanges), ..CatalogueBearing::of(row) }
+        })
     });
-    OTHERS.iter().copied().chain(cylindrical).map(CatalogueBearing::of).collect()
+    OTHERS.iter().copied().map(CatalogueBearing::of).chain(cylindrical).collect()
+}
+
+/// What [`all`] has, in words.
+fn names() -> String {
+    let others: Vec<&str> = OTHERS.iter().map(|row| row.0).collect();
+    let sizes: Vec<&str> = CYLINDRICAL.iter().filter_map(|row| row.0.strip_prefix("NU ")).collect();
+    format!("{}, or {} with {}", others.join(", "), FLANGES.join(", "), sizes.join(", "))
 }
 
 /// What a scene of a bearing in the catalogue rests on that no catalogue prints; nothing for a scene of the user's own numbers.
@@ -277,10 +291,9 @@ fn find(name: &str) -> Result<CatalogueBearing, String> {
         })
     };
     all().into_iter().find(fits).ok_or_else(|| {
-        let names: Vec<String> = all().into_iter().map(|b| b.name).collect();
         format!(
             "no bearing `{name}` is known; give its numbers, `--bearing \"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`, or one of {}",
-            names.join(", ")
+            names()
         )
     })
 }
@@ -313,6 +326,10 @@ mod tests {
             (roller.name.as_str(), roller.elements, roller.diameter_mm, roller.pitch_mm),
             ("NU 205", Some(13), 7.5, 39.0)
         );
+        for (text, name) in [("NJ 205", "NJ 205"), ("NUP205-ECP", "NUP 205"), ("N 205", "N 205")] {
+            let other = CatalogueBearing::parse(text).unwrap();
+            assert_eq!((other.name.as_str(), other.diameter_mm), (name, roller.diameter_mm));
+        }
         let own = CatalogueBearing::parse("elements=9, diameter_mm=7.94, pitch_mm=39.04").unwrap();
         assert!((own.orders().unwrap().bpfo - 3.585).abs() < 1e-3);
         assert!(CatalogueBearing::parse("NU 312").unwrap().orders().unwrap_err().contains("elements=…"));
