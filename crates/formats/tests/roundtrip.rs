@@ -142,6 +142,7 @@ fn peer_files_of_other_programs_are_read() {
         ("theirs.flac", "soundfile"),
         ("plain.mf4", "asammdf"),
         ("packed.mf4", "asammdf"),
+        ("split.mf4", "asammdf"),
         ("theirs.h5", "h5py"),
     ] {
         let kind = name;
