@@ -1,8 +1,8 @@
 //! Sampled signals in and out of files.
 //!
 //! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples stay in the file and are read in
-//! blocks, packed ones of HDF5, MDF, FLAC and Parquet unpacked on the way; those of deflated MATLAB 5 and `.npz` files are held in
-//! memory.
+//! blocks, packed ones of HDF5, MDF, FLAC and Parquet unpacked on the way; those of universal files and of deflated MATLAB 5
+//! and `.npz` files are held in memory.
 //! Each format has a module.
 //!
 //! | format | read | written |
