@@ -49,10 +49,10 @@ pub(super) fn estimate(
         Ok(EventSpacing::Alone { clear_from_s }) => {
             let both = RANGE.1 * speed * clear_from_s;
             let why = format!(
-                "no second event follows each knock, which bounds the length of the spall by the {apart:.1} mm between two elements, and no \
-                 more. If entry and exit both knock, it is shorter than {both:.2} mm, and the value given is the middle of that; but one that \
-                 is shallow, or crossed under so heavy a load that no element comes free, or whose entry is soft, knocks once \
-                 whatever its length, and this record does not say which"
+                "no second event follows each knock: if entry and exit both knock, the spall is shorter than {both:.2} mm, and the value given is \
+                 the middle of that. One that is shallow, or crossed under so heavy a load that no element comes free, or whose entry is \
+                 soft, knocks once whatever its length, and the record does not say which: so the interval leaves all lengths up to the \
+                 {apart:.1} mm between two elements, and takes it that the spall is no longer than that"
             );
             (Some(Interval { value: 0.5 * both, low: 0.0, high: apart.max(both) }), Some(why))
         }
