@@ -1,7 +1,8 @@
 //! Sampled signals in and out of files.
 //!
-//! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples of plain numbers (NumPy,
-//! uncompressed MATLAB, TDMS, WAV, CSV) stay in the file and are read in blocks; packed ones are held in memory.
+//! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples stay in the file and are read in
+//! blocks, packed ones of HDF5, MDF, FLAC and Parquet unpacked on the way; those of universal files and of deflated MATLAB 5
+//! and `.npz` files are held in memory.
 //! Each format has a module.
 //!
 //! | format | read | written |
@@ -21,6 +22,8 @@
 //! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
 mod error;
+mod hdf5_chunks;
+mod mdf4_records;
 mod number;
 mod open;
 mod recording;

@@ -2,14 +2,14 @@
 //! blocks. Read only.
 //!
 //! Each channel is called by its name; the rate is that of its group's master. Channels of bits, texts and other conversions
-//! are left out with a note. Samples of plain blocks stay in the file, those of deflated ones are held in memory.
+//! are left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use flate2::read::ZlibDecoder;
-
+use crate::mdf4_records::{Field, Packing, Stretch};
 use crate::number::{Kind, Number};
 use crate::recording::Strided;
 use crate::{Channel, Error, Recording, Result};
@@ -19,9 +19,10 @@ const FORMAT: &str = "MDF";
 const HEAD: u64 = 24;
 /// Links of a block and blocks of a chain; a forged file may point in circles.
 const MOST_LINKS: u64 = 1 << 20;
-/// Largest block that describes something, and most bytes unpacked.
+/// Largest block that describes something.
 const LARGEST: u64 = 1 << 24;
-const UNPACKED: u64 = 1 << 32;
+/// Most bytes that one block unpacks to; the standard asks for 4 MiB.
+const UNPACKED: u64 = 1 << 28;
 /// Part of a step by which the times of a master may be off the grid.
 const UNEVEN: f64 = 0.01;
 
@@ -138,16 +139,16 @@ impl Source<'_> {
         Ok(Some(text).filter(|t| !t.is_empty()))
     }
 
-    /// Where the records of a group are: stretches of the file, or unpacked bytes.
-    fn data(&mut self, at: u64) -> Result<Data> {
-        let mut data = Data { stretches: Vec::new(), unpacked: None };
+    /// Where the records of a group are.
+    fn data(&mut self, at: u64) -> Result<Vec<Stretch>> {
+        let mut data = Vec::new();
         if at != 0 {
             self.collect(at, &mut data, 0)?;
         }
         Ok(data)
     }
 
-    fn collect(&mut self, at: u64, data: &mut Data, depth: u32) -> Result<()> {
+    fn collect(&mut self, at: u64, data: &mut Vec<Stretch>, depth: u32) -> Result<()> {
         let (sort, length, links) = self.head(at)?;
         match &sort {
             b"##DT" if length >= HEAD && links == 0 => {
@@ -155,33 +156,19 @@ impl Source<'_> {
                 if at.saturating_add(length) > self.size {
                     return Err(self.damaged(format!("the samples at {at} end behind the file")));
                 }
-                if let Some(unpacked) = &mut data.unpacked {
-                    let plain = self.bytes(at + HEAD, count)?;
-                    unpacked.extend(plain);
-                } else {
-                    data.stretches.push((at + HEAD, count));
-                }
+                data.push(Stretch { at: at + HEAD, stored: count, full: count, packing: Packing::Plain });
             }
             b"##DZ" => {
                 let packed = self.bytes(at, HEAD + 24)?;
                 let head = Block { links: Vec::new(), data: packed[HEAD as usize..].to_vec() };
                 let (kind, parameter) = (head.byte(2), head.word(4) as usize);
-                let (full, held) = (head.long(8), head.long(16));
-                let packed = self.bytes(at + HEAD + 24, held)?;
-                let so_far = data.unpacked.as_ref().map_or(0, |u| u.len() as u64);
-                if full.saturating_add(so_far) > UNPACKED || kind > 1 {
+                let (full, stored) = (head.long(8), head.long(16));
+                let start = at + HEAD + 24;
+                if full > UNPACKED || kind > 1 || start.saturating_add(stored) > self.size {
                     return Err(self.damaged(format!("the packed samples at {at} cannot be unpacked")));
                 }
-                let mut bytes = Vec::new();
-                let unpacked = ZlibDecoder::new(&packed[..]).take(full).read_to_end(&mut bytes);
-                if unpacked.is_err() || bytes.len() as u64 != full {
-                    return Err(self.damaged(format!("the packed samples at {at} do not unpack")));
-                }
-                if kind == 1 {
-                    bytes = transposed(&bytes, parameter);
-                }
-                self.hold(data)?;
-                data.unpacked.get_or_insert_default().extend(bytes);
+                let packing = if kind == 1 { Packing::Transposed(parameter) } else { Packing::Deflated };
+                data.push(Stretch { at: start, stored, full, packing });
             }
             b"##HL" if depth < 2 => {
                 let list = self.block(at, b"##HL")?.link(0);
@@ -196,7 +183,7 @@ impl Source<'_> {
                     }
                     at = list.link(0);
                     seen += 1;
-                    if seen > MOST_LINKS || data.stretches.len() as u64 > MOST_LINKS {
+                    if seen > MOST_LINKS || data.len() as u64 > MOST_LINKS {
                         return Err(self.damaged("its lists of samples point in a circle"));
                     }
                 }
@@ -209,33 +196,6 @@ impl Source<'_> {
         }
         Ok(())
     }
-
-    /// From here on bytes are held: plain stretches before a packed one are read.
-    fn hold(&mut self, data: &mut Data) -> Result<()> {
-        for (at, count) in std::mem::take(&mut data.stretches) {
-            let bytes = self.bytes(at, count)?;
-            data.unpacked.get_or_insert_default().extend(bytes);
-        }
-        Ok(())
-    }
-}
-
-/// Records of a group.
-struct Data {
-    /// First byte and number of bytes.
-    stretches: Vec<(u64, u64)>,
-    unpacked: Option<Vec<u8>>,
-}
-
-/// Rows of `columns` bytes, whose columns were stored one after the other; what fills no row stays at the end.
-fn transposed(bytes: &[u8], columns: usize) -> Vec<u8> {
-    let rows = bytes.len().checked_div(columns).unwrap_or(0);
-    let mut out = Vec::with_capacity(bytes.len());
-    for row in 0..rows {
-        out.extend((0..columns).map(|column| bytes[column * rows + row]));
-    }
-    out.extend(&bytes[rows * columns..]);
-    out
 }
 
 struct Found {
@@ -289,19 +249,14 @@ impl Found {
                 return Err(source.damaged("its channels point in a circle"));
             }
         }
-        let data = source.data(group.link(2))?;
-        let bytes = data
-            .unpacked
-            .as_ref()
-            .map_or_else(|| data.stretches.iter().map(|s| s.1).sum(), |u| u.len() as u64);
+        let data = Arc::new(source.data(group.link(2))?);
+        let bytes = data.iter().fold(0_u64, |sum, s| sum.saturating_add(s.full));
         let there = (bytes / width as u64).min(cycles);
         if there < cycles {
             self.notes.push(format!("a group promises {cycles} samples, and {there} are there"));
         }
-        let mut channels = Vec::new();
-        for of in &described {
-            channels.push(of.channel(source, &data, width, there)?);
-        }
+        let channels: Vec<Channel> =
+            described.iter().map(|of| of.channel(&source.path, &data, width, there)).collect();
         let rate_hz = match described.iter().position(|of| of.master) {
             Some(n) => rate(&channels[n], &mut self.notes)?,
             None => None,
@@ -377,37 +332,32 @@ fn describe(source: &mut Source, block: &Block) -> Result<std::result::Result<De
 }
 
 impl Described {
-    fn channel(&self, source: &mut Source, data: &Data, width: usize, len: u64) -> Result<Channel> {
+    fn channel(&self, path: &Path, data: &Arc<Vec<Stretch>>, width: usize, len: u64) -> Channel {
         let (offset, factor) = self.linear;
-        let whole = data.stretches.iter().all(|s| s.1.is_multiple_of(width as u64));
-        let channel = if data.unpacked.is_none() && whole && offset == 0.0 {
+        let whole = |s: &Stretch| s.packing == Packing::Plain && s.full.is_multiple_of(width as u64);
+        let channel = if data.iter().all(whole) && offset == 0.0 {
             let mut left = len;
-            let pieces = data.stretches.iter().map(|(at, count)| {
-                let records = (count / width as u64).min(left);
+            let pieces = data.iter().map(|stretch| {
+                let records = (stretch.full / width as u64).min(left);
                 left -= records;
-                let start = at + self.place as u64;
-                let path = source.path.clone();
+                let start = stretch.at + self.place as u64;
+                let path = path.to_owned();
                 (Strided { path, start, stride: width, number: self.number, factor }, records)
             });
             Channel::pieces(&self.name, pieces.collect())
         } else {
-            let read;
-            let bytes = match &data.unpacked {
-                Some(bytes) => bytes,
-                None => {
-                    let mut all = Data { stretches: data.stretches.clone(), unpacked: None };
-                    source.hold(&mut all)?;
-                    read = all.unpacked.unwrap_or_default();
-                    &read
-                }
+            let field = Field {
+                path: path.to_owned(),
+                format: FORMAT,
+                stretches: data.clone(),
+                width,
+                place: self.place,
+                number: self.number,
+                linear: self.linear,
             };
-            let records = bytes.chunks_exact(width).take(len as usize);
-            Channel::held(
-                &self.name,
-                records.map(|record| offset + factor * self.number.decode(&record[self.place..])).collect(),
-            )
+            Channel::records(&self.name, len, field)
         };
-        Ok(channel.in_unit(self.unit.clone()))
+        channel.in_unit(self.unit.clone())
     }
 }
 

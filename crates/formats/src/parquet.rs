@@ -1,7 +1,7 @@
 //! Apache Parquet: tables of named columns, as pandas, polars and DuckDB read them.
 
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
@@ -176,7 +176,7 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
 }
 
 /// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is missing is not a
-/// number.
+/// number. Values stay in the file.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
@@ -190,29 +190,18 @@ pub fn open(path: &Path) -> Result<Recording> {
     let rate_hz = given
         .and_then(|all| all.iter().find(|note| note.key == "rate_hz"))
         .and_then(|note| note.value.as_ref()?.parse::<f64>().ok());
+    let rows = (0..reader.num_row_groups()).map(|n| reader.metadata().row_group(n).num_rows());
+    let rows = rows.map(|n| u64::try_from(n).unwrap_or(0)).fold(0_u64, u64::saturating_add);
     for (number, column) in columns.iter().enumerate() {
         let name = column.path().string();
         if column.max_rep_level() > 0 {
             notes.push(format!("column `{name}` is left out: it holds lists"));
-            continue;
-        }
-        let mut values = Vec::new();
-        let mut numbers = true;
-        for group in 0..reader.num_row_groups() {
-            let group = reader.get_row_group(group).map_err(damaged)?;
-            let reader = group.get_column_reader(number).map_err(damaged)?;
-            let top = column.max_def_level();
-            numbers &= match reader {
-                ColumnReader::DoubleColumnReader(mut r) => take(&mut r, top, &mut values, |v| v),
-                ColumnReader::FloatColumnReader(mut r) => take(&mut r, top, &mut values, f64::from),
-                ColumnReader::Int64ColumnReader(mut r) => take(&mut r, top, &mut values, |v| v as f64),
-                ColumnReader::Int32ColumnReader(mut r) => take(&mut r, top, &mut values, f64::from),
-                _ => Ok(false),
-            }
-            .map_err(damaged)?;
-        }
-        if numbers {
-            channels.push(Channel::held(name, values).at_rate(rate_hz));
+        } else if matches!(
+            column.physical_type(),
+            Physical::DOUBLE | Physical::FLOAT | Physical::INT64 | Physical::INT32
+        ) {
+            let stored = Stored { path: path.to_owned(), number, defined: column.max_def_level() };
+            channels.push(Channel::stored(name, rows, stored).at_rate(rate_hz));
         } else {
             notes.push(format!("column `{name}` is left out: it holds no numbers"));
         }
@@ -220,12 +209,53 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// Reads all values of a column of one group of rows.
-fn take<T: parquet::data_type::DataType>(
+/// A column of numbers in a file.
+#[derive(Debug, Clone)]
+pub(crate) struct Stored {
+    path: PathBuf,
+    number: usize,
+    /// Level of definition of a value that is there.
+    defined: i16,
+}
+
+impl Stored {
+    /// The first `len` values, some rows at a time.
+    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let file = File::open(&self.path).map_err(|e| Error::read(&self.path, e))?;
+        let damaged = |e: ParquetError| Error::damaged(&self.path, FORMAT, e.to_string());
+        let reader = SerializedFileReader::new(file).map_err(damaged)?;
+        let mut left = len;
+        let mut give = |block: &[f64]| {
+            let count = left.min(block.len() as u64);
+            left -= count;
+            (count == 0 || take(&block[..count as usize])) && left > 0
+        };
+        for group in 0..reader.num_row_groups() {
+            let group = reader.get_row_group(group).map_err(damaged)?;
+            let going = match group.get_column_reader(self.number).map_err(damaged)? {
+                ColumnReader::DoubleColumnReader(mut r) => each(&mut r, self.defined, |v| v, &mut give),
+                ColumnReader::FloatColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
+                ColumnReader::Int64ColumnReader(mut r) => each(&mut r, self.defined, |v| v as f64, &mut give),
+                ColumnReader::Int32ColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
+                _ => Ok(false),
+            };
+            if !going.map_err(damaged)? {
+                return Ok(());
+            }
+        }
+        if left > 0 {
+            return Err(Error::damaged(&self.path, FORMAT, format!("a column ends {left} values early")));
+        }
+        Ok(())
+    }
+}
+
+/// Gives all values of a column of one group of rows; false when no more are wanted.
+fn each<T: parquet::data_type::DataType>(
     reader: &mut parquet::column::reader::ColumnReaderImpl<T>,
     defined: i16,
-    values: &mut Vec<f64>,
     number: impl Fn(T::T) -> f64,
+    give: &mut dyn FnMut(&[f64]) -> bool,
 ) -> std::result::Result<bool, ParquetError> {
     loop {
         let (mut batch, mut levels) = (Vec::new(), Vec::new());
@@ -235,13 +265,12 @@ fn take<T: parquet::data_type::DataType>(
             return Ok(true);
         }
         let mut found = batch.into_iter().map(&number);
-        if defined == 0 {
-            values.extend(found);
-        } else {
-            let value = |level: &i16| {
-                if *level == defined { found.next().unwrap_or(f64::NAN) } else { f64::NAN }
-            };
-            values.extend(levels.iter().map(value));
+        let mut value =
+            |level: &i16| if *level == defined { found.next().unwrap_or(f64::NAN) } else { f64::NAN };
+        let values: Vec<f64> =
+            if defined == 0 { found.collect() } else { levels.iter().map(&mut value).collect() };
+        if !give(&values) {
+            return Ok(false);
         }
     }
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::number::Number;
-use crate::{Error, Result, csv, flac};
+use crate::{Error, Result, csv, flac, hdf5_chunks, mdf4_records, parquet};
 
 /// Channels of one file.
 #[derive(Debug, Clone)]
@@ -47,6 +47,9 @@ enum Source {
     Pieces(Arc<Vec<(Strided, u64)>>),
     Text(csv::Column),
     Flac(flac::Stream),
+    Chunks(hdf5_chunks::Column),
+    Records(mdf4_records::Field),
+    Stored(parquet::Stored),
 }
 
 /// Numbers at equal distances in a file.
@@ -132,6 +135,18 @@ impl Channel {
         Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Flac(stream) }
     }
 
+    pub(crate) fn chunks(name: impl Into<String>, len: u64, column: hdf5_chunks::Column) -> Self {
+        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Chunks(column) }
+    }
+
+    pub(crate) fn records(name: impl Into<String>, len: u64, field: mdf4_records::Field) -> Self {
+        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Records(field) }
+    }
+
+    pub(crate) fn stored(name: impl Into<String>, len: u64, column: parquet::Stored) -> Self {
+        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Stored(column) }
+    }
+
     /// The same channel with its samples taken from `bytes`, which hold what a file would.
     pub(crate) fn held_from(&self, bytes: &[u8]) -> Self {
         let Source::Strided(s) = &self.source else { return self.clone() };
@@ -199,6 +214,9 @@ impl Channel {
             }
             Source::Text(column) => column.for_each_block(take),
             Source::Flac(stream) => stream.for_each_block(self.len, take),
+            Source::Chunks(column) => column.for_each_block(self.len, take),
+            Source::Records(field) => field.for_each_block(self.len, take),
+            Source::Stored(column) => column.for_each_block(self.len, take),
         }
     }
 

@@ -333,8 +333,9 @@ fn print(analysis: &Analysis) {
         );
     }
     if let Some(spall) = findings.spall_mm {
+        let known = if spall.low > 0.0 { "" } else { " if entry and exit both knock" };
         println!(
-            "  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm",
+            "  spall: {:.2} mm long{known}, 90 % between {:.2} and {:.2} mm",
             spall.value, spall.low, spall.high
         );
     }

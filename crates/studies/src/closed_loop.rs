@@ -35,8 +35,8 @@ const SPEEDS: [u32; 3] = [600, 900, 1200];
 const SIZES: [u32; 3] = [2, 5, 8];
 /// Speed at which the loop is closed [1/min].
 const LOOPED_RPM: u32 = 900;
-/// Time simulated, in turns of the shaft.
-const TURNS: f64 = 6.0;
+/// Time simulated, in turns of the shaft: six hold 22 passages, too few for a second event to show for certain.
+const TURNS: f64 = 24.0;
 /// How far the simulated spacing may be from the measured one.
 const ALLOWED: f64 = 0.05;
 /// Median error of the lengths that is allowed.
@@ -56,13 +56,13 @@ struct Measured {
 }
 
 /// What `stribeck analyse` says of a record.
-struct Found {
+pub(crate) struct Found {
     /// Families that are claimed.
-    claimed: Vec<String>,
+    pub(crate) claimed: Vec<String>,
     /// Value, lower and upper end [mm].
-    spall_mm: Option<[f64; 3]>,
+    pub(crate) spall_mm: Option<[f64; 3]>,
     /// Frequency of the family that is there [Hz].
-    hz: Option<f64>,
+    pub(crate) hz: Option<f64>,
 }
 
 pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
@@ -113,7 +113,16 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
 }
 
 /// Runs `stribeck analyse` and reads its findings.
-fn analyse(host: &dyn Host, file: &Path, words: &[String], out: &Path, family: &str) -> Result<Found> {
+///
+/// # Errors
+/// When it does not start, refuses the file, or leaves no findings.
+pub(crate) fn analyse(
+    host: &dyn Host,
+    file: &Path,
+    words: &[String],
+    out: &Path,
+    family: &str,
+) -> Result<Found> {
     let mut command = host.stribeck()?;
     let done = command.arg("analyse").arg(file).args(words).arg("--out").arg(out).output();
     let done = done.context("`stribeck analyse` does not start")?;
@@ -284,7 +293,7 @@ fn lengths(sheet: &mut Sheet, records: &[Measured]) {
         verdict(covered >= COVERED),
     ));
     sheet.say(
-        "An interval that begins at 0 is a bound: no second event follows the knock, and a spall longer than its end whose entry and exit both knock would show one. The estimate is then its middle.",
+        "Where an interval begins at 0, no second event follows the knock. If entry and exit both knock, the spall is shorter than twice the estimate, else it would show one; if not, it may have any length up to the distance of two elements, where the interval ends. The sizes of others are those of spalls shorter than half of that distance ([spalls](spalls.md)).",
     );
 }
 

@@ -23,6 +23,7 @@ mod paper;
 mod rig;
 mod run_time;
 mod runner;
+mod spalls;
 mod stability;
 mod table;
 mod work_precision;
@@ -60,6 +61,8 @@ pub enum Study {
     Atlas(atlas::Options),
     /// Lengths of measured spalls, and whether simulated ones of these lengths knock alike
     Loop(closed_loop::Options),
+    /// Simulated spalls of known length through `stribeck analyse`: whether it says how long they are
+    Spalls(spalls::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -81,6 +84,7 @@ impl Study {
             Self::Families(options) => families::run(options, host),
             Self::Atlas(options) => atlas::run(options, host),
             Self::Loop(options) => closed_loop::run(options, host),
+            Self::Spalls(options) => spalls::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }

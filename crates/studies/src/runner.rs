@@ -83,6 +83,12 @@ impl Variant {
         self
     }
 
+    /// The same with more overrides.
+    pub(crate) fn with_all(mut self, set: &[&str]) -> Self {
+        self.set.extend(set.iter().map(|s| (*s).to_owned()));
+        self
+    }
+
     fn scene(&self, root: &Path) -> Result<Scene> {
         let file = root.join(self.scene);
         let mut scene = Scene::read_with(&file, &self.set)

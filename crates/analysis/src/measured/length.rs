@@ -15,7 +15,7 @@ const LONGEST: f64 = 0.45;
 /// Ends of the interval over v Δt.
 const RANGE: (f64, f64) = (0.95, 2.0);
 
-/// The length [mm], or why there is none.
+/// The length [mm], or none; and what to know about it.
 pub(super) fn estimate(
     samples: &[f64],
     rate_hz: f64,
@@ -35,19 +35,26 @@ pub(super) fn estimate(
         return Ok((None, Some("no length of a spall: the first samples are not all numbers".to_owned())));
     }
     let found = event_spacing(samples, rate_hz, SHORTEST_S, LONGEST / passing_hz);
+    let apart = speed / passing_hz;
     Ok(match found {
         Ok(EventSpacing::Pairs(spacing)) => {
             let run = speed * spacing.lag_s;
-            (Some(Interval { value: run, low: RANGE.0 * run, high: RANGE.1 * run }), None)
+            let why = format!(
+                "the length of the spall holds for one shorter than half of the {apart:.1} mm between two elements. One of {:.1} mm or a \
+                 little more, whose exit and the entry of the next element are as far apart, would knock in the same rhythm",
+                apart - run
+            );
+            (Some(Interval { value: run, low: RANGE.0 * run, high: RANGE.1 * run }), Some(why))
         }
         Ok(EventSpacing::Alone { clear_from_s }) => {
-            let high = RANGE.1 * speed * clear_from_s;
+            let both = RANGE.1 * speed * clear_from_s;
             let why = format!(
-                "no second event follows each knock: if entry and exit both knock, the spall is shorter than {high:.2} mm; its length is \
-                 given as the middle of what that leaves. One that is shallow, or crossed under so heavy a load that no element comes \
-                 free, knocks once whatever its length"
+                "no second event follows each knock: if entry and exit both knock, the spall is shorter than {both:.2} mm, and the value given is \
+                 the middle of that. One that is shallow, or crossed under so heavy a load that no element comes free, or whose entry is \
+                 soft, knocks once whatever its length, and the record does not say which: so the interval leaves all lengths up to the \
+                 {apart:.1} mm between two elements, and takes it that the spall is no longer than that"
             );
-            (Some(Interval { value: 0.5 * high, low: 0.0, high }), Some(why))
+            (Some(Interval { value: 0.5 * both, low: 0.0, high: apart.max(both) }), Some(why))
         }
         Ok(EventSpacing::Unknown) => {
             let why = "no length of a spall: the record is too noisy, or rings too long, to tell a second event after each knock";

@@ -76,7 +76,10 @@ fn spall_in_words(spall: &Interval) -> String {
             spall.value, spall.low, spall.high
         )
     } else {
-        format!("Length of the spall: less than {:.2} mm, if entry and exit both knock.", spall.high)
+        format!(
+            "Length of the spall: {:.2} mm if entry and exit both knock, else anything up to {:.1} mm.",
+            spall.value, spall.high
+        )
     }
 }
 
