@@ -17,6 +17,7 @@ use crate::{
     error::Error,
     outline::Outline,
     overlap::Sides,
+    pocket::wedge,
     reduction::{Reduction, STICKING},
     state::State,
 };
@@ -95,6 +96,8 @@ pub(crate) struct Cage {
     pub(crate) walls: Vec<[Wall; 2]>,
     /// Length of cage that an end of a wall stands for in its own pass [m].
     pub(crate) corner: f64,
+    /// What the inner and the outer end of a wall cut from the facet of a roller in the middle of its pocket, [`wedge`].
+    pub(crate) wedges: [f64; 2],
 }
 
 /// A wall from its inner to its outer end, with the normal that points into the pocket.
@@ -272,6 +275,7 @@ impl Bearing {
             passive: [vec![[0.0; 3]; n], vec![[0.0; 3]; n]],
             wall_passive: vec![[[0.0; 2]; 2]; n],
             force: [vec![0.0; n], vec![0.0; n]],
+            growth: [vec![0.0; n], vec![0.0; n]],
             hints: [vec![[0; 2]; n], vec![[0; 2]; n]],
             cage: [0.0; 3],
             cage_velocity: [0.0, 0.0, k.cage_rad_s],
@@ -341,7 +345,12 @@ impl Cage {
             stribeck_scene::scene::ContactMethod::Collocated => 1.0,
         };
         let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
-        Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points })
+        // On the x axis, with the wall on the side of +y.
+        let wedges = [inner, outer].map(|radius: f64| {
+            let along = (radius * radius - half * half).sqrt();
+            wedge([along - path, half], [0.0, -1.0])
+        });
+        Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points, wedges })
     }
 }
 

@@ -5,8 +5,32 @@ use stribeck_scene::{
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
 };
+use stribeck_system::Ledger;
 
 use crate::state::State;
+
+/// What the ledger of a run is off by.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Off {
+    /// Over the peak strain energy.
+    of_strain: f64,
+    /// Over the heat since the start.
+    of_heat: f64,
+}
+
+impl Off {
+    pub(crate) fn of(ledger: &Ledger) -> Self {
+        let heat = ledger.friction + ledger.damping + ledger.contact_damping;
+        Self {
+            of_strain: ledger.relative_error,
+            of_heat: ledger.imbalance.abs() / heat.max(f64::MIN_POSITIVE),
+        }
+    }
+}
+
+/// Whoever turns energy into heat for seconds gathers the error of the time step, a thousandth of the heat or two, and passes any share of
+/// what the rings store. That is no divergence, which passes this share of the heat at once.
+const GATHERED: f64 = 0.01;
 
 /// Rollers may leave their annulus by this share of a roller's radius.
 const OUT_OF_PLACE: f64 = 0.5;
@@ -57,13 +81,14 @@ impl Guards {
         warnings
     }
 
-    /// Looks at a state after a sample, its energy error and the deepest penetration [m].
-    pub(crate) fn look(&self, info: &mut RunInfo, state: &State, error: f64, deepest: f64) -> Option<String> {
+    /// Looks at a state after a sample, what its energy is off by and the deepest penetration [m].
+    pub(crate) fn look(&self, info: &mut RunInfo, state: &State, off: Off, deepest: f64) -> Option<String> {
         let when =
             format!("at step {}, t = {:.5} ms", info.steps, 1e3 * info.steps as f64 * info.time_step_s);
         let limits = &self.limits;
-        let percent = 100.0 * error;
-        if percent.is_nan() || percent > limits.energy_stop_percent {
+        let percent = 100.0 * off.of_strain;
+        let apart = percent > limits.energy_stop_percent && off.of_heat > GATHERED;
+        if percent.is_nan() || apart {
             return Some(format!(
                 "energy is off by {percent:.3} % of the peak strain energy {when}. Take a smaller `model.step_us`, or `model: full` to see \
                  which of the two is wrong"

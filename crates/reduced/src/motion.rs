@@ -7,7 +7,7 @@ use stribeck_system::{Balance, Ledger, Scale};
 
 use crate::{
     bearing::Bearing,
-    guards::Guards,
+    guards::{Guards, Off},
     recorder::Memory,
     state::{State, at_positions},
     step::Scratch,
@@ -21,7 +21,7 @@ pub struct Motion {
     scratch: Scratch,
     guards: Guards,
     row: Vec<f64>,
-    error: f64,
+    off: Off,
 }
 
 /// What a checkpoint holds of it.
@@ -42,8 +42,20 @@ impl Saved {
     /// Whether it may belong to this bearing.
     pub(crate) fn fits(&self, bearing: &Bearing) -> bool {
         let (n, r, s) = (bearing.rollers, bearing.reduction.padded, &self.state);
-        let of_rollers =
-            [&s.x, &s.y, &s.vx, &s.vy, &s.angle, &s.spin, &s.slip[0], &s.slip[1], &s.force[0], &s.force[1]];
+        let of_rollers = [
+            &s.x,
+            &s.y,
+            &s.vx,
+            &s.vy,
+            &s.angle,
+            &s.spin,
+            &s.slip[0],
+            &s.slip[1],
+            &s.force[0],
+            &s.force[1],
+            &s.growth[0],
+            &s.growth[1],
+        ];
         of_rollers.iter().all(|v| v.len() == n)
             && s.wall_slip.len() == n
             && s.wall_passive.len() == n
@@ -60,7 +72,7 @@ impl Motion {
     /// A bearing that goes on from `saved`.
     pub fn new(scene: &Scene, bearing: Bearing, saved: Saved) -> Self {
         let scratch = Scratch::new(&bearing, &saved.state);
-        Self { bearing, saved, scratch, guards: Guards::new(scene), row: Vec::new(), error: 0.0 }
+        Self { bearing, saved, scratch, guards: Guards::new(scene), row: Vec::new(), off: Off::default() }
     }
 
     /// Positions and velocities.
@@ -97,7 +109,7 @@ impl time_loop::Motion for Motion {
         bearing.row(state, scratch, &before, memory, row);
         let mut ledger = self.ledger();
         self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);
-        self.error = ledger.relative_error;
+        self.off = Off::of(&ledger);
         Ok(ledger)
     }
 
@@ -118,7 +130,7 @@ impl time_loop::Motion for Motion {
     }
 
     fn look(&mut self, info: &mut RunInfo) -> Option<String> {
-        self.guards.look(info, &self.saved.state, self.error, self.scratch.deepest)
+        self.guards.look(info, &self.saved.state, self.off, self.scratch.deepest)
     }
 
     fn saved(&self) -> Saved {

@@ -41,7 +41,8 @@ pub struct Overlap {
     pub slope: f64,
     /// ∫ (u + h h′) du over the overlap [m²].
     pub arm: f64,
-    /// ∫ p² h′ du [m³]: by how much the square grows with a turn of d by one towards t.
+    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins) [m³]: by how much the square grows with a turn of d
+    /// by one towards t.
     pub skew: f64,
     /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
     pub ends: f64,
@@ -210,7 +211,7 @@ fn chords(sum: &mut Overlap, [u1, u2]: [f64; 2], r: Facet, w: Facet, shift: f64)
     sum.second += sixth * (a * a + z * z + 4.0 * middle * middle);
     sum.across += slope * area;
     sum.moment += lever * area + stand * first;
-    sum.skew += slope * square;
+    sum.skew += slope * square + (pz * pz * pz - pa * pa * pa) * (1.0 / 3.0);
     sum.slope += slope * width;
     sum.arm += width * (lever + stand * middle);
     let higher = if p1 > p2 { p1 } else { p2 };
@@ -289,7 +290,8 @@ fn arcs(sum: &mut Overlap, [u1, u2]: [f64; 2], r: Facet, w: Facet, sides: Sides,
     let rest = 1.0 - curvature * high;
     sum.across += lean * i0 - curvature * first;
     sum.moment += lean * high * i0 + rest * first;
-    sum.skew += (lean - curvature * middle) * square;
+    let [pa, pz] = [from, to].map(|at| p1 + (b + c * at) * at);
+    sum.skew += (lean - curvature * middle) * square + (pz * pz * pz - pa * pa * pa) * (1.0 / 3.0);
     sum.slope += width * (lean - curvature * middle);
     sum.arm += width * (lean * high + rest * middle);
     sum.second += (z * z * z - a * a * a) / 3.0;

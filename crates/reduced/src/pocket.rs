@@ -76,6 +76,10 @@ impl Wall {
     }
 }
 
+/// A roller whose wall was nearer than this share of its radius in a step is still seen in the next, when half of the work of the last
+/// force is counted.
+const PARTED: f64 = 1.01;
+
 impl Bearing {
     /// A roller and a wall of its pocket.
     #[inline(always)]
@@ -91,7 +95,7 @@ impl Bearing {
         heat: &mut [f64; 2],
         energy: &mut Stored,
     ) -> Option<Hit> {
-        let Some(foot) = wall.foot(guest.own, self.rims[0].top) else {
+        let Some(foot) = wall.foot(guest.own, PARTED * self.rims[0].top) else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };
@@ -103,21 +107,23 @@ impl Bearing {
         let d = [c * to[0] - s * to[1], s * to[0] + c * to[1]];
         let own_d = [turned[0] * d[0] + turned[1] * d[1], turned[0] * d[1] - turned[1] * d[0]];
         let (depth, tilt) = self.rims[0].outline.depth(own_d, distance);
-        if depth <= 0.0 {
-            (*slip, *passive) = (0.0, [0.0; 2]);
+        let parted = depth <= 0.0;
+        if parted && *passive == [0.0; 2] {
+            *slip = 0.0;
             return None;
         }
+        let depth = depth.max(0.0);
+        let level = (1.0 - tilt * tilt).sqrt();
         let (n, [force, stiffness, stored], couple) = if t > 0.0 && t < 1.0 {
             // Flat against round: the parabola on the penalty. The foot goes along the wall with the roller, so that the force stands on
             // the wall, and that the facet leans from it by an angle of sine `tilt` turns roller and cage against each other.
             let reach = (2.0 * self.arm * depth).sqrt();
             let force = self.penalty * depth * reach * (4.0 / 3.0);
-            let across = (1.0 - tilt * tilt).sqrt() * force;
-            (d, [across, self.penalty * 2.0 * reach, 0.4 * force * depth], -force * distance * tilt)
+            (d, [level * force, self.penalty * 2.0 * reach, 0.4 * force * depth], -force * distance * tilt)
         } else {
             // The normal of the roller's facet.
-            let n = [d[0] - tilt * d[1], d[1] + tilt * d[0]];
-            (n, self.corner(cage, wall, d, [c, s], depth), 0.0)
+            let n = [level * d[0] - tilt * d[1], level * d[1] + tilt * d[0]];
+            (n, self.corner(cage, cage.wedges[usize::from(t > 0.5)], depth), 0.0)
         };
         // The cage's velocity at the foot.
         let arm = [rel[0] + d[0] * distance, rel[1] + d[1] * distance];
@@ -130,15 +136,21 @@ impl Bearing {
             velocity[1] + omega * d[0] * distance - at_foot[1],
         ];
         let closing = relative[0] * n[0] + relative[1] * n[1];
-        let damping = (self.damping / self.penalty * stiffness * closing).max(-force);
         let t = [-n[1], n[0]];
         let sliding = relative[0] * t[0] + relative[1] * t[1];
+        heat[0] -= passive[0] * sliding;
+        heat[1] += passive[1] * closing;
+        if parted {
+            (*slip, *passive) = (0.0, [0.0; 2]);
+            return None;
+        }
+        let damping = (self.damping / self.penalty * stiffness * closing).max(-force);
         let sticking = self.sticking / self.penalty * stiffness;
         let most = self.friction * force / sticking;
         *slip = (*slip + self.time_step * sliding).clamp(-most, most);
         let drag = -sticking * *slip;
-        heat[0] -= (passive[0] + drag) * sliding;
-        heat[1] += (passive[1] + damping) * closing;
+        heat[0] -= drag * sliding;
+        heat[1] += damping * closing;
         *passive = [drag, damping];
         energy.contact += stored + 0.5 * sticking * *slip * *slip;
         energy.sticking += 0.5 * sticking * *slip * *slip;
@@ -153,20 +165,26 @@ impl Bearing {
     }
 
     /// Force, stiffness and stored energy of a corner of the cage that is `depth` deep in a facet: its own points, and those of the
-    /// roller in the wedge. The wedge stands to the direction d from the roller's centre: the normal of the facet jumps where facets
-    /// meet, and the energy would jump with it.
+    /// roller in the `wedge` that it cuts from the facet. They hang on the depth alone, whose gradient is the facet's normal.
     #[inline(always)]
-    fn corner(&self, cage: &Cage, wall: &Wall, d: [f64; 2], [c, s]: [f64; 2], depth: f64) -> [f64; 3] {
-        let normal = [c * wall.normal[0] - s * wall.normal[1], s * wall.normal[0] + c * wall.normal[1]];
-        // Sine of the angle between d and the wall's normal; the other side of the corner stands at a right angle to the wall.
-        let cosine = -(d[0] * normal[0] + d[1] * normal[1]);
-        let sine = (1.0 - cosine * cosine).max(1e-6).sqrt();
-        let cosine = cosine.abs().max(1e-3);
+    fn corner(&self, cage: &Cage, wedge: f64, depth: f64) -> [f64; 3] {
         let own = 0.5 * self.penalty * cage.corner;
-        // The wedge cuts the length depth (cot a + tan a) from the facet; the nearest side of it is at most `peak` away.
-        let base = depth * (cosine / sine + sine / cosine);
-        let peak = base * sine * cosine / (sine + cosine);
-        let others = 0.25 * self.penalty * base * peak;
-        [own * depth + others, own + 2.0 * others / depth, depth * (0.5 * own * depth + others / 3.0)]
+        let others = 0.25 * self.penalty * wedge * depth * depth;
+        [
+            own * depth + others,
+            own + 0.5 * self.penalty * wedge * depth,
+            depth * (0.5 * own * depth + others / 3.0),
+        ]
     }
+}
+
+/// What a corner cuts from a facet, as a multiple of its depth: the length of the cut times how far the nearest side of the corner is
+/// away at most, over depth². `d` goes from the roller's centre to the corner, `normal` from the wall into the pocket; the other side of
+/// the corner stands at a right angle to the wall.
+pub(crate) fn wedge(d: [f64; 2], normal: [f64; 2]) -> f64 {
+    let cosine = (d[0] * normal[0] + d[1] * normal[1]) / d[0].hypot(d[1]);
+    let sine = (1.0 - cosine * cosine).max(1e-6).sqrt();
+    let cosine = cosine.abs().max(1e-3);
+    // Between its sides, at the angles a and 90° − a to the facet, it is depth (cot a + tan a) long.
+    1.0 / (sine * cosine * (sine + cosine))
 }

@@ -31,8 +31,10 @@ pub struct State {
     pub passive: [Vec<[f64; 3]>; 2],
     /// Drag and damping force of the last step at the two walls of each pocket [N].
     pub wall_passive: Vec<[[f64; 2]; 2]>,
-    /// Normal forces of the last step at both raceways [N], where the next one begins its search.
+    /// Normal forces of the last step at both raceways [N].
     pub force: [Vec<f64>; 2],
+    /// By how much they had grown in it [N]: the next one begins its search where they go on alike.
+    pub growth: [Vec<f64>; 2],
     /// Facets of roller and raceway found last, at both raceways.
     pub hints: [Vec<[u32; 2]>; 2],
     /// Displacement of the cage's centre of mass [m] and its angle [rad].
@@ -45,6 +47,21 @@ pub struct State {
     pub work: Work,
     /// Steps taken.
     pub steps: u64,
+}
+
+impl State {
+    /// Remembers the normal force of a roller at a raceway [N].
+    #[inline(always)]
+    pub(crate) fn felt(&mut self, raceway: usize, roller: usize, force: f64) {
+        self.growth[raceway][roller] = force - self.force[raceway][roller];
+        self.force[raceway][roller] = force;
+    }
+
+    /// The same if it grows on as in the last step [N].
+    #[inline(always)]
+    pub(crate) fn foreseen(&self, raceway: usize, roller: usize) -> f64 {
+        (self.force[raceway][roller] + self.growth[raceway][roller]).max(0.0)
+    }
 }
 
 /// Work since the start [J]. Pairs are sums over steps, and of the last step alone, half of which lies behind the positions.

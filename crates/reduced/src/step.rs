@@ -175,7 +175,7 @@ impl Bearing {
             let Moved { velocity: moving, tilt, .. } = moved;
             let near = self.at_outer(state, i, moved.by, turned);
             let touch = self.end(simd, near, &outer, &mut state.hints[0][i], &scratch.sought);
-            state.force[0][i] = touch.normal;
+            state.felt(0, i, touch.normal);
             let mut force = [0.0, -self.gravity * roller_mass];
             let mut moment = 0.0;
             // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
@@ -209,7 +209,7 @@ impl Bearing {
 
             let near = self.at_inner(state, i, back(centre), back(turned));
             let touch = self.end(simd, near, &inner, &mut state.hints[1][i], &scratch.sought);
-            state.force[1][i] = touch.normal;
+            state.felt(1, i, touch.normal);
             let mut on_inner = [0.0; 2];
             if touch.normal > 0.0 || state.passive[1][i] != [0.0; 3] {
                 // Where the raceway is touched, it moves across the radius.
@@ -350,13 +350,13 @@ impl Bearing {
     #[inline(always)]
     fn at_outer(&self, state: &State, i: usize, [x, y]: [f64; 2], spin: [f64; 2]) -> Near<'_> {
         let centre = [state.x[i] - x, state.y[i] - y];
-        Near { track: &self.outer, rim: self.rim(i), centre, spin, before: state.force[0][i] }
+        Near { track: &self.outer, rim: self.rim(i), centre, spin, before: state.foreseen(0, i) }
     }
 
     /// A roller by the inner raceway, seen from there.
     #[inline(always)]
     fn at_inner(&self, state: &State, i: usize, centre: [f64; 2], spin: [f64; 2]) -> Near<'_> {
-        Near { track: &self.inner, rim: self.rim(i), centre, spin, before: state.force[1][i] }
+        Near { track: &self.inner, rim: self.rim(i), centre, spin, before: state.foreseen(1, i) }
     }
 
     /// What a raceway does to a roller, in the frame in which it was touched. `relative` is the velocity of the roller's

@@ -41,7 +41,7 @@ pub(crate) struct Near<'a> {
     pub(crate) centre: [f64; 2],
     /// Direction of the roller's vertex 0.
     pub(crate) spin: [f64; 2],
-    /// Force of the step before [N].
+    /// Force that is expected from the steps before [N].
     pub(crate) before: f64,
 }
 
