@@ -1,5 +1,7 @@
 //! The channels of a run under their names, cut where they stop being numbers.
 
+use std::ops::Range;
+
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::DefectRing;
 
@@ -109,7 +111,22 @@ impl<'a> Record<'a> {
     }
 }
 
-impl Roller<'_> {
+impl<'a> Roller<'a> {
+    /// The same over some of the samples.
+    pub fn within(&self, samples: Range<usize>) -> Self {
+        let part = |all: &'a [f64]| &all[samples.clone()];
+        Self {
+            number: self.number,
+            x: part(self.x),
+            y: part(self.y),
+            spin: part(self.spin),
+            outer_fx: part(self.outer_fx),
+            outer_fy: part(self.outer_fy),
+            inner_fx: part(self.inner_fx),
+            inner_fy: part(self.inner_fy),
+        }
+    }
+
     /// Orbital angle about the bearing's centre [rad], counter-clockwise from the x axis, without jumps.
     pub fn orbit(&self) -> Vec<f64> {
         let mut turns = 0.0;

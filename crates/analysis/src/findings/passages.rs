@@ -18,6 +18,9 @@ use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorL
 /// lie outside the load zone.
 const LOADED: f64 = 0.05;
 
+/// Traverses before and behind a passage in which it is looked for.
+const ABOUT: f64 = 3.0;
+
 /// One event for every passage that begins within the record, in order of expected entry.
 pub(super) fn picked_events(
     scene: &Scene,
@@ -47,7 +50,12 @@ fn events_of(
     let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
     let ring = course.spall.ring;
     let edge = Edge::of(scene, ring);
-    let turned = turned_rad(scene, prediction, course, time);
+    let duty = Duty::of(scene);
+    let turned_rad = |t: f64| match ring {
+        _ if !course.turns => 0.0,
+        DefectRing::Inner => duty.shaft_rad(t),
+        DefectRing::Outer => prediction.kinematics.outer_rad_s * t,
+    };
     let mut events = Vec::new();
     for passage in course.passages.iter().filter(|p| p.entry_s < last) {
         let mut event = Event::expected(passage, ring);
@@ -57,6 +65,9 @@ fn events_of(
             continue;
         };
         let traverse = passage.exit_s - passage.entry_s;
+        // A long record is looked at about the passage alone.
+        let near = events::span(time, passage.entry_s - ABOUT * traverse, passage.exit_s + ABOUT * traverse);
+        let (time, roller) = (&time[near.clone()], roller.within(near));
         // A shaft whose speed changes has another one at each passage.
         let speed_m_s = if scene.operation.speed_varies() {
             1e-3 * course.spall.length_mm / traverse
@@ -66,7 +77,7 @@ fn events_of(
         let floor_s = edge.floor_m(1e-3 * course.spall.depth_mm) / speed_m_s;
         // As the raceway sees it.
         let mut orbit = roller.orbit();
-        orbit.iter_mut().zip(&turned).for_each(|(angle, turned)| *angle -= turned);
+        orbit.iter_mut().zip(time).for_each(|(angle, &t)| *angle -= turned_rad(t));
         let near = |edge: f64, expected: f64| {
             let all = events::crossings(time, &orbit, edge.to_radians());
             let gap = |t: &f64| (t - expected).abs();
@@ -121,16 +132,6 @@ fn events_of(
         compensate(record, prediction, &mut of_spall);
     }
     of_spall
-}
-
-/// By what angle [rad] the ring of a spall has turned at each sample since the start; nothing where it stands.
-fn turned_rad(scene: &Scene, prediction: &Prediction, course: &SpallCourse, time: &[f64]) -> Vec<f64> {
-    let duty = Duty::of(scene);
-    let turned = |&t: &f64| match course.spall.ring {
-        DefectRing::Inner => duty.shaft_rad(t),
-        DefectRing::Outer => prediction.kinematics.outer_rad_s * t,
-    };
-    if course.turns { time.iter().map(turned).collect() } else { Vec::new() }
 }
 
 /// Event #3: the largest force that a roller carries while a neighbour is in the defect.
