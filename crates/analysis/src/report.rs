@@ -128,8 +128,11 @@ fn page(
                 (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
                 (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
                 h2 #artefacts { "All lines of the leading sensor" }
-                (sections::artefacts(summary))
-                (tables::notch(summary))
+                details {
+                    summary { "Each line, and what makes it" }
+                    (sections::artefacts(summary))
+                    (tables::notch(summary))
+                }
                 (agreement::of_run(&run.scene, run_dir))
                 @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
@@ -187,9 +190,12 @@ fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
             "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage \
              pockets, damping nor the place of its sensor, so its levels are no test of this model."
         }
-        (sections::paper(summary))
+        details {
+            summary { "Each number of the paper, and ours" }
+            (sections::paper(summary))
+            (sections::readings(summary))
+        }
         @for figure in drawn { (figure) }
-        (sections::readings(summary))
     })
 }
 
