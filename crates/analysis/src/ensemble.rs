@@ -119,10 +119,11 @@ impl EnsembleFindings {
 }
 
 impl EnsembleFindings {
-    /// What `of` comes to over the first passages of a roller, given by its number.
+    /// What `of` comes to over the first passages of a roller over the first spall, given by its number.
     pub fn over_events(&self, roller: &str, of: fn(&Event) -> Option<f64>) -> Option<Statistic> {
-        let first =
-            |f: &Findings| f.summary.events.iter().find(|e| e.roller.to_string() == roller).and_then(of);
+        let first = |f: &Findings| {
+            f.summary.first_passages().into_iter().find(|e| e.roller.to_string() == roller).and_then(of)
+        };
         let values: Vec<f64> = self.complete.iter().filter_map(|(_, findings)| first(findings)).collect();
         Statistic::of(&values, self.complete.len())
     }

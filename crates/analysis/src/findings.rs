@@ -94,6 +94,8 @@ pub struct SensorSignal {
 /// Vertical force between outer raceway and one roller [N], compression positive.
 #[derive(Debug)]
 pub struct CrossingForce {
+    /// Which spall, from 1.
+    pub spall: usize,
     /// Roller, from 1.
     pub roller: usize,
     /// Whether it is the vertical force of the outer raceway, as in the paper, or that along the normal of the spall's raceway.

@@ -104,7 +104,10 @@ impl Prediction {
         };
         let course = |spall: DefectScene| SpallCourse {
             edges: edges(&spall),
-            turns: spall.ring == DefectRing::Inner || scene.operation.outer_speed_rpm != 0.0,
+            turns: match spall.ring {
+                DefectRing::Outer => scene.operation.outer_speed_rpm != 0.0,
+                DefectRing::Inner => scene.operation.speed_rpm != 0.0 || scene.operation.speed_varies(),
+            },
             passages: passages(&spall),
             spall,
         };
@@ -120,9 +123,10 @@ impl Prediction {
         }
     }
 
-    /// Edges of the first spall, when it stands still.
+    /// Edges of the first spall, when it stands still on the outer raceway.
     pub fn standing(&self) -> Option<DefectEdges> {
-        self.spalls.first().filter(|spall| !spall.turns).map(|spall| spall.edges)
+        let standing = |course: &&SpallCourse| course.spall.ring == DefectRing::Outer && !course.turns;
+        self.spalls.first().filter(standing).map(|course| course.edges)
     }
 
     /// Passages over the first spall.

@@ -126,6 +126,19 @@ pub struct EnergyFinding {
     pub peak_strain_j: f64,
 }
 
+impl Summary {
+    /// The first passage of each roller over the first spall.
+    pub fn first_passages(&self) -> Vec<&Event> {
+        let mut first: Vec<&Event> = Vec::new();
+        for event in self.events.iter().filter(|event| event.spall == 1) {
+            if first.iter().all(|known| known.roller != event.roller) {
+                first.push(event);
+            }
+        }
+        first
+    }
+}
+
 /// One passage of a roller over the defect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {

@@ -315,7 +315,7 @@ impl Film {
         let round = self.lands[1].nearest(both[1], at.x, at.y, track.at, m.places[1]);
         m.places = [track.place, round.place];
         // The point of the round body is the one nearest to that of the track: its normal is the line between them, so that
-        // forces along it turn nothing.
+        // forces along it turn nothing, on average between two looks.
         let normal = round.normal.map(|n| -n);
         let gap = normal[0] * (round.at[0] - track.at[0]) + normal[1] * (round.at[1] - track.at[1]);
         // The film stays at these points until the next look, so they lie where it is half-way till then. Points that fall

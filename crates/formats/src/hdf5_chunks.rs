@@ -17,6 +17,8 @@ use crate::{Error, Result};
 
 /// Largest chunk [bytes]; one is held at a time.
 const LARGEST: u64 = 1 << 28;
+/// Most filters of a set: a chunk says in 32 bits which of them it went without.
+const MOST_FILTERS: usize = 32;
 /// Numbers of the filters.
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
@@ -74,6 +76,7 @@ pub(crate) fn columns(
     if numbers == 0
         || numbers.saturating_mul(width as u64) > LARGEST
         || filters.len() != dataset.filters().len()
+        || filters.len() > MOST_FILTERS
         || !filters.iter().all(|f| known(f.id))
     {
         return Ok(None);

@@ -107,7 +107,7 @@ impl Field {
     }
 
     fn damaged(&self, stretch: &Stretch, what: &str) -> Error {
-        Error::damaged(&self.path, self.format, format!("the packed samples at {} {what}", stretch.at))
+        Error::damaged(&self.path, self.format, format!("the samples at {} {what}", stretch.at))
     }
 }
 

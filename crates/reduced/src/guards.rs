@@ -11,14 +11,14 @@ use crate::state::State;
 
 /// What the ledger of a run is off by.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Off {
+pub(crate) struct LedgerError {
     /// Over the peak strain energy.
     of_strain: f64,
     /// Over the heat since the start.
     of_heat: f64,
 }
 
-impl Off {
+impl LedgerError {
     pub(crate) fn of(ledger: &Ledger) -> Self {
         let heat = ledger.friction + ledger.damping + ledger.contact_damping;
         Self {
@@ -28,8 +28,8 @@ impl Off {
     }
 }
 
-/// Whoever turns energy into heat for seconds gathers the error of the time step, a thousandth of the heat or two, and passes any share of
-/// what the rings store. That is no divergence, which passes this share of the heat at once.
+/// A run that turns energy into heat for seconds gathers the error of the time step, one or two thousandths of the heat, and in time
+/// exceeds any share of what the rings store. That is no divergence, which exceeds this share of the heat at once.
 const GATHERED: f64 = 0.01;
 
 /// Rollers may leave their annulus by this share of a roller's radius.
@@ -82,16 +82,23 @@ impl Guards {
     }
 
     /// Looks at a state after a sample, what its energy is off by and the deepest penetration [m].
-    pub(crate) fn look(&self, info: &mut RunInfo, state: &State, off: Off, deepest: f64) -> Option<String> {
+    pub(crate) fn look(
+        &self,
+        info: &mut RunInfo,
+        state: &State,
+        off: LedgerError,
+        deepest: f64,
+    ) -> Option<String> {
         let when =
             format!("at step {}, t = {:.5} ms", info.steps, 1e3 * info.steps as f64 * info.time_step_s);
         let limits = &self.limits;
         let percent = 100.0 * off.of_strain;
-        let apart = percent > limits.energy_stop_percent && off.of_heat > GATHERED;
+        let apart = percent > limits.energy_stop_percent && (off.of_heat.is_nan() || off.of_heat > GATHERED);
         if percent.is_nan() || apart {
             return Some(format!(
-                "energy is off by {percent:.3} % of the peak strain energy {when}. Take a smaller `model.step_us`, or `model: full` to see \
-                 which of the two is wrong"
+                "energy is off by {percent:.3} % of the peak strain energy and {:.1} % of all heat {when}. Take a smaller `model.step_us`, or `model: full` to see \
+                 which of the two is wrong",
+                100.0 * off.of_heat
             ));
         }
         if percent > limits.energy_warning_percent && !info.guards.energy_warned {

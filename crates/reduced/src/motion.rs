@@ -7,7 +7,7 @@ use stribeck_system::{Balance, Ledger, Scale};
 
 use crate::{
     bearing::Bearing,
-    guards::{Guards, Off},
+    guards::{Guards, LedgerError},
     recorder::Memory,
     state::{State, at_positions},
     step::Scratch,
@@ -21,7 +21,7 @@ pub struct Motion {
     scratch: Scratch,
     guards: Guards,
     row: Vec<f64>,
-    off: Off,
+    off: LedgerError,
 }
 
 /// What a checkpoint holds of it.
@@ -72,7 +72,14 @@ impl Motion {
     /// A bearing that goes on from `saved`.
     pub fn new(scene: &Scene, bearing: Bearing, saved: Saved) -> Self {
         let scratch = Scratch::new(&bearing, &saved.state);
-        Self { bearing, saved, scratch, guards: Guards::new(scene), row: Vec::new(), off: Off::default() }
+        Self {
+            bearing,
+            saved,
+            scratch,
+            guards: Guards::new(scene),
+            row: Vec::new(),
+            off: LedgerError::default(),
+        }
     }
 
     /// Positions and velocities.
@@ -109,7 +116,7 @@ impl time_loop::Motion for Motion {
         bearing.row(state, scratch, &before, memory, row);
         let mut ledger = self.ledger();
         self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);
-        self.off = Off::of(&ledger);
+        self.off = LedgerError::of(&ledger);
         Ok(ledger)
     }
 

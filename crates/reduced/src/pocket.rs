@@ -78,7 +78,7 @@ impl Wall {
 
 /// A roller whose wall was nearer than this share of its radius in a step is still seen in the next, when half of the work of the last
 /// force is counted.
-const PARTED: f64 = 1.01;
+const STILL_SEEN: f64 = 1.01;
 
 impl Bearing {
     /// A roller and a wall of its pocket.
@@ -95,7 +95,7 @@ impl Bearing {
         heat: &mut [f64; 2],
         energy: &mut Stored,
     ) -> Option<Hit> {
-        let Some(foot) = wall.foot(guest.own, PARTED * self.rims[0].top) else {
+        let Some(foot) = wall.foot(guest.own, STILL_SEEN * self.rims[0].top) else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };

@@ -101,8 +101,8 @@ impl Bearing {
     fn seat_force(&self, state: &State) -> Option<[f64; 2]> {
         let r = self.reduction.padded;
         let shapes = &self.reduction.seat_shapes;
-        let further =
+        let by_modes =
             |c: usize| shapes[c * r..(c + 1) * r].iter().zip(&state.q).map(|(s, q)| s * q).sum::<f64>();
-        self.reduction.seat.map(|at_rest| [0, 1].map(|c| at_rest[c] + further(c)))
+        self.reduction.seat.map(|at_rest| [0, 1].map(|c| at_rest[c] + by_modes(c)))
     }
 }

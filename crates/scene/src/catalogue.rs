@@ -107,7 +107,7 @@ const OTHERS: [Row; 7] = [
     ("UER204", Element::Ball, Some(8), 7.92, 34.55, 0.0, Some([20.0, 47.0, 17.0]), XJTU),
 ];
 
-/// Cylindrical roller bearings by where their flanges are, which a plane does not see: rollers and raceways are the same.
+/// Cylindrical roller bearings by where their flanges are, which a plane model does not have: rollers and raceways are the same.
 const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
 
 /// All bearings that have a name here.

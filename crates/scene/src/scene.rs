@@ -156,7 +156,7 @@ pub struct DefectScene {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DefectRing {
-    /// The outer ring, which stands still.
+    /// The outer ring.
     #[default]
     Outer,
     /// The inner ring, which turns with the shaft.
@@ -525,7 +525,7 @@ pub struct SensorScene {
 pub struct GuardsScene {
     /// Imbalance of energy over the peak strain energy above which the run carries a warning [%].
     pub energy_warning_percent: f64,
-    /// … and above which it stops [%].
+    /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat, too.
     pub energy_stop_percent: f64,
     /// Hourglass energy over strain energy above which the run carries a warning [%].
     pub hourglass_warning_percent: f64,

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
 use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::scene::DefectRing;
 
 use crate::table::number;
 use crate::{Answer, Flags, Host, Runner, Sheet, Variant};
@@ -212,7 +213,8 @@ fn simulate(
             pass.simulated_s = Err(run.summary.as_ref().err().cloned().unwrap_or_default());
             continue;
         };
-        let lasted = summary.events.iter().filter_map(|e| Some(1e-3 * (e.exit_ms? - e.entry_ms?)));
+        let on_outer = summary.events.iter().filter(|event| event.ring == DefectRing::Outer);
+        let lasted = on_outer.filter_map(|e| Some(1e-3 * (e.exit_ms? - e.entry_ms?)));
         let mut lasted: Vec<f64> = lasted.collect();
         lasted.sort_by(f64::total_cmp);
         pass.by_load_s = lasted.get(lasted.len() / 2).copied();

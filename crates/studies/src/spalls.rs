@@ -2,6 +2,8 @@
 
 use anyhow::Result;
 
+use stribeck_scene::scene::DefectRing;
+
 use crate::closed_loop::{Found, analyse};
 use crate::table::number;
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet, Variant};
@@ -129,6 +131,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
 impl Told {
     fn of(case: Case, found: Found, run: &Finished) -> Self {
         let events = run.numbers().map(|summary| summary.events.as_slice()).unwrap_or_default();
+        let events: Vec<_> = events.iter().filter(|event| event.ring == DefectRing::Outer).collect();
         let mut lasted: Vec<f64> =
             events.iter().filter_map(|e| Some(1e-3 * (e.exit_ms? - e.entry_ms?))).collect();
         lasted.sort_by(f64::total_cmp);

@@ -9,8 +9,8 @@ use crate::Error;
 use crate::statistic::{Share, Statistic};
 
 /// Fields by which items of a list are told apart; they stay as they are.
-const NAMES: [&str; 9] =
-    ["roller", "sensor", "component", "family", "name", "harmonic", "sideband", "part", "quantity"];
+const NAMES: [&str; 10] =
+    ["spall", "roller", "sensor", "component", "family", "name", "harmonic", "sideband", "part", "quantity"];
 
 /// A part of many summaries.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -154,7 +154,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let smoothing = prediction.smoothing_s(to - from);
             let seen = events::span(time, from - 0.5 * (to - from), to);
             let time = &time[seen.clone()];
-            let force = events::running_median(time, &roller.outer_normal()[seen], smoothing);
+            let force = events::running_median(time, &roller.within(seen).outer_normal(), smoothing);
             let during = events::span(time, from, to);
             // A roller that is itself over the defect, or only just behind it, tells nothing.
             let free = |n: &usize| time[*n] < own.0 - smoothing || time[*n] > own.1 + 4.0 * smoothing;
@@ -269,6 +269,10 @@ fn components(sensor: &SensorSignal, phases: &[Phase]) -> Vec<ComponentLevels> {
     turned.into_iter().filter_map(level).collect()
 }
 
+/// Passages whose forces are kept for pictures.
+const DRAWN: usize = 12;
+
+/// Forces over the whole record of the rollers that cross a spall first.
 pub(super) fn crossing_forces(
     record: &Record<'_>,
     prediction: &Prediction,
@@ -276,14 +280,15 @@ pub(super) fn crossing_forces(
     filter: Option<&Filter>,
 ) -> Result<Vec<CrossingForce>, Error> {
     let mut forces = Vec::new();
-    for event in events {
+    for event in events.iter().take(DRAWN) {
         let Some(roller) = record.roller(event.roller) else { continue };
         // The paper's figure has the vertical force; only over a spall that stands still is it the one that tells.
-        let vertical = event.ring == DefectRing::Outer && prediction.standing().is_some();
+        let standing = prediction.spalls.get(event.spall - 1).is_some_and(|course| !course.turns);
+        let vertical = event.ring == DefectRing::Outer && standing;
         let raw_n: Vec<f64> =
             if vertical { roller.outer_fy.iter().map(|f| -f).collect() } else { roller.normal(event.ring) };
         let filtered_n = filter.map(|f| f.force(&raw_n)).transpose()?.unwrap_or_default();
-        forces.push(CrossingForce { roller: event.roller, vertical, raw_n, filtered_n });
+        forces.push(CrossingForce { spall: event.spall, roller: event.roller, vertical, raw_n, filtered_n });
     }
     Ok(forces)
 }

@@ -75,7 +75,7 @@ impl Figure {
                 p class="caption" { (self.caption) }
                 div class="chart" tabindex="0" role="img" aria-label=(self.title) {}
                 div class="still" { (PreEscaped(still)) }
-                @if !self.bands.is_empty() || !self.levels.is_empty() {
+                @if !self.bands.is_empty() || self.levels.iter().any(|level| !level.label.is_empty()) {
                     p class="key" {
                         @for band in &self.bands { span class="shade" {} (band.label) " " }
                         @for level in self.levels.iter().filter(|level| !level.label.is_empty()) {

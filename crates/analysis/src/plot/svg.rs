@@ -192,18 +192,18 @@ impl Figure {
         let lines = self.series.iter().map(|s| (s.name.as_str(), s.colour.rgb()));
         let bands = self.bands.iter().map(|b| (b.label.as_str(), RGBColor(205, 205, 205)));
         let levels = self.levels.iter().map(|l| (l.label.as_str(), l.colour.rgb()));
-        let dashed = |name: &str| self.levels.iter().any(|l| l.label == name);
-        let mut entries: Vec<(&str, RGBColor)> = Vec::new();
-        for entry in lines.chain(bands).chain(levels) {
+        let whole = lines.chain(bands).map(|(name, colour)| (name, colour, false));
+        let mut entries: Vec<(&str, RGBColor, bool)> = Vec::new();
+        for entry in whole.chain(levels.map(|(name, colour)| (name, colour, true))) {
             if !entry.0.is_empty() && entries.iter().all(|e| e.0 != entry.0) {
                 entries.push(entry);
             }
         }
         let width = |name: &str| (CHARACTER * name.chars().count() as f64) as i32 + px(34);
         let mut left = (SIZE.0 - RIGHT) as i32 - entries.iter().map(|e| width(e.0)).sum::<i32>();
-        for (name, colour) in entries {
+        for (name, colour, dashed) in entries {
             // A level's key is dashed and fine, as its line.
-            let (parts, upper, lower) = if dashed(name) { (2, 39, 41) } else { (1, 38, 42) };
+            let (parts, upper, lower) = if dashed { (2, 39, 41) } else { (1, 38, 42) };
             for part in 0..parts {
                 let from = left + px(14) + part * px(9);
                 let key = [(from, px(upper)), (from + px(14 / (2 * parts - 1)), px(lower))];

@@ -3,6 +3,7 @@
 use maud::{Markup, html};
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Family;
 use crate::duty::DutyFinding;
@@ -61,11 +62,16 @@ fn defect(run: &Run, summary: &Summary) -> String {
         );
     }
     let it = if spalls.len() == 1 { "it" } else { "them" };
-    let others = match faults.len() {
-        1 => String::new(),
-        _ => {
-            format!(" The scene has others, whose families are in the spectra: {}.", families[1..].join("; "))
-        }
+    let picked = |on: &RollingSurface| match on {
+        RollingSurface::Outer => spalls.iter().any(|spall| spall.ring == DefectRing::Outer),
+        RollingSurface::Inner => spalls.iter().any(|spall| spall.ring == DefectRing::Inner),
+        RollingSurface::Roller(_) => false,
+    };
+    let others =
+        faults.iter().zip(&families).filter(|(on, _)| !picked(on)).map(|(_, family)| family.as_str());
+    let others = match others.collect::<Vec<&str>>().join("; ") {
+        none if none.is_empty() => String::new(),
+        others => format!(" The scene has others, whose families are in the spectra: {others}."),
     };
     if events.is_empty() && unsteady(summary).is_some_and(|duty| duty.speed_rpm.0 * duty.speed_rpm.1 < 0.0) {
         return "The shaft turns back on the way, and passages are foretold of one sense of rotation only."

@@ -330,7 +330,8 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
     if spalls.is_empty() {
         return html! { p { "No spall lies on a raceway." } };
     }
-    let truth = |event: &Event| spalls.get(event.spall - 1).map_or(f64::NAN, |spall| spall.length_mm);
+    let truth = |event: &Event| Some(spalls.get(event.spall.checked_sub(1)?)?.length_mm);
+    let several = spalls.len() > 1;
     let off = |found: Option<f64>, truth: f64| found.map(|t| format!("{:+.3}", t - truth).replace('-', "−"));
     html! {
         h3 { "Length of the defect, from the events" }
@@ -338,6 +339,7 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
             table {
                 thead {
                     tr {
+                        @if several { th { "Spall" } }
                         th { "Roller" } th class="n" { "#1 off ms" } th class="n" { "#4 off ms" } th class="n" { "Estimated mm" } th class="n" { "True mm" }
                         th class="n" { "Difference" }
                     }
@@ -345,12 +347,13 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
                 tbody {
                     @for e in &summary.events {
                         tr {
+                            @if several { td { (e.spall) ", " (e.ring.name()) } }
                             td { (e.roller) }
                             (cell(off(e.entry_ms, e.expected_entry_ms)))
                             (cell(off(e.exit_ms, e.expected_exit_ms)))
                             (cell(e.spall_mm.map(|mm| format!("{mm:.2}"))))
-                            td class="n" { (truth(e)) }
-                            (cell(e.spall_mm.map(|mm| format!("{:+.1} %", 100.0 * (mm / truth(e) - 1.0)).replace('-', "−"))))
+                            (cell(truth(e).map(|mm| mm.to_string())))
+                            (cell(e.spall_mm.zip(truth(e)).map(|(mm, truth)| format!("{:+.1} %", 100.0 * (mm / truth - 1.0)).replace('-', "−"))))
                         }
                     }
                 }

@@ -231,10 +231,10 @@ fn reduced_housing(scene: &Scene) -> Option<Finding> {
         ("the reduced model knows no springs and dampers about the outer ring", remedy)
     } else if scene.housing.is_rigid() && operation.outer_speed_rpm != 0.0 {
         let remedy = Remedy::new(OUTER_SPEED, "`0`".to_owned()).value("0.0", "it stands");
-        ("the reduced model knows outer rings that stand still alone", remedy)
+        ("the reduced model knows only outer rings that stand still", remedy)
     } else if scene.housing.is_rigid() && operation.rotating_load.is_some() {
         let remedy = Remedy::new("operation.rotating_load", "`None`".to_owned()).value("None", "");
-        ("the reduced model knows a load that turns with the shaft in guided housings alone", remedy)
+        ("the reduced model knows a load that turns with the shaft only in guided housings", remedy)
     } else {
         return None;
     };

@@ -117,7 +117,7 @@ fn acceleration(findings: &EnsembleFindings) -> Option<Figure> {
 fn passages(findings: &EnsembleFindings) -> Vec<Mark> {
     let Some((_, first)) = findings.complete.first() else { return Vec::new() };
     let mut marks = Vec::new();
-    for event in first.summary.events.iter().take(2 * ROLLERS) {
+    for event in first.summary.first_passages().into_iter().take(2 * ROLLERS) {
         let roller = event.roller.to_string();
         let mut add = |what: &str, colour, of: fn(&Event) -> Option<f64>| {
             let time = findings.over_events(&roller, of);
@@ -218,12 +218,12 @@ fn families(findings: &EnsembleFindings, first: &Findings) -> Vec<Mark> {
 /// Force of the raceway on each of the first rollers, from before its entry to after its exit.
 fn forces(findings: &EnsembleFindings) -> Vec<Figure> {
     let Some((_, first)) = findings.complete.first() else { return Vec::new() };
-    let rollers = first.summary.events.iter().map(|e| e.roller).take(ROLLERS);
-    rollers.filter_map(|roller| force(findings, first, roller)).collect()
+    let passages = first.summary.first_passages().into_iter().take(ROLLERS);
+    passages.map(|e| e.roller).filter_map(|roller| force(findings, first, roller)).collect()
 }
 
 fn force(findings: &EnsembleFindings, first: &Findings, roller: usize) -> Option<Figure> {
-    let event = |f: &Findings| f.summary.events.iter().find(|e| e.roller == roller).cloned();
+    let event = |f: &Findings| f.summary.first_passages().into_iter().find(|e| e.roller == roller).cloned();
     let traverse_s = event(first).map(|e| 1e-3 * (e.expected_exit_ms - e.expected_entry_ms))?;
     let step = first.interval_s;
     let from = -AROUND_S.min(1e-3 * event(first)?.expected_entry_ms - first.start_s);
@@ -231,7 +231,7 @@ fn force(findings: &EnsembleFindings, first: &Findings, roller: usize) -> Option
     // Every start on a clock of its own, which is zero at its entry without slip.
     let shifted = |f: &Findings| -> Option<Vec<f64>> {
         let entry_s = 1e-3 * event(f)?.expected_entry_ms;
-        let raw = &f.crossings.iter().find(|c| c.roller == roller)?.raw_n;
+        let raw = &f.crossings.iter().find(|c| c.roller == roller && c.spall == 1)?.raw_n;
         let at = |n: usize| {
             let place = (from + step * n as f64 + entry_s - f.start_s) / f.interval_s;
             let below = place.floor();

@@ -119,12 +119,13 @@ pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
         ("#4 is loaded again", Colour::Green, |e| e.exit_ms),
     ];
     let (_, first) = findings.complete.first()?;
-    let expected = first.summary.events.first()?;
+    let passages = first.summary.first_passages();
+    let expected = passages.first()?;
     let traverse = expected.expected_exit_ms - expected.expected_entry_ms;
-    let rollers: Vec<usize> = first.summary.events.iter().map(|e| e.roller).collect();
+    let rollers: Vec<usize> = passages.iter().map(|e| e.roller).collect();
     let times = |roller: usize, of: Time| -> Vec<f64> {
         let of = |f: &Findings| {
-            let event = f.summary.events.iter().find(|e| e.roller == roller)?;
+            let event = f.summary.first_passages().into_iter().find(|e| e.roller == roller)?;
             Some(of(event)? - event.expected_entry_ms)
         };
         findings.complete.iter().filter_map(|(_, f)| of(f)).collect()

@@ -117,8 +117,11 @@ fn moments(
         })
     });
     moments.extend(loaded);
-    let exit =
-        findings.prediction.standing().zip(findings.summary.events.first()).and_then(|(edges, event)| {
+    let exit = findings
+        .prediction
+        .standing()
+        .zip(findings.summary.first_passages().first().copied())
+        .and_then(|(edges, event)| {
             let focus = on_race(edges.trailing_deg);
             let exit_s = 1e-3 * event.exit_ms?;
             let half_ms = 0.5e-3;
