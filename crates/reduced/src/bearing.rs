@@ -17,7 +17,6 @@ use crate::{
     error::Error,
     outline::Outline,
     overlap::Sides,
-    pocket::wedge,
     reduction::{Reduction, STICKING},
     state::State,
 };
@@ -96,7 +95,7 @@ pub(crate) struct Cage {
     pub(crate) walls: Vec<[Wall; 2]>,
     /// Length of cage that an end of a wall stands for in its own pass [m].
     pub(crate) corner: f64,
-    /// What the inner and the outer end of a wall cut from the facet of a roller in the middle of its pocket, [`wedge`].
+    /// What the inner and the outer end of a wall cut from the facet of a roller in the middle of its pocket ([`wedge`]).
     pub(crate) wedges: [f64; 2],
 }
 
@@ -352,6 +351,17 @@ impl Cage {
         });
         Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points, wedges })
     }
+}
+
+/// What a corner cuts from a facet, as a multiple of its depth: the length of the cut times how far the nearest side of the corner is
+/// away at most, over depth². `d` goes from the roller's centre to the corner, `normal` from the wall into the pocket; the other side of
+/// the corner stands at a right angle to the wall.
+fn wedge(d: [f64; 2], normal: [f64; 2]) -> f64 {
+    let cosine = (d[0] * normal[0] + d[1] * normal[1]) / d[0].hypot(d[1]);
+    let sine = (1.0 - cosine * cosine).max(1e-6).sqrt();
+    let cosine = cosine.abs().max(1e-3);
+    // Between its sides, at the angles a and 90° − a to the facet, it is depth (cot a + tan a) long.
+    1.0 / (sine * cosine * (sine + cosine))
 }
 
 /// A boundary with what deviates from round.

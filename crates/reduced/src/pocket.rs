@@ -177,14 +177,3 @@ impl Bearing {
         ]
     }
 }
-
-/// What a corner cuts from a facet, as a multiple of its depth: the length of the cut times how far the nearest side of the corner is
-/// away at most, over depth². `d` goes from the roller's centre to the corner, `normal` from the wall into the pocket; the other side of
-/// the corner stands at a right angle to the wall.
-pub(crate) fn wedge(d: [f64; 2], normal: [f64; 2]) -> f64 {
-    let cosine = (d[0] * normal[0] + d[1] * normal[1]) / d[0].hypot(d[1]);
-    let sine = (1.0 - cosine * cosine).max(1e-6).sqrt();
-    let cosine = cosine.abs().max(1e-3);
-    // Between its sides, at the angles a and 90° − a to the facet, it is depth (cot a + tan a) long.
-    1.0 / (sine * cosine * (sine + cosine))
-}
