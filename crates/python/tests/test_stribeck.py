@@ -62,6 +62,8 @@ class Runs(unittest.TestCase):
         out = Path(self.folder.name) / "interrupted"
         main = threading.main_thread().ident
         pressed = []
+        # A shell that starts this in the background has it ignore Ctrl-C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
         def press(phase, share, time_s):
             if phase == "run" and time_s > 0 and not pressed:
