@@ -10,7 +10,7 @@
 //! | Question | File |
 //! |---|---|
 //! | What does a program call? | `simulation.rs` |
-//! | What is kept of the finite elements? | `reduction.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
+//! | What is kept of the finite elements? | `reduction.rs`, `structure.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
 //! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `start.rs` |
 //! | What changes in time? | `state.rs` |
 //! | What is one step? | `step.rs`; its parts: `modes.rs`, `touch.rs`, `pocket.rs` |
@@ -22,6 +22,7 @@ pub mod simulation;
 pub mod cache;
 pub mod compliance;
 pub mod reduction;
+mod structure;
 
 pub mod bearing;
 pub mod outline;
