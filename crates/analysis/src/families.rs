@@ -155,6 +155,14 @@ pub struct FamilyLine {
     pub component: String,
 }
 
+/// The sample before which a record holds more than [`MOST_PERIODS`].
+pub(crate) fn too_early(samples: usize, interval_s: f64, bpfo_hz: f64) -> Option<usize> {
+    let most = (MOST_PERIODS / (bpfo_hz * interval_s)).floor().max(1.0);
+    // A bearing that hardly turns has no such number.
+    let most = most.is_finite().then_some(most as usize)?;
+    samples.checked_sub(most).filter(|from| *from > 0)
+}
+
 /// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers, over the last
 /// [`MOST_PERIODS`] of the record.
 ///
@@ -357,11 +365,8 @@ impl Motion {
     }
 
     /// The sample before which there are more than [`MOST_PERIODS`] on record.
-    pub(crate) fn too_early(&self) -> Option<usize> {
-        let most = (MOST_PERIODS / (self.bpfo_hz * self.interval_s)).floor().max(1.0);
-        // A bearing that hardly turns has no such number.
-        let most = most.is_finite().then_some(most as usize)?;
-        self.samples().checked_sub(most).filter(|from| *from > 0)
+    fn too_early(&self) -> Option<usize> {
+        too_early(self.samples(), self.interval_s, self.bpfo_hz)
     }
 
     /// The motion from sample `from` on.

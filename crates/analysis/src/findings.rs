@@ -146,10 +146,10 @@ impl Findings {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
-        let (tracks, channels) = heard(&record, &prediction, &motion, &sensors);
+        let ((tracks, channels), early) = heard(&record, &prediction, &motion, &sensors);
         let candidates = if steady { prediction.candidates(&run.scene, &run.info.mesh) } else { Vec::new() };
-        if let Some(from) = tracks.too_early().filter(|_| steady) {
-            let sought_s = record.interval_s() * (time.len() - from) as f64;
+        if early > 0 && steady {
+            let sought_s = record.interval_s() * (time.len() - early) as f64;
             notes.push(format!(
                 "the mesh\u{2019}s families of lines are sought in the last {sought_s:.3} s of the record, {:.0} periods of BPFO",
                 families::MOST_PERIODS
@@ -332,36 +332,40 @@ fn sensor_signals(
     Ok(signals)
 }
 
-/// Motion and accelerations of a record, as its families of facet lines are judged by them.
+/// Motion and accelerations of the part of a record in which families of facet lines are sought, and the sample where it begins.
 fn heard(
     record: &Record<'_>,
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
-) -> (Motion, Vec<Channel>) {
+) -> ((Motion, Vec<Channel>), usize) {
+    let interval_s = record.interval_s();
+    let bpfo_hz = motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz);
+    let early = families::too_early(record.len(), interval_s, bpfo_hz).unwrap_or(0);
     // Families are told of a shaft that turns clockwise; one that turns the other way is seen in a mirror.
     let sense = prediction.kinematics.sense();
     let track = |r: &Roller<'_>| {
-        let orbit: Vec<f64> = r.orbit().into_iter().map(|angle| sense * angle).collect();
-        let place = orbit.first().copied().unwrap_or(0.0);
-        let spin = r.spin.iter().map(|angle| sense * angle).collect();
-        RollerTrack { place, orbit, spin, load_n: r.outer_normal() }
+        let place = r.within(0..record.len().min(1)).orbit().first().map_or(0.0, |angle| sense * angle);
+        let late = r.within(early..record.len());
+        let orbit = late.orbit().into_iter().map(|angle| sense * angle).collect();
+        let spin = late.spin.iter().map(|angle| sense * angle).collect();
+        RollerTrack { place, orbit, spin, load_n: late.outer_normal() }
     };
     let tracks = Motion {
-        interval_s: record.interval_s(),
+        interval_s,
         shaft_rad_s: sense * prediction.kinematics.shaft_rad_s,
         outer_rad_s: sense * prediction.kinematics.outer_rad_s,
-        bpfo_hz: motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz),
+        bpfo_hz,
         rollers: record.rollers().iter().map(track).collect(),
     };
     let channels = sensors.iter().flat_map(|sensor| {
         [("ay", &sensor.raw_g), ("ax", &sensor.across_g)].map(|(component, values)| Channel {
             sensor: sensor.name.clone(),
             component: component.to_owned(),
-            values: values.clone(),
+            values: values.get(early..).unwrap_or_default().to_vec(),
         })
     });
-    (tracks, channels.filter(|channel| !channel.values.is_empty()).collect())
+    ((tracks, channels.filter(|channel| !channel.values.is_empty()).collect()), early)
 }
 
 /// Every line at every sensor.

@@ -29,7 +29,7 @@ pub struct Progress {
     pub time_s: f64,
     /// Energy imbalance over the peak strain energy [-].
     pub energy_error: f64,
-    /// Elements.
+    /// Elements that take part in a step; none of a reduced model.
     pub elements: usize,
 }
 

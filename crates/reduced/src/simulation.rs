@@ -40,7 +40,6 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     let _ = watch(&progress);
     let (reduction, from_cache) = cache::reduction(scene, dir.path().parent())?;
     progress.phase = "preload";
-    progress.elements = reduction.mesh.quads + reduction.mesh.triangles;
     let _ = watch(&progress);
     let steps = steps_per_sample(scene, reduced);
     let step = Geometry::of(scene).interval / steps as f64;
@@ -120,10 +119,9 @@ fn read(dir: &RunDir) -> Result<Scene, Error> {
 fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
     let started = (host.wall_s)();
     let Checkpoint { mut info, motion: saved } = read_saved::<Saved>(dir, &scene)?;
-    let mut progress = Progress::begin();
+    let progress = Progress::begin();
     let _ = watch(&progress);
     let (reduction, _) = cache::reduction(&scene, dir.path().parent())?;
-    progress.elements = reduction.mesh.quads + reduction.mesh.triangles;
     let elsewhere = info.mesh != reduction.mesh;
     let bearing = Bearing::new(&scene, reduction, info.time_step_s)?;
     if elsewhere || !saved.fits(&bearing) {

@@ -5,6 +5,7 @@
 
 mod datasheet;
 mod emit;
+mod memory;
 mod tables;
 
 use std::path::{Path, PathBuf};
@@ -35,6 +36,10 @@ pub struct Options {
     /// Worker threads of all runs together [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
+    /// Most memory that runs side by side may take together [GB]; fewer go at a time where records are long [default: what the
+    /// system has free]
+    #[arg(long, value_name = "G", value_parser = gigabytes)]
+    memory_gb: Option<f64>,
     /// Goes on with what is there, which the command does anyway: for scripts that say so
     #[arg(long)]
     resume: bool,
@@ -54,6 +59,11 @@ pub struct Options {
 struct Shard {
     part: usize,
     of: usize,
+}
+
+fn gigabytes(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|gb: &f64| gb.is_finite() && *gb > 0.0);
+    number.ok_or_else(|| "not a positive number of gigabytes, such as 8".to_owned())
 }
 
 fn shard(text: &str) -> Result<Shard, String> {
@@ -138,7 +148,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             due.push(Due { number, folder: folder.run(&scene), scene, state });
         }
     }
-    let jobs = Jobs::of(options.jobs, options.threads, due.len());
+    let limit_gb = options.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
+    let fitting = memory::fitting(due.iter().map(|due| &due.scene), limit_gb);
+    let jobs = Jobs::of(options.jobs, options.threads, due.len()).at_most(fitting);
     eprintln!(
         "{}: {} runs, {} of them to be run here, {} → {}",
         campaign.name,
@@ -149,8 +161,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     let shop = Shop::new("run", &due, jobs, &interrupt);
     shop.run(&|due, error| {
-        let Some(error) = error else { return };
-        if let Err(why) = folder.keep_failure(&due.scene, &error.to_string()) {
+        let kept = match error {
+            Some(error) => folder.keep_failure(&due.scene, &error.to_string()),
+            // By every job for its own run; the tables only gather.
+            None if matches!(State::of(&due.folder, &due.scene), State::Done) => {
+                summary_of(&due.folder).map(drop)
+            }
+            None => Ok(()),
+        };
+        if let Err(why) = kept {
             shop.say(&format!("warning: {why}"));
         }
     });

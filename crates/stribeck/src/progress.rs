@@ -84,15 +84,18 @@ impl Meter {
         if done == 0.0 || elapsed <= 0.0 {
             return format!("{} …", progress.phase);
         }
-        let element_steps = done * progress.elements as f64 / elapsed;
+        let pace = match progress.elements {
+            // Those of a reduced model take no part in its steps.
+            0 => format!("{:.0} ms/s", 1e3 * progress.time_s * (done / progress.step as f64) / elapsed),
+            elements => format!("{:.1} M element-steps/s", 1e-6 * done * elements as f64 / elapsed),
+        };
         format!(
-            "{:5.1} %  {:.2} of {} ms  ETA {}  energy error {:.3} %  {:.1} M element-steps/s",
+            "{:5.1} %  {:.2} of {} ms  ETA {}  energy error {:.3} %  {pace}",
             100.0 * part(progress),
             progress.time_s * 1e3,
             self.duration_ms,
             clock(elapsed * left / done),
-            progress.energy_error * 100.0,
-            element_steps * 1e-6
+            progress.energy_error * 100.0
         )
     }
 }
@@ -120,6 +123,8 @@ mod tests {
         // 250 steps of 100 000 elements in 10 s: 2.5 million element-steps a second, 30 s left.
         let expected = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.125 %  2.5 M element-steps/s";
         assert_eq!(meter.line(&progress, 10.0), expected);
+        let reduced = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.125 %  1 ms/s";
+        assert_eq!(meter.line(&Progress { elements: 0, ..progress }, 10.0), reduced);
         assert_eq!(meter.line(&Progress { step: 0, phase: "preload", ..progress }, 0.0), "preload …");
     }
 }

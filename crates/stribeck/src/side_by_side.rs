@@ -38,6 +38,12 @@ impl Jobs {
         Self { count, threads: (threads / count).max(1) }
     }
 
+    /// The same threads for no more jobs than that.
+    pub(crate) fn at_most(self, jobs: usize) -> Self {
+        let count = self.count.min(jobs);
+        Self { count, threads: self.threads * self.count / count.max(1) }
+    }
+
     /// In words.
     pub(crate) fn shown(self) -> String {
         let Self { count, threads } = self;

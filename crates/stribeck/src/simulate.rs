@@ -213,14 +213,31 @@ fn announce(info: &RunInfo) {
         Status::Diverged => "diverged",
         Status::Running => "still running",
     };
-    let elements = (info.mesh.quads + info.mesh.triangles) as f64;
-    let element_steps = info.steps as f64 * elements;
-    let pace = if element_steps > 0.0 { info.wall_s / element_steps * 1e9 } else { 0.0 };
+    let step = info.time_step_s;
+    // The reduced model's elements do not take part in its steps.
+    let (step, size, pace) = match &info.reduced {
+        Some(reduced) => {
+            let pace = if info.simulated_s > 0.0 { info.wall_s / info.simulated_s } else { 0.0 };
+            (
+                format!("{:.2} µs", 1e6 * step),
+                format!("{} modes", reduced.modes),
+                format!("{pace:.2} s a simulated second"),
+            )
+        }
+        None => {
+            let elements = info.mesh.quads + info.mesh.triangles;
+            let element_steps = info.steps as f64 * elements as f64;
+            let pace = if element_steps > 0.0 { 1e9 * info.wall_s / element_steps } else { 0.0 };
+            (
+                format!("{:.2} ns", 1e9 * step),
+                format!("{elements} elements"),
+                format!("{pace:.2} ns per element-step"),
+            )
+        }
+    };
     println!(
-        "{how}: {} steps of {:.2} ns, {} elements, {} (set-up {}), {pace:.2} ns per element-step, energy error {:.3} %",
+        "{how}: {} steps of {step}, {size}, {} (set-up {}), {pace}, energy error {:.3} %",
         info.steps,
-        info.time_step_s * 1e9,
-        elements,
         clock(info.wall_s),
         clock(info.setup_s),
         info.energy.max_relative_error * 100.0

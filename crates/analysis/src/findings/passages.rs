@@ -1,5 +1,7 @@
 //! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
 
+use std::collections::BTreeMap;
+
 use stribeck_scene::duty::Duty;
 use stribeck_scene::kinematics::Crossing;
 use stribeck_scene::scene::{DefectRing, Scene};
@@ -9,8 +11,8 @@ use crate::Error;
 use crate::events::{self, Passage};
 use crate::filtering::Filter;
 use crate::levels::{self, Phase, Visit};
-use crate::prediction::{Prediction, SpallCourse};
-use crate::record::Record;
+use crate::prediction::{DefectEdges, Prediction, SpallCourse};
+use crate::record::{Record, Roller};
 use crate::spall::Edge;
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
 
@@ -20,6 +22,13 @@ const LOADED: f64 = 0.05;
 
 /// Traverses before and behind a passage in which it is looked for.
 const ABOUT: f64 = 3.0;
+
+/// A roller that comes earlier or later than without slip by less than this part of a traverse is looked for where it would be
+/// without.
+const UNMOVED: f64 = 0.1;
+
+/// Notes of one kind that are said in full; of the others the number.
+const NOTED: usize = 3;
 
 /// One event for every passage that begins within the record, in order of expected entry.
 pub(super) fn picked_events(
@@ -36,6 +45,67 @@ pub(super) fn picked_events(
     }
     events.sort_by(|a, b| a.expected_entry_ms.total_cmp(&b.expected_entry_ms));
     events
+}
+
+/// When a roller's centre passes the edges of a spall, as recorded.
+struct Path {
+    /// Over the leading edge, the middle and the trailing edge [s].
+    leading: Vec<f64>,
+    middle: Vec<f64>,
+    trailing: Vec<f64>,
+    /// How much later than without slip it came last [s]. Cages slip a little, so that this grows over a long record.
+    late_s: f64,
+    /// Between two passages without slip [s]; infinite before the second.
+    period_s: f64,
+    /// The last passage began here without slip [s].
+    before_s: Option<f64>,
+}
+
+impl Path {
+    /// `turned_rad` says how far the raceway has turned at a time [s].
+    fn of(roller: &Roller<'_>, time: &[f64], edges: DefectEdges, turned_rad: impl Fn(f64) -> f64) -> Self {
+        // As the raceway sees it.
+        let mut orbit = roller.orbit();
+        orbit.iter_mut().zip(time).for_each(|(angle, &t)| *angle -= turned_rad(t));
+        let over = |edge: f64| events::crossings(time, &orbit, edge.to_radians());
+        Self {
+            leading: over(edges.leading_deg),
+            middle: over(edges.middle_deg),
+            trailing: over(edges.trailing_deg),
+            late_s: 0.0,
+            period_s: f64::INFINITY,
+            before_s: None,
+        }
+    }
+
+    /// Entry and exit [s] of the passage that follows, and from then on how late it is. `None` for what is not on record, or,
+    /// at the first one, further than a traverse away.
+    fn next(&mut self, passage: &Crossing) -> [Option<f64>; 2] {
+        self.period_s = self.before_s.map_or(f64::INFINITY, |before| passage.entry_s - before);
+        self.before_s = Some(passage.entry_s);
+        let found = [
+            self.near(&self.leading, passage.entry_s, passage),
+            self.near(&self.trailing, passage.exit_s, passage),
+        ];
+        let late = |found: Option<f64>, expected: f64| found.map(|t| t - expected);
+        self.late_s =
+            late(found[0], passage.entry_s).or(late(found[1], passage.exit_s)).unwrap_or(self.late_s);
+        found
+    }
+
+    /// When it was over the middle [s].
+    fn middle(&self, passage: &Crossing) -> Option<f64> {
+        self.near(&self.middle, passage.centre_s, passage)
+    }
+
+    /// The crossing nearest to where one is expected after the slip so far.
+    fn near(&self, all: &[f64], expected_s: f64, passage: &Crossing) -> Option<f64> {
+        let traverse = passage.exit_s - passage.entry_s;
+        let reach = if self.period_s.is_finite() { 0.5 * self.period_s } else { traverse };
+        let gap = |t: &f64| (t - expected_s - self.late_s).abs();
+        let nearest = all.iter().copied().min_by(|a, b| gap(a).total_cmp(&gap(b)));
+        nearest.filter(|t| gap(t) < reach)
+    }
 }
 
 /// Events of one spall.
@@ -56,7 +126,8 @@ fn events_of(
         DefectRing::Inner => duty.shaft_rad(t),
         DefectRing::Outer => prediction.kinematics.outer_rad_s * t,
     };
-    let mut events = Vec::new();
+    let mut events: Vec<(Event, Vec<String>)> = Vec::new();
+    let mut paths: BTreeMap<usize, Path> = BTreeMap::new();
     for passage in course.passages.iter().filter(|p| p.entry_s < last) {
         let mut event = Event::expected(passage, ring);
         let Some(roller) = record.roller(passage.roller) else {
@@ -65,8 +136,18 @@ fn events_of(
             continue;
         };
         let traverse = passage.exit_s - passage.entry_s;
+        let path =
+            paths.entry(passage.roller).or_insert_with(|| Path::of(&roller, time, course.edges, turned_rad));
+        [event.path_entry_ms, event.path_exit_ms] = path.next(passage).map(|t| t.map(|t| 1e3 * t));
+        // The path says better than rolling without slip when to look.
+        let late = path.late_s;
+        if passage.entry_s + late >= last {
+            continue;
+        }
+        let late = if late.abs() > UNMOVED * traverse { late } else { 0.0 };
         // A long record is looked at about the passage alone.
-        let near = events::span(time, passage.entry_s - ABOUT * traverse, passage.exit_s + ABOUT * traverse);
+        let [from, until] = [passage.entry_s - ABOUT * traverse, passage.exit_s + ABOUT * traverse];
+        let near = events::span(time, from + late, until + late);
         let (time, roller) = (&time[near.clone()], roller.within(near));
         // A shaft whose speed changes has another one at each passage.
         let speed_m_s = if scene.operation.speed_varies() {
@@ -75,24 +156,10 @@ fn events_of(
             prediction.kinematics.contact_speed_m_s
         };
         let floor_s = edge.floor_m(1e-3 * course.spall.depth_mm) / speed_m_s;
-        // As the raceway sees it.
-        let mut orbit = roller.orbit();
-        orbit.iter_mut().zip(time).for_each(|(angle, &t)| *angle -= turned_rad(t));
-        let near = |edge: f64, expected: f64| {
-            let all = events::crossings(time, &orbit, edge.to_radians());
-            let gap = |t: &f64| (t - expected).abs();
-            all.into_iter().min_by(|a, b| gap(a).total_cmp(&gap(b))).filter(|t| gap(t) < traverse)
-        };
-        let path_entry = near(course.edges.leading_deg, passage.entry_s);
-        let path_exit = near(course.edges.trailing_deg, passage.exit_s);
-        // The cage slips a little, so that in a long record the path says better when to look.
-        let late =
-            path_entry.or(path_exit.map(|t| t - traverse)).unwrap_or(passage.entry_s) - passage.entry_s;
-        let late = if late.abs() > 0.1 * traverse { late } else { 0.0 };
         let seen = Passage {
             entry_s: passage.entry_s + late,
             exit_s: passage.exit_s + late,
-            middle_s: near(course.edges.middle_deg, passage.centre_s).unwrap_or(passage.centre_s),
+            middle_s: path.middle(passage).unwrap_or(passage.centre_s + late),
             smoothing_s: prediction.smoothing_s(traverse),
         };
         let normal = roller.normal(ring);
@@ -106,8 +173,6 @@ fn events_of(
         let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
         let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
         event.spall_mm = run_s.zip(picked.level_n).map(length);
-        event.path_entry_ms = path_entry.map(|t| 1e3 * t);
-        event.path_exit_ms = path_exit.map(|t| 1e3 * t);
         events.push((event, picked.notes));
     }
     if course.turns {
@@ -123,9 +188,22 @@ fn events_of(
         }
     }
     let mut of_spall = Vec::new();
+    let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     for (event, picked) in events {
-        notes.extend(picked.into_iter().map(|note| format!("roller {}: {note}", event.roller)));
+        for note in picked {
+            // What differs between passages are numbers.
+            let kind: String = note.chars().filter(|c| !c.is_ascii_digit()).collect();
+            let said = kinds.entry(kind).or_default();
+            *said += 1;
+            if *said <= NOTED {
+                notes.push(format!("roller {}: {note}", event.roller));
+            }
+        }
         of_spall.push(event);
+    }
+    let more: usize = kinds.values().map(|said| said.saturating_sub(NOTED)).sum();
+    if more > 0 {
+        notes.push(format!("{more} more such notes on passages of rollers over the spall are left out"));
     }
     // Where the spall turns a neighbour's load changes by its way through the load zone.
     if !course.turns {
@@ -138,18 +216,21 @@ fn events_of(
 fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]) {
     let time = record.time_s();
     let count = record.rollers().len();
-    let spans: Vec<(usize, f64, f64)> =
-        events.iter().map(|e| (e.roller, e.extent_s().0, e.extent_s().1)).collect();
+    let spans: Vec<(usize, f64, f64)> = events
+        .iter()
+        .map(|e| (e.roller, e.extent_s()))
+        .map(|(roller, [from, until])| (roller, from, until))
+        .collect();
     // In a long record a neighbour comes round again; the one that counts is a roller spacing before or after.
     let spacing_s = 1.0 / prediction.kinematics.bpfo_hz;
     for event in events.iter_mut() {
-        let own_s = event.extent_s().0;
+        let [own_s, _] = event.extent_s();
         let neighbours = spans.iter().filter(|s| {
             let apart = event.roller.abs_diff(s.0);
             apart.min(count.saturating_sub(apart)) == 1 && (s.1 - own_s).abs() < 2.0 * spacing_s
         });
         let Some(roller) = record.roller(event.roller) else { continue };
-        let own = event.extent_s();
+        let [own_from, own_until] = event.extent_s();
         let found = neighbours.filter_map(|&(_, from, to)| {
             let smoothing = prediction.smoothing_s(to - from);
             let seen = events::span(time, from - 0.5 * (to - from), to);
@@ -157,7 +238,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let force = events::running_median(time, &roller.within(seen).outer_normal(), smoothing);
             let during = events::span(time, from, to);
             // A roller that is itself over the defect, or only just behind it, tells nothing.
-            let free = |n: &usize| time[*n] < own.0 - smoothing || time[*n] > own.1 + 4.0 * smoothing;
+            let free = |n: &usize| time[*n] < own_from - smoothing || time[*n] > own_until + 4.0 * smoothing;
             let most = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b]))?;
             let before = events::median(&mut force[..during.start].to_vec());
             (before > 0.0 && force[most] > before).then(|| (time[most], force[most] / before, force[most]))
@@ -318,20 +399,75 @@ impl Event {
     }
 
     /// The passage as the levels see it.
-    fn visit(&self) -> Visit {
-        let (from_s, until_s) = self.extent_s();
+    pub(crate) fn visit(&self) -> Visit {
+        let ([from_s, until_s], [entry, exit]) = (self.extent_s(), self.on_path_ms());
         Visit {
             from_s,
-            entry_s: 1e-3 * self.entry_ms.unwrap_or(self.expected_entry_ms),
-            exit_s: 1e-3 * self.exit_ms.unwrap_or(self.expected_exit_ms),
+            entry_s: 1e-3 * self.entry_ms.unwrap_or(entry),
+            exit_s: 1e-3 * self.exit_ms.unwrap_or(exit),
             until_s,
         }
     }
 
     /// Earliest and latest time [s] that belongs to the passage, measured or expected.
-    fn extent_s(&self) -> (f64, f64) {
-        let entry = self.entry_ms.map_or(self.expected_entry_ms, |t| t.min(self.expected_entry_ms));
-        let exit = self.exit_ms.map_or(self.expected_exit_ms, |t| t.max(self.expected_exit_ms));
-        (1e-3 * entry, 1e-3 * exit)
+    fn extent_s(&self) -> [f64; 2] {
+        let [entry, exit] = self.on_path_ms();
+        let from = self.entry_ms.map_or(entry, |t| t.min(entry));
+        [1e-3 * from, 1e-3 * self.exit_ms.map_or(exit, |t| t.max(exit))]
+    }
+
+    /// When its roller should unload and be loaded again [ms]: without slip, or moved to its path where that is elsewhere.
+    fn on_path_ms(&self) -> [f64; 2] {
+        let [entry, exit] = [self.expected_entry_ms, self.expected_exit_ms];
+        let late = |path: Option<f64>, expected: f64| path.map(|t| t - expected);
+        let late = late(self.path_entry_ms, entry).or(late(self.path_exit_ms, exit)).unwrap_or(0.0);
+        let late = if late.abs() > UNMOVED * (exit - entry) { late } else { 0.0 };
+        [entry + late, exit + late]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Thirty-eight orbits of a roller whose cage turns 0.4 % slower than without slip: in the end it comes ten traverses late.
+    #[test]
+    fn example_a_slipping_roller_is_followed_through_a_long_record() {
+        let (interval, expected_hz, slip) = (1e-4, 3.754, 0.004);
+        let turn = std::f64::consts::TAU;
+        let time: Vec<f64> = (0..100_000).map(|n| n as f64 * interval).collect();
+        let angle = |t: f64| 1.7 - turn * expected_hz * (1.0 - slip) * t;
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            time.iter().map(|&t| (0.08 * angle(t).cos(), 0.08 * angle(t).sin())).unzip();
+        let none = vec![0.0; time.len()];
+        let roller = Roller {
+            number: 1,
+            x: &x,
+            y: &y,
+            spin: &none,
+            outer_fx: &none,
+            outer_fy: &none,
+            inner_fx: &none,
+            inner_fy: &none,
+        };
+        let edges = DefectEdges { leading_deg: 92.9, middle_deg: 90.0, trailing_deg: 87.1 };
+        let over =
+            |edge: f64, hz: f64, orbit: usize| (1.7 - edge.to_radians() + turn * orbit as f64) / (turn * hz);
+        let mut path = Path::of(&roller, &time, edges, |_| 0.0);
+        for orbit in 0..37 {
+            let at = |edge| over(edge, expected_hz, orbit);
+            let passage = Crossing {
+                roller: 1,
+                entry_s: at(edges.leading_deg),
+                centre_s: at(edges.middle_deg),
+                exit_s: at(edges.trailing_deg),
+            };
+            let real = |edge| over(edge, expected_hz * (1.0 - slip), orbit);
+            let [entry, exit] = path.next(&passage).map(|t| t.expect("on record"));
+            assert!((entry - real(edges.leading_deg)).abs() < 1e-6, "orbit {orbit}: {entry}");
+            assert!((exit - real(edges.trailing_deg)).abs() < 1e-6, "orbit {orbit}: {exit}");
+            let middle = path.middle(&passage).expect("on record");
+            assert!((middle - real(edges.middle_deg)).abs() < 1e-6, "orbit {orbit}: {middle}");
+        }
     }
 }

@@ -115,10 +115,9 @@ fn passages(events: &[Event]) -> Vec<Mark> {
     for (n, e) in events.iter().enumerate() {
         let full = events.len() <= NAMED || n == 0;
         let label = |what: &str| if full { format!("{what} {}", e.roller) } else { e.roller.to_string() };
-        let entry = e.entry_ms.unwrap_or(e.expected_entry_ms);
-        let exit = e.exit_ms.unwrap_or(e.expected_exit_ms);
-        marks.push(mark(1e-3 * entry, &label("entry"), Colour::Orange, e.entry_ms.is_none()));
-        marks.push(mark(1e-3 * exit, &label("exit"), Colour::Green, e.exit_ms.is_none()));
+        let visit = e.visit();
+        marks.push(mark(visit.entry_s, &label("entry"), Colour::Orange, e.entry_ms.is_none()));
+        marks.push(mark(visit.exit_s, &label("exit"), Colour::Green, e.exit_ms.is_none()));
     }
     marks
 }
