@@ -27,23 +27,24 @@ impl FilmFinding {
     /// `None` for a scene without oil, or one whose loaded films are not to be had.
     pub fn measure(run: &Run, record: &Record<'_>) -> Option<Self> {
         let loaded = lubrication::loaded_films(&run.scene).ok()??;
-        let rollers = 1..=run.scene.bearing.rollers;
+        let rollers: Vec<usize> = run.scene.rollers_in_place().collect();
         let channel = |roller: usize, side: usize, what: &str| {
             let ring = ["outer", "inner"][side];
             record.channel(&format!("roller.{roller}.{ring}_{what}"))
         };
         let floats = |side: usize, thickness: f64| thickness > (1.0 + LOADED) * loaded[side].least;
         let floating = |side: usize| {
-            let thick = rollers.clone().filter_map(|r| channel(r, side, "film_m")).flatten();
+            let thick = rollers.iter().filter_map(|r| channel(*r, side, "film_m")).flatten();
             let mut thick: Vec<f64> = thick.copied().filter(|h| floats(side, *h)).collect();
             let middle = thick.len() / 2;
             (!thick.is_empty()).then(|| 1e6 * *thick.select_nth_unstable_by(middle, f64::total_cmp).1)
         };
         let largest = |side: usize| {
-            let of = |r: usize| {
+            let of = |r: &usize| {
+                let r = *r;
                 Some((channel(r, side, "film_m")?, channel(r, side, "fx_n")?, channel(r, side, "fy_n")?))
             };
-            let forces = rollers.clone().filter_map(of).flat_map(|(thick, x, y)| {
+            let forces = rollers.iter().filter_map(of).flat_map(|(thick, x, y)| {
                 let floats = move |n: usize| floats(side, thick[n - 1]) && floats(side, thick[n]);
                 (1..thick.len()).filter(move |n| floats(*n)).map(|n| x[n].hypot(y[n]))
             });

@@ -65,7 +65,9 @@ impl Lumped {
         let (mut re, mut im, mut springs, mut arms) = (0.0, 0.0, 0.0, 0.0);
         let mut smoothing = 1.0;
         let largest = load.max_roller_n();
-        for (force, deg) in load.roller_n.iter().zip(roller_angles_deg(scene)) {
+        let angles = roller_angles_deg(scene);
+        let in_place = scene.rollers_in_place().map(|number| angles[number - 1]);
+        for (force, deg) in load.roller_n.iter().zip(in_place) {
             if *force <= 0.0 {
                 continue;
             }

@@ -102,13 +102,18 @@ impl Prediction {
             let until_s = Geometry::of(scene).duration + traverse_s;
             kinematics.crossings(defect, &roller_angles_deg(scene), until_s)
         };
+        let in_place = |defect: &DefectScene| {
+            let mut passages = passages(defect);
+            passages.retain(|passage| scene.rollers_in_place().any(|number| number == passage.roller));
+            passages
+        };
         let course = |spall: DefectScene| SpallCourse {
             edges: edges(&spall),
             turns: match spall.ring {
                 DefectRing::Outer => scene.operation.outer_speed_rpm != 0.0,
                 DefectRing::Inner => scene.operation.speed_rpm != 0.0 || scene.operation.speed_varies(),
             },
-            passages: passages(&spall),
+            passages: in_place(&spall),
             spall,
         };
         Self {
@@ -177,11 +182,14 @@ impl Prediction {
         // The rings see the load from above.
         let turned_by = scene.load_zone_deg() - 90.0;
         let start = angles_to_load_deg(scene);
-        let spacing = 360.0 / scene.bearing.rollers as f64;
+        // After a spacing the bearing is the same again, or after a turn where a roller is missing.
+        let rollers = scene.bearing.rollers;
+        let alike = if start.len() == rollers { rollers } else { 1 };
+        let (period, steps) = (360.0 / alike as f64, CAGE_STEPS * rollers / alike);
         let mut points: Vec<(f64, f64)> = Vec::new();
         let mut largest_sound_n = 0.0f64;
-        for step in 0..CAGE_STEPS {
-            let turned = spacing * step as f64 / CAGE_STEPS as f64;
+        for step in 0..steps {
+            let turned = period * step as f64 / steps as f64;
             let all: Vec<f64> = start.iter().map(|a| (a - turned).rem_euclid(360.0)).collect();
             let (inside, carrying): (Vec<f64>, Vec<f64>) =
                 all.iter().partition(|&&a| self.over_defect(a + turned_by));

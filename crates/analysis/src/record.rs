@@ -107,7 +107,7 @@ impl<'a> Record<'a> {
 
     /// All rollers whose channels are there.
     pub fn rollers(&self) -> Vec<Roller<'a>> {
-        (1..=self.run.scene.bearing.rollers).filter_map(|number| self.roller(number)).collect()
+        self.run.scene.rollers_in_place().filter_map(|number| self.roller(number)).collect()
     }
 }
 

@@ -62,7 +62,8 @@ pub struct Assembly {
     outer: Placed,
     inner: Placed,
     housing: Option<PlacedHousing>,
-    rollers: Vec<Placed>,
+    /// With the pocket of each, from 0.
+    rollers: Vec<(usize, Placed)>,
     cage: Option<Placed>,
 }
 
@@ -89,7 +90,7 @@ pub struct Machine {
     /// The body that holds the outer ring, if there is one: the adapter or another housing. A ring that does not deform needs
     /// none.
     pub housing: Option<usize>,
-    /// Each roller.
+    /// Each roller that is not missing.
     pub rollers: Vec<Roller>,
     /// The cage, which moves as one piece.
     pub cage: Option<usize>,
@@ -104,6 +105,8 @@ pub struct Machine {
 /// One roller.
 #[derive(Debug, Clone)]
 pub struct Roller {
+    /// Its pocket, from 0: it is roller `pocket + 1` of the scene.
+    pub pocket: usize,
     /// Number of the body in the mesh.
     pub body: usize,
     /// The node in the centre.
@@ -147,7 +150,7 @@ impl Pairs {
     }
 }
 
-/// Angle of roller `i` (from 0) at the start [rad].
+/// Angle of the roller in pocket `i` (from 0) at the start [rad].
 pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
     Geometry::of(scene).roller_angle(i)
 }
@@ -213,8 +216,10 @@ impl Assembly {
         };
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
         let path = outer_radius - roller_radius;
-        let rollers: Result<Vec<Placed>, Error> = (0..b.rollers)
-            .map(|i| {
+        let rollers: Result<Vec<(usize, Placed)>, Error> = scene
+            .rollers_in_place()
+            .map(|number| {
+                let i = number - 1;
                 let angle = roller_angle(scene, i);
                 let turned = match scene.mesh.roller_copies {
                     RollerCopies::Translated if g.roller_phase == 0.0 => disc.clone(),
@@ -224,7 +229,7 @@ impl Assembly {
                 let relief = g.roller_reliefs.iter().find(|(roller, _)| *roller == i);
                 let turned = formed(turned, "rim", Circle::Outer, relief.map(|(_, relief)| relief))?;
                 let (s, c) = angle.sin_cos();
-                Ok(mesh.add(format!("roller {}", i + 1), &turned.translated(path * c, path * s)))
+                Ok((i, mesh.add(format!("roller {number}"), &turned.translated(path * c, path * s))))
             })
             .collect();
         let rollers = rollers?;
@@ -304,7 +309,7 @@ impl Assembly {
             DampedBody::OuterRing => vec![self.outer.body],
             DampedBody::InnerRing => vec![self.inner.body],
             DampedBody::Adapter => self.housing.iter().map(|housing| housing.body).collect(),
-            DampedBody::Rollers => self.rollers.iter().map(|roller| roller.body).collect(),
+            DampedBody::Rollers => self.rollers.iter().map(|(_, roller)| roller.body).collect(),
         });
         let bodies = bodies.filter(|body| self.model.behaviour[*body].is_elastic());
         let damping = StructuralDamping::over_band(band.ratio, band.band, chosen.branches, bodies.collect())?;
@@ -369,17 +374,18 @@ impl Assembly {
         let rollers: Vec<Roller> = self
             .rollers
             .iter()
-            .map(|r| Roller {
+            .map(|(pocket, r)| Roller {
+                pocket: *pocket,
                 body: r.body,
                 centre: r.mark("centre").expect("a disc marks its centre"),
                 rim: surface(r, "rim").nodes[0],
             })
             .collect();
-        for (i, (placed, roller)) in self.rollers.iter().zip(&rollers).enumerate() {
+        for ((i, placed), roller) in self.rollers.iter().zip(&rollers) {
             let centre = [mesh.x[roller.centre as usize], mesh.y[roller.centre as usize]];
-            plan.surface(&rim(i), surface(placed, "rim").clone())?;
-            let round = g.roller_reliefs.iter().all(|(roller, _)| *roller != i);
-            plan.smooth(&rim(i), smoothing(scene.contact.surface, centre, round), spline)?;
+            plan.surface(&rim(*i), surface(placed, "rim").clone())?;
+            let round = g.roller_reliefs.iter().all(|(roller, _)| roller != i);
+            plan.smooth(&rim(*i), smoothing(scene.contact.surface, centre, round), spline)?;
         }
         for (i, (_, piece)) in self.cage.iter().flat_map(|c| &c.surfaces).enumerate() {
             plan.surface(&cage_piece(i), piece.clone())?;
@@ -430,7 +436,7 @@ impl Assembly {
             ContactPasses::Two => Sides::Both,
             ContactPasses::One => Sides::First,
         };
-        let n = self.rollers.len();
+        let pockets: Vec<usize> = self.rollers.iter().map(|(pocket, _)| *pocket).collect();
         let of_roller = |i: usize, second: &str, with: &str| Pair {
             name: format!("roller {} and the {with}", i + 1),
             method,
@@ -446,20 +452,21 @@ impl Assembly {
                 ..Pair::new(BACK, SEAT, seat)
             })?;
         }
-        for i in 0..n {
+        for &i in &pockets {
             plan.contact(of_roller(i, OUTER_RACEWAY, "outer raceway"))?;
         }
         if self.cage.is_some() {
-            for i in 0..n {
-                for piece in [(i + n - 1) % n, i] {
+            let pieces = g.rollers;
+            for &i in &pockets {
+                for piece in [(i + pieces - 1) % pieces, i] {
                     plan.contact(of_roller(i, &cage_piece(piece), "cage"))?;
                 }
             }
         }
-        for i in 0..n {
+        for &i in &pockets {
             plan.contact(of_roller(i, INNER_RACEWAY, "inner raceway"))?;
         }
-        Ok(Pairs { seats, rollers: n, walls: if self.cage.is_some() { 2 } else { 0 } })
+        Ok(Pairs { seats, rollers: pockets.len(), walls: if self.cage.is_some() { 2 } else { 0 } })
     }
 
     /// What the outer ring sits in, if it sits in something.
@@ -484,10 +491,10 @@ pub(crate) fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> 
 fn oil(plan: &mut Plan, scene: &Scene, rollers: &[Roller]) -> Result<(), Error> {
     let g = Geometry::of(scene);
     let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(()) };
-    for (i, roller) in rollers.iter().enumerate() {
+    for roller in rollers {
         for (track, loaded) in [OUTER_RACEWAY, INNER_RACEWAY].into_iter().zip(&loaded) {
             plan.film(Film {
-                round: rim(i),
+                round: rim(roller.pocket),
                 centre: roller.centre,
                 track: track.to_owned(),
                 oil: Oil { viscosity: film.viscosity, least: loaded.least },
@@ -499,7 +506,7 @@ fn oil(plan: &mut Plan, scene: &Scene, rollers: &[Roller]) -> Result<(), Error> 
     Ok(())
 }
 
-/// Name of the contact surface of a roller, from 0.
+/// Name of the contact surface of the roller in a pocket, from 0.
 fn rim(roller: usize) -> String {
     format!("rim of roller {}", roller + 1)
 }

@@ -201,7 +201,7 @@ impl Guards {
         let system = &machine.system;
         let middle = |body: usize, c: usize| mean(system.nodes_of(body).map(|n| system.position(n)[c]));
         let ring = [middle(machine.outer, 0), middle(machine.outer, 1)];
-        for (i, roller) in machine.rollers.iter().enumerate() {
+        for roller in &machine.rollers {
             let [x, y] = system.position(roller.centre);
             let radius = (x - ring[0]).hypot(y - ring[1]);
             if radius < self.annulus[0] || radius > self.annulus[1] {
@@ -209,7 +209,7 @@ impl Guards {
                 return Some(format!(
                     "roller {} has gone through the {through} raceway: its centre is {:.3} mm from that of the outer ring {}. Take a \
                      larger `contact.penalty_scale`, less `operation.load_n` or a smaller `solver.time_step_factor`",
-                    i + 1,
+                    roller.pocket + 1,
                     1e3 * radius,
                     when(info)
                 ));

@@ -132,7 +132,7 @@ pub fn names(scene: &Scene) -> Vec<String> {
         }
     }
     let (with_cage, oiled) = (scene.cage.is_some(), scene.film.is_some());
-    for i in 1..=scene.bearing.rollers {
+    for i in scene.rollers_in_place() {
         for channel in ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"] {
             names.push(format!("roller.{i}.{channel}"));
         }

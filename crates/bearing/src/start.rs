@@ -45,8 +45,8 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
     if machine.pairs.seat().is_some() {
         undecided.push(UndecidedMotion { body: machine.outer, along: None, rotation: true });
     }
-    for (i, roller) in machine.rollers.iter().enumerate() {
-        let (s, c) = roller_angle(scene, i).sin_cos();
+    for roller in &machine.rollers {
+        let (s, c) = roller_angle(scene, roller.pocket).sin_cos();
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });
     }
     let mut preload = Preload {

@@ -81,9 +81,13 @@ fn analytic_every_housing_hands_its_load_to_the_rollers() {
 #[test]
 fn analytic_rollers_between_rigid_rings() {
     // Penalty by ten times the stiffness of an element leaves the approach to the bodies.
-    for bearing in ["NU 203", "NU 205", "NU 208", "NU 305", "6205", "6305"] {
+    let whole = ["NU 203", "NU 205", "NU 208", "NU 305", "6205", "6305"].map(|bearing| (bearing, ""));
+    // The roller under the load.
+    let missing = [("NU 205", "(on: roller(1), form: missing)")];
+    for (bearing, defects) in whole.into_iter().chain(missing) {
         let text = format!(
             "(bearing: \"{bearing}\", film: None, defect: None, housing: rigid(), operation: (speed_rpm: 0, gravity_m_s2: 0),
+              defects: [{defects}],
               mesh: (size_mm: 0.1, roller_facets: 240, grading: (coarse_mm: 2)), contact: (surface: arc, penalty_scale: 10))"
         );
         let scene = Scene::parse(&text, "here").expect("valid");
@@ -93,14 +97,35 @@ fn analytic_rollers_between_rigid_rings() {
         assert_eq!(warning, None);
         let _ = machine.system.contact_forces();
         let force: Vec<f64> = machine.system.resultants().map(|r| r.force[0].hypot(r.force[1])).collect();
-        let found: Vec<f64> = (0..scene.bearing.rollers).map(|i| force[machine.pairs.outer(i)]).collect();
+        let found: Vec<f64> = (0..machine.rollers.len()).map(|i| force[machine.pairs.outer(i)]).collect();
         let theory = static_load::at_start(&scene).expect("an equilibrium");
-        println!("{bearing}: {found:.0?} by theory {:.0?}", theory.roller_n);
+        println!("{bearing} {defects}: {found:.0?} by theory {:.0?}", theory.roller_n);
         for (i, (found, expected)) in found.iter().zip(&theory.roller_n).enumerate() {
             let off = (found - expected).abs() / theory.max_roller_n();
-            assert!(off < 0.02, "{bearing}, roller {}: {found} N instead of {expected}", i + 1);
+            assert!(off < 0.02, "{bearing} {defects}, {}: {found} N instead of {expected}", i + 1);
         }
     }
+}
+
+#[test]
+fn example_a_missing_roller_leaves_its_pocket_empty_and_its_load_to_others() {
+    let folder = Scratch::new("missing");
+    let whole = scene(&[]);
+    let scene = scene(&["defects=[(on: roller(1), form: missing)]"]);
+    let info = run(&scene, &folder);
+    assert_eq!((info.status, info.warnings.len()), (Status::Complete, 0), "{:?}", info.warnings);
+    assert!(info.energy.max_relative_error < 2e-3, "{}", info.energy.max_relative_error);
+    let run = Run::read(folder.path()).expect("readable");
+    assert!(!run.trace.names.iter().any(|name| name.starts_with("roller.1.")));
+    let rollers: Vec<usize> = scene.rollers_in_place().collect();
+    assert_eq!(rollers.len(), scene.bearing.rollers - 1);
+    let on = |i: &usize| -mean(&run, &format!("roller.{i}.outer_fy_n"));
+    let carried: f64 = rollers.iter().map(on).sum();
+    assert!((carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried}");
+    let [most, before] = [&scene, &whole].map(|s| static_load::at_start(s).expect("rests").max_roller_n());
+    let found = rollers.iter().map(on).fold(0.0, f64::max);
+    println!("largest force {found:.0} N, between rigid rings {most:.0}, of all rollers {before:.0}");
+    assert!(found > 1.1 * before, "{found} N and {before} N with all rollers");
 }
 
 /// Source: rolling without slip between two rings that turn: the cage at (ω_i D_i + ω_o D_o)/(D_i + D_o), THEORY §5.1.

@@ -47,6 +47,8 @@ pub enum FormScene {
     Roughness(RoughnessScene),
     /// Another diameter of a rolling element.
     Diameter(DiameterScene),
+    /// A rolling element that is not there; its pocket stays empty.
+    Missing,
 }
 
 /// A flat floor between two edges.
@@ -183,7 +185,7 @@ impl FormScene {
                 let ends = profile.points.first().zip(profile.points.last());
                 Some(ends.map_or(0.0, |(first, last)| last.at_mm - first.at_mm))
             }
-            Self::Waviness(_) | Self::Roughness(_) | Self::Diameter(_) => None,
+            Self::Waviness(_) | Self::Roughness(_) | Self::Diameter(_) | Self::Missing => None,
         }
     }
 
@@ -197,6 +199,7 @@ impl FormScene {
             // Three standard deviations.
             Self::Roughness(roughness) => 3e-3 * roughness.rq_um,
             Self::Diameter(diameter) => 0.5e-3 * (-diameter.larger_um).max(0.0),
+            Self::Missing => 0.0,
         }
     }
 }
@@ -223,6 +226,7 @@ impl DeviationScene {
             FormScene::Waviness(WavinessScene::default()),
             FormScene::Roughness(RoughnessScene::default()),
             FormScene::Diameter(DiameterScene::default()),
+            FormScene::Missing,
         ];
         forms.into_iter().map(|form| Self { form, ..Self::default() }).collect()
     }
@@ -230,6 +234,7 @@ impl DeviationScene {
     /// In words: `a spall of 4 × 0.1 mm on roller 1`.
     pub fn spoken(&self) -> String {
         let form = match &self.form {
+            FormScene::Missing => return format!("{} missing", self.on.spoken()),
             FormScene::Spall(spall) => format!("a spall of {} × {} mm", spall.length_mm, spall.depth_mm),
             FormScene::Dent(dent) => format!("a dent of {} × {} mm", dent.length_mm, dent.depth_mm),
             FormScene::Profile(profile) => format!("a profile of {} points", profile.points.len()),
@@ -366,7 +371,10 @@ impl Piece {
                 let along = (s - a.at_mm) / (b.at_mm - a.at_mm);
                 1e-3 * (a.depth_um + along * (b.depth_um - a.depth_um))
             }
-            FormScene::Waviness(_) | FormScene::Roughness(_) | FormScene::Diameter(_) => 0.0,
+            FormScene::Waviness(_)
+            | FormScene::Roughness(_)
+            | FormScene::Diameter(_)
+            | FormScene::Missing => 0.0,
         }
     }
 

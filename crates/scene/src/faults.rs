@@ -2,10 +2,21 @@
 
 use std::f64::consts::PI;
 
-use crate::deviation::{FormScene, RollingSurface};
+use crate::deviation::{DeviationScene, FormScene, RollingSurface};
 use crate::scene::{DefectRing, DefectScene, Scene};
 
 impl Scene {
+    /// Numbers of the rollers that are not missing, from 1.
+    pub fn rollers_in_place(&self) -> impl Iterator<Item = usize> {
+        let missing = |number: usize| {
+            let of = |deviation: &DeviationScene| {
+                deviation.on == RollingSurface::Roller(number) && deviation.form == FormScene::Missing
+            };
+            self.defects.iter().any(of)
+        };
+        (1..=self.bearing.rollers).filter(move |number| !missing(*number))
+    }
+
     /// Spalls of raceways, whose entries and exits a report looks for: `defect`, then those of `defects` in their order.
     pub fn spalls(&self) -> Vec<DefectScene> {
         let of_defects = self.defects.iter().filter_map(|deviation| {

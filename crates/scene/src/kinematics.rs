@@ -223,7 +223,8 @@ impl Kinematics {
     }
 }
 
-/// Angles of a scene's rollers at the start [°], counter-clockwise from the x axis, roller 1 first.
+/// Angles of a scene's rollers at the start [°], counter-clockwise from the x axis, roller 1 first, and those where one is
+/// missing.
 pub fn roller_angles_deg(scene: &Scene) -> Vec<f64> {
     let b = &scene.bearing;
     let path_mm = 0.5 * (b.outer_race_diameter_mm - b.roller_diameter_mm);

@@ -84,7 +84,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
     let floors: Vec<String> =
         events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
-    let rollers = run.scene.bearing.rollers;
+    let rollers = run.scene.rollers_in_place().count();
     let crossed = match events.len() {
         1 => format!("1 roller crosses {it}"),
         times if times > rollers || spalls.len() > 1 => format!("Rollers cross {it} {times} times"),

@@ -26,6 +26,9 @@ const OF_ROLLER: f64 = 0.25;
 const OF_THICKNESS: f64 = 0.3;
 const OF_RADIUS: f64 = 0.15;
 
+/// Rollers that a bearing has at least.
+const LEAST_ROLLERS: usize = 3;
+
 /// Steepest part of the dent's hollow and of its rim, in depths over half its length and heights over the same.
 const HOLLOW_SLOPE: f64 = 1.54;
 const RIM_SLOPE: f64 = 3.08;
@@ -118,7 +121,10 @@ impl<'a> Checked<'a> {
                     self.steep(slope, "form.rq_um", roughness.rq_um, "µm"),
                 ]
             }
-            FormScene::Diameter(_) => vec![self.diameter()],
+            FormScene::Diameter(_) => vec![self.of_roller("its diameter is a field of `bearing`")],
+            FormScene::Missing => {
+                vec![self.of_roller("it cannot be missing"), self.too_few(), self.of_nothing()]
+            }
         };
         let beside = [self.meets_defect(), self.meets_spall(), self.in_oil()];
         found.into_iter().chain(beside).flatten().collect()
@@ -342,13 +348,37 @@ impl<'a> Checked<'a> {
         ))
     }
 
-    fn diameter(&self) -> Option<Finding> {
+    fn of_roller(&self, why: &str) -> Option<Finding> {
         if self.on_roller() {
             return None;
         }
         let path = self.path("on");
-        let message = format!("`{path}` is a raceway: its diameter is a field of `bearing`");
+        let message = format!("`{path}` is a raceway: {why}");
         Some(Finding::new(message, vec![Remedy::new(path, "`roller(1)` and so on").value("roller(1)", "")]))
+    }
+
+    /// A ring rests on three rollers.
+    fn too_few(&self) -> Option<Finding> {
+        let left = self.scene.rollers_in_place().count();
+        let path = self.path("form");
+        (left < LEAST_ROLLERS).then(|| {
+            let message = format!(
+                "`{path}` is `missing`: it leaves {left} of {} rollers, and a bearing needs {LEAST_ROLLERS}",
+                self.scene.bearing.rollers
+            );
+            Finding::new(message, vec![Remedy::new("defects", "fewer rollers that are missing")])
+        })
+    }
+
+    /// What is not there has no other deviation.
+    fn of_nothing(&self) -> Option<Finding> {
+        let same = |(other, deviation): &(usize, &DeviationScene)| {
+            *other != self.index && deviation.on == self.deviation.on
+        };
+        let (other, _) = self.scene.defects.iter().enumerate().find(same)?;
+        let message =
+            format!("`{}` is `missing`, and `defects[{other}]` is on the same roller", self.path("form"));
+        Some(Finding::new(message, vec![Remedy::new(format!("defects[{other}].on"), "another roller")]))
     }
 
     /// Corners of two spalls would want the same nodes.

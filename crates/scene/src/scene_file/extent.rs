@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use super::finding::{Finding, Remedy};
 use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, round_up, shown};
+use crate::deviation::FormScene;
 use crate::duty::Duty;
 use crate::housing::HousingScene;
 use crate::scene::{ModelScene, ProfileScene, Scene, Start};
@@ -39,6 +40,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         reduced_starts,
         reduced_oil,
         reduced_housing,
+        reduced_rollers,
         load_direction,
         outer_speed,
         outer_speed_alone,
@@ -216,6 +218,17 @@ fn reduced_oil(scene: &Scene) -> Option<Finding> {
             Remedy::new("model", "`full`".to_owned()).value("full", ""),
         ],
     ))
+}
+
+/// The reduced model has a roller in every pocket.
+fn reduced_rollers(scene: &Scene) -> Option<Finding> {
+    let missing = scene.defects.iter().position(|deviation| deviation.form == FormScene::Missing)?;
+    let full = Remedy::new("model", "`full`".to_owned()).value("full", "");
+    let path = format!("defects[{missing}].form");
+    let message = format!("`{path}` is `missing`, and the reduced model has a roller in every pocket");
+    let small = Remedy::new(path, "`diameter(larger_um: -100)`, which carries nothing".to_owned());
+    let small = small.value("diameter(larger_um: -100.0)", "a small one");
+    (scene.model != ModelScene::Full).then(|| Finding::new(message, vec![small, full]))
 }
 
 /// What holds the ring of a reduced model is elastic, or rigid and stands.

@@ -262,6 +262,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
             FormScene::Diameter(diameter) => {
                 add("form.larger_um", diameter.larger_um, within(-1_000.0, 1_000.0), "µm");
             }
+            FormScene::Missing => {}
         }
     }
     add("material.youngs_modulus_gpa", material.youngs_modulus_gpa, positive(10_000.0), "GPa");

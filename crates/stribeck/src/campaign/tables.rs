@@ -171,6 +171,9 @@ fn fault(scene: &Scene) -> String {
     // In their order: rollers come last, one beside the other.
     let mut names: Vec<&str> = scene.faults().iter().map(name).collect();
     names.dedup();
+    if scene.rollers_in_place().count() < scene.bearing.rollers {
+        names.push("missing_rolling_element");
+    }
     if names.is_empty() { "healthy".to_owned() } else { names.join("+") }
 }
 

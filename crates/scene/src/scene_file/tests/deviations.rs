@@ -61,6 +61,12 @@ fn refuses_what_no_mesh_can_follow() {
             "no whole number of waves",
         ),
         ("form: diameter(larger_um: 3)", "defects[0].on", "its diameter is a field of `bearing`"),
+        ("form: missing", "defects[0].on", "it cannot be missing"),
+        (
+            "on: roller(2), form: missing), (on: roller(2), form: diameter(larger_um: 3)",
+            "defects[1].on",
+            "is `missing`, and `defects[1]` is on the same roller",
+        ),
         ("form: profile(points: [])", "defects[0].form.points", "needs two"),
         (
             "form: profile(points: [(at_mm: 1, depth_um: 0), (at_mm: 0, depth_um: 2), (at_mm: 4, depth_um: 0)])",
@@ -103,6 +109,20 @@ fn refuses_a_defect_beside_a_groove_and_in_oil() {
         only(parse("(defect: None, defects: [(on: roller(2), form: dent(length_mm: 4, depth_mm: 0.02))])"));
     assert!(oil.message.contains("oil knows round rollers"), "{oil}");
     assert_eq!(oil.repair.as_deref(), Some("film=None"));
+}
+
+#[test]
+fn refuses_too_many_missing_rollers_and_any_in_the_reduced_model() {
+    let missing =
+        |count: usize| (1..=count).map(|i| format!("(on: roller({i}), form: missing), ")).collect::<String>();
+    assert!(parse(&format!("(defects: [{}])", missing(1))).is_ok(), "in oil as well");
+    assert!(parse(&dry(&missing(21))).is_ok());
+    let few = parse(&dry(&missing(22))).expect_err("two rollers are left").to_string();
+    assert!(few.contains("it leaves 2 of 24 rollers, and a bearing needs 3"), "{few}");
+    let scene = format!("(model: reduced(modes_khz: 30), film: None, defects: [{}])", missing(1));
+    let reduced = only(parse(&scene));
+    assert!(reduced.message.contains("a roller in every pocket"), "{reduced}");
+    assert_eq!(reduced.repair.as_deref(), Some("defects[0].form=diameter(larger_um: -100.0)"));
 }
 
 #[test]
