@@ -180,6 +180,28 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
 }
 
 #[test]
+fn peer_slurm_runs_the_parts_to_the_same_bytes() {
+    // Slurm 22.05 with a controller and a node of its own, for which it takes root.
+    let has = |program: &str| Command::new(program).arg("-V").output().is_ok_and(|o| o.status.success());
+    let root = Command::new("id").arg("-u").output().is_ok_and(|o| o.stdout == b"0\n");
+    if !root || !["slurmctld", "slurmd", "sbatch", "munged"].into_iter().all(has) {
+        eprintln!("no campaign is run under Slurm: it is not installed, or this is not root");
+        return;
+    }
+    let desk = desk("campaign-slurm", CAMPAIGN);
+    assert!(run(&desk, &["--out=A"]).status.success());
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/slurm_campaign.sh");
+    let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
+    let output = Command::new("sh").current_dir(desk.path()).args(words).output().expect("it starts");
+    says(&output, &["done"]);
+    // What was killed and not run again is done by the same command.
+    let last = run(&desk, &["--out=B"]);
+    assert!(last.status.success(), "{}", said(&last));
+    says(&last, &["8 of 8 runs are complete"]);
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+}
+
+#[test]
 fn peer_dask_and_snakemake_run_the_parts_to_the_same_bytes() {
     // Dask 2026.8.0 and Snakemake 9.27.1, where the interpreter in STRIBECK_PYTHON (or python3) has them.
     let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
