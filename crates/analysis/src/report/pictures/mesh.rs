@@ -140,10 +140,14 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
             sheet.path(&ring, true, "fill:none;stroke:#b3202c;stroke-width:2");
         }
     });
-    let offset = scene.bearing.first_roller_deg - angle.to_degrees();
+    let offset = (scene.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
+    let side = if offset < 0.0 { "behind" } else { "before" };
     let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
     sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
-    let words = format!("roller 1 stands {offset} ° before the middle of the defect");
+    let words = format!(
+        "roller 1 stands {} ° {side} the middle of the defect",
+        (100.0 * offset.abs()).round() / 100.0
+    );
     sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
     scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
     let mut picture = Picture::new("mesh-defect", "The mesh about the defect", sheet);
