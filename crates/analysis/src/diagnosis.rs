@@ -123,11 +123,10 @@ pub fn family_of(on: RollingSurface) -> &'static str {
 
 /// Frequency of a family by the recorded motion [Hz].
 fn from_motion(name: &str, motion: &KinematicsFinding) -> Option<f64> {
-    let rollers = motion.rollers.len() as f64;
     match name {
         "BPFO" => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
-        "BPFI" => motion.bpfo_hz.map(|bpfo| rollers * motion.relative_hz - bpfo),
+        "BPFI" => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
         // Under load: a roller that carries nothing may turn as it likes, and strikes nothing.
         "BSF" => motion.roller_spin_hz,
         _ => motion.cage_hz,

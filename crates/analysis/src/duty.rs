@@ -121,7 +121,7 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
 pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
     let outer = motion.bpfo_hz? / motion.shaft_hz;
     let order = match name {
-        "BPFI" => motion.rollers.len() as f64 - outer,
+        "BPFI" => motion.pockets() - outer,
         "2·BSF" => 2.0 * motion.roller_spin_hz? / motion.shaft_hz,
         _ => outer,
     };

@@ -30,7 +30,7 @@ pub struct KinematicsFinding {
     /// Cage as seen from the outer ring, measured and without slip.
     #[serde(default)]
     pub cage_on_outer_hz: [Option<f64>; 2],
-    /// Number of rollers times the measured frequency of the cage as seen from the outer ring.
+    /// Number of pockets times the measured frequency of the cage as seen from the outer ring.
     pub bpfo_hz: Option<f64>,
     /// Ball pass frequency of the outer raceway, no slip.
     pub expected_bpfo_hz: f64,
@@ -106,7 +106,7 @@ pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding 
         shaft_hz: expected.shaft_hz,
         cage_hz,
         expected_cage_hz: expected.cage_hz,
-        bpfo_hz: on_outer.filter(|_| !rollers.is_empty()).map(|hz| hz * rollers.len() as f64),
+        bpfo_hz: on_outer.filter(|_| !rollers.is_empty()).map(|hz| hz * record.pockets() as f64),
         cage_on_outer_hz: [on_outer, Some(expected.cage_on_outer_hz)],
         outer_ring_hz: expected.outer_ring_hz,
         relative_hz: (expected.shaft_rad_s - expected.outer_rad_s).abs() / TAU,
@@ -115,6 +115,14 @@ pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding 
         expected_roller_spin_hz: expected.roller_spin_hz,
         roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
         rollers: motions,
+    }
+}
+
+impl KinematicsFinding {
+    /// Places for rollers in the cage, from which rollers pass a raceway; not a number for a bearing that rests.
+    pub(crate) fn pockets(&self) -> f64 {
+        let [_, cage_hz] = self.cage_on_outer_hz;
+        (self.expected_bpfo_hz / cage_hz.unwrap_or(f64::NAN)).round()
     }
 }
 

@@ -17,6 +17,9 @@ use crate::families::{Candidate, Source};
 /// Steps of the cage over one roller spacing in the static distribution.
 const CAGE_STEPS: usize = 30;
 
+/// How much more often than without slip rollers may pass a spall that turns.
+const EARLY: f64 = 0.01;
+
 /// Everything that geometry and speed predict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Prediction {
@@ -39,7 +42,7 @@ pub struct SpallCourse {
     pub edges: DefectEdges,
     /// Whether its ring turns.
     pub turns: bool,
-    /// Passages that begin in the simulated time, in order of entry.
+    /// Passages that begin in the simulated time or little later, in order of entry.
     pub passages: Vec<Crossing>,
 }
 
@@ -92,14 +95,19 @@ impl Prediction {
                 trailing_deg: defect.angle_deg - ahead_deg,
             }
         };
+        let turns = |defect: &DefectScene| match defect.ring {
+            DefectRing::Outer => scene.operation.outer_speed_rpm != 0.0,
+            DefectRing::Inner => scene.operation.speed_rpm != 0.0 || scene.operation.speed_varies(),
+        };
         let passages = |defect: &DefectScene| {
             if scene.operation.speed_varies() {
                 return over_turns(scene, defect);
             }
             // On the inner raceway the contact is as fast: rollers do not slip.
             let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
-            // Whoever enters in time leaves at most one traverse later.
-            let until_s = Geometry::of(scene).duration + traverse_s;
+            // A cage that slips meets a ring that turns earlier. Whoever enters in time leaves at most one traverse later.
+            let early = if turns(defect) { EARLY } else { 0.0 };
+            let until_s = (1.0 + early) * Geometry::of(scene).duration + traverse_s;
             kinematics.crossings(defect, &roller_angles_deg(scene), until_s)
         };
         let in_place = |defect: &DefectScene| {
@@ -109,10 +117,7 @@ impl Prediction {
         };
         let course = |spall: DefectScene| SpallCourse {
             edges: edges(&spall),
-            turns: match spall.ring {
-                DefectRing::Outer => scene.operation.outer_speed_rpm != 0.0,
-                DefectRing::Inner => scene.operation.speed_rpm != 0.0 || scene.operation.speed_varies(),
-            },
+            turns: turns(&spall),
             passages: in_place(&spall),
             spall,
         };

@@ -105,6 +105,11 @@ impl<'a> Record<'a> {
         })
     }
 
+    /// Places for rollers in the cage, with those where one is missing.
+    pub fn pockets(&self) -> usize {
+        self.run.scene.bearing.rollers
+    }
+
     /// All rollers whose channels are there.
     pub fn rollers(&self) -> Vec<Roller<'a>> {
         self.run.scene.rollers_in_place().filter_map(|number| self.roller(number)).collect()

@@ -221,7 +221,7 @@ fn lead(scene: &Scene, simulated_ms: f64) -> String {
     };
     format!(
         "{name}{} rollers{} under {} at {}, {defect}; {:.1} ms on record.",
-        scene.bearing.rollers,
+        scene.rollers_in_place().count(),
         housing(scene),
         load(scene, simulated_ms),
         speed(scene, simulated_ms),

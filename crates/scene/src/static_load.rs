@@ -199,8 +199,8 @@ pub fn at_start(scene: &Scene) -> Result<StaticLoad, Error> {
     rings.distribute(Duty::of(scene).load_n(0.0), &angles_to_load_deg(scene))
 }
 
-/// Angles of a scene's rollers that are in place at the start as seen in a frame whose load comes from above [°], roller 1 first: what
-/// [`RigidRings::distribute`] takes. For a load downwards they are the angles themselves.
+/// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their order, without those
+/// that are missing: what [`RigidRings::distribute`] takes. For a load downwards they are the angles themselves.
 pub fn angles_to_load_deg(scene: &Scene) -> Vec<f64> {
     let turned = scene.load_zone_deg() - 90.0;
     let angles = roller_angles_deg(scene);

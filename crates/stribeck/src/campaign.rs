@@ -149,8 +149,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
     }
     let limit_gb = options.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
-    let fitting = memory::fitting(due.iter().map(|due| &due.scene), limit_gb);
-    let jobs = Jobs::of(options.jobs, options.threads, due.len()).at_most(fitting);
+    let need_gb = due.iter().map(|due| memory::need_gb(&due.scene)).fold(0.0, f64::max);
+    if need_gb > limit_gb {
+        eprintln!("warning: a run may take {need_gb:.1} GB, and there are {limit_gb:.1} GB for it");
+    }
+    let fitting = ((limit_gb / need_gb) as usize).max(1);
+    let jobs = Jobs::of(options.jobs, options.threads, due.len().min(fitting));
     eprintln!(
         "{}: {} runs, {} of them to be run here, {} → {}",
         campaign.name,
@@ -250,8 +254,8 @@ fn summary_of(path: &Path) -> Result<serde_json::Value> {
         return Ok(there);
     }
     let findings = Findings::of(&Run::read(path)?)?;
-    let mut text = serde_json::to_vec_pretty(&findings.summary)?;
-    text.push(b'\n');
-    write_atomic(&dir.summary(), &text)?;
-    Ok(serde_json::from_slice(&text)?)
+    let text = serde_json::to_string_pretty(&findings.summary)? + "\n";
+    // Another part may make the same one at the same time.
+    replace(&dir.summary(), &text)?;
+    Ok(serde_json::from_str(&text)?)
 }

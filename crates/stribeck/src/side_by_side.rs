@@ -31,17 +31,11 @@ pub(crate) struct Jobs {
 }
 
 impl Jobs {
-    /// For so many runs: as asked for, or as many as there are threads.
+    /// For so many runs at the most: as asked for, or as many as there are threads.
     pub(crate) fn of(jobs: Option<usize>, threads: Option<usize>, runs: usize) -> Self {
         let threads = threads.unwrap_or_else(host::cores);
         let count = jobs.unwrap_or(threads).clamp(1, runs.max(1));
         Self { count, threads: (threads / count).max(1) }
-    }
-
-    /// The same threads for no more jobs than that.
-    pub(crate) fn at_most(self, jobs: usize) -> Self {
-        let count = self.count.min(jobs);
-        Self { count, threads: self.threads * self.count / count.max(1) }
     }
 
     /// In words.

@@ -26,9 +26,6 @@ const OF_ROLLER: f64 = 0.25;
 const OF_THICKNESS: f64 = 0.3;
 const OF_RADIUS: f64 = 0.15;
 
-/// Rollers that a bearing has at least.
-const LEAST_ROLLERS: usize = 3;
-
 /// Steepest part of the dent's hollow and of its rim, in depths over half its length and heights over the same.
 const HOLLOW_SLOPE: f64 = 1.54;
 const RIM_SLOPE: f64 = 3.08;
@@ -123,7 +120,7 @@ impl<'a> Checked<'a> {
             }
             FormScene::Diameter(_) => vec![self.of_roller("its diameter is a field of `bearing`")],
             FormScene::Missing => {
-                vec![self.of_roller("it cannot be missing"), self.too_few(), self.of_nothing()]
+                vec![self.of_roller("it cannot be missing"), self.gap(), self.of_nothing()]
             }
         };
         let beside = [self.meets_defect(), self.meets_spall(), self.in_oil()];
@@ -357,21 +354,28 @@ impl<'a> Checked<'a> {
         Some(Finding::new(message, vec![Remedy::new(path, "`roller(1)` and so on").value("roller(1)", "")]))
     }
 
-    /// A ring rests on three rollers.
-    fn too_few(&self) -> Option<Finding> {
-        let left = self.scene.rollers_in_place().count();
+    /// A ring falls through half a turn without rollers.
+    fn gap(&self) -> Option<Finding> {
+        let (all, left) = (self.scene.bearing.rollers, self.scene.rollers_in_place().collect::<Vec<_>>());
+        let around = left.iter().zip(left.iter().cycle().skip(1));
+        // A single roller is its own neighbour, a turn away.
+        let gap = |(from, to): (&usize, &usize)| if to > from { to - from } else { to + all - from };
+        let widest = 360.0 * around.map(gap).max().unwrap_or(all) as f64 / all as f64;
         let path = self.path("form");
-        (left < LEAST_ROLLERS).then(|| {
+        (widest >= 180.0).then(|| {
             let message = format!(
-                "`{path}` is `missing`: it leaves {left} of {} rollers, and a bearing needs {LEAST_ROLLERS}",
-                self.scene.bearing.rollers
+                "`{path}` is `missing`: the {} rollers that are left leave {widest:.0}° without one, and a ring falls through 180°",
+                left.len()
             );
-            Finding::new(message, vec![Remedy::new("defects", "fewer rollers that are missing")])
+            Finding::new(message, vec![Remedy::new("defects", "fewer neighbours that are missing")])
         })
     }
 
     /// What is not there has no other deviation.
     fn of_nothing(&self) -> Option<Finding> {
+        if !self.on_roller() {
+            return None;
+        }
         let same = |(other, deviation): &(usize, &DeviationScene)| {
             *other != self.index && deviation.on == self.deviation.on
         };

@@ -141,13 +141,10 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
         }
     });
     let offset = (scene.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
-    let side = if offset < 0.0 { "behind" } else { "before" };
     let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
     sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
-    let words = format!(
-        "roller 1 stands {} ° {side} the middle of the defect",
-        (100.0 * offset.abs()).round() / 100.0
-    );
+    let words =
+        format!("roller 1 stands {} ° from the middle of the defect", (100.0 * offset.abs()).round() / 100.0);
     sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
     scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
     let mut picture = Picture::new("mesh-defect", "The mesh about the defect", sheet);
@@ -161,7 +158,6 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
         None => "No spall lies on a raceway.".into(),
     };
     picture.note =
-        "Undeformed, before the load. Dashed: middle of the defect and roller 1. Rollers move to the right."
-            .into();
+        "Undeformed, before the load. Dashed: middle of the defect and roller 1, or its empty pocket.".into();
     picture
 }

@@ -37,7 +37,7 @@ const WIDTH_PX: f64 = 380.0;
 const HEIGHT_PX: f64 = 120.0;
 
 fn to_scale(sheet: &mut Sheet, scene: &Scene, run_mesh: &RunMesh) {
-    let Some(body) = run_mesh.bodies.iter().find(|b| b.name == "roller 1") else { return };
+    let Some(body) = run_mesh.bodies.iter().find(|b| b.name.starts_with("roller ")) else { return };
     let place = |n: &u32| run_mesh.reference[*n as usize];
     let centre = [0, 1].map(|axis| {
         let [low, high] = mesh::range(run_mesh.elements_of(body).flatten().map(|n| place(n)[axis]));
