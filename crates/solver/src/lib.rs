@@ -93,6 +93,7 @@ pub mod material;
 pub mod model;
 
 pub mod force;
+pub mod ranks;
 pub mod snapshot;
 pub mod state;
 
@@ -100,6 +101,7 @@ pub mod element;
 mod internal_forces;
 
 pub mod damping;
+mod division;
 pub mod dynamics;
 pub mod rigid;
 pub mod springs;

@@ -31,6 +31,7 @@ fn with_clock<T>(threads: usize, cpu_s: &dyn Fn() -> f64, work: impl FnOnce(&Hos
         machine: machine(),
         wall_s: &|| start.elapsed().as_secs_f64(),
         cpu_s,
+        ranks: None,
     })
 }
 

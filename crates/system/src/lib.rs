@@ -60,6 +60,7 @@
 //! | Which threads do the work? | `workers.rs` |
 
 mod build;
+mod division;
 mod error;
 mod forces;
 mod guards;
