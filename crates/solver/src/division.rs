@@ -271,8 +271,8 @@ impl Dynamics {
             return;
         }
         for tile in self.tiles.iter().filter(|tile| tile.turn == Turn::Elsewhere) {
-            let whole = [0..tile.slots.len()];
-            let pushed = if tile.elastic { &tile.loaded[..] } else { &whole };
+            let whole = 0..tile.slots.len();
+            let pushed = if tile.elastic { &tile.loaded[..] } else { std::slice::from_ref(&whole) };
             for run in pushed {
                 let slots = tile.slots.start + run.start..tile.slots.start + run.end;
                 self.forces.fx[slots.clone()].fill(0.0);
