@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::ranks::Ranks;
+use stribeck_solver::ranks::{Ranks, broadcast};
 
 /// What a library may not know by itself.
 pub struct Host<'a> {
@@ -20,6 +20,13 @@ pub struct Host<'a> {
     pub cpu_s: &'a dyn Fn() -> f64,
     /// Processes that this one runs full models together with, if there are any.
     pub ranks: Option<Arc<dyn Ranks>>,
+}
+
+impl Host<'_> {
+    /// Whether the run ends here: what the first rank says, where there are several.
+    pub(crate) fn agree(&self, stop: bool) -> bool {
+        self.ranks.as_ref().map_or(stop, |ranks| broadcast(&**ranks, &[u8::from(stop)]) == [1])
+    }
 }
 
 /// How far a run is.

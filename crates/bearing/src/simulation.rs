@@ -14,7 +14,7 @@ use crate::{
     frames::Frames,
     full::{Full, Saved},
     guards::Guards,
-    ranks::lead,
+    ranks::{called_to, lead},
     start::{launch, preload},
     time_loop::Run,
 };
@@ -110,20 +110,16 @@ pub fn simulate(
 }
 
 /// A run before its first step.
-pub(crate) struct Prepared {
-    pub(crate) assembly: Assembly,
-    pub(crate) machine: Machine,
-    pub(crate) setup: Setup,
+struct Prepared {
+    assembly: Assembly,
+    machine: Machine,
+    setup: Setup,
     /// What is to be said of the preload.
     preloaded: Option<String>,
 }
 
 /// Sets a run up; `meshed` is told how many elements there are.
-pub(crate) fn prepare(
-    scene: &Scene,
-    host: &Host<'_>,
-    meshed: &mut dyn FnMut(usize),
-) -> Result<Prepared, Error> {
+fn prepare(scene: &Scene, host: &Host<'_>, meshed: &mut dyn FnMut(usize)) -> Result<Prepared, Error> {
     let started = (host.wall_s)();
     let assembly = Assembly::new(scene)?;
     let mut machine = assembly.machine(scene, host.threads)?;
@@ -210,16 +206,34 @@ fn go_on(
 }
 
 /// Sets a run up that goes on.
-pub(crate) fn prepare_again(
-    scene: &Scene,
-    host: &Host<'_>,
-    info: &RunInfo,
-) -> Result<(Assembly, Machine), Error> {
+fn prepare_again(scene: &Scene, host: &Host<'_>, info: &RunInfo) -> Result<(Assembly, Machine), Error> {
     let assembly = Assembly::new(scene)?;
     let mut machine = assembly.machine(scene, host.threads)?;
     machine.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
     damp(scene, &mut machine)?;
     Ok((assembly, machine))
+}
+
+/// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing. For all ranks
+/// but the first.
+///
+/// # Errors
+/// Where the first rank has one, too, but for those of its files.
+pub fn follow(host: &Host<'_>) -> Result<(), Error> {
+    let Some(ranks) = &host.ranks else { return Ok(()) };
+    let (scene, checkpoint) = called_to(&**ranks)?;
+    match checkpoint {
+        None => {
+            let Prepared { assembly, machine, setup, .. } = prepare(&scene, host, &mut |_| {})?;
+            let full = Full::start(&scene, &assembly, machine, None, host);
+            Run::follow(full, setup.info(&scene, host), host)
+        }
+        Some(Checkpoint { info, motion }) => {
+            let (assembly, machine) = prepare_again(&scene, host, &info)?;
+            let full = Full::resume(&scene, &assembly, machine, &info, motion, None, host)?;
+            Run::follow(full, info, host)
+        }
+    }
 }
 
 /// Hands the run of a checkpoint over to this program.

@@ -9,7 +9,6 @@ use crate::{
     checkpoint::{Checkpoint, identity},
     error::Error,
     host::{Host, Progress},
-    ranks::agree,
     recorder,
 };
 use stribeck_scene::{
@@ -199,7 +198,7 @@ impl<M: Motion> Run<M> {
                 self.info.stop_reason = stop;
                 break;
             }
-            if agree(host, watch(&progress).is_break()) {
+            if host.agree(watch(&progress).is_break()) {
                 self.info.status = Status::Interrupted;
                 self.info.stop_reason = Some(format!("interrupted at {:.4} ms", 1e3 * progress.time_s));
                 break;
@@ -228,7 +227,7 @@ impl<M: Motion> Run<M> {
             workers.run(|| motion.interval(steps_per_sample))?;
             motion.row();
             (info.steps, info.samples) = (motion.steps(), sample);
-            if motion.look(&mut info).is_some() || agree(host, false) {
+            if motion.look(&mut info).is_some() || host.agree(false) {
                 break;
             }
         }

@@ -5,10 +5,7 @@ mod common;
 use std::{fs, ops::ControlFlow, path::Path};
 
 use common::{coarse, host, ranks::together};
-use stribeck_bearing::{
-    ranks::follow,
-    simulation::{Host, Progress, resume, simulate},
-};
+use stribeck_bearing::simulation::{Host, Progress, follow, resume, simulate};
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::Status,

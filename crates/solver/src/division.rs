@@ -5,7 +5,7 @@
 //! are, every rank hears after every step; fields of other ranks' tiles are right only after [`Dynamics::gather`]. Sums are
 //! taken tile by tile in one order, as ever, so that ranks change no bit.
 
-use std::{ops::Range, sync::Arc};
+use std::sync::Arc;
 
 use crate::{
     dynamics::Dynamics,
@@ -18,6 +18,7 @@ use crate::{
     },
     ranks::{Ranks, Shared, cut_in_place},
     rigid::RigidState,
+    route::{Division, Route, pack, tile_at, unpack},
     state::State,
     structural_damping::MAX_BRANCHES,
 };
@@ -31,99 +32,20 @@ const RIGID: usize = 7;
 /// A new cut is taken where the busiest rank of the old one has so many times the work of the busiest of the new one.
 const WORTH_A_CUT: f64 = 1.03;
 
+/// What a unit of a tile's work takes [ns], and a byte that goes to or from memory [ns]: about 12 GB/s.
+const UNIT_NS: f64 = 0.4;
+const BYTE_NS: f64 = 1.0 / 12.0;
+
+/// About how long a large tile takes a step [ns]: memory sets the pace, and what structural damping remembers shows.
+fn time_ns(tile: &Tile, branches: usize) -> f64 {
+    // Positions and velocities are written, too; so are two numbers of each branch.
+    let more = 4 + if tile.structural.is_some() { 4 * branches } else { 0 };
+    let bytes = tile.bytes() + size_of::<f64>() * more * tile.slots.len();
+    UNIT_NS * tile.work as f64 + BYTE_NS * bytes as f64
+}
+
 /// Slots from one that counts for the place of its tile to the next.
 const PLACE_EVERY: usize = 61;
-
-/// The part of one rank in a model, and what it owes to others.
-#[derive(Debug)]
-pub(crate) struct Division {
-    ranks: Arc<dyn Ranks>,
-    /// Rank of each tile.
-    rank_of: Vec<usize>,
-    /// Rank of each rigid body.
-    rank_of_rigid: Vec<usize>,
-    /// Ghosts of own tiles, as in the layout.
-    ghosts: Vec<(Range<usize>, usize)>,
-    /// Nodes at seams, which ghosts copy, and nodes that forces read.
-    seams: Route,
-    read: Route,
-    outgoing: Vec<Vec<f64>>,
-    incoming: Vec<Vec<f64>>,
-    shared: Shared,
-}
-
-/// Slots whose values go to each rank, and come from it.
-#[derive(Debug, Default)]
-struct Route {
-    to: Vec<Vec<u32>>,
-    from: Vec<Vec<u32>>,
-}
-
-impl Route {
-    /// From what each rank reads of others; `owner` is the rank of a slot, `None` for one that every rank knows.
-    fn new(mut wanted: Vec<Vec<u32>>, rank: usize, owner: impl Fn(usize) -> Option<usize>) -> Self {
-        let ranks = wanted.len();
-        let mut route = Self { to: vec![Vec::new(); ranks], from: vec![Vec::new(); ranks] };
-        for (reader, slots) in wanted.iter_mut().enumerate() {
-            slots.sort_unstable();
-            slots.dedup();
-            for &slot in slots.iter() {
-                match owner(slot as usize) {
-                    Some(owner) if owner == rank && reader != rank => route.to[reader].push(slot),
-                    Some(owner) if owner != rank && reader == rank => route.from[owner].push(slot),
-                    _ => {}
-                }
-            }
-        }
-        route
-    }
-}
-
-/// Packs values of slots.
-fn pack(slots: &[u32], fields: &[&[f64]], to: &mut Vec<f64>) {
-    for field in fields {
-        to.extend(slots.iter().map(|&n| field[n as usize]));
-    }
-}
-
-/// Unpacks what [`pack`] has packed; what is left over.
-fn unpack<'a>(slots: &[u32], fields: &mut [&mut [f64]], mut from: &'a [f64]) -> &'a [f64] {
-    for field in fields {
-        let (values, rest) = from.split_at(slots.len());
-        slots.iter().zip(values).for_each(|(&n, &value)| field[n as usize] = value);
-        from = rest;
-    }
-    from
-}
-
-/// Number of the tile that a slot lies in.
-fn tile_at(tiles: &[Tile], slot: usize) -> usize {
-    tiles.partition_point(|tile| tile.slots.end <= slot)
-}
-
-impl Division {
-    /// Sends what others read of nodes that have moved, and receives what this rank reads, while `meanwhile` moves others.
-    fn exchange(&mut self, dynamics: &mut Dynamics, meanwhile: impl Fn(&mut Dynamics)) {
-        let seams = if dynamics.sees_ahead() { 4 } else { 2 };
-        let State { x, y, vx, vy, .. } = &dynamics.state;
-        let fields: [&[f64]; 4] = [x, y, vx, vy];
-        for (rank, to) in self.outgoing.iter_mut().enumerate() {
-            to.clear();
-            pack(&self.seams.to[rank], &fields[..seams], to);
-            pack(&self.read.to[rank], &fields, to);
-        }
-        for (rank, from) in self.incoming.iter_mut().enumerate() {
-            from.resize(seams * self.seams.from[rank].len() + 4 * self.read.from[rank].len(), 0.0);
-        }
-        self.ranks.exchange(&self.outgoing, &mut self.incoming, &mut || meanwhile(dynamics));
-        let State { x, y, vx, vy, .. } = &mut dynamics.state;
-        let mut fields: [&mut [f64]; 4] = [x, y, vx, vy];
-        for (rank, from) in self.incoming.iter().enumerate() {
-            let rest = unpack(&self.seams.from[rank], &mut fields[..seams], from);
-            unpack(&self.read.from[rank], &mut fields, rest);
-        }
-    }
-}
 
 impl Dynamics {
     /// Divides the model among ranks from now on, all of which hold the same state: each moves its own tiles alone. Every rank
@@ -163,7 +85,8 @@ impl Dynamics {
     pub fn balance<'a>(&mut self, burdens: impl Iterator<Item = (&'a [u32], f64)>) -> bool {
         let Some(division) = &self.division else { return false };
         let (rank, count) = (division.ranks.rank(), division.ranks.count());
-        let mut work: Vec<f64> = self.tiles.iter().map(|tile| tile.work as f64).collect();
+        let branches = self.structural_damping().map_or(0, |damping| damping.branches().len());
+        let mut work: Vec<f64> = self.tiles.iter().map(|tile| time_ns(tile, branches)).collect();
         for (slots, burden) in burdens {
             let each = burden / slots.len() as f64;
             slots.iter().for_each(|&slot| work[tile_at(&self.tiles, slot as usize)] += each);
@@ -327,8 +250,30 @@ impl Dynamics {
             return self.sweep_turn(Turn::Late, parameters, branches);
         };
         self.sweep_turn(Turn::Early, parameters, branches);
-        division.exchange(self, |dynamics| dynamics.sweep_turn(Turn::Late, parameters, branches));
+        self.exchange(&mut division, |dynamics| dynamics.sweep_turn(Turn::Late, parameters, branches));
         self.division = Some(division);
+    }
+
+    /// Sends what others read of nodes that have moved, and receives what this rank reads, while `meanwhile` moves others.
+    fn exchange(&mut self, division: &mut Division, meanwhile: impl Fn(&mut Self)) {
+        let seams = if self.sees_ahead() { 4 } else { 2 };
+        let State { x, y, vx, vy, .. } = &self.state;
+        let fields: [&[f64]; 4] = [x, y, vx, vy];
+        for (rank, to) in division.outgoing.iter_mut().enumerate() {
+            to.clear();
+            pack(&division.seams.to[rank], &fields[..seams], to);
+            pack(&division.read.to[rank], &fields, to);
+        }
+        for (rank, from) in division.incoming.iter_mut().enumerate() {
+            from.resize(seams * division.seams.from[rank].len() + 4 * division.read.from[rank].len(), 0.0);
+        }
+        division.ranks.exchange(&division.outgoing, &mut division.incoming, &mut || meanwhile(self));
+        let State { x, y, vx, vy, .. } = &mut self.state;
+        let mut fields: [&mut [f64]; 4] = [x, y, vx, vy];
+        for (rank, from) in division.incoming.iter().enumerate() {
+            let rest = unpack(&division.seams.from[rank], &mut fields[..seams], from);
+            unpack(&division.read.from[rank], &mut fields, rest);
+        }
     }
 
     /// Moves rigid bodies, each on one rank, and lets every rank know where they are and what tiles have counted.

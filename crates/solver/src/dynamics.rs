@@ -2,7 +2,6 @@
 
 use crate::{
     damping::{Frame, MassDamping, PLACE_EVERY},
-    division::Division,
     element::{QuadReference, Stiffness, TriangleReference},
     error::{Error, check, check_count},
     force::Force,
@@ -20,6 +19,7 @@ use crate::{
     },
     model::{Model, Motion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
+    route::Division,
     state::{Accumulated, Moment, NodeForces, State},
     structural_damping::{MAX_BRANCHES, StructuralDamping},
 };

@@ -94,6 +94,7 @@ pub mod model;
 
 pub mod force;
 pub mod ranks;
+mod route;
 pub mod snapshot;
 pub mod state;
 

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::report;
-use stribeck_bearing::ranks::{self, Ranks};
-use stribeck_bearing::simulation::Progress;
+use stribeck_bearing::ranks::Ranks;
+use stribeck_bearing::simulation::{Progress, follow};
 use stribeck_reduced::simulation;
 use stribeck_scene::Error;
 use stribeck_scene::run_dir::RunDir;
@@ -100,14 +100,14 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 }
 
 /// Takes part in what the first process runs.
-fn follow(options: &Options, ranks: Arc<dyn Ranks>) -> Result<ExitCode> {
-    host::with_ranks(options.threads.unwrap_or(1), Some(ranks), ranks::follow)?;
+fn take_part(options: &Options, ranks: Arc<dyn Ranks>) -> Result<ExitCode> {
+    host::with_ranks(options.threads.unwrap_or(1), Some(ranks), follow)?;
     Ok(ExitCode::SUCCESS)
 }
 
 fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> Result<ExitCode> {
     if let Some(ranks) = ranks.as_ref().filter(|ranks| ranks.rank() > 0) {
-        return follow(options, Arc::clone(ranks));
+        return take_part(options, Arc::clone(ranks));
     }
     ensure!(
         ranks.is_none() || options.starts.is_none(),

@@ -6,21 +6,9 @@
 use std::sync::Arc;
 
 use stribeck_contact::Interactions;
-use stribeck_solver::ranks::{Ranks, Shared};
+use stribeck_solver::ranks::Ranks;
 
-use crate::{error::Error, forces::Forces, system::System};
-
-/// What one rank knows of the shares of all.
-#[derive(Debug, Default)]
-pub(crate) struct Division {
-    /// The rank that speaks for each interaction, kind by kind.
-    leaders: Vec<Vec<usize>>,
-    /// Slots that the forces of every rank read: of loads and of the user's laws.
-    everywhere: Vec<u32>,
-    shared: Shared,
-    /// Step before which the whole state was last gathered.
-    gathered: Option<u64>,
-}
+use crate::{error::Error, forces::Forces, leaders::Division, system::System};
 
 impl Forces {
     /// Pairs and films.

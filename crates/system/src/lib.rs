@@ -64,6 +64,7 @@ mod division;
 mod error;
 mod forces;
 mod guards;
+mod leaders;
 mod ledger;
 mod load;
 mod names;

@@ -7,10 +7,10 @@ use stribeck_solver::{
 };
 
 use crate::{
-    division::Division,
     error::Error,
     forces::Forces,
     guards::{Finding, Limits, Seen, Words},
+    leaders::Division,
     ledger::{Balance, Ledger},
     names::{Names, unknown},
 };
