@@ -32,18 +32,6 @@ const RIGID: usize = 7;
 /// A new cut is taken where the busiest rank of the old one has so many times the work of the busiest of the new one.
 const WORTH_A_CUT: f64 = 1.03;
 
-/// What a unit of a tile's work takes [ns], and a byte that goes to or from memory [ns]: about 12 GB/s.
-const UNIT_NS: f64 = 0.4;
-const BYTE_NS: f64 = 1.0 / 12.0;
-
-/// About how long a large tile takes a step [ns]: memory sets the pace, and what structural damping remembers shows.
-fn time_ns(tile: &Tile, branches: usize) -> f64 {
-    // Positions and velocities are written, too; so are two numbers of each branch.
-    let more = 4 + if tile.structural.is_some() { 4 * branches } else { 0 };
-    let bytes = tile.bytes() + size_of::<f64>() * more * tile.slots.len();
-    UNIT_NS * tile.work as f64 + BYTE_NS * bytes as f64
-}
-
 /// Slots from one that counts for the place of its tile to the next.
 const PLACE_EVERY: usize = 61;
 
@@ -85,8 +73,7 @@ impl Dynamics {
     pub fn balance<'a>(&mut self, burdens: impl Iterator<Item = (&'a [u32], f64)>) -> bool {
         let Some(division) = &self.division else { return false };
         let (rank, count) = (division.ranks.rank(), division.ranks.count());
-        let branches = self.structural_damping().map_or(0, |damping| damping.branches().len());
-        let mut work: Vec<f64> = self.tiles.iter().map(|tile| time_ns(tile, branches)).collect();
+        let mut work: Vec<f64> = self.tiles.iter().map(|tile| tile.work as f64).collect();
         for (slots, burden) in burdens {
             let each = burden / slots.len() as f64;
             slots.iter().for_each(|&slot| work[tile_at(&self.tiles, slot as usize)] += each);
