@@ -1,5 +1,7 @@
 //! The full model in motion: elements, contact, recorder, guards and frames as the time loop drives them.
 
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 use stribeck_system::{Ledger, Snapshot};
 
@@ -8,6 +10,7 @@ use crate::{
     error::Error,
     frames::Frames,
     guards::{self, Guards},
+    host::Host,
     recorder::{self, Recorder},
     time_loop::Motion,
 };
@@ -33,11 +36,18 @@ pub(crate) struct Full<'a> {
 
 impl<'a> Full<'a> {
     /// Before its first step.
-    pub(crate) fn start(scene: &Scene, assembly: &'a Assembly, mut machine: Machine, dir: &RunDir) -> Self {
+    pub(crate) fn start(
+        scene: &Scene,
+        assembly: &'a Assembly,
+        mut machine: Machine,
+        frames: Option<Frames>,
+        host: &Host<'_>,
+    ) -> Self {
         guards::arm(scene, &mut machine.system);
+        host.ranks.iter().for_each(|ranks| machine.system.divide(Arc::clone(ranks)));
         Self {
             recorder: Recorder::new(scene, &machine),
-            frames: Frames::of(scene, dir.frames()),
+            frames,
             guards: Guards::new(scene, assembly, &machine),
             duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
             assembly,
@@ -52,10 +62,11 @@ impl<'a> Full<'a> {
         mut machine: Machine,
         info: &RunInfo,
         saved: Saved,
-        dir: &RunDir,
+        dir: Option<&RunDir>,
+        host: &Host<'_>,
     ) -> Result<Self, Error> {
         let other = |what: String| Error::Resume {
-            path: dir.path().to_owned(),
+            path: dir.map(|dir| dir.path().to_owned()).unwrap_or_default(),
             reason: format!("{what}. Continue it with the program that began it, or start it anew"),
         };
         let elsewhere =
@@ -65,9 +76,10 @@ impl<'a> Full<'a> {
         }
         guards::arm(scene, &mut machine.system);
         machine.system.restore(saved.system).map_err(|e| other(e.to_string()))?;
+        host.ranks.iter().for_each(|ranks| machine.system.divide(Arc::clone(ranks)));
         Ok(Self {
             recorder: Recorder::resume(scene, &machine, saved.recorder).ok_or_else(elsewhere)?,
-            frames: Frames::of(scene, dir.frames()),
+            frames: dir.and_then(|dir| Frames::of(scene, dir.frames())),
             guards: Guards::new(scene, assembly, &machine),
             duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
             assembly,
@@ -97,6 +109,8 @@ impl Motion for Full<'_> {
             self.recorder.after_step(&self.machine);
         }
         self.drive()?;
+        // Sensors may lie on other ranks.
+        self.machine.system.gather()?;
         self.recorder.before_step(&self.machine);
         let ledger = self.machine.system.step_with_ledger()?;
         self.recorder.after_step(&self.machine);

@@ -1,5 +1,9 @@
 //! What a run is told by the program around it, and what it tells back.
 
+use std::sync::Arc;
+
+use stribeck_solver::ranks::{Ranks, broadcast};
+
 /// What a library may not know by itself.
 pub struct Host<'a> {
     /// Worker threads.
@@ -14,6 +18,15 @@ pub struct Host<'a> {
     pub wall_s: &'a dyn Fn() -> f64,
     /// Processor time of this process so far, all threads [s].
     pub cpu_s: &'a dyn Fn() -> f64,
+    /// Processes that this one runs full models together with, if there are any.
+    pub ranks: Option<Arc<dyn Ranks>>,
+}
+
+impl Host<'_> {
+    /// Whether the run ends here: what the first rank says, where there are several.
+    pub(crate) fn agree(&self, stop: bool) -> bool {
+        self.ranks.as_ref().map_or(stop, |ranks| broadcast(&**ranks, &[u8::from(stop)]) == [1])
+    }
 }
 
 /// How far a run is.

@@ -9,6 +9,7 @@ mod grading;
 mod guards;
 mod host;
 mod housing;
+pub mod ranks;
 pub mod recorder;
 pub mod simulation;
 pub mod start;

@@ -11,8 +11,10 @@ use crate::{
     assembly::{Assembly, Machine},
     checkpoint::{Checkpoint, identity},
     error::Error,
+    frames::Frames,
     full::{Full, Saved},
     guards::Guards,
+    ranks::{called_to, lead},
     start::{launch, preload},
     time_loop::Run,
 };
@@ -90,15 +92,39 @@ pub fn simulate(
     host: &Host<'_>,
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<RunInfo, Error> {
-    let started = (host.wall_s)();
     let mut progress = Progress::begin();
     let _ = watch(&progress);
+    lead(host, scene, None)?;
+    let prepared = prepare(scene, host, &mut |elements| {
+        (progress.phase, progress.elements) = ("preload", elements);
+        let _ = watch(&progress);
+    })?;
+    let Prepared { assembly, machine, setup, preloaded } = prepared;
+    let mut info = setup.info(scene, host);
+    info.warnings.extend(preloaded);
+    info.warnings.extend(Guards::before(scene, assembly.steel(), &info));
+    dir.start(scene, &info)?;
+    write_mesh(&assembly, &machine, dir)?;
+    let full = Full::start(scene, &assembly, machine, Frames::of(scene, dir.frames()), host);
+    Run::start(scene, full, info, dir)?.finish(dir, host, progress, watch)
+}
+
+/// A run before its first step.
+struct Prepared {
+    assembly: Assembly,
+    machine: Machine,
+    setup: Setup,
+    /// What is to be said of the preload.
+    preloaded: Option<String>,
+}
+
+/// Sets a run up; `meshed` is told how many elements there are.
+fn prepare(scene: &Scene, host: &Host<'_>, meshed: &mut dyn FnMut(usize)) -> Result<Prepared, Error> {
+    let started = (host.wall_s)();
     let assembly = Assembly::new(scene)?;
     let mut machine = assembly.machine(scene, host.threads)?;
     let mesh = assembly.mesh_info();
-    progress.elements = mesh.quads + mesh.triangles;
-    progress.phase = "preload";
-    let _ = watch(&progress);
+    meshed(mesh.quads + mesh.triangles);
     let preloaded = match scene.solver.start {
         Start::Preloaded => preload(&mut machine, scene, &assembly.kinematics)?,
         Start::Sudden => None,
@@ -110,7 +136,6 @@ pub fn simulate(
     machine.system.set_time_step(dt, Some(critical))?;
     launch(&mut machine, &assembly.kinematics);
     damp(scene, &mut machine)?;
-
     let setup = Setup {
         time_step: dt,
         critical_time_step: critical,
@@ -119,13 +144,7 @@ pub fn simulate(
         wall_s: (host.wall_s)() - started,
         expected_support: expected_support(scene, &machine),
     };
-    let mut info = setup.info(scene, host);
-    info.warnings.extend(preloaded);
-    info.warnings.extend(Guards::before(scene, assembly.steel(), &info));
-    dir.start(scene, &info)?;
-    write_mesh(&assembly, &machine, dir)?;
-    let full = Full::start(scene, &assembly, machine, dir);
-    Run::start(scene, full, info, dir)?.finish(dir, host, progress, watch)
+    Ok(Prepared { assembly, machine, setup, preloaded })
 }
 
 /// Continues the run in `dir` from its checkpoint. Its files become those of an unbroken run, byte for byte, whatever
@@ -169,22 +188,52 @@ fn go_on(
     watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<RunInfo, Error> {
     let started = (host.wall_s)();
-    let Checkpoint { mut info, motion: saved } = read_saved::<Saved>(dir, &scene)?;
+    let checkpoint = read_saved::<Saved>(dir, &scene)?;
     let mut progress = Progress::begin();
     let _ = watch(&progress);
-    let assembly = Assembly::new(&scene)?;
-    let mut machine = assembly.machine(&scene, host.threads)?;
+    lead(host, &scene, Some(&checkpoint))?;
+    let Checkpoint { mut info, motion: saved } = checkpoint;
+    let (assembly, machine) = prepare_again(&scene, host, &info)?;
     let mesh = assembly.mesh_info();
     progress.elements = mesh.quads + mesh.triangles;
-    machine.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
-    damp(&scene, &mut machine)?;
 
     take_over(&mut info, &scene, host);
-    let full = Full::resume(&scene, &assembly, machine, &info, saved, dir)?;
+    let full = Full::resume(&scene, &assembly, machine, &info, saved, Some(dir), host)?;
     let mut run = Run::resume(&scene, full, info, dir)?;
     run.info.setup_s += (host.wall_s)() - started;
     dir.go_on(&scene, &run.info)?;
     run.finish(dir, host, progress, watch)
+}
+
+/// Sets a run up that goes on.
+fn prepare_again(scene: &Scene, host: &Host<'_>, info: &RunInfo) -> Result<(Assembly, Machine), Error> {
+    let assembly = Assembly::new(scene)?;
+    let mut machine = assembly.machine(scene, host.threads)?;
+    machine.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
+    damp(scene, &mut machine)?;
+    Ok((assembly, machine))
+}
+
+/// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing. For all ranks
+/// but the first.
+///
+/// # Errors
+/// Where the first rank has one, too, but for those of its files.
+pub fn follow(host: &Host<'_>) -> Result<(), Error> {
+    let Some(ranks) = &host.ranks else { return Ok(()) };
+    let (scene, checkpoint) = called_to(&**ranks)?;
+    match checkpoint {
+        None => {
+            let Prepared { assembly, machine, setup, .. } = prepare(&scene, host, &mut |_| {})?;
+            let full = Full::start(&scene, &assembly, machine, None, host);
+            Run::follow(full, setup.info(&scene, host), host)
+        }
+        Some(Checkpoint { info, motion }) => {
+            let (assembly, machine) = prepare_again(&scene, host, &info)?;
+            let full = Full::resume(&scene, &assembly, machine, &info, motion, None, host)?;
+            Run::follow(full, info, host)
+        }
+    }
 }
 
 /// Hands the run of a checkpoint over to this program.

@@ -198,7 +198,7 @@ impl<M: Motion> Run<M> {
                 self.info.stop_reason = stop;
                 break;
             }
-            if watch(&progress).is_break() {
+            if host.agree(watch(&progress).is_break()) {
                 self.info.status = Status::Interrupted;
                 self.info.stop_reason = Some(format!("interrupted at {:.4} ms", 1e3 * progress.time_s));
                 break;
@@ -214,6 +214,24 @@ impl<M: Motion> Run<M> {
             self.save(dir, &mut saved, host)?;
         }
         self.close(dir)
+    }
+
+    /// Takes all steps that are left without files, on a rank that follows the one that writes them.
+    ///
+    /// # Errors
+    /// When the model cannot take steps.
+    pub(crate) fn follow(mut motion: M, mut info: RunInfo, host: &Host<'_>) -> Result<(), Error> {
+        let steps_per_sample = (info.interval_s / info.time_step_s).round().max(1.0) as usize;
+        let workers = Workers::new(host.threads)?;
+        for sample in info.samples + 1..=info.steps_planned as usize / steps_per_sample {
+            workers.run(|| motion.interval(steps_per_sample))?;
+            motion.row();
+            (info.steps, info.samples) = (motion.steps(), sample);
+            if motion.look(&mut info).is_some() || host.agree(false) {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Ends the run in good order.

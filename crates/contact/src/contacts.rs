@@ -1,5 +1,7 @@
 //! All contacts of a model: one more force on nodes.
 
+mod divided;
+
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -93,6 +95,8 @@ pub struct Contacts {
     preload: Option<f64>,
     parallel: bool,
     together: bool,
+    /// Whether ranks share the pairs, so that energies are counted once all have told theirs.
+    divided: bool,
     energy: Energy,
 }
 
@@ -102,6 +106,8 @@ struct Pair {
     /// The first surface's points against the second, then, if wanted, the other way round.
     passes: Vec<Pass>,
     found: Vec<(u32, u32)>,
+    /// Whether this rank computes it.
+    here: bool,
     result: PairResult,
 }
 
@@ -183,6 +189,7 @@ impl Contacts {
                         Sides::First => vec![pass(spec.first, spec.second)],
                     },
                     found: Vec::new(),
+                    here: true,
                     result: PairResult::default(),
                 }
             })
@@ -199,6 +206,7 @@ impl Contacts {
             preload: None,
             parallel: false,
             together: true,
+            divided: false,
             energy: Energy::default(),
         })
     }
@@ -303,6 +311,18 @@ impl Contacts {
         self.search = Schedule { next, fastest, afresh: self.preload.is_some() };
     }
 
+    /// Counts the energies of the last step, in the order of the pairs.
+    fn count_energies(&mut self) {
+        self.energy.stored = 0.0;
+        for PairResult { sum, .. } in self.pairs.iter().map(|pair| &pair.result).filter(|r| r.work > 0) {
+            for sum in sum {
+                self.energy.stored += sum.stored;
+                self.energy.friction += sum.friction;
+                self.energy.damping += sum.damping;
+            }
+        }
+    }
+
     /// Threads to share pairs out over.
     fn threads(&self) -> usize {
         if self.parallel { micropool::num_threads() + 1 } else { 1 }
@@ -327,6 +347,9 @@ impl Pair {
         weights: &impl Fn(&PairSpec) -> PassLaw,
         push: &mut Vec<Push>,
     ) {
+        if !self.here {
+            return;
+        }
         let result = &mut self.result;
         if at.step < result.idle_until {
             if result.work > 0 {
@@ -411,16 +434,9 @@ impl Force for Contacts {
             pair.result.push = push;
         };
         share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, met, &mut at_once, &later);
-        self.energy.stored = 0.0;
-        for PairResult { push, sum, .. } in
-            self.pairs.iter_mut().map(|pair| &mut pair.result).filter(|r| r.work > 0)
-        {
-            hand_over(push, force);
-            for sum in sum {
-                self.energy.stored += sum.stored;
-                self.energy.friction += sum.friction;
-                self.energy.damping += sum.damping;
-            }
+        self.pairs.iter_mut().for_each(|pair| hand_over(&mut pair.result.push, force));
+        if !self.divided {
+            self.count_energies();
         }
     }
 

@@ -4,6 +4,7 @@
 //! film's thickness less what the surfaces give under its pressure. So its force hangs on positions alone, never pulls, and
 //! is no stiffer than contact.
 
+mod divided;
 mod reynolds;
 mod spring;
 mod track;
@@ -103,6 +104,8 @@ pub struct Films {
     first: Vec<usize>,
     /// Whether films are those of steady rolling, in a static preload.
     preload: bool,
+    /// Whether ranks share the films, so that heat is counted once all have told theirs.
+    divided: bool,
     heat: f64,
 }
 
@@ -128,6 +131,10 @@ struct Film {
     /// Force on the round body [N], and how far springs are pressed in with and without the film [m].
     push: f64,
     pressed: [f64; 2],
+    /// Heat of the last step [J].
+    heat: f64,
+    /// Whether this rank computes it.
+    here: bool,
 }
 
 /// What a film remembers from step to step.
@@ -215,11 +222,13 @@ impl Films {
                     nodes: [0; 4],
                     push: 0.0,
                     pressed: [0.0; 2],
+                    heat: 0.0,
+                    here: true,
                 });
             }
         }
         first.push(films.len());
-        Ok(Self { surfaces, films, first, preload: false, heat: 0.0 })
+        Ok(Self { surfaces, films, first, preload: false, divided: false, heat: 0.0 })
     }
 
     /// For a static preload: films have the thickness of steady rolling at any moment.
@@ -251,27 +260,26 @@ impl Films {
 
     /// Resumes from what films remembered; false when it belongs to other films, and nothing is changed then.
     pub fn restore(&mut self, state: &FilmState) -> bool {
-        let fits = |(film, memory): (&Film, &Memory)| {
-            let on = |place: Place, surface: usize| {
-                let on = (place.facet as usize) < self.surfaces[surface].facets();
-                on && (0.0..=1.0).contains(&place.along)
-            };
-            let [track, round] = memory.places;
-            on(track, film.track) && on(round, film.round)
-        };
+        let fits = |(film, memory): (&Film, &Memory)| self.fits(film, memory);
         if state.films.len() != self.films.len() || !self.films.iter().zip(&state.films).all(fits) {
             return false;
         }
         for (film, memory) in self.films.iter_mut().zip(&state.films) {
-            film.memory = *memory;
-            let [track, round] = memory.places;
-            let ends = |surface: usize, place: Place| self.surfaces[surface].ends(place.facet as usize);
-            let ((a, b), (c, d)) = (ends(film.track, track), ends(film.round, round));
-            film.nodes = [a, b, c, d].map(|n| n as u32);
+            film.take_over(memory, &self.surfaces);
             (film.push, film.pressed) = (0.0, [0.0; 2]);
         }
         self.heat = state.heat;
         true
+    }
+
+    /// Whether a film can remember this.
+    fn fits(&self, film: &Film, memory: &Memory) -> bool {
+        let on = |place: Place, surface: usize| {
+            let on = (place.facet as usize) < self.surfaces[surface].facets();
+            on && (0.0..=1.0).contains(&place.along)
+        };
+        let [track, round] = memory.places;
+        on(track, film.track) && on(round, film.round)
     }
 }
 
@@ -297,6 +305,15 @@ impl Memory {
 }
 
 impl Film {
+    /// Goes on from a memory.
+    fn take_over(&mut self, memory: &Memory, surfaces: &[Surface]) {
+        self.memory = *memory;
+        let [track, round] = memory.places;
+        let ends = |surface: usize, place: Place| surfaces[surface].ends(place.facet as usize);
+        let ((a, b), (c, d)) = (ends(self.track, track), ends(self.round, round));
+        self.nodes = [a, b, c, d].map(|n| n as u32);
+    }
+
     /// Looks for the nearest places, and whether there is a film between them at all; true when one begins.
     fn look(&mut self, surfaces: &[Surface], at: &Moment<'_>) -> bool {
         let mut begins = false;
@@ -486,8 +503,9 @@ fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &Spring) -> Opti
 
 impl Force for Films {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
-        let Self { surfaces, films, preload, heat, .. } = self;
-        for film in films {
+        let Self { surfaces, films, preload, .. } = self;
+        for film in films.iter_mut().filter(|film| film.here) {
+            film.heat = 0.0;
             let mut settle = *preload;
             if *preload || at.step >= film.memory.next_look {
                 settle |= film.look(surfaces, &at);
@@ -499,7 +517,7 @@ impl Force for Films {
             if settle {
                 film.settle(gap);
             } else {
-                *heat += film.flow(above, gap, at.dt);
+                film.heat = film.flow(above, gap, at.dt);
             }
             if film.push != 0.0 {
                 for (&n, [x, y]) in film.nodes.iter().zip(&film.memory.shares) {
@@ -507,6 +525,9 @@ impl Force for Films {
                     force.fy[n as usize] += film.push * y;
                 }
             }
+        }
+        if !self.divided {
+            self.count_heat();
         }
     }
 

@@ -151,6 +151,7 @@ fn on_one_thread<'a>(host: &Host<'a>) -> Host<'a> {
         machine: machine.clone(),
         wall_s: *wall_s,
         cpu_s: *cpu_s,
+        ranks: None,
     }
 }
 

@@ -42,6 +42,7 @@ fn host(threads: usize) -> Host<'static> {
         machine: "test".into(),
         wall_s: &|| 0.0,
         cpu_s: &|| 0.0,
+        ranks: None,
     }
 }
 

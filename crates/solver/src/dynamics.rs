@@ -13,11 +13,13 @@ use crate::{
         mass_sums::{LaneSums, MassSums, lane_sums},
         parallel::{TileRuns, sweep_all},
         stiffness_damping::Extrapolated,
+        structural_damping::BranchSteps,
         sweep::{Scratch, StepEnergies},
-        tile::{Tile, TileDamping},
+        tile::{Tile, TileDamping, Turn},
     },
     model::{Model, Motion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
+    route::Division,
     state::{Accumulated, Moment, NodeForces, State},
     structural_damping::{MAX_BRANCHES, StructuralDamping},
 };
@@ -44,20 +46,22 @@ pub struct Dynamics {
     pub drive: Accumulated,
     /// Heat of mass and stiffness damping since the start [J].
     pub heat: Accumulated,
-    layout: Layout,
+    pub(crate) layout: Layout,
     pub(crate) tiles: Vec<Tile>,
     /// Whether a step reads more than second-level caches hold, so that strips prefetch.
     fetch: bool,
-    rigid_bodies: Vec<RigidBody>,
+    pub(crate) rigid_bodies: Vec<RigidBody>,
+    /// Work of what drives each rigid body in the last step [J].
+    pub(crate) driven: Vec<f64>,
     mass: Field,
     motion: Vec<Motion>,
     elements: Elements,
-    forces: NodeForces,
+    pub(crate) forces: NodeForces,
     scratch: Vec<Scratch>,
     /// StepEnergies of each tile in the last step.
-    counted: Vec<StepEnergies>,
-    time_step: f64,
-    gravity: [f64; 2],
+    pub(crate) counted: Vec<StepEnergies>,
+    pub(crate) time_step: f64,
+    pub(crate) gravity: [f64; 2],
     parallel: bool,
     /// β of the stiffness damping [s].
     beta: f64,
@@ -66,6 +70,8 @@ pub struct Dynamics {
     pub(crate) damped: Option<Vec<DampedBody>>,
     /// Step at which the damping frames were last placed.
     pub(crate) frames_placed: Option<u64>,
+    /// The part of this rank, where there are several.
+    pub(crate) division: Option<Division>,
 }
 
 /// One damped body: the tiles and lanes that it lies in.
@@ -156,13 +162,15 @@ impl Dynamics {
         }
         // Tiles lie as it suits the threads.
         rigid.sort_by_key(|(body, _)| body.body);
-        let (rigid_bodies, rigid) = rigid.into_iter().unzip();
+        let (rigid_bodies, rigid): (Vec<_>, Vec<_>) = rigid.into_iter().unzip();
         let largest = tiles.iter().map(|t| t.slots.len()).max().unwrap_or(0);
         let elements = Elements::new(model, &layout, &quads, &triangles);
         let n = layout.len();
         Ok(Self {
             state,
+            driven: vec![0.0; rigid.len()],
             rigid,
+            division: None,
             drive: Accumulated::default(),
             heat: Accumulated::default(),
             damped: None,
@@ -286,18 +294,11 @@ impl Dynamics {
             force.accumulate(self.moment(), &mut pushed);
         }
         self.forces = pushed;
+        self.drop_pushes_elsewhere();
         let since_placed = self.place_damping_frames();
         self.measure_spins();
-        let State { x, y, vx, vy, .. } = &mut self.state;
-        [x, y].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
-        if self.beta > 0.0 || self.springs.is_some() {
-            [vx, vy].into_iter().for_each(|field| self.layout.copy_to_ghosts(field));
-        }
-        self.sweep_tiles(since_placed);
-        for (body, at) in self.rigid_bodies.iter().zip(&mut self.rigid) {
-            let driven = body.advance(at, &mut self.state, &mut self.forces, self.time_step, self.gravity);
-            self.drive.add_to_step(driven);
-        }
+        self.fill_ghosts();
+        self.move_bodies(since_placed);
         self.state.step += 1;
         self.state.time = self.state.step as f64 * self.time_step;
     }
@@ -363,6 +364,11 @@ impl Dynamics {
         self.scratch.iter_mut().for_each(|s| s.extrapolated = Extrapolated::new(slots));
     }
 
+    /// Whether elements see nodes elsewhere than where they are, by their velocities.
+    pub(crate) fn sees_ahead(&self) -> bool {
+        self.beta > 0.0 || self.springs.is_some()
+    }
+
     /// β of the stiffness damping [s].
     pub fn stiffness_damping(&self) -> f64 {
         self.beta
@@ -379,11 +385,13 @@ impl Dynamics {
         let mut tiles = std::mem::take(&mut self.tiles);
         if place {
             let add_up = |tile: &mut Tile| {
-                if let Some(d) = tile.damping.as_mut().filter(|d| d.frames.follow()) {
+                let here = tile.turn != Turn::Elsewhere;
+                if let Some(d) = tile.damping.as_mut().filter(|d| here && d.frames.follow()) {
                     d.sums = lane_sums(&d.mass, &self.state, tile.slots.clone());
                 }
             };
             self.share_out(&mut tiles, &|tile| tile.slots.len(), &add_up);
+            self.share_sums(&mut tiles, |tile| tile.damping.as_mut().map(|d| &mut d.sums));
             for body in &damped {
                 let mut sums = MassSums::default();
                 for &(tile, lane) in &body.places {
@@ -401,8 +409,32 @@ impl Dynamics {
         (step - placed) as f64 * self.time_step
     }
 
-    fn sweep_tiles(&mut self, since_placed: f64) {
+    /// Moves elastic and rigid bodies, and counts what that takes.
+    fn move_bodies(&mut self, since_placed: f64) {
         let branches = self.branch_steps();
+        let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
+        let (dt, gravity, beta) = (self.time_step, self.gravity, self.beta);
+        let fetch = self.fetch;
+        let back = !self.state.step.is_multiple_of(2);
+        let parameters = StepParameters { dt, gravity, beta, since_placed, count_heat, fetch, back };
+        self.sweep_and_exchange(parameters, &branches);
+        self.move_rigid_and_share(&parameters, branches.measure);
+        // In the order of the tiles, whatever thread or rank each was on.
+        let StepEnergies { work, heat, springs } =
+            self.counted.iter().fold(StepEnergies::default(), |sum, &e| sum + e);
+        self.drive.add(work);
+        self.driven.iter().for_each(|&driven| self.drive.add_to_step(driven));
+        self.count_structural_loss(branches.measure, springs);
+        let before = self.heat.last;
+        self.heat.add(if count_heat { heat } else { before });
+        if count_heat && before > 0.0 {
+            // In between the heat of the last count stood for all; it ran straight from there to here.
+            self.heat.total += 0.5 * (HEAT_EVERY - 1) as f64 * (heat - before);
+        }
+    }
+
+    /// Sweeps the tiles whose turn it is.
+    pub(crate) fn sweep_turn(&mut self, turn: Turn, parameters: StepParameters, branches: &BranchSteps) {
         let mut stretch: [[&mut [f64]; 2]; MAX_BRANCHES] = Default::default();
         for (to, of) in stretch.iter_mut().zip(&mut self.state.springs.stretch) {
             *to = of.each_mut().map(|component| &mut component[..]);
@@ -416,25 +448,9 @@ impl Dynamics {
             fy: &mut self.forces.fy,
             stretch,
         };
-        let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
-        let (dt, gravity, beta) = (self.time_step, self.gravity, self.beta);
-        let fetch = self.fetch;
-        let back = !self.state.step.is_multiple_of(2);
-        let parameters = StepParameters { dt, gravity, beta, since_placed, count_heat, fetch, back };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, branches: &branches };
+        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, branches, turn };
         sweep_all(runs, scratch, parameters);
-        // In the order of the tiles, whatever thread each was on.
-        let StepEnergies { work, heat, springs } =
-            self.counted.iter().fold(StepEnergies::default(), |sum, &e| sum + e);
-        self.drive.add(work);
-        self.count_structural_loss(branches.measure, springs);
-        let before = self.heat.last;
-        self.heat.add(if count_heat { heat } else { before });
-        if count_heat && before > 0.0 {
-            // In between the heat of the last count stood for all; it ran straight from there to here.
-            self.heat.total += 0.5 * (HEAT_EVERY - 1) as f64 * (heat - before);
-        }
     }
 
     /// Shares parts out over the threads that take part, where they are worth it.

@@ -93,6 +93,8 @@ pub mod material;
 pub mod model;
 
 pub mod force;
+pub mod ranks;
+mod route;
 pub mod snapshot;
 pub mod state;
 
@@ -100,6 +102,7 @@ pub mod element;
 mod internal_forces;
 
 pub mod damping;
+mod division;
 pub mod dynamics;
 pub mod rigid;
 pub mod springs;

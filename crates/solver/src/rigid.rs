@@ -108,7 +108,7 @@ impl RigidBody {
     }
 
     /// Puts the nodes where the body is, a time step later.
-    fn place(&self, at: &RigidState, state: &mut State, dt: f64) {
+    pub(crate) fn place(&self, at: &RigidState, state: &mut State, dt: f64) {
         let (s, c) = at.angle.sin_cos();
         let slots = self.slots.clone();
         let (x, y) = (&mut state.x[slots.clone()], &mut state.y[slots.clone()]);

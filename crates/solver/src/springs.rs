@@ -7,7 +7,7 @@ use crate::{
     kernel::{
         mass_sums::{LaneSums, MassSums, lane_sums},
         structural_damping::{BranchSteps, SpringEnergies},
-        tile::{Tile, TileStructural},
+        tile::{Tile, TileStructural, Turn},
     },
     state::SpringState,
     structural_damping::StructuralDamping,
@@ -100,17 +100,20 @@ impl Dynamics {
     /// Measures now and then, before a step, how fast damped bodies turn.
     pub(crate) fn measure_spins(&mut self) {
         let due = self.state.step.is_multiple_of(MEASURE_EVERY) || self.state.springs.spins.is_empty();
-        let Some(springs) = self.springs.as_ref().filter(|_| due) else { return };
+        if self.springs.is_none() || !due {
+            return;
+        }
         let mut tiles = std::mem::take(&mut self.tiles);
         let mut spins = std::mem::take(&mut self.state.springs.spins);
         let add_up = |tile: &mut Tile| {
-            if let Some(s) = &mut tile.structural {
+            if let Some(s) = tile.structural.as_mut().filter(|_| tile.turn != Turn::Elsewhere) {
                 s.sums = lane_sums(&s.mass, &self.state, tile.slots.clone());
             }
         };
         self.share_out(&mut tiles, &|tile| tile.slots.len(), &add_up);
+        self.share_sums(&mut tiles, |tile| tile.structural.as_mut().map(|s| &mut s.sums));
         spins.clear();
-        for body in &springs.bodies {
+        for body in self.springs.iter().flat_map(|springs| &springs.bodies) {
             let mut sums = MassSums::default();
             for &(tile, lane) in &body.places {
                 tiles[tile].structural.iter().for_each(|s| sums += s.sums[lane]);

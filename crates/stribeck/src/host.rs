@@ -1,10 +1,10 @@
 //! What a run records about the machine and the program: clocks, names, versions. The crates are told, never look.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use stribeck_bearing::simulation::Host;
+use stribeck_bearing::{ranks::Ranks, simulation::Host};
 
 /// Ticks per second in `/proc/self/stat`; Linux promises this number to programs on every architecture.
 const TICKS_PER_SECOND: f64 = 100.0;
@@ -17,12 +17,22 @@ pub const COMMIT: &str = env!("STRIBECK_COMMIT");
 
 /// Calls `work` with a [`Host`] that describes this process; its clocks begin now.
 pub fn with<T>(threads: usize, work: impl FnOnce(&Host<'_>) -> T) -> T {
+    with_ranks(threads, None, work)
+}
+
+/// The same for a process that runs a scene together with others, if there are any.
+pub fn with_ranks<T>(threads: usize, ranks: Option<Arc<dyn Ranks>>, work: impl FnOnce(&Host<'_>) -> T) -> T {
     let before = cpu_s();
-    with_clock(threads, &|| cpu_s() - before, work)
+    with_clock(threads, ranks, &|| cpu_s() - before, work)
 }
 
 /// As [`with`], with another count of processor time.
-fn with_clock<T>(threads: usize, cpu_s: &dyn Fn() -> f64, work: impl FnOnce(&Host<'_>) -> T) -> T {
+fn with_clock<T>(
+    threads: usize,
+    ranks: Option<Arc<dyn Ranks>>,
+    cpu_s: &dyn Fn() -> f64,
+    work: impl FnOnce(&Host<'_>) -> T,
+) -> T {
     let start = Instant::now();
     work(&Host {
         threads,
@@ -31,6 +41,7 @@ fn with_clock<T>(threads: usize, cpu_s: &dyn Fn() -> f64, work: impl FnOnce(&Hos
         machine: machine(),
         wall_s: &|| start.elapsed().as_secs_f64(),
         cpu_s,
+        ranks,
     })
 }
 
@@ -59,7 +70,7 @@ impl SharedClock {
         deal(|going, number| {
             going.insert(number, 0.0);
         });
-        let done = with_clock(threads, &|| deal(|_, _| {}), work);
+        let done = with_clock(threads, None, &|| deal(|_, _| {}), work);
         deal(|going, number| {
             going.remove(&number);
         });

@@ -12,6 +12,7 @@ mod board;
 mod campaign;
 mod export;
 mod plan;
+mod ranks;
 mod report;
 mod side_by_side;
 mod simulate;

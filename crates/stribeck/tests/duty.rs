@@ -27,6 +27,7 @@ fn run(scene: &Scene, folder: &Path) -> Summary {
         machine: "test".into(),
         wall_s: &|| 0.0,
         cpu_s: &|| 0.0,
+        ranks: None,
     };
     let dir = RunDir::create(folder).expect("the folder is new");
     let info =

@@ -10,6 +10,7 @@ use crate::{
     error::Error,
     forces::Forces,
     guards::{Finding, Limits, Seen, Words},
+    leaders::Division,
     ledger::{Balance, Ledger},
     names::{Names, unknown},
 };
@@ -37,6 +38,10 @@ pub struct System {
     pub(crate) balance: Balance,
     pub(crate) seen: Seen,
     ledger: Ledger,
+    /// Slots of the nodes that laws of the user have announced.
+    pub(crate) of_laws: Vec<u32>,
+    /// The part of this rank, where there are several.
+    pub(crate) division: Option<Division>,
     /// Velocities before a step, for the kinetic energy at its start.
     before: Velocities,
 }
@@ -74,6 +79,8 @@ impl System {
             balance: Balance::default(),
             seen: Seen::default(),
             ledger: Ledger::default(),
+            of_laws: Vec::new(),
+            division: None,
             before: Velocities::default(),
         }
     }
@@ -145,8 +152,7 @@ impl System {
     /// has pushed on a node that it did not announce.
     pub fn step(&mut self) -> Result<(), Error> {
         if self.balance.reference.is_some() && self.dynamics.time_step() > 0.0 {
-            self.dynamics.step(&mut [&mut self.forces]);
-            return Ok(());
+            return self.advance();
         }
         self.first_step().map(|_| ())
     }
@@ -209,14 +215,16 @@ impl System {
     }
 
     fn counted_step(&mut self) -> Result<Ledger, Error> {
-        let d = &mut self.dynamics;
-        if d.time_step() <= 0.0 {
+        if self.time_step() <= 0.0 {
             return Err(Error::NoTimeStep);
         }
+        self.gather()?;
+        let d = &mut self.dynamics;
         d.velocities_into(&mut self.before);
         d.measure_springs();
         let (elastic, gravity) = (d.elastic_energy(), d.gravity_work());
-        d.step(&mut [&mut self.forces]);
+        self.advance()?;
+        self.gather()?;
         self.check_announced()?;
         let d = &self.dynamics;
         let (contact, film, others) =

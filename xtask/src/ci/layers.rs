@@ -8,11 +8,12 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 14] = [
+const LAYERS: [(&str, &[&str]); 15] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
     ("solver", &["mesh", "simd"]),
+    ("mpi", &["solver"]),
     ("contact", &["mesh", "simd", "solver"]),
     ("scene", &[]),
     ("system", &["contact", "mesh", "solver"]),
@@ -22,7 +23,7 @@ const LAYERS: [(&str, &[&str]); 14] = [
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
     ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
-    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "reduced", "scene"]),
+    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "reduced", "scene"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.

@@ -1,6 +1,8 @@
 //! Scenes and hosts that several test files share.
 #![allow(dead_code, reason = "each test file uses its own part of it")]
 
+pub(crate) mod ranks;
+
 use stribeck_bearing::simulation::Host;
 use stribeck_scene::scene::Scene;
 
@@ -26,5 +28,6 @@ pub(crate) fn host(threads: usize) -> Host<'static> {
         machine: "test".into(),
         wall_s: &|| 0.0,
         cpu_s: &|| 0.0,
+        ranks: None,
     }
 }

@@ -53,6 +53,23 @@ pub(crate) struct Sum {
     pub(crate) work: usize,
 }
 
+impl Sum {
+    /// Numbers that tell what it came to.
+    pub(crate) const NUMBERS: usize = 6;
+
+    /// All but the work, as numbers.
+    pub(crate) fn numbers(&self) -> [f64; Self::NUMBERS] {
+        let Self { force: [x, y], stored, friction, damping, penetration, .. } = *self;
+        [x, y, stored, friction, damping, penetration]
+    }
+
+    /// What [`Sum::numbers`] has given.
+    pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
+        let &[x, y, stored, friction, damping, penetration] = numbers else { return Self::default() };
+        Self { force: [x, y], stored, friction, damping, penetration, work: 0 }
+    }
+}
+
 /// How rows of points on facets of one kind are done in vectors, against facets of the same kind.
 trait RowFacet: Facet {
     /// What acts on the other surface may wait in `others`; the facet in motion is left in `own` where it was needed.

@@ -5,7 +5,7 @@ use crate::kernel::{
     fields::TileFields,
     structural_damping::BranchSteps,
     sweep::{Scratch, StepEnergies, sweep},
-    tile::Tile,
+    tile::{Tile, Turn},
 };
 use stribeck_simd::threads::{cut, from_both_ends};
 
@@ -16,6 +16,8 @@ pub(crate) struct TileRuns<'a> {
     pub(crate) counted: &'a mut [StepEnergies],
     /// What the branches of structural damping do.
     pub(crate) branches: &'a BranchSteps,
+    /// The tiles that are swept; others are left alone.
+    pub(crate) turn: Turn,
 }
 
 impl<'a> TileRuns<'a> {
@@ -27,14 +29,14 @@ impl<'a> TileRuns<'a> {
             (_, None) => self.fields.x.len(),
         };
         let (a, b) = self.fields.split_at(nodes);
-        let ((p, q), branches) = (self.counted.split_at_mut(tile), self.branches);
-        let left = Self { tiles: left, fields: a, counted: p, branches };
-        (left, Self { tiles: right, fields: b, counted: q, branches })
+        let ((p, q), branches, turn) = (self.counted.split_at_mut(tile), self.branches, self.turn);
+        let left = Self { tiles: left, fields: a, counted: p, branches, turn };
+        (left, Self { tiles: right, fields: b, counted: q, branches, turn })
     }
 
     fn take(&mut self) -> Self {
         let (tiles, fields, counted) = (&[][..], TileFields::default(), &mut [][..]);
-        std::mem::replace(self, Self { tiles, fields, counted, branches: self.branches })
+        std::mem::replace(self, Self { tiles, fields, counted, branches: self.branches, turn: self.turn })
     }
 
     /// From the first one on, or backwards.
@@ -43,7 +45,9 @@ impl<'a> TileRuns<'a> {
     }
 
     fn sweep_one(self, scratch: &mut Scratch, parameters: StepParameters) {
-        if let ([tile], [energies]) = (self.tiles, self.counted) {
+        if let ([tile], [energies]) = (self.tiles, self.counted)
+            && tile.turn == self.turn
+        {
             *energies = sweep(tile, self.fields, scratch, parameters, self.branches);
         }
     }
