@@ -181,7 +181,7 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
 
 #[test]
 fn peer_slurm_runs_the_parts_to_the_same_bytes() {
-    // Slurm 22.05 with a controller and a node of its own, for which it takes root.
+    // Slurm 22.05.8, as Debian 12 has it, with a controller and a node of its own, for which it takes root.
     let has = |program: &str| Command::new(program).arg("-V").output().is_ok_and(|o| o.status.success());
     let root = Command::new("id").arg("-u").output().is_ok_and(|o| o.stdout == b"0\n");
     let clients = Command::new("sh").args(["-c", "command -v sbatch squeue scontrol sinfo"]).output();
