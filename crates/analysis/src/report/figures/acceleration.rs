@@ -27,7 +27,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
         "Entries and exits are too many to be drawn here; they stand in the table of the contact forces."
     } else {
         "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
-         place without slip is drawn."
+         place of the roller on its way is drawn."
     });
     figure.bands = start_up(findings);
     if findings.of_paper {
