@@ -195,6 +195,10 @@ fn peer_slurm_runs_the_parts_to_the_same_bytes() {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/slurm_campaign.sh");
     let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
     let output = Command::new("sh").current_dir(desk.path()).args(words).output().expect("it starts");
+    if output.status.code() == Some(77) {
+        eprintln!("no campaign is run under Slurm: its daemons do not come up here: {}", said(&output));
+        return;
+    }
     says(&output, &["done"]);
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
 }
