@@ -10,6 +10,7 @@ use stribeck_scene::{
     kinematics::Kinematics,
     scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
 };
+use stribeck_simd::lanes::{LANES, Number};
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 
 use crate::{
@@ -18,6 +19,7 @@ use crate::{
     outline::Outline,
     overlap::Sides,
     reduction::{Reduction, STICKING},
+    row::{Row, Rows},
     state::State,
 };
 
@@ -30,6 +32,8 @@ pub struct Bearing {
     pub rollers: usize,
     /// The reduced rings.
     pub reduction: Reduction,
+    /// Their shapes at the vertices of the outer raceway again, in rows.
+    pub(crate) shapes: Vec<Row>,
     /// Contact with the outer raceway.
     pub(crate) outer: Track,
     /// Contact with the inner raceway.
@@ -93,6 +97,8 @@ pub(crate) struct Cage {
     pub(crate) inertia: f64,
     /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre of mass.
     pub(crate) walls: Vec<[Wall; 2]>,
+    /// The same, of eight rollers side by side.
+    pub(crate) wall_rows: Vec<[WallRows; 2]>,
     /// Length of cage that an end of a wall stands for in its own pass [m].
     pub(crate) corner: f64,
     /// What the inner and the outer end of a wall cut from the facet of a roller in the middle of its pocket ([`wedge`]).
@@ -107,6 +113,33 @@ pub(crate) struct Wall {
     pub(crate) edge: [f64; 2],
     pub(crate) per_length: [f64; 2],
     pub(crate) normal: [f64; 2],
+}
+
+/// One wall of each of eight rollers: as of one.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct WallRows {
+    pub(crate) inner: Rows,
+    pub(crate) edge: Rows,
+    pub(crate) per_length: Rows,
+    pub(crate) normal: Rows,
+}
+
+impl WallRows {
+    /// Of eight rollers or fewer.
+    fn of(walls: &[[Wall; 2]]) -> [Self; 2] {
+        [0, 1].map(|side| {
+            let mut rows = Self::default();
+            for (lane, wall) in walls.iter().map(|both| both[side]).enumerate() {
+                for c in 0..2 {
+                    rows.inner[c][lane] = wall.inner[c];
+                    rows.edge[c][lane] = wall.edge[c];
+                    rows.per_length[c][lane] = wall.per_length[c];
+                    rows.normal[c][lane] = wall.normal[c];
+                }
+            }
+            rows
+        })
+    }
 }
 
 impl Wall {
@@ -126,8 +159,8 @@ impl Track {
 
     /// How far from its middle a contact may reach that is `depth` deep between the circles around both [m].
     #[inline(always)]
-    pub(crate) fn reach(&self, depth: f64) -> f64 {
-        (2.0 * self.relative * depth).sqrt() * 1.001
+    pub(crate) fn reach<N: Number>(&self, depth: N) -> N {
+        (depth.constant(2.0 * self.relative) * depth).sqrt() * depth.constant(1.001)
     }
 }
 
@@ -199,6 +232,7 @@ impl Bearing {
             reduction.cage.map(|([mass, inertia], centre)| Cage::new(&g, mass, inertia, centre, scene));
         let mut reduction = reduction;
         level_walls(&mut reduction, &per_angle(&outer));
+        let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         Ok(Self {
             time_step,
             rollers: g.rollers,
@@ -221,6 +255,7 @@ impl Bearing {
             cage: cage.flatten(),
             rims,
             rim_of,
+            shapes,
             reduction,
         })
     }
@@ -325,7 +360,7 @@ impl Cage {
             path,
             g.roller_radius + cage.pocket_clearance,
         );
-        let walls = (0..g.rollers)
+        let walls: Vec<[Wall; 2]> = (0..g.rollers)
             .map(|i| {
                 let (s, c) = g.pocket_angle(i).sin_cos();
                 let wall = |side: f64| {
@@ -349,7 +384,8 @@ impl Cage {
             let along = (radius * radius - half * half).sqrt();
             wedge([along - path, half], [0.0, -1.0])
         });
-        Some(Self { mass, inertia, walls, corner: 0.5 * (outer - inner) / rows / points, wedges })
+        let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
+        Some(Self { mass, inertia, walls, wall_rows, corner: 0.5 * (outer - inner) / rows / points, wedges })
     }
 }
 

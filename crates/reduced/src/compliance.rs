@@ -101,11 +101,13 @@ impl Curve {
         (self.on(piece, force, y), piece)
     }
 
-    /// Where a piece begins over √F, g there, by how much it grows with √F, and where the piece ends.
+    /// Of the piece at y = √F: where it begins over y, g there, by how much it grows with y, and where it ends.
     #[inline(always)]
-    pub fn piece(&self, piece: usize) -> [f64; 4] {
+    pub fn piece_at(&self, y: f64) -> [f64; 4] {
+        let last = self.pieces.len() - 1;
+        let piece = ((y * self.per_spacing) as usize).min(last);
         let [first, slope] = self.pieces[piece];
-        let next = if piece + 1 < self.pieces.len() { (piece + 1) as f64 } else { f64::INFINITY };
+        let next = if piece < last { (piece + 1) as f64 } else { f64::INFINITY };
         [self.spacing * piece as f64, first, slope, self.spacing * next]
     }
 

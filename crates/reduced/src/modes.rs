@@ -7,6 +7,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
     bearing::Bearing,
+    row::Row,
     state::{Spent, State, Stored},
 };
 
@@ -16,7 +17,7 @@ pub(crate) struct Place<'a> {
     pub(crate) facet: usize,
     pub(crate) share: f64,
     /// Of x and of y, in groups of modes.
-    shapes: [[&'a [[f64; LANES]]; 2]; 2],
+    shapes: [[&'a [Row]; 2]; 2],
 }
 
 /// How the outer raceway moves at a place.
@@ -30,9 +31,30 @@ pub(crate) struct Moved {
     pub(crate) tilt: [f64; 2],
 }
 
-#[inline(always)]
-fn groups_of(values: &[f64], groups: usize) -> &[[f64; LANES]] {
-    &values.as_chunks().0[..groups]
+/// Coordinates and velocities of the modes, and the forces on them, in rows.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Modes {
+    pub(crate) q: Vec<Row>,
+    pub(crate) v: Vec<Row>,
+    pub(crate) push: Vec<Row>,
+}
+
+impl Modes {
+    /// Room for so many numbers.
+    pub(crate) fn new(padded: usize) -> Self {
+        let rows = vec![Row::default(); padded / LANES];
+        Self { q: rows.clone(), v: rows.clone(), push: rows }
+    }
+
+    /// Takes coordinates and velocities of a state, and forces to begin with.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, state: &State, push: &[f64]) {
+        for (rows, values) in [(&mut self.q, &state.q[..]), (&mut self.v, &state.v), (&mut self.push, push)] {
+            for (row, values) in rows.iter_mut().zip(values.as_chunks().0) {
+                *row = Row(*values);
+            }
+        }
+    }
 }
 
 impl Bearing {
@@ -50,8 +72,7 @@ impl Bearing {
         let second = if facet + 1 == self.outer.outline.len() { 0 } else { facet + 1 };
         let groups = self.reduction.padded / LANES;
         let shapes = |vertex: usize| {
-            let both =
-                &self.reduction.shapes.as_chunks::<LANES>().0[2 * groups * vertex..2 * groups * (vertex + 1)];
+            let both = &self.shapes[2 * groups * vertex..2 * groups * (vertex + 1)];
             [&both[..groups], &both[groups..2 * groups]]
         };
         Place { facet, share, shapes: [shapes(facet), shapes(second)] }
@@ -59,10 +80,10 @@ impl Bearing {
 
     /// How the raceway moves at a place. Both vertices are summed over all modes, and what lies between follows from the sums.
     #[inline(always)]
-    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, state: &State) -> Moved {
+    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, modes: &Modes) -> Moved {
         let groups = self.reduction.padded / LANES;
         let [[ax, ay], [bx, by]] = place.shapes;
-        let (q, v) = (groups_of(&state.q, groups), groups_of(&state.v, groups));
+        let (q, v) = (&modes.q[..groups], &modes.v[..groups]);
         let zero = Vector::all(simd, 0.0);
         let (mut first, mut second) = ([zero; 4], [zero; 4]);
         for n in 0..groups {
@@ -95,10 +116,10 @@ impl Bearing {
 
     /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
     #[inline(always)]
-    pub(crate) fn press<S: Simd>(&self, simd: S, place: &Place<'_>, force: [f64; 2], push: &mut [f64]) {
+    pub(crate) fn press<S: Simd>(&self, simd: S, place: &Place<'_>, force: [f64; 2], modes: &mut Modes) {
         let groups = self.reduction.padded / LANES;
         let [[ax, ay], [bx, by]] = place.shapes;
-        let push = &mut push.as_chunks_mut::<LANES>().0[..groups];
+        let push = &mut modes.push[..groups];
         let [first, second] = [place.share - 1.0, -place.share];
         let (fx, fy) = (Vector::all(simd, first * force[0]), Vector::all(simd, first * force[1]));
         let (sx, sy) = (Vector::all(simd, second * force[0]), Vector::all(simd, second * force[1]));
@@ -122,7 +143,7 @@ impl Bearing {
         &self,
         simd: S,
         state: &mut State,
-        push: &[f64],
+        push: &[Row],
         further: f64,
         last: bool,
         energy: &mut Stored,
@@ -146,7 +167,7 @@ impl Bearing {
         let all = |value: f64| Vector::all(simd, value);
         let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(dt / (1.0 + h)));
         let (alpha, beta, half, step) = (all(2.0 * h / dt), all(self.beta), all(0.5), all(dt));
-        let (squares, push) = (&self.reduction.squares[..r], &push[..r]);
+        let squares = &self.reduction.squares[..r];
         let (external, constant) = (&self.reduction.external[..r], &self.reduction.constant[..r]);
         let mut sums = [all(0.0); 4];
         for at in (0..r).step_by(Vector::<S>::LEN) {
@@ -156,7 +177,7 @@ impl Bearing {
             for (branch, stretch) in self.branches.iter().zip(&state.branches) {
                 ahead = all(branch.stiffness).times_plus(Vector::load(simd, stretch, at), ahead);
             }
-            let a = (-square).times_plus(q + ahead, Vector::load(simd, push, at));
+            let a = (-square).times_plus(q + ahead, Vector::load(simd, &push[at / LANES], at % LANES));
             let new = kept.times_plus(v, gain * a);
             let mean = half * (v + new);
             let outside = Vector::load(simd, external, at);

@@ -71,7 +71,7 @@ impl Saved {
 impl Motion {
     /// A bearing that goes on from `saved`.
     pub fn new(scene: &Scene, bearing: Bearing, saved: Saved) -> Self {
-        let scratch = Scratch::new(&bearing, &saved.state);
+        let scratch = Scratch::new(&bearing);
         Self {
             bearing,
             saved,
@@ -113,6 +113,7 @@ impl time_loop::Motion for Motion {
         bearing.advance(state, scratch, steps - 1, false);
         let before = bearing.before_last_step(state);
         bearing.advance(state, scratch, 1, true);
+        scratch.end(state);
         bearing.row(state, scratch, &before, memory, row);
         let mut ledger = self.ledger();
         self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);

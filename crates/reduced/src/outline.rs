@@ -1,6 +1,8 @@
 //! Boundaries of raceways and rollers, and how a roller's centre sees them (THEORY §9.3): d points to the raceway and t is d
 //! turned by a right angle; a point is (u, h), u along t and h along d.
 
+use stribeck_simd::lanes::Number;
+
 /// So many vertices are repeated before the first and after the last one, for who reads several at once.
 pub(crate) const PAD: usize = 16;
 
@@ -129,20 +131,22 @@ impl View<'_> {
 
 /// A facet as it is seen: the line h = base + slope u from one place along t to another [m].
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Facet {
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    pub(crate) slope: f64,
-    pub(crate) base: f64,
+pub(crate) struct Facet<N = f64> {
+    pub(crate) from: N,
+    pub(crate) to: N,
+    pub(crate) slope: N,
+    pub(crate) base: N,
 }
 
-impl Facet {
+impl<N: Number> Facet<N> {
     /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its slope, as a series.
     #[inline(always)]
-    pub(crate) fn stretch(&self) -> f64 {
+    pub(crate) fn stretch(&self) -> N {
         let square = self.slope * self.slope;
+        let (zero, one) = (square.constant(0.0), square.constant(1.0));
+        let (a, b) = (square.constant(1.5), square.constant(0.375));
         // Walls are no part of a circle.
-        if square > 1.0 { 0.0 } else { 1.0 + square * (1.5 + 0.375 * square) }
+        one.choose_below(square, zero, square.times_plus(b.times_plus(square, a), one))
     }
 }
 

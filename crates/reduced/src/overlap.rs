@@ -3,9 +3,11 @@
 //! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
 
 use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
     outline::{Facet, Parts, View, Walk},
+    row::Row,
     window::{self, Window},
 };
 
@@ -20,62 +22,91 @@ pub struct Sides {
     pub curvature: f64,
 }
 
-/// Integrals over the overlap, per unit of thickness.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Overlap {
-    /// ∫ p du [m²].
-    pub area: f64,
-    /// ∫ p h′ du with the slope of the roller [m²]: force along t.
-    pub across: f64,
-    /// ∫ p (u + h h′) du [m³]: moment about the roller's centre.
-    pub moment: f64,
-    /// ∫ p² du [m³].
-    pub square: f64,
-    /// Length of the overlap [m].
-    pub length: f64,
-    /// ∫ u du over the overlap [m²].
-    pub first: f64,
-    /// ∫ u² du over the overlap [m³].
-    pub second: f64,
-    /// ∫ h′ du over the overlap [m].
-    pub slope: f64,
-    /// ∫ (u + h h′) du over the overlap [m²].
-    pub arm: f64,
-    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins) [m³]: by how much the square grows with a turn of d
-    /// by one towards t.
-    pub skew: f64,
-    /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
-    pub ends: f64,
-    /// Deepest penetration [m].
-    pub deepest: f64,
+impl Sides {
+    /// Whether roller and raceway are arcs.
+    #[inline(always)]
+    fn are_round(self) -> bool {
+        self.bulge != 0.0 || self.curvature != 0.0
+    }
 }
 
-impl Overlap {
+/// Integrals over the overlap, per unit of thickness: of one contact, or of several side by side.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Overlap<N = f64> {
+    /// ∫ p du [m²].
+    pub area: N,
+    /// ∫ p h′ du with the slope of the roller [m²]: force along t.
+    pub across: N,
+    /// ∫ p (u + h h′) du [m³]: moment about the roller's centre.
+    pub moment: N,
+    /// ∫ p² du [m³].
+    pub square: N,
+    /// Length of the overlap [m].
+    pub length: N,
+    /// ∫ u du over the overlap [m²].
+    pub first: N,
+    /// ∫ u² du over the overlap [m³].
+    pub second: N,
+    /// ∫ h′ du over the overlap [m].
+    pub slope: N,
+    /// ∫ (u + h h′) du over the overlap [m²].
+    pub arm: N,
+    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins) [m³]: by how much the square grows with a turn of d
+    /// by one towards t.
+    pub skew: N,
+    /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
+    pub ends: N,
+    /// Deepest penetration [m].
+    pub deepest: N,
+}
+
+impl<N: Number> Overlap<N> {
+    /// Nothing overlaps; `zero` tells the kind of number.
+    #[inline(always)]
+    pub fn none(zero: N) -> Self {
+        Self {
+            area: zero,
+            across: zero,
+            moment: zero,
+            square: zero,
+            length: zero,
+            first: zero,
+            second: zero,
+            slope: zero,
+            arm: zero,
+            skew: zero,
+            ends: zero,
+            deepest: zero,
+        }
+    }
+
     /// ∫ p du [m²] and the length [m] after a further small shift, to its second power.
     #[inline(always)]
-    pub fn shifted_area(&self, shift: f64) -> [f64; 2] {
-        let length = self.length - self.ends * shift;
-        if length <= 0.0 {
-            return [0.0; 2];
-        }
-        [(self.area - 0.5 * shift * (self.length + length)).max(0.0), length]
+    pub fn shifted_area(&self, shift: N) -> [N; 2] {
+        let (zero, half) = (shift.constant(0.0), shift.constant(0.5));
+        let length = (self.length - self.ends * shift).max(zero);
+        let lost = half * shift * (self.length + length);
+        [zero.choose_below(length, (self.area - lost).max(zero), zero), length]
     }
 
     /// The overlap after a further small shift, whose area [m²] and length [m] are known.
     #[inline(always)]
-    pub fn shifted(&self, shift: f64, [area, length]: [f64; 2]) -> Self {
+    pub fn shifted(&self, shift: N, [area, length]: [N; 2]) -> Self {
+        let (zero, half, sixth) = (shift.constant(0.0), shift.constant(0.5), shift.constant(1.0 / 6.0));
         // p² falls by 2 ∫ p ds, and ∫ p ds holds two thirds of a step of the curvature (Simpson's rule on a parabola).
-        let mean = self.area - shift * (0.5 * self.length - self.ends * shift / 6.0);
-        let share = if self.length > 0.0 { length / self.length } else { 0.0 };
-        let about = if self.length > 0.0 { self.first * self.first / self.length } else { 0.0 };
+        let mean = self.area - shift * (half * self.length - sixth * self.ends * shift);
+        let over = zero.choose_below(self.length, self.length, shift.constant(1.0));
+        let share = zero.choose_below(self.length, length / over, zero);
+        let about = self.first * self.first / over;
+        let lost = half * shift * (shift.constant(1.0) + share);
         Self {
             area,
             length,
-            square: (self.square - 2.0 * shift * mean).max(0.0),
-            across: self.across - 0.5 * (1.0 + share) * shift * self.slope,
-            moment: self.moment - 0.5 * (1.0 + share) * shift * self.arm,
+            square: (self.square - (shift + shift) * mean).max(zero),
+            across: self.across - lost * self.slope,
+            moment: self.moment - lost * self.arm,
             first: share * self.first,
-            second: share * about + share.powi(3) * (self.second - about),
+            second: share * about + share * share * share * (self.second - about),
             slope: share * self.slope,
             arm: share * self.arm,
             skew: self.skew,
@@ -85,9 +116,66 @@ impl Overlap {
     }
 }
 
+impl Overlap<Row> {
+    /// The overlaps of the lanes from `at` on.
+    #[inline(always)]
+    pub(crate) fn load<S: Simd>(&self, simd: S, at: usize) -> Overlap<Vector<S>> {
+        Overlap {
+            area: Vector::load(simd, &self.area, at),
+            across: Vector::load(simd, &self.across, at),
+            moment: Vector::load(simd, &self.moment, at),
+            square: Vector::load(simd, &self.square, at),
+            length: Vector::load(simd, &self.length, at),
+            first: Vector::load(simd, &self.first, at),
+            second: Vector::load(simd, &self.second, at),
+            slope: Vector::load(simd, &self.slope, at),
+            arm: Vector::load(simd, &self.arm, at),
+            skew: Vector::load(simd, &self.skew, at),
+            ends: Vector::load(simd, &self.ends, at),
+            deepest: Vector::load(simd, &self.deepest, at),
+        }
+    }
+
+    /// Replaces one of them.
+    pub(crate) fn set(&mut self, lane: usize, by: &Overlap) {
+        self.area[lane] = by.area;
+        self.across[lane] = by.across;
+        self.moment[lane] = by.moment;
+        self.square[lane] = by.square;
+        self.length[lane] = by.length;
+        self.first[lane] = by.first;
+        self.second[lane] = by.second;
+        self.slope[lane] = by.slope;
+        self.arm[lane] = by.arm;
+        self.skew[lane] = by.skew;
+        self.ends[lane] = by.ends;
+        self.deepest[lane] = by.deepest;
+    }
+}
+
+impl<S: Simd> Overlap<Vector<S>> {
+    /// Writes them to the lanes from `at` on.
+    #[inline(always)]
+    pub(crate) fn store(self, to: &mut Overlap<Row>, at: usize) {
+        self.area.store(&mut to.area, at);
+        self.across.store(&mut to.across, at);
+        self.moment.store(&mut to.moment, at);
+        self.square.store(&mut to.square, at);
+        self.length.store(&mut to.length, at);
+        self.first.store(&mut to.first, at);
+        self.second.store(&mut to.second, at);
+        self.slope.store(&mut to.slope, at);
+        self.arm.store(&mut to.arm, at);
+        self.skew.store(&mut to.skew, at);
+        self.ends.store(&mut to.ends, at);
+        self.deepest.store(&mut to.deepest, at);
+    }
+}
+
 /// A roller and a raceway near their contact.
 #[derive(Debug, Clone, Copy)]
-pub struct Pair<'a> {
+pub struct Pair<'a, S> {
+    simd: S,
     /// The roller.
     pub roller: View<'a>,
     /// The raceway.
@@ -95,35 +183,40 @@ pub struct Pair<'a> {
     /// How the raceway lies to the roller.
     pub sides: Sides,
     /// Roller and raceway again, eight facets at once.
-    windows: [Window; 2],
+    windows: &'a [Window; 2],
     /// Whether they can be seen so.
     pub in_windows: bool,
 }
 
-impl<'a> Pair<'a> {
-    /// Of two views, looked at in vectors where it can be.
+impl<'a, S: Simd> Pair<'a, S> {
+    /// Of two views, looked at in vectors where it can be; `windows` is room for that.
     #[inline(always)]
-    pub fn new<S: Simd>(simd: S, roller: View<'a>, raceway: View<'a>, sides: Sides) -> Self {
-        let mut windows = [Window::default(); 2];
-        let [first, second] = &mut windows;
+    pub fn new(
+        simd: S,
+        roller: View<'a>,
+        raceway: View<'a>,
+        sides: Sides,
+        windows: &'a mut [Window; 2],
+    ) -> Self {
+        let [first, second] = &mut *windows;
         let in_windows = first.look(simd, &roller, true) && second.look(simd, &raceway, sides.along);
-        Self { roller, raceway, sides, windows, in_windows }
+        Self { simd, roller, raceway, sides, windows, in_windows }
     }
 
     /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
     #[inline(always)]
     pub fn overlap(&self, shift: f64, reach: f64) -> Overlap {
         let sides = self.sides;
-        if sides.bulge == 0.0 && sides.curvature == 0.0 {
-            self.taken(reach, Chords { sum: Overlap::default(), shift }).sum
-        } else {
+        if sides.are_round() {
             self.taken(reach, Arcs { sum: Overlap::default(), sides, shift }).sum
+        } else {
+            self.taken(reach, Chords { sum: Overlap::default(), shift }).sum
         }
     }
 
     #[inline(always)]
     fn taken<P: Parts>(&self, reach: f64, mut parts: P) -> P {
-        if !(self.in_windows && window::segments(&self.windows, reach, &mut parts)) {
+        if !(self.in_windows && window::segments(self.simd, self.windows, reach, &mut parts)) {
             self.walk(reach, &mut parts);
         }
         parts
@@ -159,8 +252,9 @@ struct Chords {
 
 impl Parts for Chords {
     #[inline(always)]
-    fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
-        chords(&mut self.sum, ends, roller, raceway, self.shift);
+    fn add(&mut self, [u1, u2]: [f64; 2], roller: Facet, raceway: Facet) {
+        let p = straight([u1, u2], roller, raceway, self.shift);
+        chords(&mut self.sum, [u1, u2], p, roller, raceway);
     }
 }
 
@@ -174,126 +268,237 @@ struct Arcs {
 impl Parts for Arcs {
     #[inline(always)]
     fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
-        arcs(&mut self.sum, ends, roller, raceway, self.sides, self.shift);
+        let seen = round(ends, roller, raceway, self.sides, self.shift);
+        arcs(&mut self.sum, ends, seen, roller);
     }
 }
 
-/// Adds what lies between two straight lines.
-#[inline(always)]
-fn chords(sum: &mut Overlap, [u1, u2]: [f64; 2], r: Facet, w: Facet, shift: f64) {
-    let Facet { slope, base, .. } = r;
-    let (steep, gap) = (slope - w.slope, (base - w.base) - shift);
-    let [p1, p2] = [gap + steep * u1, gap + steep * u2];
-    if p1 <= 0.0 && p2 <= 0.0 {
-        return;
+/// Columns of a part: its ends, and slope and height of the roller and of the raceway …
+const COLUMNS: usize = 10;
+/// … where both are straight; where they are round, from where to where both facets reach, too.
+const STRAIGHT: usize = 6;
+
+/// Parts of eight overlaps, side by side: part k of each in row k.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Lists {
+    rows: Vec<[Row; COLUMNS]>,
+    /// Parts of each.
+    count: Row,
+    /// Of the longest list.
+    longest: usize,
+}
+
+impl Lists {
+    /// Forgets all parts.
+    #[inline(always)]
+    pub(crate) fn clear(&mut self) {
+        (self.count, self.longest) = (Row::default(), 0);
     }
-    let ([mut a, mut z], [mut pa, mut pz]) = ([u1, u2], [p1, p2]);
-    if pa < 0.0 || pz < 0.0 {
-        let flat = 1.0 / steep.abs();
-        sum.ends += flat;
-        if pa < 0.0 {
-            (a, pa) = (a - pa * flat, 0.0);
-        } else {
-            (z, pz) = (z + pz * flat, 0.0);
+
+    /// Fills the list of one overlap, looked for up to `reach` [m] to either side.
+    #[inline(always)]
+    pub(crate) fn fill<S: Simd>(&mut self, lane: usize, pair: &Pair<'_, S>, reach: f64) {
+        let taken = pair.taken(reach, List { of: self, lane, count: 0, round: pair.sides.are_round() });
+        let count = taken.count;
+        self.count[lane] = count as f64;
+        self.longest = self.longest.max(count);
+    }
+
+    /// The overlaps of the lanes from `at` on that are pressed back by `shift` [m].
+    #[inline(always)]
+    pub(crate) fn overlaps<S: Simd>(
+        &self,
+        simd: S,
+        at: usize,
+        sides: Sides,
+        shift: Vector<S>,
+    ) -> Overlap<Vector<S>> {
+        let all = |value: f64| Vector::all(simd, value);
+        let (count, outside) = (Vector::load(simd, &self.count, at), all(-1.0));
+        let mut sum = Overlap::none(all(0.0));
+        let round_ones = sides.are_round();
+        for (k, row) in self.rows[..self.longest].iter().enumerate() {
+            let [u1, u2, slope, base, under, low, a, b, c, d] = row;
+            let ends = [Vector::load(simd, u1, at), Vector::load(simd, u2, at)];
+            let (slope, base) = (Vector::load(simd, slope, at), Vector::load(simd, base, at));
+            let (under, low) = (Vector::load(simd, under, at), Vector::load(simd, low, at));
+            let zero = all(0.0);
+            let mut roller = Facet { from: zero, to: zero, slope, base };
+            let mut raceway = Facet { from: zero, to: zero, slope: under, base: low };
+            // Beyond the end of a list nothing sinks in.
+            let number = all(k as f64);
+            if round_ones {
+                (roller.from, roller.to) = (Vector::load(simd, a, at), Vector::load(simd, b, at));
+                (raceway.from, raceway.to) = (Vector::load(simd, c, at), Vector::load(simd, d, at));
+                let mut seen = round(ends, roller, raceway, sides, shift);
+                let [p1, p2] = seen.p;
+                seen.p = [number.choose_below(count, p1, outside), number.choose_below(count, p2, outside)];
+                arcs(&mut sum, ends, seen, roller);
+            } else {
+                let [p1, p2] = straight(ends, roller, raceway, shift);
+                let p = [number.choose_below(count, p1, outside), number.choose_below(count, p2, outside)];
+                chords(&mut sum, ends, p, roller, raceway);
+            }
         }
+        sum
     }
+}
+
+/// The list of one overlap among eight.
+struct List<'a> {
+    of: &'a mut Lists,
+    lane: usize,
+    count: usize,
+    round: bool,
+}
+
+impl Parts for List<'_> {
+    #[inline(always)]
+    fn add(&mut self, [u1, u2]: [f64; 2], roller: Facet, raceway: Facet) {
+        if self.count == self.of.rows.len() {
+            self.of.rows.push(Default::default());
+        }
+        let (row, lane) = (&mut self.of.rows[self.count], self.lane % LANES);
+        let straight = [u1, u2, roller.slope, roller.base, raceway.slope, raceway.base];
+        for (column, number) in row.iter_mut().zip(straight) {
+            column[lane] = number;
+        }
+        if self.round {
+            let reach = [roller.from, roller.to, raceway.from, raceway.to];
+            for (column, number) in row[STRAIGHT..].iter_mut().zip(reach) {
+                column[lane] = number;
+            }
+        }
+        self.count += 1;
+    }
+}
+
+/// Penetration at both ends of a part between two straight lines [m].
+#[inline(always)]
+fn straight<N: Number>([u1, u2]: [N; 2], r: Facet<N>, w: Facet<N>, shift: N) -> [N; 2] {
+    let (steep, gap) = (r.slope - w.slope, (r.base - w.base) - shift);
+    [steep.times_plus(u1, gap), steep.times_plus(u2, gap)]
+}
+
+/// Adds what lies between two straight lines, with the penetration at both ends.
+#[inline(always)]
+fn chords<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], [p1, p2]: [N; 2], r: Facet<N>, w: Facet<N>) {
+    let (zero, one, half, four) = (u1.constant(0.0), u1.constant(1.0), u1.constant(0.5), u1.constant(4.0));
+    let (third, sixth) = (u1.constant(1.0 / 3.0), u1.constant(1.0 / 6.0));
+    let (lower, higher) = (p1.min(p2), p1.max(p2));
+    let steep = r.slope - w.slope;
+    // Where p falls below zero in between the overlap ends, 1/|p′| times what p is below zero from there.
+    let flat = zero.choose_below(higher, one / steep.max(-steep), zero);
+    let flat = lower.choose_below(zero, flat, zero);
+    sum.ends = sum.ends + flat;
+    let (a, z) = (flat.times_plus(-p1.min(zero), u1), flat.times_plus(p2.min(zero), u2));
+    let (pa, pz) = (p1.max(zero), p2.max(zero));
     // p is linear from a to z: Simpson's rule is exact.
-    let (width, middle, mean) = (z - a, 0.5 * (a + z), 0.5 * (pa + pz));
+    let width = zero.choose_below(higher, z - a, zero);
+    let (middle, mean) = (half * (a + z), half * (pa + pz));
     let area = width * mean;
-    let sixth = width * (1.0 / 6.0);
-    let first = area * middle + sixth * (0.5 * width) * (pz - pa);
-    let square = sixth * (pa * pa + pz * pz + 4.0 * mean * mean);
-    let (lever, stand) = (base * slope, 1.0 + slope * slope);
-    sum.area += area;
-    sum.square += square;
-    sum.length += width;
-    sum.first += width * middle;
-    sum.second += sixth * (a * a + z * z + 4.0 * middle * middle);
-    sum.across += slope * area;
-    sum.moment += lever * area + stand * first;
-    sum.skew += slope * square + (pz * pz * pz - pa * pa * pa) * (1.0 / 3.0);
-    sum.slope += slope * width;
-    sum.arm += width * (lever + stand * middle);
-    let higher = if p1 > p2 { p1 } else { p2 };
-    sum.deepest = if sum.deepest > higher { sum.deepest } else { higher };
+    let weight = width * sixth;
+    let first = area.times_plus(middle, weight * (half * width) * (pz - pa));
+    let square = weight * pa.times_plus(pa, pz.times_plus(pz, four * mean * mean));
+    let (lever, stand) = (r.base * r.slope, r.slope.times_plus(r.slope, one));
+    sum.area = sum.area + area;
+    sum.square = sum.square + square;
+    sum.length = sum.length + width;
+    sum.first = width.times_plus(middle, sum.first);
+    sum.second = weight.times_plus(a.times_plus(a, z.times_plus(z, four * middle * middle)), sum.second);
+    sum.across = r.slope.times_plus(area, sum.across);
+    sum.moment = lever.times_plus(area, stand.times_plus(first, sum.moment));
+    let walls = (pz * pz).times_plus(pz, -(pa * pa * pa));
+    sum.skew = r.slope.times_plus(square, third.times_plus(walls, sum.skew));
+    sum.slope = r.slope.times_plus(width, sum.slope);
+    sum.arm = width.times_plus(stand.times_plus(middle, lever), sum.arm);
+    sum.deepest = sum.deepest.max(higher);
+}
+
+/// A part between two parabolas on chords: penetration at both ends [m], the curvature of the roller and half the relative one over u
+/// [1/m].
+#[derive(Clone, Copy)]
+struct Round<N> {
+    p: [N; 2],
+    curvature: N,
+    bulge: N,
+}
+
+#[inline(always)]
+fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift: N) -> Round<N> {
+    let half = shift.constant(0.5);
+    let curvature = shift.constant(sides.curvature) * r.stretch();
+    let of_raceway = shift.constant(sides.bulge - 0.5 * sides.curvature) * w.stretch();
+    let height = |u: N| {
+        let chords = (r.slope - w.slope).times_plus(u, (r.base - w.base) - shift);
+        // What the arcs stand out from their chords.
+        let of = |facet: Facet<N>| (u - facet.from) * (facet.to - u);
+        chords + half * curvature * of(r) + of_raceway * of(w)
+    };
+    let [u1, u2] = ends;
+    Round { p: [height(u1), height(u2)], curvature, bulge: half.times_plus(curvature, of_raceway) }
 }
 
 /// Adds what lies between two parabolas on chords.
 #[inline(always)]
-fn arcs(sum: &mut Overlap, [u1, u2]: [f64; 2], r: Facet, w: Facet, sides: Sides, shift: f64) {
-    let (of_roller, base) = (r.slope, r.base);
-    let curvature = sides.curvature * r.stretch();
-    let bulge = 0.5 * curvature + (sides.bulge - 0.5 * sides.curvature) * w.stretch();
-    let height = |u: f64| {
-        let chords = (base - w.base) - shift + (of_roller - w.slope) * u;
-        // What the arcs stand out from their chords.
-        let of = |facet: Facet| (u - facet.from) * (facet.to - u);
-        chords + 0.5 * curvature * of(r) + (bulge - 0.5 * curvature) * of(w)
-    };
-    let [p1, p2] = [height(u1), height(u2)];
+fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>) {
+    let Round { p: [p1, p2], curvature, bulge } = seen;
+    let (zero, one, two) = (u1.constant(0.0), u1.constant(1.0), u1.constant(2.0));
+    let (half, third) = (u1.constant(0.5), u1.constant(1.0 / 3.0));
+    let above = |number: N, yes: N, no: N| zero.choose_below(number, yes, no);
     let length = u2 - u1;
     // p = p1 + b τ + c τ² over τ from 0 to 1.
     let c = -bulge * length * length;
     let b = p2 - p1 - c;
-    let (from, to) = if p1 >= 0.0 && p2 >= 0.0 {
-        (0.0, 1.0)
-    } else if c == 0.0 {
-        if p1 <= 0.0 && p2 <= 0.0 {
-            return;
-        }
-        let root = p1 / (p1 - p2);
-        sum.ends += length / b.abs();
-        if p1 > 0.0 { (0.0, root) } else { (root, 1.0) }
-    } else {
-        let discriminant = b * b - 4.0 * c * p1;
-        if discriminant <= 0.0 {
-            return;
-        }
-        // c < 0: the parabola is positive between its roots.
-        let root = discriminant.sqrt();
-        let [low, high] = [(-b + root) / (2.0 * c), (-b - root) / (2.0 * c)];
-        let [from, to] = [low.max(0.0), high.min(1.0)];
-        if from >= to {
-            return;
-        }
-        let cut = usize::from(low > 0.0) + usize::from(high < 1.0);
-        sum.ends += cut as f64 * length / root;
-        (from, to)
-    };
+    let is_curved = c.max(-c);
+    // c < 0: the parabola is positive between its roots, if it has any.
+    let discriminant = b.times_plus(b, -(two + two) * c * p1);
+    let root = discriminant.max(zero).sqrt();
+    let per = one / (two * c);
+    let (low, high) = ((root - b) * per, -(root + b) * per);
+    let [mut from, mut to] = [low.max(zero), high.min(one)];
+    let mut ends = (above(low, one, zero) + high.choose_below(one, one, zero)) * length / root;
+    let none = above(discriminant, from.choose_below(to, zero, one), one);
+    // A straight line has one root.
+    let crossing = p1 / (p1 - p2);
+    from = above(is_curved, from, above(p1, zero, crossing));
+    to = above(is_curved, to, above(p1, crossing, one));
+    ends = above(is_curved, ends, length / b.max(-b));
+    let none = above(is_curved, none, above(p1.max(p2), zero, one));
+    // Both ends deep in: all of it is.
+    let lower = p1.min(p2);
+    from = lower.choose_below(zero, above(none, zero, from), zero);
+    to = lower.choose_below(zero, above(none, zero, to), one);
+    sum.ends = sum.ends + lower.choose_below(zero, above(none, zero, ends), zero);
     // ∫ τⁿ dτ.
     let (f2, z2) = (from * from, to * to);
     let (f3, z3) = (f2 * from, z2 * to);
-    let [t0, t1, t2] = [to - from, 0.5 * (z2 - f2), (z3 - f3) * (1.0 / 3.0)];
-    let mut i0 = p1 * t0 + b * t1;
-    let mut i1 = p1 * t1 + b * t2;
-    let mut square = p1 * p1 * t0 + 2.0 * p1 * b * t1 + b * b * t2;
-    if c != 0.0 {
-        let (f4, z4) = (f2 * f2, z2 * z2);
-        let [t3, t4] = [0.25 * (z4 - f4), 0.2 * (z4 * to - f4 * from)];
-        i0 += c * t2;
-        i1 += c * t3;
-        square += 2.0 * p1 * c * t2 + 2.0 * b * c * t3 + c * c * t4;
-    }
-    let first = length * (u1 * i0 + length * i1);
-    let i0 = length * i0;
-    sum.area += i0;
-    let [a, z] = [u1 + from * length, u1 + to * length];
-    let [width, middle] = [z - a, 0.5 * (z + a)];
-    let square = length * square;
-    sum.square += square;
-    sum.length += width;
-    sum.first += width * middle;
+    let (f4, z4) = (f2 * f2, z2 * z2);
+    let [t0, t1, t2] = [to - from, half * (z2 - f2), third * (z3 - f3)];
+    let [t3, t4] = [u1.constant(0.25) * (z4 - f4), u1.constant(0.2) * z4.times_plus(to, -(f4 * from))];
+    let i0 = length * p1.times_plus(t0, b.times_plus(t1, c * t2));
+    let i1 = p1.times_plus(t1, b.times_plus(t2, c * t3));
+    let linear = p1 * p1 * t0 + two * p1 * b * t1 + b * b * t2;
+    let square = length * (linear + two * c * (p1 * t2 + b * t3) + c * c * t4);
+    let first = u1.times_plus(i0, length * length * i1);
+    let [a, z] = [from.times_plus(length, u1), to.times_plus(length, u1)];
+    let [width, middle] = [z - a, half * (z + a)];
+    sum.area = sum.area + i0;
+    sum.square = sum.square + square;
+    sum.length = sum.length + width;
+    sum.first = width.times_plus(middle, sum.first);
     // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
     // The height is taken in the middle: the part is short.
-    let lean = of_roller + 0.5 * curvature * (r.from + r.to);
-    let high = base + of_roller * middle + 0.5 * curvature * (middle - r.from) * (r.to - middle);
-    let rest = 1.0 - curvature * high;
-    sum.across += lean * i0 - curvature * first;
-    sum.moment += lean * high * i0 + rest * first;
-    let [pa, pz] = [from, to].map(|at| p1 + (b + c * at) * at);
-    sum.skew += (lean - curvature * middle) * square + (pz * pz * pz - pa * pa * pa) * (1.0 / 3.0);
-    sum.slope += width * (lean - curvature * middle);
-    sum.arm += width * (lean * high + rest * middle);
-    sum.second += (z * z * z - a * a * a) / 3.0;
+    let lean = (half * curvature).times_plus(r.from + r.to, r.slope);
+    let high = r.slope.times_plus(middle, r.base) + half * curvature * (middle - r.from) * (r.to - middle);
+    let rest = one - curvature * high;
+    sum.across = lean.times_plus(i0, sum.across) - curvature * first;
+    sum.moment = (lean * high).times_plus(i0, rest.times_plus(first, sum.moment));
+    let (pa, pz) = (c.times_plus(from, b).times_plus(from, p1), c.times_plus(to, b).times_plus(to, p1));
+    let skewed = (lean - curvature * middle).times_plus(square, third * (pz * pz * pz - pa * pa * pa));
+    sum.skew = sum.skew + skewed;
+    sum.slope = width.times_plus(lean - curvature * middle, sum.slope);
+    sum.arm = width.times_plus(lean.times_plus(high, rest * middle), sum.arm);
+    sum.second = third.times_plus(z * z * z - a * a * a, sum.second);
     sum.deepest = sum.deepest.max(p1).max(p2);
 }

@@ -1,7 +1,12 @@
 //! A roller in a pocket of the cage (THEORY §9.4).
 
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Number, Vector};
+
 use crate::{
-    bearing::{Bearing, Cage, Wall},
+    bearing::{Bearing, Cage, Wall, WallRows},
+    block::{Block, Walls},
+    row::{Rows, lanes, load, of_one},
     state::Stored,
 };
 
@@ -81,6 +86,93 @@ impl Wall {
 const STILL_SEEN: f64 = 1.01;
 
 impl Bearing {
+    /// Forces and moments on eight rollers by the walls of their pockets, added to theirs. Returns those on the cage: two components [N] and the
+    /// moment about its centre of mass [N m].
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and adds to")]
+    pub(crate) fn in_pockets<S: Simd>(
+        &self,
+        simd: S,
+        cage: &Cage,
+        rows: &[WallRows; 2],
+        placed: PlacedCage,
+        middle: [f64; 2],
+        block: &mut Block,
+        heat: &mut [f64; 2],
+        energy: &mut Stored,
+    ) -> [f64; 3] {
+        let mut on_cage = [0.0; 3];
+        for side in 0..2 {
+            let near =
+                self.near_walls(simd, &rows[side], placed, middle, &block.centre, &mut block.walls[side]);
+            for lane in lanes(near & block.bits) {
+                let (velocity, turned) = (of_one(&block.velocity, lane), of_one(&block.turned, lane));
+                let centre = of_one(&block.centre, lane);
+                let guest = placed.guest(middle, centre, velocity, block.spin[lane], turned);
+                let walls = &mut block.walls[side];
+                let (mut slip, mut passive) = (walls.slip[lane], of_one(&walls.passive, lane));
+                let wall = &cage.walls[block.first + lane][side];
+                let hit = self.hit(cage, wall, placed, &guest, &mut slip, &mut passive, heat, energy);
+                walls.slip[lane] = slip;
+                [walls.passive[0][lane], walls.passive[1][lane]] = passive;
+                let Some(hit) = hit else { continue };
+                block.force[2][0][lane] += hit.force[0];
+                block.force[2][1][lane] += hit.force[1];
+                block.moment[lane] += hit.moment;
+                for (sum, part) in on_cage.iter_mut().zip([hit.force[0], hit.force[1], hit.on_cage]) {
+                    *sum -= part;
+                }
+            }
+        }
+        on_cage
+    }
+
+    /// Those of eight rollers that touch one wall of their pockets each, or did so in the last step. The others let go of it.
+    #[inline(always)]
+    fn near_walls<S: Simd>(
+        &self,
+        simd: S,
+        rows: &WallRows,
+        placed: PlacedCage,
+        middle: [f64; 2],
+        centre: &Rows,
+        walls: &mut Walls,
+    ) -> u64 {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
+        let top = self.rims[0].top;
+        let (c, s) = (all(placed.turn[0]), all(placed.turn[1]));
+        let from_cage = [all(placed.at[0] + middle[0]), all(placed.at[1] + middle[1])];
+        let mut touch = 0;
+        let mut at = 0;
+        while at < LANES {
+            let [x, y] = load(simd, centre, at);
+            let [x, y] = [x - from_cage[0], y - from_cage[1]];
+            let own = [c.times_plus(x, s * y), c.times_plus(y, -(s * x))];
+            let (inner, edge) = (load(simd, &rows.inner, at), load(simd, &rows.edge, at));
+            let (per, normal) = (load(simd, &rows.per_length, at), load(simd, &rows.normal, at));
+            let from = [own[0] - inner[0], own[1] - inner[1]];
+            let share = from[0].times_plus(per[0], from[1] * per[1]).max(zero).min(one);
+            let foot = [from[0] - share * edge[0], from[1] - share * edge[1]];
+            let square = foot[0].times_plus(foot[0], foot[1] * foot[1]);
+            let within = from[0].times_plus(normal[0], from[1] * normal[1]);
+            let [drag, damping] = load(simd, &walls.passive, at);
+            let moved = (drag * drag).max(damping * damping);
+            let reach = STILL_SEEN * top;
+            // A wall that was touched in the last step is still seen a little beyond the circle around the roller.
+            let limit = zero.choose_below(moved, all(reach * reach), all(top * top));
+            let touches = square.choose_below(limit, zero.choose_below(-within, zero, one), zero);
+            touch |= touches.bits() << at;
+            let keep = |number: Vector<S>| half.choose_below(touches, number, zero);
+            let slip = Vector::load(simd, &walls.slip, at);
+            keep(slip).store(&mut walls.slip, at);
+            keep(drag).store(&mut walls.passive[0], at);
+            keep(damping).store(&mut walls.passive[1], at);
+            at += Vector::<S>::LEN;
+        }
+        touch
+    }
+
     /// A roller and a wall of its pocket.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and adds to")]

@@ -1,6 +1,7 @@
 //! What is sampled: the channels of the full model, from modes and rigid bodies.
 
 use serde::{Deserialize, Serialize};
+use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
@@ -85,9 +86,9 @@ impl Bearing {
         let steps = scratch.summed as f64;
         for i in 0..self.rollers {
             row.extend([state.x[i], state.y[i], state.angle[i]]);
-            let sums = &scratch.sums[i];
+            let (sums, lane) = (&scratch.blocks[i / LANES].sums, i % LANES);
             let kinds = if self.cage.is_some() { 3 } else { 2 };
-            row.extend(sums[..kinds].iter().flatten().map(|sum| sum / steps));
+            row.extend(sums[..kinds].iter().flatten().map(|sum| sum[lane] / steps));
         }
         if self.cage.is_some() {
             let centre = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);

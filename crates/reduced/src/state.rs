@@ -49,21 +49,6 @@ pub struct State {
     pub steps: u64,
 }
 
-impl State {
-    /// Remembers the normal force of a roller at a raceway [N].
-    #[inline(always)]
-    pub(crate) fn felt(&mut self, raceway: usize, roller: usize, force: f64) {
-        self.growth[raceway][roller] = force - self.force[raceway][roller];
-        self.force[raceway][roller] = force;
-    }
-
-    /// The same if it grows on as in the last step [N].
-    #[inline(always)]
-    pub(crate) fn foreseen(&self, raceway: usize, roller: usize) -> f64 {
-        (self.force[raceway][roller] + self.growth[raceway][roller]).max(0.0)
-    }
-}
-
 /// Work since the start [J]. Pairs are sums over steps, and of the last step alone, half of which lies behind the positions.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Work {

@@ -1,30 +1,30 @@
 //! One step of the reduced bearing, and many of them in the instruction set of the processor (THEORY §9.4).
+//!
+//! Rollers are taken eight at a time: what is the same for all of them is done in vectors, what hangs on which facets they are at one
+//! roller after the other.
 
 use pulp::{Arch, Simd, WithSimd};
 use stribeck_scene::scene::DampingFrame;
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
-    bearing::{Bearing, Track},
-    modes::Moved,
+    bearing::Bearing,
+    block::Block,
+    modes::{Modes, Moved},
     pocket::PlacedCage,
+    raceway::Rolling,
+    row::{load, of_one, store},
     state::{Spent, State, Stored, count},
-    touch::{Begun, Near, Sought, Touch},
 };
 
 /// Room for what a step computes, and sums over the steps of a sample.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
-    /// Directions of vertex 0 of each roller.
-    turned: Vec<[f64; 2]>,
-    seats: Vec<Seat>,
-    sought: Sought,
-    /// Forces on the modes.
-    push: Vec<f64>,
-    /// Forces on each roller by outer raceway, inner raceway and cage, in this step [N].
-    pub(crate) on_roller: Vec<[[f64; 2]; 3]>,
-    /// The same, summed over the steps since the last sample.
-    pub(crate) sums: Vec<[[f64; 2]; 3]>,
-    /// Steps in the sums.
+    /// The rollers during some steps.
+    pub(crate) blocks: Vec<Block>,
+    /// The modes during a step.
+    modes: Modes,
+    /// Steps in the sums of the blocks.
     pub(crate) summed: usize,
     /// Normal forces on the outer raceway in the step before [N], and where they were.
     pub(crate) before: Vec<Heard>,
@@ -33,20 +33,6 @@ pub struct Scratch {
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
     pub(crate) deepest: f64,
-}
-
-/// Where a roller is in this step.
-#[derive(Debug, Clone, Copy, Default)]
-struct Seat {
-    /// From the bearing's centre [m], and the direction there.
-    distance: f64,
-    radial: [f64; 2],
-    /// The place on the outer raceway, and how that moves.
-    facet: usize,
-    share: f64,
-    moved: Moved,
-    outer: Begun,
-    inner: Begun,
 }
 
 /// A force that sensors hear beyond the modes: its facet, the share of the facet's second vertex, and how large it is.
@@ -58,31 +44,29 @@ pub(crate) struct Heard {
 }
 
 impl Scratch {
-    pub(crate) fn new(bearing: &Bearing, state: &State) -> Self {
-        let (n, r) = (bearing.rollers, bearing.reduction.padded);
-        let mut scratch = Self {
-            turned: vec![[1.0, 0.0]; n],
-            seats: vec![Seat::default(); n],
-            sought: Sought::new(2 * n),
-            push: vec![0.0; r],
-            on_roller: vec![[[0.0; 2]; 3]; n],
-            sums: vec![[[0.0; 2]; 3]; n],
+    pub(crate) fn new(bearing: &Bearing) -> Self {
+        let n = bearing.rollers;
+        Self {
+            blocks: (0..n).step_by(LANES).map(|first| Block::new(bearing, first)).collect(),
+            modes: Modes::new(bearing.reduction.padded),
             before: vec![Heard::default(); n],
             heard: vec![Heard::default(); n],
             ..Self::default()
-        };
-        scratch.begin(bearing, state);
-        scratch
+        }
     }
 
-    /// Begins a sample: directions are taken from the angles again, because turning them step by step rounds.
+    /// Begins a sample with the rollers of a state.
     pub(crate) fn begin(&mut self, bearing: &Bearing, state: &State) {
-        for ((turned, angle), first) in self.turned.iter_mut().zip(&state.angle).zip(&bearing.vertex_angle) {
-            let (s, c) = (angle + first).sin_cos();
-            *turned = [c, s];
+        for block in &mut self.blocks {
+            block.load(bearing, state);
+            block.sums = Default::default();
         }
-        self.sums.iter_mut().for_each(|sum| *sum = [[0.0; 2]; 3]);
         (self.summed, self.deepest) = (0, 0.0);
+    }
+
+    /// Leaves the rollers to the state.
+    pub(crate) fn end(&self, state: &mut State) {
+        self.blocks.iter().for_each(|block| block.store(state));
     }
 }
 
@@ -116,16 +100,16 @@ impl Bearing {
     #[inline(always)]
     fn step<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch, last: bool) {
         let dt = self.time_step;
-        let [roller_mass, roller_inertia] = self.reduction.roller_inertia;
         let mut energy = Stored::default();
-        scratch.push.copy_from_slice(&self.reduction.constant);
+        scratch.modes.begin(state, &self.reduction.constant);
         let mut rate = self.kinematics.shaft_rad_s;
         let mut further = 0.0;
         if let Some(duty) = &self.duty {
             let now = state.steps as f64 * dt;
             rate = duty.mean_shaft_rad_s(now, now + dt);
             further = self.beside_the_preload(duty.load_n(now));
-            for (push, load) in scratch.push.iter_mut().zip(&self.reduction.load.0) {
+            let push = scratch.modes.push.iter_mut().flat_map(|row| row.iter_mut());
+            for (push, load) in push.zip(&self.reduction.load.0) {
                 *push += further * load;
             }
         }
@@ -133,190 +117,58 @@ impl Bearing {
             scratch.before.copy_from_slice(&scratch.heard);
         }
         let (cs, cc) = state.cage[2].sin_cos();
-        let mut on_cage = [0.0; 3];
-        let mut work = state.work;
-        let shaft = state.shaft.sin_cos();
-        let mut spent = Spent::default();
-        let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
+        let (ss, sc) = state.shaft.sin_cos();
         let placed =
             PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
-        let (ss, sc) = shaft;
-        // The inner raceway turns about the origin: everything is turned back.
-        let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
+        let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
+        let mut on_cage = [0.0; 3];
+        let mut spent = Spent::default();
+        let mut sums = Sums::<S>::new(simd);
 
-        // Where rollers are, and what overlaps there.
-        scratch.sought.clear();
-        for i in 0..self.rollers {
-            let centre = [state.x[i], state.y[i]];
-            let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
-            let radial = [centre[0] / distance, centre[1] / distance];
-            // The outer raceway has moved with the modes.
-            let place = self.place_along(radial, state.hints[0][i][1]);
-            let moved = self.moved(simd, &place, state);
-            state.hints[0][i][1] = place.facet as u32;
-            let Seat { outer, inner, .. } = &mut scratch.seats[i];
-            let near = self.at_outer(state, i, moved.by, scratch.turned[i]);
-            *outer = self.begin(simd, near, &mut state.hints[0][i], &mut scratch.sought);
-            let near = self.at_inner(state, i, back(centre), back(scratch.turned[i]));
-            *inner = self.begin(simd, near, &mut state.hints[1][i], &mut scratch.sought);
-            let seat = &mut scratch.seats[i];
-            (seat.distance, seat.radial, seat.moved) = (distance, radial, moved);
-            (seat.facet, seat.share) = (place.facet, place.share);
-        }
-        scratch.sought.solve(simd, self.penalty);
-
-        // What presses on each of them, and how it moves.
-        for i in 0..self.rollers {
-            let centre = [state.x[i], state.y[i]];
-            let velocity = [state.vx[i], state.vy[i]];
-            let omega = state.spin[i];
-            let turned = scratch.turned[i];
-            let Seat { distance, radial, facet, share, moved, outer, inner } = scratch.seats[i];
-            let Moved { velocity: moving, tilt, .. } = moved;
-            let near = self.at_outer(state, i, moved.by, turned);
-            let touch = self.end(simd, near, &outer, &mut state.hints[0][i], &scratch.sought);
-            state.felt(0, i, touch.normal);
-            let mut force = [0.0, -self.gravity * roller_mass];
-            let mut moment = 0.0;
-            // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
-            let orbit = (velocity[1] * radial[0] - velocity[0] * radial[1]) / distance;
-            let relative =
-                [velocity[0] - moving[0] - orbit * tilt[0], velocity[1] - moving[1] - orbit * tilt[1]];
-            let rolled = Rolled { omega, race: 0.0, pace: orbit.abs() * (distance + self.arm) };
-            let pushed = self.push(
-                &self.outer,
-                &touch,
-                relative,
-                rolled,
-                &mut state.slip[0][i],
-                &mut state.passive[0][i],
-                &mut spent.heat,
-                last,
-                &mut energy,
-            );
-            let [fx, fy] = pushed.force;
-            if pushed.force != [0.0; 2] {
-                self.press(simd, &self.place(facet, share), pushed.force, &mut scratch.push);
+        for (b, block) in scratch.blocks.iter_mut().enumerate() {
+            self.place_rollers(simd, &scratch.modes, block, [sc, ss]);
+            let Block { first, top, bits, contacts: [outer, inner], .. } = block;
+            self.press_together(simd, &self.outer, *first, top, *bits, outer);
+            self.press_together(simd, &self.inner, *first, top, *bits, inner);
+            self.push_rollers(simd, block, rate, [sc, ss], &mut sums);
+            for lane in 0..block.count {
+                let (facet, share) = (block.facet[lane], block.share[lane]);
+                let force = of_one(&block.force[0], lane);
+                if force != [0.0; 2] {
+                    self.press(simd, &self.place(facet as usize, share), force, &mut scratch.modes);
+                }
+                let force = block.contacts[0].normal[lane];
+                scratch.heard[block.first + lane] = Heard { facet, share, force };
             }
-            scratch.on_roller[i][0] = pushed.force;
-            scratch.heard[i] = Heard { facet: facet as u32, share, force: touch.normal };
-            scratch.deepest = scratch.deepest.max(touch.overlap.deepest);
-            // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY §9.3).
-            let downhill = -(fx * tilt[0] + fy * tilt[1]) / distance;
-            let [ex, ey] = [fx - downhill * radial[1], fy + downhill * radial[0]];
-            force = [force[0] + ex, force[1] + ey];
-            moment += pushed.moment;
-
-            let near = self.at_inner(state, i, back(centre), back(turned));
-            let touch = self.end(simd, near, &inner, &mut state.hints[1][i], &scratch.sought);
-            state.felt(1, i, touch.normal);
-            let mut on_inner = [0.0; 2];
-            if touch.normal > 0.0 || state.passive[1][i] != [0.0; 3] {
-                // Where the raceway is touched, it moves across the radius.
-                let along = rate * (distance - self.arm);
-                let race = [-along * radial[1], along * radial[0]];
-                let relative = back([velocity[0] - race[0], velocity[1] - race[1]]);
-                let rolled =
-                    Rolled { omega, race: rate, pace: ((orbit - rate) * (distance - self.arm)).abs() };
-                let pushed = self.push(
-                    &self.inner,
-                    &touch,
-                    relative,
-                    rolled,
-                    &mut state.slip[1][i],
-                    &mut state.passive[1][i],
-                    &mut spent.heat,
-                    last,
-                    &mut energy,
-                );
-                let [fx, fy] = pushed.force;
-                on_inner = [sc * fx - ss * fy, ss * fx + sc * fy];
-                force = [force[0] + on_inner[0], force[1] + on_inner[1]];
-                moment += pushed.moment;
-                // What the roller does to the ring, the drive makes good.
-                spent.drive +=
-                    dt * rate * (centre[0] * on_inner[1] - centre[1] * on_inner[0] + pushed.moment);
-                scratch.deepest = scratch.deepest.max(touch.overlap.deepest);
-            } else {
-                (state.slip[1][i], state.passive[1][i]) = (0.0, [0.0; 3]);
+            for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
+                scratch.deepest = scratch.deepest.max(Self::deepest(contacts));
+                if last {
+                    self.stored_in_contacts(track, contacts, &mut energy);
+                }
             }
-            scratch.on_roller[i][1] = on_inner;
-
-            // The walls of its pocket.
-            let mut by_cage = [0.0; 2];
+            block.force[2] = Default::default();
             if let Some(cage) = &self.cage {
-                let guest = placed.guest(middle, centre, velocity, omega, turned);
-                for side in 0..2 {
-                    let (slip, passive) = (&mut state.wall_slip[i][side], &mut state.wall_passive[i][side]);
-                    let wall = &cage.walls[i][side];
-                    let hit =
-                        self.hit(cage, wall, placed, &guest, slip, passive, &mut spent.heat, &mut energy);
-                    let Some(hit) = hit else { continue };
-                    by_cage = [by_cage[0] + hit.force[0], by_cage[1] + hit.force[1]];
-                    moment += hit.moment;
-                    on_cage[0] -= hit.force[0];
-                    on_cage[1] -= hit.force[1];
-                    on_cage[2] -= hit.on_cage;
+                let rows = &cage.wall_rows[b];
+                let by_walls =
+                    self.in_pockets(simd, cage, rows, placed, middle, block, &mut spent.heat, &mut energy);
+                for (sum, part) in on_cage.iter_mut().zip(by_walls) {
+                    *sum += part;
                 }
             }
-            scratch.on_roller[i][2] = by_cage;
-            force = [force[0] + by_cage[0], force[1] + by_cage[1]];
-            for (sum, now) in scratch.sums[i].iter_mut().zip(&scratch.on_roller[i]) {
-                *sum = [sum[0] + now[0], sum[1] + now[1]];
+            match self.frame {
+                DampingFrame::Rolling => self.move_rollers::<S, ROLLING>(simd, block, last, &mut sums),
+                DampingFrame::RigidMotion => self.move_rollers::<S, RIGID>(simd, block, last, &mut sums),
+                DampingFrame::Absolute => self.move_rollers::<S, ABSOLUTE>(simd, block, last, &mut sums),
             }
-
-            // The roller moves.
-            let a = [force[0] / roller_mass, force[1] / roller_mass];
-            let h = 0.5 * self.alpha * dt;
-            let kept = (1.0 - h) / (1.0 + h);
-            let gain = dt / (1.0 + h);
-            let old = [velocity[0], velocity[1], omega];
-            let turn = moment / roller_inertia;
-            let new = match self.frame {
-                DampingFrame::Rolling => {
-                    let along = |v: [f64; 2]| v[0] * radial[0] + v[1] * radial[1];
-                    let (v, a_along) = (along(velocity), along(a));
-                    let change = kept * v + gain * a_along - v - dt * a_along;
-                    let mean = v + 0.5 * (kept * v + gain * a_along - v);
-                    spent.damped += self.alpha * dt * roller_mass * mean * mean;
-                    [
-                        velocity[0] + dt * a[0] + change * radial[0],
-                        velocity[1] + dt * a[1] + change * radial[1],
-                        omega + dt * turn,
-                    ]
-                }
-                DampingFrame::RigidMotion => {
-                    [velocity[0] + dt * a[0], velocity[1] + dt * a[1], omega + dt * turn]
-                }
-                DampingFrame::Absolute => {
-                    let new = [
-                        kept * velocity[0] + gain * a[0],
-                        kept * velocity[1] + gain * a[1],
-                        kept * omega + gain * turn,
-                    ];
-                    let mean: [f64; 3] = std::array::from_fn(|c| 0.5 * (old[c] + new[c]));
-                    spent.damped += self.alpha
-                        * dt
-                        * (roller_mass * (mean[0] * mean[0] + mean[1] * mean[1])
-                            + roller_inertia * mean[2] * mean[2]);
-                    new
-                }
-            };
-            spent.external -= 0.5 * dt * self.gravity * roller_mass * (old[1] + new[1]);
-            if last {
-                energy.kinetic += 0.5
-                    * (roller_mass * (old[0] * new[0] + old[1] * new[1]) + roller_inertia * old[2] * new[2]);
-            }
-            (state.vx[i], state.vy[i], state.spin[i]) = (new[0], new[1], new[2]);
-            state.x[i] += dt * new[0];
-            state.y[i] += dt * new[1];
-            let by = dt * new[2];
-            state.angle[i] += by;
-            scratch.turned[i] = turn_by(turned, by);
         }
         scratch.summed += 1;
+        spent.heat = [0, 1].map(|kind| spent.heat[kind] + sums.heat[kind].sum());
+        spent.drive += dt * rate * sums.drive.sum();
+        spent.external += sums.external.sum();
+        spent.damped += sums.damped.sum();
+        energy.kinetic += 0.5 * sums.kinetic.sum();
 
-        self.move_modes(simd, state, &scratch.push, further, last, &mut energy, &mut spent);
+        self.move_modes(simd, state, &scratch.modes.push, further, last, &mut energy, &mut spent);
 
         if let Some(cage) = &self.cage {
             let old = state.cage_velocity;
@@ -334,113 +186,211 @@ impl Bearing {
             }
         }
         state.shaft += dt * rate;
+        let work = &mut state.work;
         work.friction += 0.5 * dt * spent.heat[0];
         work.contact_damping += 0.5 * dt * spent.heat[1];
         count(&mut work.external, spent.external);
         count(&mut work.drive, spent.drive);
         count(&mut work.damping, spent.damped);
-        state.work = work;
         state.steps += 1;
         if last {
             scratch.energy = energy;
         }
     }
 
-    /// A roller by the outer raceway, which has moved.
+    /// Where rollers are by both raceways, the outer one moved with the modes and the inner one turned by an angle whose cosine and sine
+    /// are given.
     #[inline(always)]
-    fn at_outer(&self, state: &State, i: usize, [x, y]: [f64; 2], spin: [f64; 2]) -> Near<'_> {
-        let centre = [state.x[i] - x, state.y[i] - y];
-        Near { track: &self.outer, rim: self.rim(i), centre, spin, before: state.foreseen(0, i) }
+    fn place_rollers<S: Simd>(&self, simd: S, modes: &Modes, block: &mut Block, [sc, ss]: [f64; 2]) {
+        let mut at = 0;
+        while at < LANES {
+            let [x, y] = load(simd, &block.centre, at);
+            let distance = x.times_plus(x, y * y).sqrt();
+            distance.store(&mut block.distance, at);
+            (x / distance).store(&mut block.radial[0], at);
+            (y / distance).store(&mut block.radial[1], at);
+            at += Vector::<S>::LEN;
+        }
+        for lane in 0..block.count {
+            let radial = of_one(&block.radial, lane);
+            let hint = &mut block.contacts[0].hints[lane][1];
+            let place = self.place_along(radial, *hint);
+            *hint = place.facet as u32;
+            (block.facet[lane], block.share[lane]) = (place.facet as u32, place.share);
+            let Moved { by, velocity, tilt } = self.moved(simd, &place, modes);
+            for c in 0..2 {
+                block.by[c][lane] = by[c];
+                block.moving[c][lane] = velocity[c];
+                block.tilt[c][lane] = tilt[c];
+            }
+        }
+        // The inner raceway turns about the origin: everything is turned back.
+        let (c, s) = (Vector::all(simd, sc), Vector::all(simd, ss));
+        let back = |[x, y]: [Vector<S>; 2]| [c.times_plus(x, s * y), c.times_plus(y, -(s * x))];
+        let [outer, inner] = &mut block.contacts;
+        let mut at = 0;
+        while at < LANES {
+            let (centre, turned) = (load(simd, &block.centre, at), load(simd, &block.turned, at));
+            let by = load(simd, &block.by, at);
+            store([centre[0] - by[0], centre[1] - by[1]], &mut outer.centre, at);
+            store(turned, &mut outer.spin, at);
+            store(back(centre), &mut inner.centre, at);
+            store(back(turned), &mut inner.spin, at);
+            at += Vector::<S>::LEN;
+        }
     }
 
-    /// A roller by the inner raceway, seen from there.
+    /// What both raceways do to rollers; the shaft turns at `rate` [rad/s].
     #[inline(always)]
-    fn at_inner(&self, state: &State, i: usize, centre: [f64; 2], spin: [f64; 2]) -> Near<'_> {
-        Near { track: &self.inner, rim: self.rim(i), centre, spin, before: state.foreseen(1, i) }
-    }
-
-    /// What a raceway does to a roller, in the frame in which it was touched. `relative` is the velocity of the roller's
-    /// centre less that of the raceway.
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and adds to")]
-    fn push(
+    fn push_rollers<S: Simd>(
         &self,
-        track: &Track,
-        touch: &Touch,
-        relative: [f64; 2],
-        rolled: Rolled,
-        slip: &mut f64,
-        passive: &mut [f64; 3],
-        heat: &mut [f64; 2],
+        simd: S,
+        block: &mut Block,
+        rate: f64,
+        [sc, ss]: [f64; 2],
+        sums: &mut Sums<S>,
+    ) {
+        let all = |value: f64| Vector::all(simd, value);
+        let (arm, rate, c, s) = (all(self.arm), all(rate), all(sc), all(ss));
+        let size = |number: Vector<S>| number.max(-number);
+        let [outer, inner] = &mut block.contacts;
+        let mut at = 0;
+        while at < LANES {
+            let distance = Vector::load(simd, &block.distance, at);
+            let (centre, radial) = (load(simd, &block.centre, at), load(simd, &block.radial, at));
+            let (velocity, spin) = (load(simd, &block.velocity, at), Vector::load(simd, &block.spin, at));
+            let (moving, tilt) = (load(simd, &block.moving, at), load(simd, &block.tilt, at));
+            // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
+            let orbit = velocity[1].times_plus(radial[0], -(velocity[0] * radial[1])) / distance;
+            let relative =
+                [velocity[0] - moving[0] - orbit * tilt[0], velocity[1] - moving[1] - orbit * tilt[1]];
+            let pace = size(orbit) * (distance + arm);
+            let rolling = Rolling { relative, spin, race: all(0.0), pace };
+            let by_outer = self.push(simd, &self.outer, outer, at, &rolling, &mut sums.heat);
+            let [fx, fy] = by_outer.force;
+            store([fx, fy], &mut block.force[0], at);
+            // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY §9.3).
+            let downhill = -(fx.times_plus(tilt[0], fy * tilt[1]) / distance);
+            let uphill = [-(downhill * radial[1]), downhill * radial[0]];
+            store(uphill, &mut block.downhill, at);
+
+            // Where the inner raceway is touched, it moves across the radius.
+            let along = rate * (distance - arm);
+            let [rx, ry] = [along.times_plus(radial[1], velocity[0]), velocity[1] - along * radial[0]];
+            let relative = [c.times_plus(rx, s * ry), c.times_plus(ry, -(s * rx))];
+            let pace = size((orbit - rate) * (distance - arm));
+            let rolling = Rolling { relative, spin, race: rate, pace };
+            let by_inner = self.push(simd, &self.inner, inner, at, &rolling, &mut sums.heat);
+            let [fx, fy] = by_inner.force;
+            let [fx, fy] = [c.times_plus(fx, -(s * fy)), s.times_plus(fx, c * fy)];
+            store([fx, fy], &mut block.force[1], at);
+            // What the roller does to the ring, the drive makes good.
+            sums.drive = sums.drive + centre[0] * fy - centre[1] * fx + by_inner.moment;
+            (by_outer.moment + by_inner.moment).store(&mut block.moment, at);
+            at += Vector::<S>::LEN;
+        }
+    }
+
+    /// Rollers move under the forces on them.
+    #[inline(always)]
+    fn move_rollers<S: Simd, const FRAME: u8>(
+        &self,
+        simd: S,
+        block: &mut Block,
         last: bool,
-        energy: &mut Stored,
-    ) -> Pushed {
-        let o = &touch.overlap;
-        let d = touch.d;
-        let t = [-d[1], d[0]];
-        let closing = relative[0] * d[0] + relative[1] * d[1];
-        let turning = rolled.omega - rolled.race;
-        let sliding = relative[0] * t[0] + relative[1] * t[1] + rolled.omega * self.arm;
-        let [old_drag, old_damping, old_about] = *passive;
-        heat[0] -= old_drag * sliding;
-        heat[1] += old_damping * closing + old_about * turning;
-        if touch.normal <= 0.0 || o.area <= 0.0 {
-            (*slip, *passive) = (0.0, [0.0; 3]);
-            return Pushed::default();
-        }
-        // The compliance behind the penalty takes its part of the approach.
-        let part = 1.0 / (1.0 + self.penalty * o.length * touch.give);
-        let damping = (self.damping * (part * closing * o.length - turning * o.first)).max(-touch.normal);
-        let normal = touch.normal + damping;
-        let scale = touch.normal / o.area;
-        let about = 0.5 * self.damping * turning * (o.second - o.first * o.first / o.length).max(0.0);
-        // Friction: a spring that what leaves the contact takes along (THEORY §9.4).
-        let half = 0.5 * o.length;
-        let lost = (rolled.pace * self.time_step / half).min(1.0);
-        let stiffness = self.sticking * o.length;
-        let most = self.friction * touch.normal / stiffness;
-        *slip = (*slip * (1.0 - lost) + self.time_step * sliding).clamp(-most, most);
-        let drag = -stiffness * *slip;
-        heat[0] -= drag * sliding;
-        heat[1] += damping * closing + about * turning;
-        *passive = [drag, damping, about];
-        if last {
-            let sunk = self.penalty * o.square * 0.5;
-            let stuck = 0.5 * stiffness * *slip * *slip;
-            energy.contact += sunk + track.compliance.energy(touch.normal) + stuck;
-            energy.sticking += stuck;
-        }
-        let along = touch.across + drag;
-        Pushed {
-            force: [along * t[0] - normal * d[0], along * t[1] - normal * d[1]],
-            moment: scale * o.moment + self.arm * drag - about,
+        sums: &mut Sums<S>,
+    ) {
+        let all = |value: f64| Vector::all(simd, value);
+        let [mass, inertia] = self.reduction.roller_inertia;
+        let (dt, half) = (all(self.time_step), all(0.5));
+        let h = 0.5 * self.alpha * self.time_step;
+        let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(self.time_step / (1.0 + h)));
+        let resisted = all(self.alpha * self.time_step * mass);
+        let weight = all(self.gravity * mass);
+        let mut at = 0;
+        while at < LANES {
+            let present = Vector::load(simd, &block.present, at);
+            let mut force = load(simd, &block.downhill, at);
+            force[1] = force[1] - present * weight;
+            for (by, sum) in block.force.iter().zip(&mut block.sums) {
+                let by = load(simd, by, at);
+                let [x, y] = load(simd, sum, at);
+                store([x + by[0], y + by[1]], sum, at);
+                force = [force[0] + by[0], force[1] + by[1]];
+            }
+            let per_mass = all(1.0 / mass);
+            let a = [force[0] * per_mass, force[1] * per_mass];
+            let turn = Vector::load(simd, &block.moment, at) * all(1.0 / inertia);
+            let [vx, vy] = load(simd, &block.velocity, at);
+            let spin = Vector::load(simd, &block.spin, at);
+            let mut new = [dt.times_plus(a[0], vx), dt.times_plus(a[1], vy), dt.times_plus(turn, spin)];
+            if FRAME == ROLLING {
+                let [rx, ry] = load(simd, &block.radial, at);
+                let (v, pull) = (vx.times_plus(rx, vy * ry), a[0].times_plus(rx, a[1] * ry));
+                let slowed = kept.times_plus(v, gain * pull);
+                let change = slowed - v - dt * pull;
+                let mean = half * (slowed + v);
+                sums.damped = (resisted * mean).times_plus(mean, sums.damped);
+                new = [change.times_plus(rx, new[0]), change.times_plus(ry, new[1]), new[2]];
+            }
+            if FRAME == ABSOLUTE {
+                new = [
+                    kept.times_plus(vx, gain * a[0]),
+                    kept.times_plus(vy, gain * a[1]),
+                    kept.times_plus(spin, gain * turn),
+                ];
+                let [mx, my, turning] = [half * (vx + new[0]), half * (vy + new[1]), half * (spin + new[2])];
+                let square = mx.times_plus(mx, my.times_plus(my, all(inertia / mass) * turning * turning));
+                sums.damped = resisted.times_plus(square, sums.damped);
+            }
+            sums.external = sums.external - present * half * dt * weight * (vy + new[1]);
+            if last {
+                let along = vx.times_plus(new[0], vy * new[1]);
+                sums.kinetic =
+                    all(mass).times_plus(along, (all(inertia) * spin).times_plus(new[2], sums.kinetic));
+            }
+            let [x, y] = load(simd, &block.centre, at);
+            store([dt.times_plus(new[0], x), dt.times_plus(new[1], y)], &mut block.centre, at);
+            store([new[0], new[1]], &mut block.velocity, at);
+            new[2].store(&mut block.spin, at);
+            let by = dt * new[2];
+            (Vector::load(simd, &block.angle, at) + by).store(&mut block.angle, at);
+            store(turn_by(load(simd, &block.turned, at), by), &mut block.turned, at);
+            at += Vector::<S>::LEN;
         }
     }
 }
 
-/// How a roller rolls on a raceway.
-#[derive(Debug, Clone, Copy)]
-struct Rolled {
-    /// Angular velocity of the roller [rad/s].
-    omega: f64,
-    /// Angular velocity of the raceway [rad/s].
-    race: f64,
-    /// Speed of the contact along the raceway [m/s].
-    pace: f64,
+/// The frames of mass damping, for code that is made for each of them.
+const ROLLING: u8 = 0;
+const RIGID: u8 = 1;
+const ABSOLUTE: u8 = 2;
+
+/// Sums over all rollers in one step, as [`Spent`] and [`Stored`] say.
+struct Sums<S: Simd> {
+    heat: [Vector<S>; 2],
+    /// Moment on the drive [N m].
+    drive: Vector<S>,
+    external: Vector<S>,
+    damped: Vector<S>,
+    /// Twice the energy.
+    kinetic: Vector<S>,
 }
 
-/// What a raceway does to a roller.
-#[derive(Debug, Clone, Copy, Default)]
-struct Pushed {
-    force: [f64; 2],
-    moment: f64,
+impl<S: Simd> Sums<S> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let zero = Vector::all(simd, 0.0);
+        Self { heat: [zero; 2], drive: zero, external: zero, damped: zero, kinetic: zero }
+    }
 }
 
-/// A direction turned by a small angle.
+/// Directions turned by small angles.
 #[inline(always)]
-fn turn_by([x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+fn turn_by<S: Simd>([x, y]: [Vector<S>; 2], angle: Vector<S>) -> [Vector<S>; 2] {
+    let of = |value: f64| angle.constant(value);
     let square = angle * angle;
-    let s = angle * (1.0 - square / 6.0 * (1.0 - square / 20.0));
-    let c = 1.0 - 0.5 * square * (1.0 - square / 12.0);
-    [c * x - s * y, s * x + c * y]
+    let s = angle * (of(1.0) - square * of(1.0 / 6.0) * (of(1.0) - square * of(1.0 / 20.0)));
+    let c = of(1.0) - of(0.5) * square * (of(1.0) - square * of(1.0 / 12.0));
+    [c.times_plus(x, -(s * y)), s.times_plus(x, c * y)]
 }

@@ -1,13 +1,16 @@
-//! How hard a roller and a raceway press on each other: what overlaps, in series with what the bodies give way by (THEORY §9.3).
-//! The forces of all contacts of a step are found side by side, in vectors over contacts.
+//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies give way by (THEORY §9.3). Eight
+//! rollers side by side, and one by itself where its force is far from what was expected.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
     bearing::{Bearing, Rim, Track},
+    block::Contacts,
     outline::View,
     overlap::{Overlap, Pair},
+    row::{Row, lanes, load, of_one},
+    window::Window,
 };
 
 /// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
@@ -24,13 +27,12 @@ const LITTLE: f64 = 1e-2;
 pub(crate) struct Touch {
     /// Normal force of penalty and compliance [N].
     pub(crate) normal: f64,
-    /// Force of the same along t [N].
-    pub(crate) across: f64,
     /// Derivative of the compliance's approach there [m/N].
-    pub(crate) give: f64,
+    give: f64,
+    /// What the bodies have given way by [m].
+    given: f64,
     /// What overlaps at that force.
-    pub(crate) overlap: Overlap,
-    pub(crate) d: [f64; 2],
+    overlap: Overlap,
 }
 
 /// A roller by a raceway, seen in the frame of the raceway's outline.
@@ -45,185 +47,180 @@ pub(crate) struct Near<'a> {
     pub(crate) before: f64,
 }
 
-/// A contact whose overlap is known at the force of the step before, and whose force is not.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Begun {
-    d: [f64; 2],
-    distance: f64,
-    overlap: Overlap,
-    /// What the bodies give way by at the force with which the search began [m], and that force [N].
-    shift: f64,
-    start: f64,
-    /// Its place among those whose forces are sought; none where nothing touches.
-    row: Option<u32>,
-}
-
-/// Numbers of contacts side by side, and the forces that are found from them.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Sought {
-    count: usize,
-    columns: Vec<[[f64; LANES]; COLUMNS]>,
-}
-
-const COLUMNS: usize = 11;
-/// Columns: what is known …
-const AREA: usize = 0;
-const LENGTH: usize = 1;
-const ENDS: usize = 2;
-const SHIFT: usize = 3;
-/// … of the piece of the compliance: its beginning over √F, its flexibility there, how that grows, and where the piece ends …
-const KNOT: usize = 4;
-const FIRST: usize = 5;
-const SLOPE: usize = 6;
-const NEXT: usize = 7;
-/// … and what is found: force, derivative of the compliance's approach, and one where the piece was never left. AREA, LENGTH and
-/// SHIFT become those at the force.
-const FORCE: usize = 8;
-const GIVE: usize = 9;
-const SURE: usize = 10;
-
-impl Sought {
-    /// Room for so many contacts.
-    pub(crate) fn new(contacts: usize) -> Self {
-        Self { count: 0, columns: vec![[[0.0; LANES]; COLUMNS]; contacts.div_ceil(LANES)] }
-    }
-
-    /// Forgets the contacts of the step before.
-    pub(crate) fn clear(&mut self) {
-        self.count = 0;
-    }
-
+impl Bearing {
+    /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when centres and directions of vertex 0
+    /// are known in its frame.
     #[inline(always)]
-    fn add(&mut self, numbers: [f64; COLUMNS]) -> Option<u32> {
-        let row = self.count;
-        self.count += 1;
-        let group = &mut self.columns[row / LANES];
-        for (column, number) in group.iter_mut().zip(numbers) {
-            column[row % LANES] = number;
-        }
-        Some(row as u32)
-    }
-
-    #[inline(always)]
-    fn found(&self, row: u32, column: usize) -> f64 {
-        self.columns[row as usize / LANES][column][row as usize % LANES]
-    }
-
-    /// Newton's method for all forces, with what each overlap becomes by a further shift.
-    #[inline(always)]
-    pub(crate) fn solve<S: Simd>(&mut self, simd: S, penalty: f64) {
+    pub(crate) fn press_together<S: Simd>(
+        &self,
+        simd: S,
+        track: &Track,
+        first: usize,
+        top: &Row,
+        present: u64,
+        contacts: &mut Contacts,
+    ) {
         let all = |value: f64| Vector::all(simd, value);
-        let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(penalty));
-        for group in &mut self.columns[..self.count.div_ceil(LANES)] {
-            let mut at = 0;
+        let (zero, one) = (all(0.0), all(1.0));
+        let outwards = all(track.outwards());
+        let mut deep = 0;
+        let mut at = 0;
+        while at < LANES {
+            let [x, y] = load(simd, &contacts.centre, at);
+            let distance = x.times_plus(x, y * y).sqrt();
+            let per = outwards / distance;
+            let most = outwards.times_plus(distance - all(track.bound), Vector::load(simd, top, at));
+            distance.store(&mut contacts.distance, at);
+            (x * per).store(&mut contacts.d[0], at);
+            (y * per).store(&mut contacts.d[1], at);
+            most.store(&mut contacts.most, at);
+            deep |= zero.choose_below(most, one, zero).bits() << at;
+            at += Vector::<S>::LEN;
+        }
+        contacts.near = deep & present;
+        if contacts.near == 0 {
+            at = 0;
             while at < LANES {
-                let length0 = Vector::load(simd, &group[LENGTH], at);
-                let area0 = Vector::load(simd, &group[AREA], at);
-                let ends = Vector::load(simd, &group[ENDS], at);
-                let shift = Vector::load(simd, &group[SHIFT], at);
-                let knot = Vector::load(simd, &group[KNOT], at);
-                let first = Vector::load(simd, &group[FIRST], at);
-                let slope = Vector::load(simd, &group[SLOPE], at);
-                let next = Vector::load(simd, &group[NEXT], at);
-                let mut force = Vector::load(simd, &group[FORCE], at);
-                let mut give = Vector::load(simd, &group[GIVE], at);
-                let (mut area, mut length, mut further) = (area0, length0, zero);
-                let mut sure = one;
-                for _ in 0..NEWTON {
-                    let left = penalty.times_plus(area, -force);
-                    let stiff = (penalty * length).times_plus(give, one);
-                    force = (force + left / stiff).max(zero);
-                    let y = force.sqrt();
-                    sure = y.choose_below(knot, zero, y.choose_below(next, sure, zero));
-                    let g = slope.times_plus(y - knot, first);
-                    further = force.times_plus(g, -shift);
-                    give = (half * y).times_plus(slope, g);
-                    length = (-ends).times_plus(further, length0).max(zero);
-                    let lost = half * further * (length0 + length);
-                    area = zero.choose_below(length, (area0 - lost).max(zero), zero);
-                }
-                force.store(&mut group[FORCE], at);
-                give.store(&mut group[GIVE], at);
-                further.store(&mut group[SHIFT], at);
-                area.store(&mut group[AREA], at);
-                length.store(&mut group[LENGTH], at);
-                sure.store(&mut group[SURE], at);
+                (-Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
+                zero.store(&mut contacts.force, at);
+                zero.store(&mut contacts.normal, at);
                 at += Vector::<S>::LEN;
             }
+            return;
+        }
+        self.expect(simd, track, contacts);
+        self.list(simd, track, first, contacts);
+        let again = self.search(simd, track, contacts);
+        for lane in lanes(again) {
+            let rim = self.rim(first + lane);
+            let before = contacts.normal[lane];
+            let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
+            let near = Near { track, rim, centre, spin, before };
+            let found = self.touch(simd, near, &mut contacts.hints[lane]);
+            contacts.normal[lane] = found.normal;
+            contacts.give[lane] = found.give;
+            contacts.shift[lane] = found.given;
+            contacts.overlap.set(lane, &found.overlap);
+        }
+        at = 0;
+        while at < LANES {
+            let normal = Vector::load(simd, &contacts.normal, at);
+            (normal - Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
+            normal.store(&mut contacts.force, at);
+            at += Vector::<S>::LEN;
         }
     }
-}
 
-impl Bearing {
-    /// Looks at what overlaps at the force of the step before. `hints` are the facets found last.
+    /// What the bodies give way by at the forces that are expected, and how far from their middles contacts may reach then.
     #[inline(always)]
-    pub(crate) fn begin<S: Simd>(
-        &self,
-        simd: S,
-        near: Near<'_>,
-        hints: &mut [u32; 2],
-        sought: &mut Sought,
-    ) -> Begun {
-        let Near { track, rim, centre, .. } = near;
-        let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
-        let outwards = track.outwards();
-        let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
-        let most = outwards * (distance - track.bound) + rim.top;
-        let mut begun = Begun { d, distance, ..Begun::default() };
-        if most <= 0.0 {
-            return begun;
+    fn expect<S: Simd>(&self, simd: S, track: &Track, contacts: &mut Contacts) {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, half) = (all(0.0), all(0.5));
+        let mut at = 0;
+        while at < LANES {
+            let (force, growth) =
+                (Vector::load(simd, &contacts.force, at), Vector::load(simd, &contacts.growth, at));
+            let start = (force + growth).max(zero);
+            start.store(&mut contacts.start, at);
+            start.sqrt().store(&mut contacts.root, at);
+            at += Vector::<S>::LEN;
         }
-        let pair = self.pair(simd, &near, d, hints);
-        let mut start = near.before;
-        let (mut known, mut piece) = track.curve.approach(start);
-        if most <= known[0] {
-            // Nothing would overlap at that force.
-            start = 0.0;
-            (known, piece) = track.curve.approach(start);
+        for lane in lanes(contacts.near) {
+            let [knot, first, slope, next] = track.curve.piece_at(contacts.root[lane]);
+            contacts.knot[lane] = knot;
+            contacts.first[lane] = first;
+            contacts.slope[lane] = slope;
+            contacts.next[lane] = next;
         }
-        let [shift, give] = known;
-        let found = pair.overlap(shift, track.reach(most - shift));
-        let [knot, first, slope, next] = track.curve.piece(piece);
-        begun.row = sought.add([
-            found.area,
-            found.length,
-            found.ends,
-            shift,
-            knot,
-            first,
-            slope,
-            next,
-            start,
-            give,
-            0.0,
-        ]);
-        (begun.overlap, begun.shift, begun.start) = (found, shift, start);
-        begun
+        let mut at = 0;
+        let mut clear = 0;
+        while at < LANES {
+            let (start, root) =
+                (Vector::load(simd, &contacts.start, at), Vector::load(simd, &contacts.root, at));
+            let (knot, first) =
+                (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.first, at));
+            let slope = Vector::load(simd, &contacts.slope, at);
+            let g = slope.times_plus(root - knot, first);
+            let shift = start * g;
+            let depth = Vector::load(simd, &contacts.most, at) - shift;
+            shift.store(&mut contacts.shift, at);
+            (half * root).times_plus(slope, g).store(&mut contacts.give, at);
+            track.reach(depth).store(&mut contacts.reach, at);
+            clear |= zero.choose_below(depth, zero, all(1.0)).bits() << at;
+            at += Vector::<S>::LEN;
+        }
+        // Where nothing would overlap at that force, the search begins without one.
+        for lane in lanes(clear & contacts.near) {
+            let [knot, first, slope, next] = track.curve.piece_at(0.0);
+            (contacts.knot[lane], contacts.first[lane]) = (knot, first);
+            (contacts.slope[lane], contacts.next[lane]) = (slope, next);
+            (contacts.start[lane], contacts.shift[lane], contacts.give[lane]) = (0.0, 0.0, first);
+            contacts.reach[lane] = track.reach(contacts.most[lane]);
+        }
     }
 
-    /// The contact at the force that was found, or searched for further where that is far from the one before.
+    /// Lists the parts of all overlaps as far as they may reach at the forces that are expected.
     #[inline(always)]
-    pub(crate) fn end<S: Simd>(
-        &self,
-        simd: S,
-        near: Near<'_>,
-        begun: &Begun,
-        hints: &mut [u32; 2],
-        sought: &Sought,
-    ) -> Touch {
-        let Some(row) = begun.row else { return Touch { d: begun.d, ..Touch::default() } };
-        let force = sought.found(row, FORCE);
-        // It may have gone on to another piece of the compliance.
-        let sure = sought.found(row, SURE) > 0.5;
-        if !sure || (force - begun.start).abs() > ENOUGH * force + LITTLE {
-            let before = if sure { force } else { near.before };
-            return self.touch(simd, Near { before, ..near }, hints);
+    fn list<S: Simd>(&self, simd: S, track: &Track, first: usize, contacts: &mut Contacts) {
+        contacts.lists.clear();
+        for lane in lanes(contacts.near) {
+            let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
+            let d = of_one(&contacts.d, lane);
+            let near =
+                Near { track, rim: self.rim(first + lane), centre, spin, before: contacts.start[lane] };
+            let [roller, raceway] = Self::views(&near, d, &mut contacts.hints[lane]);
+            let pair = Pair::new(simd, roller, raceway, track.sides, &mut contacts.windows);
+            contacts.lists.fill(lane, &pair, contacts.reach[lane]);
         }
-        let further = sought.found(row, SHIFT);
-        let now = [sought.found(row, AREA), sought.found(row, LENGTH)];
-        let overlap = begun.overlap.shifted(further, now);
-        let given = begun.shift + further;
-        self.touched(near.track, begun.d, begun.distance, force, sought.found(row, GIVE), overlap, given)
+    }
+
+    /// Integrates over the overlaps and takes steps of Newton's method for the forces, with what each overlap becomes by a further shift.
+    /// Returns those that have to be searched for further; their `normal` is what to begin with.
+    #[inline(always)]
+    fn search<S: Simd>(&self, simd: S, track: &Track, contacts: &mut Contacts) -> u64 {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
+        let mut again = 0;
+        let mut at = 0;
+        while at < LANES {
+            let near = Vector::ones(simd, contacts.near >> at);
+            let shift = Vector::load(simd, &contacts.shift, at);
+            let start = Vector::load(simd, &contacts.start, at);
+            let found = contacts.lists.overlaps(simd, at, track.sides, shift);
+            let (knot, next) =
+                (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
+            let (first, slope) =
+                (Vector::load(simd, &contacts.first, at), Vector::load(simd, &contacts.slope, at));
+            let (mut force, mut give) = (start, Vector::load(simd, &contacts.give, at));
+            let (mut now, mut further) = ([found.area, found.length], zero);
+            let mut sure = one;
+            for _ in 0..NEWTON {
+                let [area, length] = now;
+                let left = penalty.times_plus(area, -force);
+                let stiff = (penalty * length).times_plus(give, one);
+                force = (force + left / stiff).max(zero);
+                let y = force.sqrt();
+                sure = y.choose_below(knot, zero, y.choose_below(next, sure, zero));
+                let g = slope.times_plus(y - knot, first);
+                further = force.times_plus(g, -shift);
+                give = (half * y).times_plus(slope, g);
+                now = found.shifted_area(further);
+            }
+            // It may have gone on to another piece of the compliance.
+            let before = (Vector::load(simd, &contacts.force, at) + Vector::load(simd, &contacts.growth, at))
+                .max(zero);
+            let off = (force - start).max(start - force);
+            let far = all(ENOUGH).times_plus(force, all(LITTLE)).choose_below(off, one, zero);
+            let open = half.choose_below(sure, far, one);
+            again |= (open.bits() << at) & contacts.near;
+            let force = half.choose_below(sure, force, before);
+            half.choose_below(near, force, zero).store(&mut contacts.normal, at);
+            give.store(&mut contacts.give, at);
+            (shift + further).store(&mut contacts.shift, at);
+            found.shifted(further, now).store(&mut contacts.overlap, at);
+            at += Vector::<S>::LEN;
+        }
+        again
     }
 
     /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
@@ -235,9 +232,11 @@ impl Bearing {
         let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
         let most = outwards * (distance - track.bound) + rim.top;
         if most <= 0.0 {
-            return Touch { d, ..Touch::default() };
+            return Touch::default();
         }
-        let pair = self.pair(simd, &near, d, hints);
+        let mut windows = [Window::default(); 2];
+        let [roller, raceway] = Self::views(&near, d, hints);
+        let pair = Pair::new(simd, roller, raceway, track.sides, &mut windows);
         let mut force = before;
         let mut found = Overlap::default();
         let (mut give, mut given) = (0.0, 0.0);
@@ -267,12 +266,12 @@ impl Bearing {
                 break;
             }
         }
-        self.touched(track, d, distance, force, give, found, given)
+        Touch { normal: force, give, given, overlap: found }
     }
 
-    /// Roller and raceway near their contact, in the direction `d`.
+    /// Roller and raceway near their contact, in the direction `d`, with the facets that it goes through.
     #[inline(always)]
-    fn pair<'a, S: Simd>(&self, simd: S, near: &Near<'a>, d: [f64; 2], hints: &mut [u32; 2]) -> Pair<'a> {
+    fn views<'a>(near: &Near<'a>, d: [f64; 2], hints: &mut [u32; 2]) -> [View<'a>; 2] {
         let Near { track, rim, centre, spin: [c, s], .. } = *near;
         // The roller's own frame: turned back by its spin.
         let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
@@ -281,25 +280,6 @@ impl Bearing {
         *hints = [facet as u32, under as u32];
         let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
-        Pair::new(simd, roller, raceway, track.sides)
-    }
-
-    /// `given` is what the bodies have given way by [m].
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one contact, with all that is known of it")]
-    fn touched(
-        &self,
-        track: &Track,
-        d: [f64; 2],
-        distance: f64,
-        force: f64,
-        give: f64,
-        overlap: Overlap,
-        given: f64,
-    ) -> Touch {
-        // d turns as the roller moves along, and what the bodies have given way by with it.
-        let turning = track.outwards() * (0.5 * overlap.skew + given * overlap.across) / distance;
-        let across = self.penalty * (overlap.across - turning);
-        Touch { normal: force, across, give, overlap, d }
+        [roller, raceway]
     }
 }

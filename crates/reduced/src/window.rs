@@ -65,15 +65,15 @@ impl Window {
 
     /// The facet that holds u = `start`.
     #[inline(always)]
-    fn first(&self, start: f64) -> usize {
-        let mut at = BEFORE;
-        while at > 0 && self.from[at] > start {
-            at -= 1;
+    fn first<S: Simd>(&self, simd: S, start: f64) -> usize {
+        let (start, one, zero) = (Vector::all(simd, start), Vector::all(simd, 1.0), Vector::all(simd, 0.0));
+        let mut behind = 0;
+        let mut at = 0;
+        while at < LANES {
+            behind += start.choose_below(Vector::load(simd, &self.to, at), zero, one).bits().count_ones();
+            at += Vector::<S>::LEN;
         }
-        while at < LANES - 1 && self.to[at] <= start {
-            at += 1;
-        }
-        at
+        behind as usize
     }
 
     #[inline(always)]
@@ -85,12 +85,17 @@ impl Window {
 /// Goes along roller and raceway up to `reach` [m] to either side, and hands over what lies between two places where neither
 /// has a vertex. False, and nothing handed over, where the windows do not reach so far.
 #[inline(always)]
-pub(crate) fn segments([roller, raceway]: &[Window; 2], reach: f64, parts: &mut impl Parts) -> bool {
+pub(crate) fn segments<S: Simd>(
+    simd: S,
+    [roller, raceway]: &[Window; 2],
+    reach: f64,
+    parts: &mut impl Parts,
+) -> bool {
     if !(roller.holds(reach) && raceway.holds(reach)) {
         return false;
     }
     let mut u = -reach;
-    let (mut i, mut j) = (roller.first(u), raceway.first(u));
+    let (mut i, mut j) = (roller.first(simd, u) % LANES, raceway.first(simd, u) % LANES);
     for _ in 0..2 * LANES {
         let (of_roller, of_raceway) = (roller.to[i], raceway.to[j]);
         let end = if of_roller < of_raceway { of_roller } else { of_raceway };
@@ -102,7 +107,7 @@ pub(crate) fn segments([roller, raceway]: &[Window; 2], reach: f64, parts: &mut 
         if end >= reach {
             break;
         }
-        // The last facet ends beyond the reach.
+        // A branch, because the processor guesses it: mostly one passes after the other. The last facet ends beyond the reach.
         if of_roller <= of_raceway { i = (i + 1) % LANES } else { j = (j + 1) % LANES }
     }
     true

@@ -35,7 +35,8 @@ fn pressed(
     let under = raceway.facet_along([x, y], d, nearest(raceway, d), 1.0);
     let roller = View { outline: roller, from: [0.0; 2], d: own, facet };
     let raceway = View { outline: raceway, from: [x, y], d, facet: under };
-    let mut pair = Pair::new(Scalar::new(), roller, raceway, sides);
+    let mut windows = Default::default();
+    let mut pair = Pair::new(Scalar::new(), roller, raceway, sides, &mut windows);
     pair.in_windows = false;
     pair.overlap(0.0, 2e-3)
 }
@@ -220,7 +221,8 @@ impl WithSimd for Both<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let pair = Pair::new(simd, self.roller, self.raceway, self.sides);
+        let mut windows = Default::default();
+        let pair = Pair::new(simd, self.roller, self.raceway, self.sides, &mut windows);
         let mut stepwise = pair;
         stepwise.in_windows = false;
         pair.in_windows.then(|| [pair.overlap(self.shift, 1e-3), stepwise.overlap(self.shift, 1e-3)])

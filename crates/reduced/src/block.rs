@@ -1,0 +1,165 @@
+//! Eight rollers side by side: loaded from the state before some steps, and written back after them.
+
+use stribeck_simd::lanes::LANES;
+
+use crate::{
+    bearing::Bearing,
+    overlap::{Lists, Overlap},
+    row::{Row, Rows},
+    state::State,
+    window::Window,
+};
+
+/// Eight rollers; where there are fewer, those that are missing rest beside the bearing.
+#[derive(Debug, Clone, Default)]
+#[repr(align(64))]
+pub(crate) struct Block {
+    /// The first of them.
+    pub(crate) first: usize,
+    /// How many there are, a bit for each, and one for each.
+    pub(crate) count: usize,
+    pub(crate) bits: u64,
+    pub(crate) present: Row,
+    /// Centres [m], their velocities [m/s], angles [rad] and angular velocities [rad/s].
+    pub(crate) centre: Rows,
+    pub(crate) velocity: Rows,
+    pub(crate) angle: Row,
+    pub(crate) spin: Row,
+    /// Directions of vertex 0.
+    pub(crate) turned: Rows,
+    /// Radii of the circles around them [m].
+    pub(crate) top: Row,
+    /// From the bearing's centre [m], and the direction there.
+    pub(crate) distance: Row,
+    pub(crate) radial: Rows,
+    /// The place on the outer raceway: facet and share of its second vertex; how that moves, as [`crate::modes::Moved`] says.
+    pub(crate) facet: [u32; LANES],
+    pub(crate) share: Row,
+    pub(crate) by: Rows,
+    pub(crate) moving: Rows,
+    pub(crate) tilt: Rows,
+    /// At outer and inner raceway.
+    pub(crate) contacts: [Contacts; 2],
+    /// At the two walls of each pocket.
+    pub(crate) walls: [Walls; 2],
+    /// Forces by outer raceway, inner raceway and cage in this step [N], and their moment [N m].
+    pub(crate) force: [Rows; 3],
+    pub(crate) moment: Row,
+    /// What drives them along the outer raceway because that is displaced more there [N].
+    pub(crate) downhill: Rows,
+    /// The forces, summed over the steps since the last sample.
+    pub(crate) sums: [Rows; 3],
+}
+
+/// Contacts of eight rollers with a raceway, in the frame of its outline.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Contacts {
+    /// What the state holds of them: normal force of the last step and by how much it had grown [N], elastic slip [m], drag and damping
+    /// force [N] and damping moment [N m], facets of roller and raceway.
+    pub(crate) force: Row,
+    pub(crate) growth: Row,
+    pub(crate) slip: Row,
+    pub(crate) passive: [Row; 3],
+    pub(crate) hints: [[u32; 2]; LANES],
+    /// Centre, its distance from that of the raceway, the direction to the contact, and the direction of the roller's vertex 0.
+    pub(crate) centre: Rows,
+    pub(crate) distance: Row,
+    pub(crate) d: Rows,
+    pub(crate) spin: Rows,
+    /// Depth between the circles around both [m].
+    pub(crate) most: Row,
+    /// Those that may touch.
+    pub(crate) near: u64,
+    pub(crate) lists: Lists,
+    pub(crate) windows: [Window; 2],
+    /// What the search for the force begins with: a force [N] and its root, what the bodies give way by at it [m], the derivative of that
+    /// [m/N], and how far from its middle the contact may reach [m].
+    pub(crate) start: Row,
+    pub(crate) root: Row,
+    pub(crate) shift: Row,
+    pub(crate) give: Row,
+    pub(crate) reach: Row,
+    /// The piece of the compliance there, as [`crate::compliance::Curve::piece_at`] says.
+    pub(crate) knot: Row,
+    pub(crate) first: Row,
+    pub(crate) slope: Row,
+    pub(crate) next: Row,
+    /// What it finds: normal force [N], what overlaps at it.
+    pub(crate) normal: Row,
+    pub(crate) overlap: Overlap<Row>,
+}
+
+/// Contacts of eight rollers with a wall of their pockets: elastic slip [m], drag and damping force [N].
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Walls {
+    pub(crate) slip: Row,
+    pub(crate) passive: Rows,
+}
+
+impl Block {
+    /// The rollers from `first` on, and what of them does not change.
+    pub(crate) fn new(bearing: &Bearing, first: usize) -> Self {
+        let count = (bearing.rollers - first).min(LANES);
+        let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
+        // Those that are missing keep clear of both raceways.
+        block.centre[0] = Row([bearing.outer.bound; LANES]);
+        for lane in 0..count {
+            block.present[lane] = 1.0;
+            block.top[lane] = bearing.rim(first + lane).top;
+        }
+        block
+    }
+
+    /// Takes the rollers' motion from a state. Directions are taken from the angles, because turning them step by step rounds.
+    pub(crate) fn load(&mut self, bearing: &Bearing, state: &State) {
+        for lane in 0..self.count {
+            let i = self.first + lane;
+            let of = |column: &mut Row, value: f64| column[lane] = value;
+            let (s, c) = (state.angle[i] + bearing.vertex_angle[i]).sin_cos();
+            of(&mut self.centre[0], state.x[i]);
+            of(&mut self.centre[1], state.y[i]);
+            of(&mut self.velocity[0], state.vx[i]);
+            of(&mut self.velocity[1], state.vy[i]);
+            of(&mut self.angle, state.angle[i]);
+            of(&mut self.spin, state.spin[i]);
+            of(&mut self.turned[0], c);
+            of(&mut self.turned[1], s);
+            for (k, contacts) in self.contacts.iter_mut().enumerate() {
+                of(&mut contacts.force, state.force[k][i]);
+                of(&mut contacts.growth, state.growth[k][i]);
+                of(&mut contacts.slip, state.slip[k][i]);
+                for (column, value) in contacts.passive.iter_mut().zip(state.passive[k][i]) {
+                    of(column, value);
+                }
+                contacts.hints[lane] = state.hints[k][i];
+            }
+            for (side, walls) in self.walls.iter_mut().enumerate() {
+                of(&mut walls.slip, state.wall_slip[i][side]);
+                for (column, value) in walls.passive.iter_mut().zip(state.wall_passive[i][side]) {
+                    of(column, value);
+                }
+            }
+        }
+    }
+
+    /// Writes it back.
+    pub(crate) fn store(&self, state: &mut State) {
+        for lane in 0..self.count {
+            let i = self.first + lane;
+            [state.x[i], state.y[i]] = [self.centre[0][lane], self.centre[1][lane]];
+            [state.vx[i], state.vy[i]] = [self.velocity[0][lane], self.velocity[1][lane]];
+            [state.angle[i], state.spin[i]] = [self.angle[lane], self.spin[lane]];
+            for (k, contacts) in self.contacts.iter().enumerate() {
+                state.force[k][i] = contacts.force[lane];
+                state.growth[k][i] = contacts.growth[lane];
+                state.slip[k][i] = contacts.slip[lane];
+                state.passive[k][i] = contacts.passive.map(|column| column[lane]);
+                state.hints[k][i] = contacts.hints[lane];
+            }
+            for (side, walls) in self.walls.iter().enumerate() {
+                state.wall_slip[i][side] = walls.slip[lane];
+                state.wall_passive[i][side] = walls.passive.map(|column| column[lane]);
+            }
+        }
+    }
+}
