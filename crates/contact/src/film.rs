@@ -5,6 +5,7 @@
 //! is no stiffer than contact.
 
 mod divided;
+mod law;
 mod reynolds;
 mod spring;
 mod track;
@@ -18,9 +19,9 @@ use stribeck_solver::{
 };
 
 use crate::{error::Error, smooth::Smoothing, surface::Surface};
-use reynolds::{EMPTY, Pressed, left_of_land};
-use spring::Spring;
-use track::{Land, Place, Point};
+pub use law::{FilmLaw, Layer, Oil, Pushed, WIDEST};
+pub use spring::{Bed, Spring};
+pub use track::{Land, Place, Point};
 
 /// Steps from one look for the nearest places to the next; in between the film stays at the nodes where it was.
 const LOOK_EVERY: u64 = 16;
@@ -30,37 +31,6 @@ const REST: u64 = 128;
 
 /// Looks over which the speed of rolling is taken.
 const SPEED_EVERY: u64 = 4;
-
-/// Wider gaps hold no film [m].
-const WIDEST: f64 = 1e-3;
-
-/// Bodies that roll more slowly than this count as rolling at it [m/s]: enough to divide by, and a ten-thousandth of what
-/// a bearing does.
-const SLOWEST: f64 = 1e-3;
-
-/// Where a film ends that neither opens nor closes.
-const STEADY: f64 = 0.475_131;
-
-/// A land that ends this many film widths away has no end.
-const FAR: f64 = 20.0;
-
-/// A contact that carries so many times what its film can lift stays as it is until the next look.
-const FIXED: f64 = 4.0;
-
-/// Share of the way that is left when the end of a film is found. The next step makes up for it.
-const ACCURACY: f64 = 1e-6;
-
-/// Most corrections of the place where a film ends.
-const MOST_CORRECTIONS: usize = 30;
-
-/// What lies between two surfaces.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Oil {
-    /// Dynamic viscosity η [Pa s].
-    pub viscosity: f64,
-    /// Least film thickness [m]: that of a loaded contact, where the oil is as good as solid and contact alone acts.
-    pub least: f64,
-}
 
 /// A round body on a surface, with oil between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,22 +87,12 @@ struct Film {
     centre: u32,
     /// Of the track, and all of the round body.
     lands: [Land; 2],
-    /// Relative radius R [m].
-    radius: f64,
-    /// 4ηRL [N s]: times u/h a force.
-    wedge: f64,
-    /// 1/√(2R) [1/√m].
-    slope: f64,
-    least: f64,
-    spring: Spring,
+    law: FilmLaw<Bed>,
     memory: Memory,
     /// Nodes that it hangs on, which follow from its places.
     nodes: [u32; 4],
-    /// Force on the round body [N], and how far springs are pressed in with and without the film [m].
-    push: f64,
-    pressed: [f64; 2],
-    /// Heat of the last step [J].
-    heat: f64,
+    /// What it does in the last step.
+    pushed: Pushed,
     /// Whether this rank computes it.
     here: bool,
 }
@@ -140,12 +100,8 @@ struct Film {
 /// What a film remembers from step to step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Memory {
-    /// Thickness above the least [m]; `None` where there is no film.
-    above: Option<f64>,
-    /// Where it ends.
-    end: f64,
-    /// Force through it [N].
-    force: f64,
+    /// The oil; `None` where there is no film.
+    layer: Option<Layer>,
     /// Entrainment speed [m/s].
     speed: f64,
     /// Places of the film on the track and on the round body, and what they were when the speed was last taken.
@@ -208,21 +164,16 @@ impl Films {
                     return Err(Error::BadSurface { name: name(), reason });
                 }
                 let radius = 1.0 / curvature;
+                let bed = Bed::new(stiffness * thickness, radius);
                 films.push(Film {
                     round,
                     track,
                     centre,
                     lands: [land.clone(), whole.clone()],
-                    radius,
-                    wedge: 4.0 * oil.viscosity * radius * thickness,
-                    slope: 1.0 / (2.0 * radius).sqrt(),
-                    least: oil.least,
-                    spring: Spring::new(stiffness * thickness, radius),
+                    law: FilmLaw::new(oil, radius, thickness, bed),
                     memory: Memory::new(speed),
                     nodes: [0; 4],
-                    push: 0.0,
-                    pressed: [0.0; 2],
-                    heat: 0.0,
+                    pushed: Pushed::default(),
                     here: true,
                 });
             }
@@ -235,7 +186,7 @@ impl Films {
     pub fn set_preload(&mut self, preload: bool) {
         self.preload = preload;
         // Each begins anew from the positions that it then finds.
-        self.films.iter_mut().for_each(|film| (film.memory.above, film.memory.next_look) = (None, 0));
+        self.films.iter_mut().for_each(|film| (film.memory.layer, film.memory.next_look) = (None, 0));
     }
 
     /// What each film does, in the order given.
@@ -243,11 +194,11 @@ impl Films {
         self.first.windows(2).map(|of_spec| {
             let mut sum = FilmResultant { force: [0.0; 2], thickness: WIDEST };
             for film in &self.films[of_spec[0]..of_spec[1]] {
-                let Some(above) = film.memory.above else { continue };
+                let Some(layer) = film.memory.layer else { continue };
                 let [.., a, b] = film.memory.shares;
-                sum.force[0] += film.push * (a[0] + b[0]);
-                sum.force[1] += film.push * (a[1] + b[1]);
-                sum.thickness = sum.thickness.min(above + film.least);
+                sum.force[0] += film.pushed.force * (a[0] + b[0]);
+                sum.force[1] += film.pushed.force * (a[1] + b[1]);
+                sum.thickness = sum.thickness.min(film.law.thickness(&layer));
             }
             sum
         })
@@ -266,7 +217,7 @@ impl Films {
         }
         for (film, memory) in self.films.iter_mut().zip(&state.films) {
             film.take_over(memory, &self.surfaces);
-            (film.push, film.pressed) = (0.0, [0.0; 2]);
+            film.pushed = Pushed::default();
         }
         self.heat = state.heat;
         true
@@ -287,9 +238,7 @@ impl Memory {
     fn new(speed: f64) -> Self {
         let places = [Place::default(); 2];
         Self {
-            above: None,
-            end: STEADY,
-            force: 0.0,
+            layer: None,
             speed,
             places,
             shares: [[0.0; 2]; 4],
@@ -321,12 +270,12 @@ impl Film {
         let c = self.centre as usize;
         let centre = [at.x[c], at.y[c]];
         let m = &mut self.memory;
-        if m.above.is_none() {
+        if m.layer.is_none() {
             // From anywhere: a land may come into reach at its other end.
             m.places[0] = self.lands[0].begin(both[0], at.x, at.y, centre);
         }
         let track = self.lands[0].nearest(both[0], at.x, at.y, centre, m.places[0]);
-        if m.above.is_none() {
+        if m.layer.is_none() {
             m.places[1] = self.lands[1].begin(both[1], at.x, at.y, track.at);
         }
         let round = self.lands[1].nearest(both[1], at.x, at.y, track.at, m.places[1]);
@@ -348,12 +297,12 @@ impl Film {
         self.memory.offset = gap - self.gap(at);
         let m = &mut self.memory;
         if gap > WIDEST {
-            *m = Memory { above: None, force: 0.0, end: STEADY, ..*m };
-            (self.push, self.pressed) = (0.0, [0.0; 2]);
-        } else if m.above.is_none() {
-            (m.above, begins) = (Some(gap.max(0.0)), true);
+            m.layer = None;
+            self.pushed = Pushed::default();
+        } else if m.layer.is_none() {
+            (m.layer, begins) = (Some(Layer::at(gap)), true);
         }
-        if begins || m.above.is_none() || m.speed_step + REST < at.step {
+        if begins || m.layer.is_none() || m.speed_step + REST < at.step {
             (m.speed_places, m.speed_step, m.swept) = (m.places, at.step, [0.0; 2]);
         } else if at.step >= m.speed_step + LOOK_EVERY * SPEED_EVERY {
             // The nearest places sweep over both surfaces at the speeds with which these draw oil in.
@@ -362,9 +311,10 @@ impl Film {
             m.speed = 0.5 * (m.swept[1] - m.swept[0]);
             (m.speed_places, m.speed_step) = (m.places, at.step);
         }
-        m.next_look = at.step + if m.above.is_some() { LOOK_EVERY } else { REST };
-        if let Some(above) = m.above {
-            self.memory.share = self.share(both[0], track, normal, above + self.least);
+        m.next_look = at.step + if m.layer.is_some() { LOOK_EVERY } else { REST };
+        if let Some(layer) = &m.layer {
+            let ends = self.lands[0].to_ends(both[0], track.place);
+            m.share = self.law.share(ends, track.tilt(normal), layer);
         }
         begins
     }
@@ -378,151 +328,32 @@ impl Film {
         }
         gap
     }
-
-    /// Share of the force that is left where the land ends nearby.
-    fn share(&self, surface: &Surface, track: Point, normal: [f64; 2], thickness: f64) -> f64 {
-        let per_metre = self.slope / thickness.sqrt();
-        let ends = self.lands[0].to_ends(surface, track.place);
-        let tilt = track.normal[0] * normal[1] - track.normal[1] * normal[0];
-        ends.map(|end| {
-            // At the very end the closest approach may lie beyond it.
-            let edge = if end > 0.0 { end } else { -tilt.abs() * self.radius };
-            let edge = edge * per_metre;
-            if edge < FAR { left_of_land(edge) } else { 1.0 }
-        })
-        .iter()
-        .product()
-    }
-
-    /// Gives the film the thickness of steady rolling at this gap [m].
-    fn settle(&mut self, gap: f64) {
-        let m = &mut self.memory;
-        let steady = Pressed::until(STEADY);
-        let carried = self.wedge * m.speed.abs().max(SLOWEST) * m.share * steady.force;
-        let dry = (-gap).max(0.0);
-        let mut above = gap.max(0.0);
-        if self.spring.force(dry) < carried / self.least {
-            // Spring force less film force rises with the thickness.
-            let (mut low, mut high) = (above, above + carried / self.least / self.spring.stiffest() + WIDEST);
-            for _ in 0..80 {
-                let middle = 0.5 * (low + high);
-                if self.spring.force(middle - gap) < carried / (middle + self.least) {
-                    low = middle
-                } else {
-                    high = middle
-                }
-            }
-            above = low;
-        }
-        let depth = above - gap;
-        (m.above, m.end, m.force) = (Some(above), STEADY, self.spring.force(depth));
-        (self.pressed, self.push) = ([depth, dry], m.force - self.spring.force(dry));
-    }
-
-    /// Lets a time step `dt` [s] pass at this gap [m]; the heat of it [J].
-    fn flow(&mut self, above: f64, gap: f64, dt: f64) -> f64 {
-        let m = &mut self.memory;
-        let dry = (-gap).max(0.0);
-        let thickness = above + self.least;
-        let speed = m.speed.hypot(SLOWEST);
-        let lift = self.wedge * speed * m.share / thickness;
-        let rate = speed * thickness.sqrt() * self.slope;
-        let before = m.force;
-        m.fixed = false;
-        if above == 0.0 && dry > 0.0 {
-            let (carried, loose) = (self.spring.force(dry), lift * Pressed::until(STEADY).force);
-            if carried >= loose {
-                // Solid: contact alone acts.
-                m.fixed = carried > FIXED * loose;
-                (m.force, m.end) = (carried, STEADY);
-                (self.push, self.pressed) = (0.0, [dry; 2]);
-                return 0.0;
-            }
-        }
-        let room = above - gap;
-        let new = match end_of(lift, rate * dt, room, m.end, &self.spring) {
-            Some((end, film)) => {
-                m.end = end;
-                (above + rate * dt * film.opening).max(0.0)
-            }
-            None => {
-                m.end = EMPTY;
-                gap.max(0.0)
-            }
-        };
-        m.above = Some(new);
-        let depth = (new - gap).max(0.0);
-        m.force = self.spring.force(depth);
-        (self.push, self.pressed) = (m.force - self.spring.force(dry), [depth, dry]);
-        0.5 * (before + m.force) * (above - new)
-    }
-
-    /// Energy in its springs, beside what contact has [J].
-    fn stored(&self) -> f64 {
-        self.spring.energy(self.pressed[0]) - self.spring.energy(self.pressed[1])
-    }
-}
-
-/// Where the film ends that presses springs in by what is left of `room` [m] after it has opened for a time: at the force
-/// `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
-fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &Spring) -> Option<(f64, Pressed)> {
-    let need = |c: f64| {
-        let film = Pressed::until(c);
-        let (depth, by_force) = spring.depth(lift * film.force);
-        let value = depth - opened * film.opening - room;
-        (value, by_force * lift * film.force_slope - opened * film.opening_slope, film)
-    };
-    let mut c = from.max(EMPTY);
-    let (mut low, mut high) = (EMPTY, f64::INFINITY);
-    for _ in 0..MOST_CORRECTIONS {
-        let (value, slope, film) = need(c);
-        if value >= 0.0 && c == EMPTY {
-            return None;
-        }
-        if value.abs() <= ACCURACY * (room.abs() + opened) {
-            return Some((c, film));
-        }
-        if value > 0.0 {
-            high = c
-        } else {
-            low = c
-        }
-        let next = c - value / slope;
-        c = if next > low && next < high {
-            next
-        } else if value > 0.0 {
-            if low == EMPTY { EMPTY } else { 0.5 * (low + high) }
-        } else if high.is_finite() {
-            0.5 * (low + high)
-        } else {
-            2.0 * c.abs() + 1.0
-        };
-    }
-    Some((c, Pressed::until(c)))
 }
 
 impl Force for Films {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
         let Self { surfaces, films, preload, .. } = self;
         for film in films.iter_mut().filter(|film| film.here) {
-            film.heat = 0.0;
+            film.pushed.heat = 0.0;
             let mut settle = *preload;
             if *preload || at.step >= film.memory.next_look {
                 settle |= film.look(surfaces, &at);
             } else if film.memory.fixed {
                 continue;
             }
-            let Some(above) = film.memory.above else { continue };
             let gap = film.gap(&at);
+            let Film { law, memory, pushed, .. } = film;
+            let Some(layer) = &mut memory.layer else { continue };
             if settle {
-                film.settle(gap);
+                (*layer, *pushed) = law.settled(gap, memory.speed, memory.share);
             } else {
-                film.heat = film.flow(above, gap, at.dt);
+                *pushed = law.flow(layer, gap, memory.speed, memory.share, at.dt);
+                memory.fixed = pushed.fixed;
             }
-            if film.push != 0.0 {
-                for (&n, [x, y]) in film.nodes.iter().zip(&film.memory.shares) {
-                    force.fx[n as usize] += film.push * x;
-                    force.fy[n as usize] += film.push * y;
+            if pushed.force != 0.0 {
+                for (&n, [x, y]) in film.nodes.iter().zip(&memory.shares) {
+                    force.fx[n as usize] += pushed.force * x;
+                    force.fy[n as usize] += pushed.force * y;
                 }
             }
         }
@@ -532,7 +363,7 @@ impl Force for Films {
     }
 
     fn energy(&self) -> Energy {
-        let stored = self.films.iter().map(Film::stored).sum();
+        let stored = self.films.iter().map(|film| film.law.stored(&film.pushed)).sum();
         Energy { stored, damping: self.heat, ..Energy::default() }
     }
 
@@ -542,7 +373,7 @@ impl Force for Films {
         for film in &self.films {
             for surface in [film.track, film.round] {
                 let surface = &self.surfaces[surface];
-                let stiffness = 2.0 * film.spring.stiffest() * (1.0 + surface.steepest().powi(2));
+                let stiffness = 2.0 * film.law.spring.stiffest() * (1.0 + surface.steepest().powi(2));
                 for &slot in &surface.slots {
                     own[slot as usize] = own[slot as usize].max(stiffness);
                 }
@@ -553,13 +384,13 @@ impl Force for Films {
 
     fn tangent(&self, _x: &[f64], _y: &[f64], visit: &mut dyn FnMut(RankOne<'_>)) {
         for film in &self.films {
-            let Film { nodes, memory, .. } = film;
-            let Some(above) = memory.above else { continue };
-            let [depth, dry] = film.pressed.map(|depth| film.spring.stiffness(depth));
+            let Film { nodes, memory, law, pushed, .. } = film;
+            let Some(layer) = &memory.layer else { continue };
+            let [depth, dry] = pushed.pressed.map(|depth| law.spring.stiffness(depth));
             let mut stiffness = depth;
-            if self.preload && film.push > 0.0 {
+            if self.preload && pushed.force > 0.0 {
                 // The film gives, too: in steady rolling its force is in inverse proportion to its thickness.
-                stiffness = 1.0 / (1.0 / depth + (above + film.least) / memory.force);
+                stiffness = 1.0 / (1.0 / depth + law.thickness(layer) / layer.force);
             }
             let stiffness = stiffness - dry;
             if stiffness <= 0.0 {

@@ -142,7 +142,9 @@ mod surface;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
-pub use film::{FilmResultant, FilmSpec, FilmState, Films, Oil};
+pub use film::{
+    Bed, FilmLaw, FilmResultant, FilmSpec, FilmState, Films, Land, Layer, Oil, Place, Point, Pushed, Spring, WIDEST,
+};
 pub use interactions::Interactions;
 pub use law::Law;
 pub use narrow_phase::{Projection, project};

@@ -16,6 +16,7 @@ use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 use crate::{
     compliance::{Compliance, Curve},
     error::Error,
+    oil::Lubrication,
     outline::Outline,
     overlap::Sides,
     reduction::{Reduction, STICKING},
@@ -61,6 +62,8 @@ pub struct Bearing {
     pub(crate) gravity: f64,
     pub(crate) kinematics: Kinematics,
     pub(crate) cage: Option<Cage>,
+    /// Oil between rollers and raceways.
+    pub(crate) oil: Option<Lubrication>,
     /// Speed and load, where they change.
     pub(crate) duty: Option<Duty>,
     pub(crate) tacho: Tacho,
@@ -233,13 +236,17 @@ impl Bearing {
         let mut reduction = reduction;
         level_walls(&mut reduction, &per_angle(&outer));
         let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
+        let outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
+        let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
+        let penalty = law.stiffness * g.thickness;
         Ok(Self {
             time_step,
             rollers: g.rollers,
-            outer: track(outer, true, &reduction.outer_compliance, nearest, kr - ko),
-            inner: track(inner, false, &reduction.inner_compliance, farthest, kr + ki),
+            oil: Lubrication::new(scene, [&outer, &inner], &rims, penalty)?,
+            outer,
+            inner,
             vertex_angle,
-            penalty: law.stiffness * g.thickness,
+            penalty,
             sticking: STICKING * law.stiffness * g.thickness,
             damping: law.damping * g.thickness,
             friction: scene.contact.friction,
@@ -315,6 +322,7 @@ impl Bearing {
             cage_velocity: [0.0, 0.0, k.cage_rad_s],
             shaft: 0.0,
             work: Default::default(),
+            films: None,
             steps: 0,
         };
         for i in 0..n {
@@ -322,6 +330,7 @@ impl Bearing {
             (state.x[i], state.y[i]) = (path * c, path * s);
         }
         state.hints = self.first_hints(&state);
+        state.films = self.first_films(&state);
         state
     }
 

@@ -20,7 +20,7 @@ pub(crate) struct LedgerError {
 
 impl LedgerError {
     pub(crate) fn of(ledger: &Ledger) -> Self {
-        let heat = ledger.friction + ledger.damping + ledger.contact_damping;
+        let heat = ledger.friction + ledger.damping + ledger.contact_damping + ledger.film;
         Self {
             of_strain: ledger.relative_error,
             of_heat: ledger.imbalance.abs() / heat.max(f64::MIN_POSITIVE),

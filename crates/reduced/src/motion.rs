@@ -64,6 +64,10 @@ impl Saved {
             && [&s.q, &s.v].iter().all(|v| v.len() == r)
             && s.branches.len() == bearing.branches.len()
             && s.branches.iter().all(|v| v.len() == r)
+            && match (&bearing.oil, &s.films) {
+                (Some(oil), Some(films)) => oil.fits(films, &bearing.rim_of),
+                (oil, films) => oil.is_none() && films.is_none(),
+            }
             && self.memory.fits(bearing)
     }
 }
@@ -99,6 +103,7 @@ impl Motion {
             contact_damping: w.contact_damping,
             external: at_positions(w.external),
             drive: at_positions(w.drive),
+            film: self.saved.state.films.as_ref().map_or(0.0, |films| films.heat),
             ..Ledger::default()
         }
     }

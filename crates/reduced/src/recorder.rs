@@ -89,6 +89,9 @@ impl Bearing {
             let (sums, lane) = (&scratch.blocks[i / LANES].sums, i % LANES);
             let kinds = if self.cage.is_some() { 3 } else { 2 };
             row.extend(sums[..kinds].iter().flatten().map(|sum| sum[lane] / steps));
+            if let (Some(oil), Some(films)) = (&self.oil, &state.films) {
+                row.extend(oil.races.iter().zip(&films.at).map(|(race, films)| race.thickness(films, i)));
+            }
         }
         if self.cage.is_some() {
             let centre = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);

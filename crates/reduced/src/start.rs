@@ -4,7 +4,7 @@ use faer::{Mat, linalg::solvers::Solve};
 use pulp::Scalar;
 use stribeck_scene::{duty::Duty, scene::Scene};
 
-use crate::{bearing::Bearing, error::Error, state::State, touch::Near};
+use crate::{bearing::Bearing, error::Error, oil::Films, state::State, touch::Near};
 
 /// Newton iterations for modes and rollers.
 const ITERATIONS: usize = 60;
@@ -120,6 +120,8 @@ impl Bearing {
             (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
         }
         state.hints = self.first_hints(&state);
+        // They begin at the first step, with the thickness of steady rolling.
+        state.films.iter_mut().for_each(Films::forget);
         Ok(state)
     }
 
@@ -145,7 +147,7 @@ impl Bearing {
         [sum(0), sum(r)]
     }
 
-    /// Normal forces on a roller by outer and inner raceway, the former displaced.
+    /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
         let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
         let (ss, sc) = state.shaft.sin_cos();
@@ -177,6 +179,7 @@ impl Bearing {
         state.hints[0][i] = hints[0];
         state.hints[1][i] = hints[1];
         (state.force[0][i], state.force[1][i]) = (forces[0], forces[1]);
-        forces
+        let by_oil = self.carried_by_oil(state, i, moved);
+        [forces[0] + by_oil[0], forces[1] + by_oil[1]]
     }
 }

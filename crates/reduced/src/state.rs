@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::oil::Films;
+
 /// Positions at one time, velocities half a step earlier.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -45,6 +47,8 @@ pub struct State {
     pub shaft: f64,
     /// Work since the start.
     pub work: Work,
+    /// Films of oil; `None` without any.
+    pub films: Option<Films>,
     /// Steps taken.
     pub steps: u64,
 }

@@ -11,6 +11,7 @@ use crate::{
     bearing::Bearing,
     block::Block,
     modes::{Modes, Moved},
+    oil::{Now, Shaft},
     pocket::PlacedCage,
     raceway::Rolling,
     row::{load, of_one, store},
@@ -131,13 +132,20 @@ impl Bearing {
             self.press_together(simd, &self.outer, *first, top, *bits, outer);
             self.press_together(simd, &self.inner, *first, top, *bits, inner);
             self.push_rollers(simd, block, rate, [sc, ss], &mut sums);
+            let mut lifted = [0.0; LANES];
+            if let (Some(oil), Some(films)) = (&self.oil, &mut state.films) {
+                let (shaft, now) = (Shaft { turned: [sc, ss], rate }, Now { step: state.steps, dt, last });
+                let moment =
+                    self.lift_rollers(oil, films, block, shaft, now, &mut lifted, &mut energy.contact);
+                spent.drive += dt * rate * moment;
+            }
             for lane in 0..block.count {
                 let (facet, share) = (block.facet[lane], block.share[lane]);
                 let force = of_one(&block.force[0], lane);
                 if force != [0.0; 2] {
                     self.press(simd, &self.place(facet as usize, share), force, &mut scratch.modes);
                 }
-                let force = block.contacts[0].normal[lane];
+                let force = block.contacts[0].normal[lane] + lifted[lane];
                 scratch.heard[block.first + lane] = Heard { facet, share, force };
             }
             for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {

@@ -2,7 +2,7 @@
 
 use stribeck_solver::{ranks::Shared, state::Moment};
 
-use super::{Film, Films, Memory};
+use super::{Film, Films, Layer, Memory, Pushed};
 use crate::interactions::{Interactions, within_reach};
 
 /// Numbers of a report: heat, force, how far springs are pressed in, thickness, and where the force goes.
@@ -14,7 +14,7 @@ const WORK_NS: f64 = 100.0;
 impl Films {
     /// Heat of the last step, film by film.
     pub(super) fn count_heat(&mut self) {
-        self.films.iter().for_each(|film| self.heat += film.heat);
+        self.films.iter().for_each(|film| self.heat += film.pushed.heat);
     }
 }
 
@@ -33,7 +33,7 @@ impl Interactions for Films {
         let Film { round, track, centre, lands, memory, .. } = &self.films[which];
         let both = [&self.surfaces[*track], &self.surfaces[*round]];
         let mut places = memory.places;
-        if memory.above.is_none() {
+        if memory.layer.is_none() {
             let c = *centre as usize;
             places[0] = lands[0].begin(both[0], at.x, at.y, [at.x[c], at.y[c]]);
             let near = lands[0].nearest(both[0], at.x, at.y, [at.x[c], at.y[c]], places[0]);
@@ -62,16 +62,17 @@ impl Interactions for Films {
     }
 
     fn report(&self, which: usize, to: &mut Shared) {
-        let Film { heat, push, pressed: [depth, dry], memory, .. } = &self.films[which];
-        to.tell([*heat, *push, *depth, *dry, memory.above.unwrap_or(f64::NAN)]);
+        let Film { pushed: Pushed { heat, force, pressed: [depth, dry], .. }, memory, .. } = &self.films[which];
+        let above = memory.layer.map_or(f64::NAN, |layer| layer.above);
+        to.tell([*heat, *force, *depth, *dry, above]);
         to.tell(memory.shares.as_flattened().iter().copied());
     }
 
     fn hear(&mut self, which: usize, report: &[f64]) {
         let film = &mut self.films[which];
-        let &[heat, push, depth, dry, above, ref shares @ ..] = report else { return };
-        (film.heat, film.push, film.pressed) = (heat, push, [depth, dry]);
-        film.memory.above = (!above.is_nan()).then_some(above);
+        let &[heat, force, depth, dry, above, ref shares @ ..] = report else { return };
+        film.pushed = Pushed { heat, force, pressed: [depth, dry], ..Pushed::default() };
+        film.memory.layer = (!above.is_nan()).then(|| Layer::at(above));
         film.memory.shares.as_flattened_mut().copy_from_slice(shares);
     }
 

@@ -20,33 +20,35 @@ const CORRECTIONS: usize = 8;
 
 /// Facets between two corners of a surface.
 #[derive(Debug, Clone)]
-pub(crate) struct Land {
+pub struct Land {
     first: usize,
     facets: usize,
     /// Without ends.
     closed: bool,
     /// Curvature in the reference positions [1/m]: positive where the solid bulges.
-    pub(crate) curvature: f64,
+    pub curvature: f64,
 }
 
-/// A place on a surface.
+/// A place on a surface: a facet, and a share of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(crate) struct Place {
-    pub(crate) facet: u32,
+pub struct Place {
+    /// Number of the facet.
+    pub facet: u32,
     /// 0 at its first node, 1 at its second.
-    pub(crate) along: f64,
+    pub along: f64,
 }
 
 /// A point of a surface in present positions.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Point {
-    pub(crate) place: Place,
+pub struct Point {
+    /// Where on the surface.
+    pub place: Place,
     /// Slots of the nodes that it hangs on.
     pub(crate) ends: [u32; 2],
     /// Position [m].
-    pub(crate) at: [f64; 2],
+    pub at: [f64; 2],
     /// Outward normal of the surface.
-    pub(crate) normal: [f64; 2],
+    pub normal: [f64; 2],
     /// Height above the chord [m], its normal and its length [m].
     height: f64,
     chord: [f64; 2],
@@ -55,7 +57,7 @@ pub(crate) struct Point {
 
 impl Land {
     /// All lands of a surface whose positions are the reference.
-    pub(crate) fn of(surface: &Surface, x: &[f64], y: &[f64]) -> Vec<Self> {
+    pub fn of(surface: &Surface, x: &[f64], y: &[f64]) -> Vec<Self> {
         let (facets, n) = (surface.facets(), surface.slots.len());
         let starts: Vec<usize> = (0..facets).filter(|&f| surface.corner[f]).collect();
         let mut lands = if starts.is_empty() {
@@ -97,7 +99,7 @@ impl Land {
     }
 
     /// The facet whose first node is nearest to a point: where a search begins.
-    pub(crate) fn begin(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2]) -> Place {
+    pub fn begin(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2]) -> Place {
         let at = Vertices { slots: &surface.slots, closed: surface.closed, x, y };
         let distance = |f: usize| {
             let ([ax, ay], [bx, by]) = at.ends(f);
@@ -109,7 +111,7 @@ impl Land {
     }
 
     /// The place nearest to `p`, walking on from another; ends are never passed.
-    pub(crate) fn nearest(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], from: Place) -> Point {
+    pub fn nearest(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], from: Place) -> Point {
         let (mut facet, mut before) = (from.facet as usize, None);
         loop {
             let arc = Arc::new(surface, x, y, facet);
@@ -136,7 +138,7 @@ impl Land {
     }
 
     /// Distance along the land from a place to its first and its last end [m]; infinite without ends.
-    pub(crate) fn to_ends(&self, surface: &Surface, place: Place) -> [f64; 2] {
+    pub fn to_ends(&self, surface: &Surface, place: Place) -> [f64; 2] {
         if self.closed {
             return [f64::INFINITY; 2];
         }
@@ -200,6 +202,11 @@ impl Arc {
 }
 
 impl Point {
+    /// Sine of the angle from the surface's normal here to another direction.
+    pub fn tilt(&self, direction: [f64; 2]) -> f64 {
+        cross(self.normal, direction)
+    }
+
     /// Forces on the facet's two nodes that are worth the force `f` on the point, which turns with its chord.
     pub(crate) fn shares(&self, f: [f64; 2]) -> [[f64; 2]; 2] {
         let lever = -self.height / self.length * cross(self.chord, f);

@@ -38,7 +38,6 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_bodies,
         damped_twice,
         reduced_starts,
-        reduced_oil,
         reduced_housing,
         reduced_rollers,
         load_direction,
@@ -201,21 +200,6 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
             )
             .number(interval / 10.0, note)
             .number(interval / 500.0, "two samples"),
-        ],
-    ))
-}
-
-/// Films of oil are the full model's.
-fn reduced_oil(scene: &Scene) -> Option<Finding> {
-    if scene.model == ModelScene::Full || scene.film.is_none() {
-        return None;
-    }
-    let message = "`film` is there, and the reduced model has dry contacts alone".to_owned();
-    Some(Finding::new(
-        message,
-        vec![
-            Remedy::new("film", "`None`".to_owned()).value("None", ""),
-            Remedy::new("model", "`full`".to_owned()).value("full", ""),
         ],
     ))
 }

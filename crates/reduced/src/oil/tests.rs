@@ -1,0 +1,139 @@
+use std::f64::consts::{PI, SQRT_2, TAU};
+
+use super::*;
+use crate::{compliance::Compliance, outline::Outline};
+
+/// The paper's raceways and roller [m], its oil and a roller's mass [kg].
+const OUTER: f64 = 0.1;
+const INNER: f64 = 0.08198;
+const RADIUS: f64 = 9e-3;
+const LENGTH: f64 = 30e-3;
+const OIL: Oil = Oil { viscosity: 0.05, least: 0.5e-6 };
+const MASS: f64 = 0.06;
+
+/// Penalty [N/m²] and flexibility behind it [m/N].
+const PENALTY: f64 = 6e11;
+const FLEXIBILITY: f64 = 2e-9;
+
+fn race(radius: f64, hollow: bool) -> Race {
+    let vertices: Vec<[f64; 2]> = (0..1200)
+        .map(|i| TAU * f64::from(i) / 1200.0)
+        .map(|angle| [radius * angle.cos(), radius * angle.sin()])
+        .collect();
+    let curved = Curved::new("raceway", &Outline::new(&vertices), hollow).expect("a surface");
+    let relative = 1.0 / (1.0 / RADIUS + curved.lands[0].curvature);
+    let loads = [1.0, 1e4];
+    let compliance = Compliance::through(&loads, &loads.map(|load| FLEXIBILITY * load), 48);
+    let give = Give::new(PENALTY, relative, &compliance);
+    let films = vec![FilmLaw::new(OIL, relative, LENGTH, give)];
+    Race { curved, films, speed: 0.0 }
+}
+
+fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> Seen {
+    Seen { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
+}
+
+/// A roller between the raceways that a weight drives into the outer film: F = 3√2 π η L (R/h)^{3/2} (−ḣ) against the film that closes,
+/// nothing in the one that opens (A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7), on springs in series, by the
+/// method of Runge and Kutta.
+#[test]
+fn analytic_a_roller_sinks_through_its_film() {
+    const WEIGHT: f64 = 200.0;
+    // The film goes by implicit steps of the first order: dt over the time in which it halves, some 50 µs.
+    const STEP: f64 = 0.25e-6;
+    const TOLERANCE: f64 = 0.01;
+    let races = [race(OUTER, true), race(INNER, false)];
+    let rim = Rim::Round(RADIUS);
+    let start = 0.5 * (OUTER + INNER);
+    let (mut x, mut v) = (start, 0.0);
+    let mut films = [[Film::default()], [Film::default()]];
+    let relative = 1.0 / (1.0 / RADIUS - 1.0 / OUTER);
+    let hardness = 4.0 / 3.0 * PENALTY * (2.0 * relative).sqrt();
+    let spring = |depth: f64| {
+        let (mut low, mut high) = (0.0, 1e5);
+        for _ in 0..60 {
+            let middle: f64 = 0.5 * (low + high);
+            let given = (middle / hardness).powf(2.0 / 3.0) + FLEXIBILITY * middle;
+            if given < depth { low = middle } else { high = middle }
+        }
+        low
+    };
+    // Place, velocity and thickness above the least, and their rates.
+    let rates = |[x, v, above]: [f64; 3]| {
+        let force = spring(above - (OUTER - RADIUS - x));
+        let thickness = above + OIL.least;
+        let resistance = 3.0 * SQRT_2 * PI * OIL.viscosity * LENGTH * (relative / thickness).powf(1.5);
+        [v, (WEIGHT - force) / MASS, -force / resistance]
+    };
+    let mut known = [start, 0.0, OUTER - RADIUS - start];
+    let mut halved = 0;
+    for step in 0..2400 {
+        let now = Now { step, dt: STEP, last: false };
+        let mut force = WEIGHT;
+        for (race, films) in races.iter().zip(&mut films) {
+            force += race.lift(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
+        }
+        let thickness = races[0].thickness(&films[0], 0);
+        if thickness < 0.5_f64.powi(halved) * 10e-6 {
+            halved += 1;
+        }
+        let above = known[2];
+        let off = (thickness - OIL.least - above) / (above + OIL.least);
+        assert!(off.abs() < TOLERANCE, "step {step}: {thickness} m, {above} m above the least");
+        v += STEP * force / MASS;
+        x += STEP * v;
+        for _ in 0..4 {
+            let dt = 0.25 * STEP;
+            let ahead = |rate: [f64; 3], by: f64| std::array::from_fn(|c| known[c] + by * rate[c]);
+            let a = rates(known);
+            let b = rates(ahead(a, 0.5 * dt));
+            let c = rates(ahead(b, 0.5 * dt));
+            let d = rates(ahead(c, dt));
+            known = std::array::from_fn(|n| known[n] + dt / 6.0 * (a[n] + 2.0 * (b[n] + c[n]) + d[n]));
+        }
+    }
+    assert!(halved >= 3, "the film was squeezed to a {halved}th power of one half only");
+}
+
+/// Rolling without slip both surfaces sweep past a contact as fast as the contact past the raceway (THEORY §5.1); pivoting about a corner
+/// without slip draws in nothing; a roller that spins in place draws in half of its own speed. Plane kinematics of a rolling circle:
+/// T. A. Harris, Rolling Bearing Analysis, Wiley 2001, chapter 8.
+#[test]
+fn analytic_entrainment_follows_from_rolling() {
+    const ROUNDING: f64 = 1e-9;
+    // A gap of 20 µm over 9 mm; the curve through 1200 vertices has the radius of the circle but for 1e-6.
+    const GAP: f64 = 3e-3;
+    let at = OUTER - RADIUS - 20e-6;
+    let (orbit, rim) = (-24.0, Rim::Round(RADIUS));
+    let mut places = [Place::default(); 2];
+    for (radius, hollow, shaft) in [(OUTER, true, 0.0), (INNER, false, -52.0)] {
+        let race = race(radius, hollow);
+        let land = &race.curved.lands[0];
+        // In the frame of the raceway.
+        let orbit = orbit - shaft;
+        let sign = if hollow { 1.0 } else { -1.0 };
+        let rolling = on_x_axis(at, [0.0, orbit * at], -sign * orbit * at / RADIUS);
+        let speed = Nearest::new(&race.curved, land, &rim, &rolling, &mut places).speed(&rolling, land).abs();
+        assert!((speed / (orbit * radius).abs() - 1.0).abs() < GAP, "{speed} m/s");
+        let spinning = on_x_axis(at, [0.0; 2], 200.0);
+        let nearest = Nearest::new(&race.curved, land, &rim, &spinning, &mut places);
+        assert!((nearest.speed(&spinning, land) / (100.0 * RADIUS) - 1.0).abs() < ROUNDING);
+    }
+}
+
+/// What springs hold is the integral of what they push with.
+#[test]
+fn patch_springs_hold_the_work_that_presses_them_in() {
+    // Simpson's rule over 200 steps of a force that grows with the 3/2nd power.
+    const QUADRATURE: f64 = 1e-5;
+    let law = &race(OUTER, true).films[0];
+    let most = 3e-6;
+    let mut work = 0.0;
+    for i in 0..200 {
+        let [a, b] = [i, i + 1].map(|n| most * f64::from(n) / 200.0);
+        let f = [a, 0.5 * (a + b), b].map(|depth| stribeck_contact::Spring::force(&law.spring, depth));
+        work += (b - a) / 6.0 * (f[0] + 4.0 * f[1] + f[2]);
+    }
+    let pushed = Pushed { pressed: [most, 0.0], ..Pushed::default() };
+    assert!((law.stored(&pushed) / work - 1.0).abs() < QUADRATURE, "{} J, {work} J", law.stored(&pushed));
+}
