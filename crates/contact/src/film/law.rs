@@ -146,7 +146,7 @@ impl<S: Spring> FilmLaw<S> {
         let rate = speed * thickness.sqrt() * self.slope;
         let before = layer.force;
         if above == 0.0 && dry > 0.0 {
-            let (carried, loose) = (self.spring.force(dry), lift * Pressed::until(STEADY).force);
+            let (carried, loose) = (self.spring.force_near(dry, before), lift * Pressed::until(STEADY).force);
             if carried >= loose {
                 // Solid: contact alone acts.
                 (layer.force, layer.end) = (carried, STEADY);
@@ -154,18 +154,18 @@ impl<S: Spring> FilmLaw<S> {
             }
         }
         let room = above - gap;
-        layer.above = match end_of(lift, rate * dt, room, layer.end, &self.spring) {
+        let carried = match end_of(lift, rate * dt, room, layer.end, &self.spring) {
             Some((end, film)) => {
-                layer.end = end;
-                (above + rate * dt * film.opening).max(0.0)
+                (layer.above, layer.end) = ((above + rate * dt * film.opening).max(0.0), end);
+                lift * film.force
             }
             None => {
-                layer.end = EMPTY;
-                gap.max(0.0)
+                (layer.above, layer.end) = (gap.max(0.0), EMPTY);
+                before
             }
         };
         let depth = (layer.above - gap).max(0.0);
-        layer.force = self.spring.force(depth);
+        layer.force = self.spring.force_near(depth, carried);
         let force = layer.force - self.spring.force(dry);
         let heat = 0.5 * (before + layer.force) * (above - layer.above);
         Pushed { force, pressed: [depth, dry], heat, fixed: false }

@@ -9,6 +9,12 @@ pub trait Spring {
     /// Force [N] at a depth of zero or more [m].
     fn force(&self, depth: f64) -> f64;
 
+    /// The same when it is about `guess` [N], for springs whose force has to be sought.
+    fn force_near(&self, depth: f64, guess: f64) -> f64 {
+        let _ = guess;
+        self.force(depth)
+    }
+
     /// Depth [m] under a force of zero or more [N], and its derivative [m/N].
     fn depth(&self, force: f64) -> (f64, f64);
 

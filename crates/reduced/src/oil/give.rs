@@ -4,15 +4,15 @@ use stribeck_contact::Spring;
 
 use crate::compliance::{Compliance, Curve};
 
-/// Corrections of the force at a depth at most, and what they may leave of it.
+/// Corrections of the force at a depth at most, and the share of it below which the last one leaves its square: nothing.
 const CORRECTIONS: usize = 30;
-const ACCURACY: f64 = 1e-14;
+const ENOUGH: f64 = 1e-8;
 
 /// Penalty and compliance of a round contact in series.
 #[derive(Debug, Clone)]
 pub(crate) struct Give {
-    /// Force over the penetration's 3/2nd power [N/m^{3/2}].
-    hardness: f64,
+    /// Penetration over the force's 2/3rd power [m/N^{2/3}].
+    softness: f64,
     compliance: Compliance,
     curve: Curve,
     stiffest: f64,
@@ -22,38 +22,42 @@ impl Give {
     /// Of bodies with the relative radius R [m] on a penalty [N/m²].
     pub(crate) fn new(penalty: f64, radius: f64, compliance: &Compliance) -> Self {
         Self {
-            hardness: 4.0 / 3.0 * penalty * (2.0 * radius).sqrt(),
+            softness: (4.0 / 3.0 * penalty * (2.0 * radius).sqrt()).powf(-2.0 / 3.0),
             compliance: compliance.clone(),
             curve: compliance.curve(),
             stiffest: compliance.stiffest(penalty, radius),
         }
     }
-}
 
-impl Spring for Give {
-    fn force(&self, depth: f64) -> f64 {
-        if depth <= 0.0 {
-            return 0.0;
-        }
-        // Newton's method for the cube root of the force, in which the depth is convex.
-        let per = self.hardness.powf(-2.0 / 3.0);
-        let mut root = (depth / per).sqrt();
+    /// Force at a depth above zero: Newton's method for the cube root of it, in which the depth is convex.
+    fn seek(&self, depth: f64, mut root: f64) -> f64 {
         for _ in 0..CORRECTIONS {
             let square = root * root;
             let ([given, give], _) = self.curve.approach(square * root);
-            let by = (per * square + given - depth) / (2.0 * per * root + 3.0 * square * give);
+            let slope = 2.0 * self.softness * root + 3.0 * square * give;
+            let by = (self.softness * square + given - depth) / slope;
             root -= by;
-            if by.abs() <= ACCURACY * root {
+            if by.abs() <= ENOUGH * root {
                 break;
             }
         }
         root * root * root
     }
+}
+
+impl Spring for Give {
+    fn force(&self, depth: f64) -> f64 {
+        if depth > 0.0 { self.seek(depth, (depth / self.softness).sqrt()) } else { 0.0 }
+    }
+
+    fn force_near(&self, depth: f64, guess: f64) -> f64 {
+        if depth > 0.0 && guess > 0.0 { self.seek(depth, guess.cbrt()) } else { self.force(depth) }
+    }
 
     fn depth(&self, force: f64) -> (f64, f64) {
-        let root = (force / self.hardness).cbrt();
+        let root = force.cbrt();
         let ([given, give], _) = self.curve.approach(force);
-        (root * root + given, 1.0 / (1.5 * self.hardness * root) + give)
+        (self.softness * root * root + given, self.softness / (1.5 * root) + give)
     }
 
     fn stiffest(&self) -> f64 {
@@ -62,7 +66,7 @@ impl Spring for Give {
 
     fn energy(&self, depth: f64) -> f64 {
         let force = self.force(depth);
-        let root = (force / self.hardness).cbrt();
-        0.4 * force * root * root + self.compliance.energy(force)
+        let root = force.cbrt();
+        0.4 * self.softness * force * root * root + self.compliance.energy(force)
     }
 }

@@ -105,7 +105,7 @@ impl Nearest {
         let foot = race.nearest(land, seen.centre, places[0]);
         places[0] = foot.place;
         let to = [foot.at[0] - seen.centre[0], foot.at[1] - seen.centre[1]];
-        let distance = to[0].hypot(to[1]);
+        let distance = (to[0] * to[0] + to[1] * to[1]).sqrt();
         let (gap, d, lever) = match rim {
             Rim::Round(radius) => (distance - radius, [to[0] / distance, to[1] / distance], 0.0),
             Rim::Formed(rim) => {
