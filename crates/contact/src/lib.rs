@@ -143,7 +143,8 @@ mod surface;
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use error::Error;
 pub use film::{
-    Bed, FilmLaw, FilmResultant, FilmSpec, FilmState, Films, Land, Layer, Oil, Place, Point, Pushed, Spring, WIDEST,
+    Bed, FilmLaw, FilmResultant, FilmSpec, FilmState, Films, Land, Layer, Oil, Place, Point, Pushed, Spring,
+    WIDEST,
 };
 pub use interactions::Interactions;
 pub use law::Law;

@@ -62,7 +62,8 @@ impl Interactions for Films {
     }
 
     fn report(&self, which: usize, to: &mut Shared) {
-        let Film { pushed: Pushed { heat, force, pressed: [depth, dry], .. }, memory, .. } = &self.films[which];
+        let Film { pushed: Pushed { heat, force, pressed: [depth, dry], .. }, memory, .. } =
+            &self.films[which];
         let above = memory.layer.map_or(f64::NAN, |layer| layer.above);
         to.tell([*heat, *force, *depth, *dry, above]);
         to.tell(memory.shares.as_flattened().iter().copied());
