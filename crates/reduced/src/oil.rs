@@ -142,6 +142,19 @@ impl Bearing {
         [-forces[0], forces[1]]
     }
 
+    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance, or no oil.
+    pub(crate) fn floating(&self, state: &mut State, i: usize, moved: [f64; 2]) -> Option<[f64; 2]> {
+        let oil = self.oil.as_ref()?;
+        let mut films = state.films.take()?;
+        let gaps = [0, 1].map(|k| {
+            let (race, seen) = (&oil.races[k], self.seen_at_rest(state, i, k, moved));
+            race.gap(oil.rim(self.rim_of[i]), race.of_roller(&mut films.at[k], i), &seen)
+        });
+        state.films = Some(films);
+        let at = state.x[i].hypot(state.y[i]);
+        Some([at - gaps[1], at + gaps[0]]).filter(|[low, high]| low < high)
+    }
+
     /// Adds what films do to eight rollers, and to the shaft: the moment that the drive makes good [N m]. `normal` becomes what they carry
     /// at the outer raceway [N], and `stored` grows by what their springs hold [J].
     #[inline(never)]
@@ -305,6 +318,15 @@ impl Race {
             }
         }
         lifted
+    }
+
+    /// The smallest gap between a roller and its lands [m].
+    fn gap(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> f64 {
+        let each = self.curved.lands.iter().zip(films);
+        let gap = |(land, film): (&Land, &mut Film)| {
+            Nearest::new(&self.curved, land, rim, seen, &mut film.places).gap
+        };
+        each.map(gap).fold(f64::INFINITY, f64::min)
     }
 
     /// What the films of a roller carry in steady rolling.

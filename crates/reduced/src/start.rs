@@ -51,8 +51,10 @@ impl Bearing {
                     let [outer, inner] = self.pressed(state, i, moved);
                     (inner + inertia(rho) - outer, outer)
                 };
-                // The balance falls with the radius: a bracket, then regula falsi.
-                let (mut low, mut high) = (at, at);
+                // The balance falls with the radius: a bracket, then bisection. Films keep a roller with clearance between the circles;
+                // beyond them polygons that do not touch yet would leave it a second balance.
+                let floats = self.floating(&mut state, i, moved);
+                let [mut low, mut high] = floats.unwrap_or([at; 2]);
                 let mut width = 1e-7;
                 while balance(&mut state, low).0 < 0.0 && width < 1e-2 {
                     low -= width;
