@@ -126,7 +126,9 @@ fn example_films_are_those_of_the_full_model() {
     // A roller brings ½ m v² of its fall across the clearance, in proportion to the way: 2 of 20 to 40 µm.
     const HEAT: f64 = 0.1;
     let folder = Scratch::create("oil-models");
-    let scene = coarse(6.0);
+    let mut scene = coarse(6.0);
+    // The reduced model has none in the inner ring, which would take a tenth of what films do here.
+    scene.solver.structural_damping = None;
     run(&scene, &folder, "reduced");
     run(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
     let traces = ["full", "reduced"].map(|name| trace(&folder, name, "trace.npy"));

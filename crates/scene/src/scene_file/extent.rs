@@ -19,6 +19,9 @@ const MAX_SAMPLES: f64 = 1e7;
 /// Upper over lower end of the narrowest band of structural damping.
 const NARROWEST_BAND: f64 = 2.0;
 
+/// Least slope of a defect's edges under oil [°]: a vertex is a corner when it turns by 20°, less what the raceway itself turns.
+const LEAST_EDGE_DEG: f64 = 22.0;
+
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
 const OUTER_RING: &str = "bearing.outer_ring_thickness_mm";
 const INNER_RACE: &str = "bearing.inner_race_diameter_mm";
@@ -37,6 +40,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_band,
         damped_bodies,
         damped_twice,
+        oiled_edges,
         reduced_starts,
         reduced_housing,
         reduced_rollers,
@@ -202,6 +206,19 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
             .number(interval / 500.0, "two samples"),
         ],
     ))
+}
+
+/// Oil ends at the edges of a defect: walls that a surface turns into more gently are no end, and a film would lie across them.
+fn oiled_edges(scene: &Scene) -> Option<Finding> {
+    let defect = scene.defect.as_ref().filter(|defect| defect.edge_slope_deg < LEAST_EDGE_DEG)?;
+    scene.film.as_ref()?;
+    let message = format!(
+        "`film` is there, and the edges of `defect` slope by {}°: oil knows edges of {LEAST_EDGE_DEG}° or more",
+        number(defect.edge_slope_deg)
+    );
+    let slope = Remedy::new("defect.edge_slope_deg", format!("{LEAST_EDGE_DEG}° or more"));
+    let dry = Remedy::new("film", "`None`").value("None", "dry");
+    Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
 }
 
 /// The reduced model has a roller in every pocket.

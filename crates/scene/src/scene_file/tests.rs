@@ -626,7 +626,9 @@ fn example_defects_on_either_ring_with_sloped_edges() {
     assert!((defect.edge_slope.to_degrees() - 30.0).abs() < 1e-12);
     for (text, field) in [
         ("(defect: (edge_slope_deg: 120))", "defect.edge_slope_deg"),
-        ("(defect: (edge_slope_deg: 6))", "defect.edge_slope_deg"),
+        ("(film: None, defect: (edge_slope_deg: 6))", "defect.edge_slope_deg"),
+        // A roller would feel a film across the edge.
+        ("(defect: (edge_slope_deg: 20))", "defect.edge_slope_deg"),
         ("(defect: (ring: middle))", "defect.ring"),
         ("(defect: (ring: inner, depth_mm: 7))", "defect.depth_mm"),
     ] {
