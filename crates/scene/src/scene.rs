@@ -148,7 +148,7 @@ pub struct DefectScene {
     pub depth_mm: f64,
     /// Angle of its centre at the start [°]; 90 is the top, in the middle of the load zone.
     pub angle_deg: f64,
-    /// Angle between its edges and the raceway [°]; 90 for radial walls.
+    /// Angle between its edges and the raceway [°]; 90 for radial walls, 22 or more under oil.
     pub edge_slope_deg: f64,
 }
 
