@@ -31,10 +31,14 @@ pub struct Bearing {
     pub time_step: f64,
     /// Rollers.
     pub rollers: usize,
+    /// The pocket of each of them, from 0.
+    pub(crate) pockets: Vec<usize>,
     /// The reduced rings.
     pub reduction: Reduction,
     /// Their shapes at the vertices of the outer raceway again, in rows.
     pub(crate) shapes: Vec<Row>,
+    /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
+    pub(crate) dampers: Vec<Row>,
     /// Contact with the outer raceway.
     pub(crate) outer: Track,
     /// Contact with the inner raceway.
@@ -61,6 +65,8 @@ pub struct Bearing {
     pub(crate) branches: Vec<Branch>,
     pub(crate) gravity: f64,
     pub(crate) kinematics: Kinematics,
+    /// Angular velocity of an outer ring that turns [rad/s].
+    pub(crate) outer_rad_s: Option<f64>,
     pub(crate) cage: Option<Cage>,
     /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
@@ -208,19 +214,22 @@ impl Bearing {
                 bound,
                 relative: 1.0 / relative,
             };
-        let vertex_angle: Vec<f64> = (0..g.rollers)
-            .map(|i| match scene.mesh.roller_copies {
+        let pockets: Vec<usize> = scene.rollers_in_place().map(|number| number - 1).collect();
+        let vertex_angle: Vec<f64> = pockets
+            .iter()
+            .map(|&pocket| match scene.mesh.roller_copies {
                 RollerCopies::Translated => g.roller_phase,
-                RollerCopies::Rotated => g.roller_angle(i) + g.roller_phase,
+                RollerCopies::Rotated => g.roller_angle(pocket) + g.roller_phase,
             })
             .collect();
         // Vertex 0 of the outline lies on the x axis.
         let round = Rim { top: roller.x[0], outline: roller.clone() };
-        let (mut rims, mut rim_of) = (vec![round], vec![0; g.rollers]);
-        for (i, relief) in &g.roller_reliefs {
+        let (mut rims, mut rim_of) = (vec![round], vec![0; pockets.len()]);
+        for (of, relief) in &g.roller_reliefs {
+            let Some(i) = pockets.iter().position(|pocket| pocket == of) else { continue };
             // A rim is seen from its vertex 0.
-            let own = formed(&roller, Some(&relief.turned(-vertex_angle[*i])), Circle::Outer);
-            rim_of[*i] = rims.len() as u32;
+            let own = formed(&roller, Some(&relief.turned(-vertex_angle[i])), Circle::Outer);
+            rim_of[i] = rims.len() as u32;
             rims.push(Rim { top: radii(&own).into_iter().fold(0.0, f64::max), outline: own });
         }
         let branches = match (&scene.solver.structural_damping, g.structural_damping) {
@@ -231,18 +240,25 @@ impl Bearing {
             }
             _ => Vec::new(),
         };
-        let cage =
-            reduction.cage.map(|([mass, inertia], centre)| Cage::new(&g, mass, inertia, centre, scene));
+        let cage = reduction
+            .cage
+            .map(|([mass, inertia], centre)| Cage::new(&g, &pockets, [mass, inertia], centre, scene));
+        let kinematics = Kinematics::of(scene);
         let mut reduction = reduction;
         level_walls(&mut reduction, &per_angle(&outer));
+        let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
         let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
         let penalty = law.stiffness * g.thickness;
+        let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
+        let races = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
+        let oil = Lubrication::new(scene, races, &rounded, penalty)?;
         Ok(Self {
             time_step,
-            rollers: g.rollers,
-            oil: Lubrication::new(scene, [&outer, &inner], &rims, penalty)?,
+            rollers: pockets.len(),
+            pockets,
+            oil,
             outer,
             inner,
             vertex_angle,
@@ -256,13 +272,15 @@ impl Bearing {
             beta: g.stiffness_damping,
             branches,
             gravity: g.gravity,
-            kinematics: Kinematics::of(scene),
+            outer_rad_s: Some(kinematics.outer_rad_s).filter(|rate| *rate != 0.0),
+            kinematics,
             duty: Duty::varying(scene),
             tacho: Tacho::of(scene),
             cage: cage.flatten(),
             rims,
             rim_of,
             shapes,
+            dampers,
             reduction,
         })
     }
@@ -325,8 +343,8 @@ impl Bearing {
             films: None,
             steps: 0,
         };
-        for i in 0..n {
-            let (s, c) = g.roller_angle(i).sin_cos();
+        for (i, &pocket) in self.pockets.iter().enumerate() {
+            let (s, c) = g.roller_angle(pocket).sin_cos();
             (state.x[i], state.y[i]) = (path * c, path * s);
         }
         state.hints = self.first_hints(&state);
@@ -359,7 +377,13 @@ impl Bearing {
 }
 
 impl Cage {
-    fn new(g: &Geometry, mass: f64, inertia: f64, centre: [f64; 2], scene: &Scene) -> Option<Self> {
+    fn new(
+        g: &Geometry,
+        pockets: &[usize],
+        [mass, inertia]: [f64; 2],
+        centre: [f64; 2],
+        scene: &Scene,
+    ) -> Option<Self> {
         let cage = g.cage.as_ref()?;
         let path = g.outer_race_radius - g.roller_radius;
         let [inner, outer] = cage.walls(path, g.roller_radius);
@@ -369,9 +393,10 @@ impl Cage {
             path,
             g.roller_radius + cage.pocket_clearance,
         );
-        let walls: Vec<[Wall; 2]> = (0..g.rollers)
-            .map(|i| {
-                let (s, c) = g.pocket_angle(i).sin_cos();
+        let walls: Vec<[Wall; 2]> = pockets
+            .iter()
+            .map(|&pocket| {
+                let (s, c) = g.pocket_angle(pocket).sin_cos();
                 let wall = |side: f64| {
                     let end = |radius: f64| {
                         let along = (radius * radius - half * half).sqrt();

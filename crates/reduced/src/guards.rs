@@ -43,6 +43,8 @@ const CARRIES: f64 = 1e-3;
 pub(crate) struct Guards {
     limits: GuardsScene,
     element_size: f64,
+    /// Numbers of the rollers, from 1.
+    numbers: Vec<usize>,
     /// Nearest and farthest place of a roller's centre from the bearing's [m].
     annulus: [f64; 2],
 }
@@ -55,6 +57,7 @@ impl Guards {
         Self {
             limits: scene.guards.clone(),
             element_size: g.element_size,
+            numbers: scene.rollers_in_place().collect(),
             annulus: [
                 g.inner_race_radius + g.roller_radius - slack,
                 g.outer_race_radius - g.roller_radius + depth + slack,
@@ -152,14 +155,13 @@ impl Guards {
     }
 
     fn places(&self, state: &State, when: &str) -> Option<String> {
-        for (i, (x, y)) in state.x.iter().zip(&state.y).enumerate() {
+        for (number, (x, y)) in self.numbers.iter().zip(state.x.iter().zip(&state.y)) {
             let radius = x.hypot(*y);
             if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
                 let through = if radius < self.annulus[0] { "inner" } else { "outer" };
                 return Some(format!(
-                    "roller {} has gone through the {through} raceway: its centre is {:.3} mm from that of the bearing {when}. Take a larger \
+                    "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from that of the bearing {when}. Take a larger \
                      `contact.penalty_scale`, less `operation.load_n` or a smaller `model.step_us`",
-                    i + 1,
                     1e3 * radius
                 ));
             }

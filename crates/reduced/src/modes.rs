@@ -37,13 +37,16 @@ pub(crate) struct Modes {
     pub(crate) q: Vec<Row>,
     pub(crate) v: Vec<Row>,
     pub(crate) push: Vec<Row>,
+    /// Forces of dampers, negative; empty without dampers.
+    pub(crate) drag: Vec<Row>,
 }
 
 impl Modes {
-    /// Room for so many numbers.
-    pub(crate) fn new(padded: usize) -> Self {
-        let rows = vec![Row::default(); padded / LANES];
-        Self { q: rows.clone(), v: rows.clone(), push: rows }
+    /// Room for those of a bearing.
+    pub(crate) fn new(bearing: &Bearing) -> Self {
+        let rows = vec![Row::default(); bearing.reduction.padded / LANES];
+        let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
+        Self { q: rows.clone(), v: rows.clone(), push: rows, drag }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -136,15 +139,54 @@ impl Bearing {
         }
     }
 
-    /// Modes move under the forces `push`; `further` is what the load exceeds that of the preload by, in shares of it.
+    /// What the load exceeds that of the preload by: shares that are not zero, and what a share of one does to each mode.
+    #[inline(always)]
+    pub(crate) fn loads(&self, further: [f64; 2]) -> impl Iterator<Item = (f64, &[f64])> {
+        let load = &self.reduction.load;
+        further.into_iter().zip([&load.along[..], &load.across]).filter(|(share, _)| *share != 0.0)
+    }
+
+    /// Its power [W].
+    #[inline(always)]
+    fn power(&self, further: [f64; 2], state: &State) -> f64 {
+        let of = |load: &[f64]| state.v.iter().zip(load).map(|(v, load)| v * load).sum::<f64>();
+        self.loads(further).map(|(share, load)| share * of(load)).sum()
+    }
+
+    /// Forces of the housing's dampers at the velocities of the modes, into `push`; `drag` keeps them.
+    #[inline(always)]
+    pub(crate) fn resist<S: Simd>(&self, simd: S, modes: &mut Modes) {
+        let Modes { v, push, drag, .. } = modes;
+        let columns = self.dampers.chunks_exact(drag.len());
+        drag.fill(Row::default());
+        for (column, v) in columns.zip(v.iter().flat_map(|row| row.iter())) {
+            let v = Vector::all(simd, *v);
+            for (drag, column) in drag.iter_mut().zip(column) {
+                let mut at = 0;
+                while at < LANES {
+                    let sum = Vector::load(simd, column, at).times_plus(v, Vector::load(simd, drag, at));
+                    sum.store(drag, at);
+                    at += Vector::<S>::LEN;
+                }
+            }
+        }
+        for (push, drag) in push.iter_mut().zip(drag.iter()) {
+            for (push, drag) in push.iter_mut().zip(drag.iter()) {
+                *push -= drag;
+            }
+        }
+    }
+
+    /// Modes move under the forces `push`; `further` is what the load exceeds that of the preload by, as
+    /// [`Bearing::beside_the_preload`] says.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one motion, with all that it reads and adds to")]
     pub(crate) fn move_modes<S: Simd>(
         &self,
         simd: S,
         state: &mut State,
-        push: &[Row],
-        further: f64,
+        modes: &Modes,
+        further: [f64; 2],
         last: bool,
         energy: &mut Stored,
         spent: &mut Spent,
@@ -155,9 +197,7 @@ impl Bearing {
             DampingFrame::RigidMotion => 0.0,
             _ => 0.5 * self.alpha * dt,
         };
-        let along_load =
-            |state: &State| state.v.iter().zip(&self.reduction.load.0).map(|(v, load)| v * load).sum::<f64>();
-        let before = if further != 0.0 { along_load(state) } else { 0.0 };
+        spent.external += 0.5 * dt * self.power(further, state);
         for (branch, stretch) in self.branches.iter().zip(&mut state.branches) {
             let e = (-dt / branch.relaxation_time).exp();
             for (u, v) in stretch.iter_mut().zip(&state.v) {
@@ -177,12 +217,15 @@ impl Bearing {
             for (branch, stretch) in self.branches.iter().zip(&state.branches) {
                 ahead = all(branch.stiffness).times_plus(Vector::load(simd, stretch, at), ahead);
             }
-            let a = (-square).times_plus(q + ahead, Vector::load(simd, &push[at / LANES], at % LANES));
+            let a = (-square).times_plus(q + ahead, Vector::load(simd, &modes.push[at / LANES], at % LANES));
             let new = kept.times_plus(v, gain * a);
             let mean = half * (v + new);
             let outside = Vector::load(simd, external, at);
             sums[0] = mean.times_plus(outside, sums[0]);
             sums[1] = alpha.times_plus(mean, square * ahead).times_plus(mean, sums[1]);
+            if let Some(drag) = modes.drag.get(at / LANES) {
+                sums[1] = mean.times_plus(Vector::load(simd, drag, at % LANES), sums[1]);
+            }
             if last {
                 sums[2] = v.times_plus(new, sums[2]);
                 let held = outside - Vector::load(simd, constant, at);
@@ -192,9 +235,7 @@ impl Bearing {
             step.times_plus(new, q).store(&mut state.q, at);
         }
         spent.external += dt * sums[0].sum();
-        if further != 0.0 {
-            spent.external += 0.5 * dt * further * (before + along_load(state));
-        }
+        spent.external += 0.5 * dt * self.power(further, state);
         spent.damped += dt * sums[1].sum();
         if last {
             energy.kinetic += 0.5 * sums[2].sum();

@@ -13,17 +13,11 @@ use stribeck_scene::{
     lubrication::{self, LoadedFilm},
     scene::Scene,
 };
-use stribeck_simd::lanes::LANES;
 
-use crate::{
-    bearing::{self, Bearing, Track},
-    block::Block,
-    error::Error,
-    row::of_one,
-    state::State,
-};
+use crate::{compliance::Compliance, error::Error, outline::Outline};
 use give::Give;
-use nearest::{Curved, Nearest, Rim, Seen, begin};
+pub(crate) use nearest::Seen;
+use nearest::{Curved, Nearest, Rim};
 
 /// Steps between two looks for a film where there is none.
 const REST: u64 = 128;
@@ -91,148 +85,22 @@ pub(crate) struct Lifted {
     pub(crate) stored: f64,
 }
 
-/// How the shaft turns: cosine and sine of its angle, and its angular velocity [rad/s].
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Shaft {
-    pub(crate) turned: [f64; 2],
-    pub(crate) rate: f64,
-}
-
-impl Bearing {
-    /// Films before the first step, with the rollers as they stand in a state.
-    pub(crate) fn first_films(&self, state: &State) -> Option<Films> {
-        let oil = self.oil.as_ref()?;
-        let mut films = Films { at: [Vec::new(), Vec::new()], heat: 0.0 };
-        for i in 0..self.rollers {
-            for (k, race) in oil.races.iter().enumerate() {
-                let seen = self.seen_at_rest(state, i, k, [0.0; 2]);
-                let rim = oil.rim(self.rim_of[i]);
-                let places = |land| begin(&race.curved, land, rim, &seen);
-                let of_roller = race.curved.lands.iter().map(places);
-                films.at[k].extend(of_roller.map(|places| Film { places, ..Film::default() }));
-            }
-        }
-        Some(films)
-    }
-
-    /// A roller as outer (0) or inner (1) raceway see it, the former displaced; how it moves does not matter.
-    fn seen_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> Seen {
-        let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
-        let (ss, sc) = state.shaft.sin_cos();
-        let back = |[x, y]: [f64; 2]| [sc * x + ss * y, sc * y - ss * x];
-        let (centre, spin) = match raceway {
-            0 => ([state.x[i] - moved[0], state.y[i] - moved[1]], [c, s]),
-            _ => (back([state.x[i], state.y[i]]), back([c, s])),
-        };
-        Seen { centre, spin, velocity: [0.0; 2], turning: 0.0 }
-    }
-
-    /// Forces on a roller by the films of steady rolling at both raceways, towards the inner and the outer one [N].
-    pub(crate) fn carried_by_oil(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (Some(oil), Some(mut films)) = (&self.oil, state.films.take()) else { return [0.0; 2] };
-        let mut forces = [0.0; 2];
-        for (k, race) in oil.races.iter().enumerate() {
-            let seen = self.seen_at_rest(state, i, k, moved);
-            let [x, y] = seen.centre;
-            let [fx, fy] =
-                race.carried(oil.rim(self.rim_of[i]), race.of_roller(&mut films.at[k], i), &seen).force;
-            forces[k] = (fx * x + fy * y) / x.hypot(y);
-        }
-        state.films = Some(films);
-        [-forces[0], forces[1]]
-    }
-
-    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance, or no oil.
-    pub(crate) fn floating(&self, state: &mut State, i: usize, moved: [f64; 2]) -> Option<[f64; 2]> {
-        let oil = self.oil.as_ref()?;
-        let mut films = state.films.take()?;
-        let gaps = [0, 1].map(|k| {
-            let (race, seen) = (&oil.races[k], self.seen_at_rest(state, i, k, moved));
-            race.gap(oil.rim(self.rim_of[i]), race.of_roller(&mut films.at[k], i), &seen)
-        });
-        state.films = Some(films);
-        let at = state.x[i].hypot(state.y[i]);
-        Some([at - gaps[1], at + gaps[0]]).filter(|[low, high]| low < high)
-    }
-
-    /// Adds what films do to eight rollers, and to the shaft: the moment that the drive makes good [N m]. `normal` becomes what they carry
-    /// at the outer raceway [N], and `stored` grows by what their springs hold [J].
-    #[inline(never)]
-    #[expect(clippy::too_many_arguments, reason = "one kind of force, with all that it reads and adds to")]
-    pub(crate) fn lift_rollers(
-        &self,
-        oil: &Lubrication,
-        films: &mut Films,
-        block: &mut Block,
-        shaft: Shaft,
-        now: Now,
-        normal: &mut [f64; LANES],
-        stored: &mut f64,
-    ) -> f64 {
-        let Shaft { turned: [c, s], rate } = shaft;
-        let mut on_drive = 0.0;
-        for lane in 0..block.count {
-            let i = block.first + lane;
-            let rim = oil.rim(self.rim_of[i]);
-            let ([x, y], [vx, vy]) = (of_one(&block.centre, lane), of_one(&block.velocity, lane));
-            let distance = block.distance[lane];
-            let [mx, my] = of_one(&block.moving, lane);
-            let [tx, ty] = of_one(&block.tilt, lane);
-            let orbit = (x * vy - y * vx) / (distance * distance);
-            let velocities = [
-                // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
-                [vx - mx - orbit * tx, vy - my - orbit * ty],
-                {
-                    let [rx, ry] = [vx + rate * y, vy - rate * x];
-                    [c * rx + s * ry, c * ry - s * rx]
-                },
-            ];
-            for (k, race) in oil.races.iter().enumerate() {
-                let contacts = &block.contacts[k];
-                let seen = Seen {
-                    centre: of_one(&contacts.centre, lane),
-                    spin: of_one(&contacts.spin, lane),
-                    velocity: velocities[k],
-                    turning: block.spin[lane] - if k == 0 { 0.0 } else { rate },
-                };
-                let lifted = race.lift(rim, race.of_roller(&mut films.at[k], i), &seen, now);
-                let [fx, fy] = lifted.force;
-                let [fx, fy] = if k == 0 { [fx, fy] } else { [c * fx - s * fy, s * fx + c * fy] };
-                block.force[k][0][lane] += fx;
-                block.force[k][1][lane] += fy;
-                block.moment[lane] += lifted.moment;
-                if k == 0 {
-                    // As of contact: the roller goes downhill along a raceway that is displaced more or less.
-                    let uphill = (fx * tx + fy * ty) / distance;
-                    let [rx, ry] = of_one(&block.radial, lane);
-                    block.downhill[0][lane] += uphill * ry;
-                    block.downhill[1][lane] -= uphill * rx;
-                    normal[lane] = lifted.normal;
-                } else {
-                    on_drive += x * fy - y * fx + lifted.moment;
-                }
-                films.heat += lifted.heat;
-                *stored += lifted.stored;
-            }
-        }
-        on_drive
-    }
-}
-
 impl Lubrication {
-    /// The oil of a scene between these raceways and rims, on a penalty [N/m²]; `None` without any.
+    /// The oil of a scene between the outer and the inner raceway and these rims, the first of which is round, on a penalty [N/m²];
+    /// `None` without any.
     pub(crate) fn new(
         scene: &Scene,
-        tracks: [&Track; 2],
-        rims: &[bearing::Rim],
+        raceways: [(&Outline, &Compliance); 2],
+        rims: &[&Outline],
         penalty: f64,
     ) -> Result<Option<Self>, Error> {
         let g = Geometry::of(scene);
         let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(None) };
         let [round, others @ ..] = rims else { return Ok(None) };
-        let curvature = Curved::new("rim of a roller", &round.outline, false)?.lands[0].curvature;
-        let race = |track: &Track, loaded: LoadedFilm| -> Result<Race, Error> {
-            let curved = Curved::new("raceway", &track.outline, track.sides.along)?;
+        let rim = |outline: &Outline| Curved::new("rim of a roller", outline, false);
+        let curvature = rim(round)?.lands[0].curvature;
+        let race = |(outline, compliance), hollow, loaded: LoadedFilm| -> Result<Race, Error> {
+            let curved = Curved::new("raceway", outline, hollow)?;
             let oil = Oil { viscosity: film.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
@@ -240,25 +108,23 @@ impl Lubrication {
                     let reason = "is too narrow for its rollers: a film needs a larger radius";
                     return Err(ContactError::BadSurface { name: "raceway".into(), reason });
                 }
-                let give = Give::new(penalty, 1.0 / relative, &track.compliance);
+                let give = Give::new(penalty, 1.0 / relative, compliance);
                 Ok(FilmLaw::new(oil, 1.0 / relative, g.thickness, give))
             };
             let films = curved.lands.iter().map(law).collect::<Result<_, _>>()?;
             Ok(Race { curved, films, speed: loaded.speed })
         };
-        let formed = |rim: &bearing::Rim| -> Result<Rim, Error> {
-            Ok(Rim::Formed(Box::new(Curved::new("rim of a roller", &rim.outline, false)?)))
-        };
+        let ([outer, inner], [on_outer, on_inner]) = (raceways, loaded);
+        let formed = |outline: &&Outline| rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
         let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
-        let [outer, inner] = loaded;
         Ok(Some(Self {
-            races: [race(tracks[0], outer)?, race(tracks[1], inner)?],
-            rims: std::iter::once(Rim::Round(round.top)).chain(others).collect(),
+            races: [race(outer, true, on_outer)?, race(inner, false, on_inner)?],
+            rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
         }))
     }
 
     /// The rim of this number.
-    fn rim(&self, number: u32) -> &Rim {
+    pub(crate) fn rim(&self, number: u32) -> &Rim {
         &self.rims[number as usize]
     }
 
@@ -280,8 +146,14 @@ impl Lubrication {
 }
 
 impl Race {
+    /// Films of a roller before the first step: none yet, but known places.
+    pub(crate) fn first_films(&self, rim: &Rim, seen: &Seen) -> impl Iterator<Item = Film> {
+        let places = |land| nearest::begin(&self.curved, land, rim, seen);
+        self.curved.lands.iter().map(move |land| Film { places: places(land), ..Film::default() })
+    }
+
     /// What the films of a roller do in a step.
-    fn lift(&self, rim: &Rim, films: &mut [Film], seen: &Seen, now: Now) -> Lifted {
+    pub(crate) fn lift(&self, rim: &Rim, films: &mut [Film], seen: &Seen, now: Now) -> Lifted {
         let mut lifted = Lifted::default();
         for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
             if film.layer.is_none() {
@@ -289,7 +161,7 @@ impl Race {
                     continue;
                 }
                 // From anywhere: a land may come into reach at its other end.
-                film.places = begin(&self.curved, land, rim, seen);
+                film.places = nearest::begin(&self.curved, land, rim, seen);
             } else if film.fixed && !now.step.is_multiple_of(FIXED) {
                 continue;
             }
@@ -321,7 +193,7 @@ impl Race {
     }
 
     /// The smallest gap between a roller and its lands [m].
-    fn gap(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> f64 {
+    pub(crate) fn gap(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> f64 {
         let each = self.curved.lands.iter().zip(films);
         let gap = |(land, film): (&Land, &mut Film)| {
             Nearest::new(&self.curved, land, rim, seen, &mut film.places).gap
@@ -330,7 +202,7 @@ impl Race {
     }
 
     /// What the films of a roller carry in steady rolling.
-    fn carried(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> Lifted {
+    pub(crate) fn carried(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> Lifted {
         let mut lifted = Lifted::default();
         for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
             let nearest = Nearest::new(&self.curved, land, rim, seen, &mut film.places);
@@ -343,7 +215,7 @@ impl Race {
     }
 
     /// The films of a roller among those of all.
-    fn of_roller<'a>(&self, films: &'a mut [Film], roller: usize) -> &'a mut [Film] {
+    pub(crate) fn of_roller<'a>(&self, films: &'a mut [Film], roller: usize) -> &'a mut [Film] {
         let lands = self.films.len();
         &mut films[lands * roller..lands * (roller + 1)]
     }

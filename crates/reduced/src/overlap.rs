@@ -443,7 +443,8 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
 #[inline(always)]
 fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>) {
     let Round { p: [p1, p2], curvature, bulge } = seen;
-    let (zero, one, two) = (u1.constant(0.0), u1.constant(1.0), u1.constant(2.0));
+    let (zero, one) = (u1.constant(0.0), u1.constant(1.0));
+    let (two, three) = (u1.constant(2.0), u1.constant(3.0));
     let (half, third) = (u1.constant(0.5), u1.constant(1.0 / 3.0));
     let above = |number: N, yes: N, no: N| zero.choose_below(number, yes, no);
     let length = u2 - u1;
@@ -488,17 +489,23 @@ fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Fa
     sum.length = sum.length + width;
     sum.first = width.times_plus(middle, sum.first);
     // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
-    // The height is taken in the middle: the part is short.
     let lean = (half * curvature).times_plus(r.from + r.to, r.slope);
-    let high = r.slope.times_plus(middle, r.base) + half * curvature * (middle - r.from) * (r.to - middle);
-    let rest = one - curvature * high;
     sum.across = lean.times_plus(i0, sum.across) - curvature * first;
-    sum.moment = (lean * high).times_plus(i0, rest.times_plus(first, sum.moment));
+    // By how much the roller's height h grows with its angle: u + h h′, but for the product of the arc's height over the chord and the
+    // slope of that, because a parabola on a chord that turns stays one. Over τ it is a₀ + a₁ τ + a₂ τ².
+    let (before, behind) = (u1 - r.from, r.to - u1);
+    let (chord, tip) = (r.slope.times_plus(u1, r.base), curvature * (behind - before));
+    let inside = half * (curvature * r.slope * before * behind + chord * tip);
+    let arm0 = r.slope.times_plus(chord, u1) + inside;
+    let arm1 = length * (r.slope.times_plus(r.slope + tip, one) - curvature * chord);
+    let arm2 = -(half * three * curvature * r.slope * length * length);
+    let i2 = p1.times_plus(t2, b.times_plus(t3, c * t4));
+    sum.moment = arm0.times_plus(i0, length.times_plus(arm1.times_plus(i1, arm2 * i2), sum.moment));
+    sum.arm = length.times_plus(arm0.times_plus(t0, arm1.times_plus(t1, arm2 * t2)), sum.arm);
     let (pa, pz) = (c.times_plus(from, b).times_plus(from, p1), c.times_plus(to, b).times_plus(to, p1));
     let skewed = (lean - curvature * middle).times_plus(square, third * (pz * pz * pz - pa * pa * pa));
     sum.skew = sum.skew + skewed;
     sum.slope = width.times_plus(lean - curvature * middle, sum.slope);
-    sum.arm = width.times_plus(lean.times_plus(high, rest * middle), sum.arm);
     sum.second = third.times_plus(z * z * z - a * a * a, sum.second);
     sum.deepest = sum.deepest.max(p1).max(p2);
 }

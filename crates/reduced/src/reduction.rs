@@ -9,11 +9,13 @@ use stribeck_bearing::{
     start::preload,
 };
 use stribeck_mesh::Mesh;
-use stribeck_scene::{geometry::Geometry, run_info::MeshInfo, scene::Scene, static_load};
+use stribeck_scene::{
+    geometry::Geometry, housing::HousingScene, run_info::MeshInfo, scene::Scene, static_load,
+};
 use stribeck_simd::lanes::LANES;
 use stribeck_solver::{
     Dynamics, Force,
-    state::NodeForces,
+    state::{Moment, NodeForces},
     statics::{Modes, SmallMotions, Spring, modes_below},
 };
 
@@ -57,8 +59,10 @@ pub struct Reduction {
     pub constant: Vec<f64>,
     /// Those of the load and of weight alone [N/√kg].
     pub external: Vec<f64>,
-    /// Those of the load alone, without weight, and the load [N].
-    pub load: (Vec<f64>, f64),
+    /// What the load does.
+    pub load: Load,
+    /// Forces of dampers on each mode by a unit velocity of every mode [1/s], row by row; empty without dampers.
+    pub dampers: Vec<f64>,
     /// Strain energy of all bodies at the preload [J].
     pub strain: f64,
     /// Of roller and outer raceway.
@@ -92,6 +96,17 @@ pub struct Sensor {
     pub shape: Vec<f64>,
     /// Displacement (x, y) by a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
     pub residual: Vec<[f64; 2]>,
+}
+
+/// The load of the preload, and what it does to the modes.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Load {
+    /// How large it is [N].
+    pub force: f64,
+    /// What it does to each mode [N/√kg].
+    pub along: Vec<f64>,
+    /// The same of an equal load a quarter of a turn ahead of it.
+    pub across: Vec<f64>,
 }
 
 /// Node numbers, while the system still knows them by name.
@@ -145,19 +160,30 @@ impl Reduction {
         // All forces at the preload: on the structure, and those of contact and elements alone.
         let count = parts.dynamics.state.x.len();
         let mut all = NodeForces::zeros(count);
-        let mut outside = NodeForces::zeros(count);
-        parts.others.accumulate(parts.dynamics.moment(), &mut outside);
-        let loaded = outside.clone();
+        // In the undeformed mesh springs of the housing do not push: what is left is the load.
+        let mut loaded = NodeForces::zeros(count);
+        let mut undeformed = parts.dynamics.state.clone();
+        for (n, &slot) in slot_of.iter().enumerate() {
+            (undeformed.x[slot as usize], undeformed.y[slot as usize]) = (mesh.x[n], mesh.y[n]);
+        }
+        let now = parts.dynamics.moment();
+        parts.others.accumulate(Moment { x: &undeformed.x, y: &undeformed.y, ..now }, &mut loaded);
+        let mut pushed = NodeForces::zeros(count);
+        parts.others.accumulate(now, &mut pushed);
+        let strain = strain + parts.others.energy().stored;
+        let mut outside = loaded.clone();
         let [gx, gy] = parts.dynamics.gravity();
         for (n, mass) in parts.dynamics.mass().iter().enumerate() {
             outside.fx[n] += mass * gx;
             outside.fy[n] += mass * gy;
         }
+        let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
+        let mut suspension = Vec::new();
+        parts.others.tangent(x, y, &mut |piece| suspension.push(Spring::from(piece)));
         let mut springs = Vec::new();
         if let Some(contacts) = &mut parts.contacts {
             contacts.accumulate(parts.dynamics.moment(), &mut all);
             let of_structure: BTreeSet<u32> = slots(&nodes.structure).into_iter().collect();
-            let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
             contacts.tangent(x, y, &mut |piece| {
                 if piece.nodes.iter().all(|slot| of_structure.contains(slot)) {
                     springs.push(Spring::from(piece));
@@ -173,14 +199,15 @@ impl Reduction {
             d.elastic_forces(&d.state.x, &d.state.y, &mut all.fx, &mut all.fy);
         }
         for n in 0..count {
-            all.fx[n] += outside.fx[n];
-            all.fy[n] += outside.fy[n];
+            all.fx[n] += outside.fx[n] + (pushed.fx[n] - loaded.fx[n]);
+            all.fy[n] += outside.fy[n] + (pushed.fy[n] - loaded.fy[n]);
         }
 
         let of_structure = slots(&nodes.structure);
         let mut structure = if scene.housing.is_rigid() {
             Structure::Rigid { root_mass: structure_mass.sqrt(), slots: of_structure }
         } else {
+            let springs = [&springs[..], &suspension].concat();
             let mut motions = SmallMotions::new(&parts.dynamics, &of_structure, &springs, SHIFT)?;
             let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
             Structure::Elastic { motions: Box::new(motions), modes, slots: of_structure }
@@ -197,7 +224,20 @@ impl Reduction {
         let unbalanced = structure.generalised(&all, padded);
         let constant = unbalanced.iter().zip(&by_rollers).map(|(all, rollers)| all - rollers).collect();
         let external = structure.generalised(&outside, padded);
-        let load = (structure.generalised(&loaded, padded), g.load);
+        let turned = NodeForces { fx: loaded.fy.iter().map(|fy| -fy).collect(), fy: loaded.fx.clone() };
+        let load = Load {
+            force: g.load,
+            along: structure.generalised(&loaded, padded),
+            across: structure.generalised(&turned, padded),
+        };
+        let dampers = match &scene.housing {
+            HousingScene::Springs(springs) => {
+                // Each spring has its damper, in the same proportion.
+                let ratio = 1e-6 * springs.damping_n_s_m / springs.stiffness_n_um;
+                dampers(&structure, &suspension, ratio, padded)
+            }
+            _ => Vec::new(),
+        };
 
         // The raceway without the dents of the rollers, which the local compliance makes anew.
         let on_raceway = slots(&nodes.outer);
@@ -234,16 +274,10 @@ impl Reduction {
             // What a unit of stretch does to the ring.
             let mut on = [0.0; 2];
             let ends = spring.slots.iter().zip(spring.direction.chunks_exact(2));
-            for (_, along) in ends.clone().filter(|(slot, _)| on_ring.contains(slot)) {
+            for (_, along) in ends.filter(|(slot, _)| on_ring.contains(slot)) {
                 on = [on[0] - spring.stiffness * along[0], on[1] - spring.stiffness * along[1]];
             }
-            let mut stretch = vec![0.0; padded];
-            for (&slot, along) in ends {
-                let shape = structure.shape_at(slot, padded);
-                let (x, y) = shape.split_at(padded);
-                stretch.iter_mut().zip(x).zip(y).for_each(|((s, x), y)| *s += along[0] * x + along[1] * y);
-            }
-            for (k, stretch) in stretch.iter().enumerate() {
+            for (k, stretch) in structure.stretch(spring, padded).iter().enumerate() {
                 seat_shapes[k] += on[0] * stretch;
                 seat_shapes[padded + k] += on[1] * stretch;
             }
@@ -352,6 +386,7 @@ impl Reduction {
             constant,
             external,
             load,
+            dampers,
             strain,
             outer_compliance,
             inner_compliance,
@@ -366,6 +401,19 @@ impl Reduction {
             warning: None,
         })
     }
+}
+
+/// Forces on each mode by a unit velocity of every mode [1/s], row by row, of dampers beside springs: `ratio` is damping over stiffness
+/// [s].
+fn dampers(structure: &Structure, springs: &[Spring], ratio: f64, padded: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; padded * padded];
+    for spring in springs {
+        let stretch = structure.stretch(spring, padded);
+        for (row, a) in sums.chunks_exact_mut(padded).zip(&stretch) {
+            row.iter_mut().zip(&stretch).for_each(|(sum, b)| *sum += ratio * spring.stiffness * a * b);
+        }
+    }
+    sums
 }
 
 /// The spring across a normal one: the same nodes, directions turned by a right angle.

@@ -26,7 +26,7 @@ impl Bearing {
         let k = &self.kinematics;
         let at_start = Duty::of(scene).load_n(0.0);
         let load = at_start.max(1.0);
-        let further = self.duty.as_ref().map_or(0.0, |_| self.beside_the_preload(at_start));
+        let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
         let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers];
         let mut residual = 0.0;
@@ -34,7 +34,9 @@ impl Bearing {
             let mut force = self.reduction.constant.clone();
             let mut matrix = Mat::<f64>::zeros(r, r);
             for n in 0..r {
-                force[n] += further * self.reduction.load.0[n] - self.reduction.squares[n] * state.q[n];
+                force[n] += further[0] * self.reduction.load.along[n]
+                    + further[1] * self.reduction.load.across[n]
+                    - self.reduction.squares[n] * state.q[n];
                 matrix[(n, n)] = self.reduction.squares[n] + HOLD;
             }
             for i in 0..self.rollers {
@@ -127,10 +129,11 @@ impl Bearing {
         Ok(state)
     }
 
-    /// By what the load [N] exceeds that of the preload, in shares of the latter.
+    /// By what the load exceeds that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of it.
     #[inline(always)]
-    pub(crate) fn beside_the_preload(&self, load_n: f64) -> f64 {
-        load_n / self.reduction.load.1 - 1.0
+    pub(crate) fn beside_the_preload(&self, duty: &Duty, time_s: f64) -> [f64; 2] {
+        let per = 1.0 / self.reduction.load.force;
+        [duty.load_n(time_s) * per - 1.0, duty.load_across_n(time_s).map_or(0.0, |across| across * per)]
     }
 
     /// Shapes under roller `i` in the direction of its centre, and the displacement there.

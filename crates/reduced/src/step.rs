@@ -11,7 +11,7 @@ use crate::{
     bearing::Bearing,
     block::Block,
     modes::{Modes, Moved},
-    oil::{Now, Shaft},
+    oil::Now,
     pocket::PlacedCage,
     raceway::Rolling,
     row::{load, of_one, store},
@@ -49,7 +49,7 @@ impl Scratch {
         let n = bearing.rollers;
         Self {
             blocks: (0..n).step_by(LANES).map(|first| Block::new(bearing, first)).collect(),
-            modes: Modes::new(bearing.reduction.padded),
+            modes: Modes::new(bearing),
             before: vec![Heard::default(); n],
             heard: vec![Heard::default(); n],
             ..Self::default()
@@ -104,21 +104,26 @@ impl Bearing {
         let mut energy = Stored::default();
         scratch.modes.begin(state, &self.reduction.constant);
         let mut rate = self.kinematics.shaft_rad_s;
-        let mut further = 0.0;
+        let mut further = [0.0; 2];
         if let Some(duty) = &self.duty {
             let now = state.steps as f64 * dt;
             rate = duty.mean_shaft_rad_s(now, now + dt);
-            further = self.beside_the_preload(duty.load_n(now));
-            let push = scratch.modes.push.iter_mut().flat_map(|row| row.iter_mut());
-            for (push, load) in push.zip(&self.reduction.load.0) {
-                *push += further * load;
+            further = self.beside_the_preload(duty, now);
+            for (share, load) in self.loads(further) {
+                let push = scratch.modes.push.iter_mut().flat_map(|row| row.iter_mut());
+                push.zip(load).for_each(|(push, load)| *push += share * load);
             }
+        }
+        if !self.dampers.is_empty() {
+            self.resist(simd, &mut scratch.modes);
         }
         if last {
             scratch.before.copy_from_slice(&scratch.heard);
         }
         let (cs, cc) = state.cage[2].sin_cos();
-        let (ss, sc) = state.shaft.sin_cos();
+        let inner = Turning { rate, turned: turned(state.shaft) };
+        let outer =
+            self.outer_rad_s.map(|rate| Turning { rate, turned: turned(rate * dt * state.steps as f64) });
         let placed =
             PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
@@ -127,17 +132,20 @@ impl Bearing {
         let mut sums = Sums::<S>::new(simd);
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
-            self.place_rollers(simd, &scratch.modes, block, [sc, ss]);
-            let Block { first, top, bits, contacts: [outer, inner], .. } = block;
-            self.press_together(simd, &self.outer, *first, top, *bits, outer);
-            self.press_together(simd, &self.inner, *first, top, *bits, inner);
-            self.push_rollers(simd, block, rate, [sc, ss], &mut sums);
+            self.place_rollers(simd, &scratch.modes, block, outer, inner);
+            let Block { first, top, bits, contacts: [on_outer, on_inner], .. } = block;
+            self.press_together(simd, &self.outer, *first, top, *bits, on_outer);
+            self.press_together(simd, &self.inner, *first, top, *bits, on_inner);
+            self.push_rollers(simd, block, outer, inner, &mut sums);
             let mut lifted = [0.0; LANES];
             if let (Some(oil), Some(films)) = (&self.oil, &mut state.films) {
-                let (shaft, now) = (Shaft { turned: [sc, ss], rate }, Now { step: state.steps, dt, last });
-                let moment =
-                    self.lift_rollers(oil, films, block, shaft, now, &mut lifted, &mut energy.contact);
-                spent.drive += dt * rate * moment;
+                let now = Now { step: state.steps, dt, last };
+                let by_oil = self.lift_rollers(oil, films, block, [outer, Some(inner)], now);
+                lifted = by_oil.normal;
+                energy.contact += by_oil.stored;
+                for (turning, moment) in [outer, Some(inner)].into_iter().zip(by_oil.drive) {
+                    spent.drive += turning.map_or(0.0, |turning| dt * turning.rate * moment);
+                }
             }
             for lane in 0..block.count {
                 let (facet, share) = (block.facet[lane], block.share[lane]);
@@ -171,12 +179,16 @@ impl Bearing {
         }
         scratch.summed += 1;
         spent.heat = [0, 1].map(|kind| spent.heat[kind] + sums.heat[kind].sum());
-        spent.drive += dt * rate * sums.drive.sum();
+        let [by_outer, by_inner] = sums.drive;
+        spent.drive += dt * rate * by_inner.sum();
+        if let Some(outer) = outer {
+            spent.drive += dt * outer.rate * by_outer.sum();
+        }
         spent.external += sums.external.sum();
         spent.damped += sums.damped.sum();
         energy.kinetic += 0.5 * sums.kinetic.sum();
 
-        self.move_modes(simd, state, &scratch.modes.push, further, last, &mut energy, &mut spent);
+        self.move_modes(simd, state, &scratch.modes, further, last, &mut energy, &mut spent);
 
         if let Some(cage) = &self.cage {
             let old = state.cage_velocity;
@@ -206,10 +218,16 @@ impl Bearing {
         }
     }
 
-    /// Where rollers are by both raceways, the outer one moved with the modes and the inner one turned by an angle whose cosine and sine
-    /// are given.
+    /// Where rollers are by both raceways, the outer one moved with the modes.
     #[inline(always)]
-    fn place_rollers<S: Simd>(&self, simd: S, modes: &Modes, block: &mut Block, [sc, ss]: [f64; 2]) {
+    fn place_rollers<S: Simd>(
+        &self,
+        simd: S,
+        modes: &Modes,
+        block: &mut Block,
+        outer: Option<Turning>,
+        inner: Turning,
+    ) {
         let mut at = 0;
         while at < LANES {
             let [x, y] = load(simd, &block.centre, at);
@@ -220,7 +238,10 @@ impl Bearing {
             at += Vector::<S>::LEN;
         }
         for lane in 0..block.count {
-            let radial = of_one(&block.radial, lane);
+            let mut radial = of_one(&block.radial, lane);
+            if let Some(Turning { turned: [c, s], .. }) = outer {
+                radial = [c * radial[0] + s * radial[1], c * radial[1] - s * radial[0]];
+            }
             let hint = &mut block.contacts[0].hints[lane][1];
             let place = self.place_along(radial, *hint);
             *hint = place.facet as u32;
@@ -232,36 +253,39 @@ impl Bearing {
                 block.tilt[c][lane] = tilt[c];
             }
         }
-        // The inner raceway turns about the origin: everything is turned back.
-        let (c, s) = (Vector::all(simd, sc), Vector::all(simd, ss));
-        let back = |[x, y]: [Vector<S>; 2]| [c.times_plus(x, s * y), c.times_plus(y, -(s * x))];
-        let [outer, inner] = &mut block.contacts;
+        // Where a raceway turns, everything is turned back.
+        let [on_outer, on_inner] = &mut block.contacts;
         let mut at = 0;
         while at < LANES {
-            let (centre, turned) = (load(simd, &block.centre, at), load(simd, &block.turned, at));
+            let (centre, spin) = (load(simd, &block.centre, at), load(simd, &block.turned, at));
             let by = load(simd, &block.by, at);
-            store([centre[0] - by[0], centre[1] - by[1]], &mut outer.centre, at);
-            store(turned, &mut outer.spin, at);
-            store(back(centre), &mut inner.centre, at);
-            store(back(turned), &mut inner.spin, at);
+            store([centre[0] - by[0], centre[1] - by[1]], &mut on_outer.centre, at);
+            store(spin, &mut on_outer.spin, at);
+            store(inner.back(simd, centre), &mut on_inner.centre, at);
+            store(inner.back(simd, spin), &mut on_inner.spin, at);
+            if let Some(outer) = outer {
+                let from_its_centre = load(simd, &on_outer.centre, at);
+                store(outer.back(simd, from_its_centre), &mut on_outer.centre, at);
+                store(outer.back(simd, spin), &mut on_outer.spin, at);
+            }
             at += Vector::<S>::LEN;
         }
     }
 
-    /// What both raceways do to rollers; the shaft turns at `rate` [rad/s].
+    /// What both raceways do to rollers.
     #[inline(always)]
     fn push_rollers<S: Simd>(
         &self,
         simd: S,
         block: &mut Block,
-        rate: f64,
-        [sc, ss]: [f64; 2],
+        outer: Option<Turning>,
+        inner: Turning,
         sums: &mut Sums<S>,
     ) {
         let all = |value: f64| Vector::all(simd, value);
-        let (arm, rate, c, s) = (all(self.arm), all(rate), all(sc), all(ss));
+        let (arm, rate) = (all(self.arm), all(inner.rate));
         let size = |number: Vector<S>| number.max(-number);
-        let [outer, inner] = &mut block.contacts;
+        let [on_outer, on_inner] = &mut block.contacts;
         let mut at = 0;
         while at < LANES {
             let distance = Vector::load(simd, &block.distance, at);
@@ -270,13 +294,27 @@ impl Bearing {
             let (moving, tilt) = (load(simd, &block.moving, at), load(simd, &block.tilt, at));
             // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
             let orbit = velocity[1].times_plus(radial[0], -(velocity[0] * radial[1])) / distance;
-            let relative =
+            let mut relative =
                 [velocity[0] - moving[0] - orbit * tilt[0], velocity[1] - moving[1] - orbit * tilt[1]];
-            let pace = size(orbit) * (distance + arm);
-            let rolling = Rolling { relative, spin, race: all(0.0), pace };
-            let by_outer = self.push(simd, &self.outer, outer, at, &rolling, &mut sums.heat);
-            let [fx, fy] = by_outer.force;
-            store([fx, fy], &mut block.force[0], at);
+            let mut race = all(0.0);
+            if let Some(outer) = outer {
+                race = all(outer.rate);
+                let along = race * (distance + arm);
+                let [rx, ry] = [along.times_plus(radial[1], relative[0]), relative[1] - along * radial[0]];
+                relative = outer.back(simd, [rx, ry]);
+            }
+            let pace = size(orbit - race) * (distance + arm);
+            let rolling = Rolling { relative, spin, race, pace };
+            let by_outer = self.push(simd, &self.outer, on_outer, at, &rolling, &mut sums.heat);
+            let mut force = by_outer.force;
+            if let Some(outer) = outer {
+                force = outer.forth(simd, force);
+                let by = load(simd, &block.by, at);
+                let [x, y] = [centre[0] - by[0], centre[1] - by[1]];
+                sums.drive[0] = sums.drive[0] + x * force[1] - y * force[0] + by_outer.moment;
+            }
+            let [fx, fy] = force;
+            store(force, &mut block.force[0], at);
             // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY §9.3).
             let downhill = -(fx.times_plus(tilt[0], fy * tilt[1]) / distance);
             let uphill = [-(downhill * radial[1]), downhill * radial[0]];
@@ -285,15 +323,14 @@ impl Bearing {
             // Where the inner raceway is touched, it moves across the radius.
             let along = rate * (distance - arm);
             let [rx, ry] = [along.times_plus(radial[1], velocity[0]), velocity[1] - along * radial[0]];
-            let relative = [c.times_plus(rx, s * ry), c.times_plus(ry, -(s * rx))];
+            let relative = inner.back(simd, [rx, ry]);
             let pace = size((orbit - rate) * (distance - arm));
             let rolling = Rolling { relative, spin, race: rate, pace };
-            let by_inner = self.push(simd, &self.inner, inner, at, &rolling, &mut sums.heat);
-            let [fx, fy] = by_inner.force;
-            let [fx, fy] = [c.times_plus(fx, -(s * fy)), s.times_plus(fx, c * fy)];
+            let by_inner = self.push(simd, &self.inner, on_inner, at, &rolling, &mut sums.heat);
+            let [fx, fy] = inner.forth(simd, by_inner.force);
             store([fx, fy], &mut block.force[1], at);
             // What the roller does to the ring, the drive makes good.
-            sums.drive = sums.drive + centre[0] * fy - centre[1] * fx + by_inner.moment;
+            sums.drive[1] = sums.drive[1] + centre[0] * fy - centre[1] * fx + by_inner.moment;
             (by_outer.moment + by_inner.moment).store(&mut block.moment, at);
             at += Vector::<S>::LEN;
         }
@@ -369,6 +406,41 @@ impl Bearing {
     }
 }
 
+/// A ring that turns.
+#[derive(Clone, Copy)]
+pub(crate) struct Turning {
+    /// How fast [rad/s].
+    pub(crate) rate: f64,
+    /// Cosine and sine of the angle by which it has turned.
+    pub(crate) turned: [f64; 2],
+}
+
+impl Turning {
+    /// Not at all.
+    pub(crate) const STILL: Self = Self { rate: 0.0, turned: [1.0, 0.0] };
+
+    /// A vector in the frame of the ring.
+    #[inline(always)]
+    fn back<S: Simd>(self, simd: S, [x, y]: [Vector<S>; 2]) -> [Vector<S>; 2] {
+        let [c, s] = [Vector::all(simd, self.turned[0]), Vector::all(simd, self.turned[1])];
+        [c.times_plus(x, s * y), c.times_plus(y, -(s * x))]
+    }
+
+    /// A vector that is given in the frame of the ring.
+    #[inline(always)]
+    fn forth<S: Simd>(self, simd: S, [x, y]: [Vector<S>; 2]) -> [Vector<S>; 2] {
+        let [c, s] = [Vector::all(simd, self.turned[0]), Vector::all(simd, self.turned[1])];
+        [c.times_plus(x, -(s * y)), s.times_plus(x, c * y)]
+    }
+}
+
+/// Cosine and sine of an angle.
+#[inline(always)]
+fn turned(angle: f64) -> [f64; 2] {
+    let (s, c) = angle.sin_cos();
+    [c, s]
+}
+
 /// The frames of mass damping, for code that is made for each of them.
 const ROLLING: u8 = 0;
 const RIGID: u8 = 1;
@@ -377,8 +449,8 @@ const ABSOLUTE: u8 = 2;
 /// Sums over all rollers in one step, as [`Spent`] and [`Stored`] say.
 struct Sums<S: Simd> {
     heat: [Vector<S>; 2],
-    /// Moment on the drive [N m].
-    drive: Vector<S>,
+    /// Moments on the drives of outer and inner ring [N m].
+    drive: [Vector<S>; 2],
     external: Vector<S>,
     damped: Vector<S>,
     /// Twice the energy.
@@ -389,7 +461,7 @@ impl<S: Simd> Sums<S> {
     #[inline(always)]
     fn new(simd: S) -> Self {
         let zero = Vector::all(simd, 0.0);
-        Self { heat: [zero; 2], drive: zero, external: zero, damped: zero, kinetic: zero }
+        Self { heat: [zero; 2], drive: [zero; 2], external: zero, damped: zero, kinetic: zero }
     }
 }
 

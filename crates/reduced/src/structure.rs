@@ -2,7 +2,7 @@
 
 use stribeck_solver::{
     state::NodeForces,
-    statics::{Modes, SmallMotions},
+    statics::{Modes, SmallMotions, Spring},
 };
 
 /// Outer ring and housing, and how they move.
@@ -60,6 +60,18 @@ impl Structure {
         sums
     }
 
+    /// What springs of a direction in every slot do to each mode, a unit of stretch, and what a unit of each mode stretches them by
+    /// [1/√kg].
+    pub(crate) fn stretch(&self, spring: &Spring, padded: usize) -> Vec<f64> {
+        let mut stretch = vec![0.0; padded];
+        for (&slot, along) in spring.slots.iter().zip(spring.direction.chunks_exact(2)) {
+            let shape = self.shape_at(slot, padded);
+            let (x, y) = shape.split_at(padded);
+            stretch.iter_mut().zip(x).zip(y).for_each(|((s, x), y)| *s += along[0] * x + along[1] * y);
+        }
+        stretch
+    }
+
     /// Displacements of slots `at` [m] by forces, beyond the modes.
     pub(crate) fn residual(&mut self, force: &NodeForces, at: &[u32]) -> Vec<[f64; 2]> {
         let Self::Elastic { motions, modes, slots } = self else { return vec![[0.0; 2]; at.len()] };
@@ -88,8 +100,10 @@ impl Structure {
 fn field(motions: &SmallMotions, slots: &[u32], force: &NodeForces) -> Vec<f64> {
     let mut field = vec![0.0; motions.equations()];
     for &slot in slots {
+        // Nodes of a body that moves as one piece share their equations.
         if let Some(at) = motions.equation(slot) {
-            (field[at], field[at + 1]) = (force.fx[slot as usize], force.fy[slot as usize]);
+            field[at] += force.fx[slot as usize];
+            field[at + 1] += force.fy[slot as usize];
         }
     }
     field

@@ -1,8 +1,11 @@
 //! Oil in the reduced model: beside the full one from the same start, its energy, and that a run goes on to the same bytes.
 
+mod common;
+
 use std::{fs, ops::ControlFlow};
 
-use stribeck_bearing::simulation::{Host, Progress};
+use common::{host, run, trace};
+use stribeck_bearing::simulation::Progress;
 use stribeck_reduced::simulation::{resume, simulate};
 use stribeck_scene::{
     lubrication::loaded_films,
@@ -25,28 +28,10 @@ fn coarse(duration_ms: f64) -> Scene {
     scene
 }
 
-fn host() -> Host<'static> {
-    Host {
-        threads: 2,
-        version: "test".into(),
-        commit: "test".into(),
-        machine: "test".into(),
-        wall_s: &|| 0.0,
-        cpu_s: &|| 0.0,
-        ranks: None,
-    }
-}
-
-fn run(scene: &Scene, folder: &Scratch, name: &str) -> RunInfo {
-    let dir = RunDir::create(folder.join(name)).expect("the folder is new");
-    let info =
-        simulate(scene, &dir, &host(), &mut |_| ControlFlow::Continue(())).expect("the scene is sound");
+fn complete(scene: &Scene, folder: &Scratch, name: &str) -> RunInfo {
+    let info = run(scene, folder, name, 2);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     info
-}
-
-fn trace(folder: &Scratch, name: &str, file: &str) -> Trace {
-    Trace::read(folder.join(name).join(file)).expect("a trace")
 }
 
 fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
@@ -67,18 +52,18 @@ fn invariant_a_run_with_oil_in_pieces_writes_the_same_bytes() {
         "defects=[(on: roller(9), form: waviness(order: 8, amplitude_um: 1.0))]".to_owned(),
     ]);
     let scene = scene.expect("a scene");
-    run(&scene, &folder, "whole");
+    complete(&scene, &folder, "whole");
     let dir = RunDir::create(folder.join("pieces")).expect("the folder is new");
     let mut seen = 0;
     let mut stop = |progress: &Progress| {
         seen += usize::from(progress.phase == "run");
         if seen == 161 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
-    let broken = simulate(&scene, &dir, &host(), &mut stop).expect("the scene is sound");
+    let broken = simulate(&scene, &dir, &host(2), &mut stop).expect("the scene is sound");
     assert_eq!((broken.status, broken.samples), (Status::Interrupted, 161));
     drop(dir);
     let dir = RunDir::reopen(folder.join("pieces")).expect("it is there");
-    let done = resume(&dir, &host(), &mut |_| ControlFlow::Continue(())).expect("it goes on");
+    let done = resume(&dir, &host(2), &mut |_| ControlFlow::Continue(())).expect("it goes on");
     assert_eq!(done.status, Status::Complete);
     for file in ["trace.npy", "energy.npy"] {
         let bytes = |name: &str| fs::read(folder.join(name).join(file)).expect("readable");
@@ -97,9 +82,9 @@ fn conserves_energy_and_carries_the_load_with_oil() {
     let folder = Scratch::create("oil-energy");
     let mut scene = coarse(12.0);
     scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 1.0 });
-    let info = run(&scene, &folder, "run");
+    let info = complete(&scene, &folder, "run");
     assert!(info.energy.max_relative_error < ENERGY, "{}", info.energy.max_relative_error);
-    let trace = trace(&folder, "run", "trace.npy");
+    let trace = trace(&folder, "run");
     let mut sum = 0.0;
     for i in 1..=24 {
         let force = channel(&trace, &format!("roller.{i}.outer_fy_n"));
@@ -129,9 +114,9 @@ fn example_films_are_those_of_the_full_model() {
     let mut scene = coarse(6.0);
     // The reduced model has none in the inner ring, which would take a tenth of what films do here.
     scene.solver.structural_damping = None;
-    run(&scene, &folder, "reduced");
-    run(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
-    let traces = ["full", "reduced"].map(|name| trace(&folder, name, "trace.npy"));
+    complete(&scene, &folder, "reduced");
+    complete(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
+    let traces = ["full", "reduced"].map(|name| trace(&folder, name));
     let least = loaded_films(&scene).expect("a load").expect("oil").map(|film| film.least);
     let forces = |of: &Trace, i: usize, side: &str| -> Vec<f64> {
         let [x, y] = ["x", "y"].map(|c| channel(of, &format!("roller.{i}.{side}_f{c}_n")));
@@ -165,7 +150,7 @@ fn example_films_are_those_of_the_full_model() {
     let off = (square / f64::from(count)).sqrt() / largest;
     let [full, reduced] = clearances.map(median);
     let heat = ["full", "reduced"].map(|name| {
-        let energy = trace(&folder, name, "energy.npy");
+        let energy = Trace::read(folder.join(name).join("energy.npy")).expect("a ledger");
         *channel(&energy, "film_j").last().expect("samples")
     });
     println!(

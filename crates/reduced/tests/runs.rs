@@ -1,13 +1,16 @@
 //! Whole runs of the reduced bearing: what they leave, that they go on to the same bytes, and how near the full model they are.
 
+mod common;
+
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
-use stribeck_bearing::simulation::{Host, Progress};
+use common::{host, run, trace};
+use stribeck_bearing::simulation::Progress;
 use stribeck_reduced::simulation::{resume, simulate};
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::RunDir,
-    run_info::{RunInfo, Status},
+    run_info::Status,
     scene::{
         HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene, RotatingLoadScene,
         Scene,
@@ -32,23 +35,6 @@ fn coarse(duration_ms: f64) -> Scene {
     scene.solver.duration_ms = duration_ms;
     scene.output.frames = None;
     scene
-}
-
-fn host(threads: usize) -> Host<'static> {
-    Host {
-        threads,
-        version: "test".into(),
-        commit: "test".into(),
-        machine: "test".into(),
-        wall_s: &|| 0.0,
-        cpu_s: &|| 0.0,
-        ranks: None,
-    }
-}
-
-fn run(scene: &Scene, folder: &Scratch, name: &str, threads: usize) -> RunInfo {
-    let dir = RunDir::create(folder.join(name)).expect("the folder is new");
-    simulate(scene, &dir, &host(threads), &mut |_| ControlFlow::Continue(())).expect("the scene is sound")
 }
 
 fn bytes(folder: &Scratch, name: &str, file: &str) -> Vec<u8> {
@@ -171,10 +157,6 @@ fn example_the_reduced_model_starts_as_the_full_one() {
     for (i, (full, reduced)) in full.iter().zip(&reduced).enumerate() {
         assert!((full - reduced).abs() < TOLERANCE * largest, "roller {}: {full} N and {reduced} N", i + 1);
     }
-}
-
-fn trace(folder: &Scratch, name: &str) -> Trace {
-    Trace::read(folder.join(name).join("trace.npy")).expect("a trace")
 }
 
 fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {

@@ -134,3 +134,14 @@ pub struct Energy {
     /// Work done on the model from outside.
     pub supplied: f64,
 }
+
+impl std::iter::Sum for Energy {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, energy| Self {
+            stored: sum.stored + energy.stored,
+            friction: sum.friction + energy.friction,
+            damping: sum.damping + energy.damping,
+            supplied: sum.supplied + energy.supplied,
+        })
+    }
+}

@@ -54,15 +54,8 @@ impl Forces {
 
     /// Energy of loads and of the user's laws [J].
     pub(crate) fn of_others(&self) -> Energy {
-        let mut sum = Energy::default();
         let further = self.further.iter().map(|(_, force)| force.energy());
-        for energy in self.loads.iter().map(Force::energy).chain(further) {
-            sum.stored += energy.stored;
-            sum.friction += energy.friction;
-            sum.damping += energy.damping;
-            sum.supplied += energy.supplied;
-        }
-        sum
+        self.loads.iter().map(Force::energy).chain(further).sum()
     }
 }
 
@@ -72,6 +65,10 @@ impl Force for Forces {
         self.contacts.iter_mut().for_each(|contacts| contacts.accumulate(at, force));
         self.films.iter_mut().for_each(|films| films.accumulate(at, force));
         self.further.iter_mut().for_each(|(_, law)| law.accumulate(at, force));
+    }
+
+    fn energy(&self) -> Energy {
+        self.all().map(Force::energy).sum()
     }
 
     fn stiffness_bound(&self, dt: f64, bound: &mut [f64]) {

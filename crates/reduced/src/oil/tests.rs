@@ -1,7 +1,6 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
 use super::*;
-use crate::{compliance::Compliance, outline::Outline};
 
 /// The paper's raceways and roller [m], its oil and a roller's mass [kg].
 const OUTER: f64 = 0.1;
@@ -104,7 +103,6 @@ fn analytic_a_roller_sinks_through_its_film() {
         off
     };
     let [coarse, fine] = [0.125e-6, 0.0625e-6].map(farthest);
-    println!("off by {coarse:.4} and, with half the step, {fine:.4}");
     assert!(coarse < TOLERANCE, "{coarse}");
     assert!(ORDER.contains(&(coarse / fine).log2()), "{coarse}, {fine}");
 }

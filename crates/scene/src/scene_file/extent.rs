@@ -6,7 +6,6 @@ use std::f64::consts::PI;
 use super::finding::{Finding, Remedy};
 use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, round_up, shown};
-use crate::deviation::FormScene;
 use crate::duty::Duty;
 use crate::housing::HousingScene;
 use crate::scene::{ModelScene, ProfileScene, Scene, Start};
@@ -42,8 +41,6 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         damped_twice,
         oiled_edges,
         reduced_starts,
-        reduced_housing,
-        reduced_rollers,
         load_direction,
         outer_speed,
         outer_speed_alone,
@@ -219,40 +216,6 @@ fn oiled_edges(scene: &Scene) -> Option<Finding> {
     let slope = Remedy::new("defect.edge_slope_deg", format!("{LEAST_EDGE_DEG}° or more"));
     let dry = Remedy::new("film", "`None`").value("None", "dry");
     Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
-}
-
-/// The reduced model has a roller in every pocket.
-fn reduced_rollers(scene: &Scene) -> Option<Finding> {
-    let missing = scene.defects.iter().position(|deviation| deviation.form == FormScene::Missing)?;
-    let full = Remedy::new("model", "`full`".to_owned()).value("full", "");
-    let path = format!("defects[{missing}].form");
-    let message = format!("`{path}` is `missing`, and the reduced model has a roller in every pocket");
-    let small = Remedy::new(path, "`diameter(larger_um: -100)`, which carries nothing".to_owned());
-    let small = small.value("diameter(larger_um: -100.0)", "a small one");
-    (scene.model != ModelScene::Full).then(|| Finding::new(message, vec![small, full]))
-}
-
-/// What holds the ring of a reduced model is elastic, or rigid and stands.
-fn reduced_housing(scene: &Scene) -> Option<Finding> {
-    if scene.model == ModelScene::Full {
-        return None;
-    }
-    let full = || Remedy::new("model", "`full`".to_owned()).value("full", "");
-    let operation = &scene.operation;
-    let (message, remedy) = if matches!(scene.housing, HousingScene::Springs(_)) {
-        let others = "`adapter`, `rigid(…)`, `pedestal(…)` or `mesh(…)`".to_owned();
-        let remedy = Remedy::new(HOUSING, others).value("adapter", "the paper's");
-        ("the reduced model knows no springs and dampers about the outer ring", remedy)
-    } else if scene.housing.is_rigid() && operation.outer_speed_rpm != 0.0 {
-        let remedy = Remedy::new(OUTER_SPEED, "`0`".to_owned()).value("0.0", "it stands");
-        ("the reduced model knows only outer rings that stand still", remedy)
-    } else if scene.housing.is_rigid() && operation.rotating_load.is_some() {
-        let remedy = Remedy::new("operation.rotating_load", "`None`".to_owned()).value("None", "");
-        ("the reduced model knows a load that turns with the shaft only in guided housings", remedy)
-    } else {
-        return None;
-    };
-    Some(Finding::new(message.to_owned(), vec![remedy, full()]))
 }
 
 const HOUSING: &str = "housing";

@@ -45,7 +45,7 @@ impl From<RankOne<'_>> for Spring {
 }
 
 impl SmallMotions {
-    /// Of the elastic bodies whose slots are given, at the present positions of `dynamics`. `shift` σ [rad²/s²] makes the
+    /// Of the bodies whose slots are given, elastic or moving as one piece without turning, at the present positions of `dynamics`. `shift` σ [rad²/s²] makes the
     /// matrix definite where bodies can move as a whole.
     ///
     /// # Errors
@@ -77,11 +77,13 @@ impl SmallMotions {
             // Every pair of its nodes is in the pattern.
             scatter(&unknowns, &spring.slots, block, &mut stiffness, |_| ());
         }
-        let of_node = |(slot, free): (&u32, &[bool; 2])| {
-            let mass = dynamics.mass()[*slot as usize];
-            free.map(|free| if free { mass } else { 0.0 })
-        };
-        let mass: Vec<f64> = unknowns.slots.iter().zip(&unknowns.free).flat_map(of_node).collect();
+        let mut mass = vec![0.0; 2 * unknowns.slots.len()];
+        for (slot, node) in unknowns.moving() {
+            let at = &mut mass[2 * node..2 * node + 2];
+            for (mass, free) in at.iter_mut().zip(unknowns.free[node]) {
+                *mass += if free { dynamics.mass()[slot] } else { 0.0 };
+            }
+        }
         let elastic = stiffness.values.clone();
         for (n, pair) in mass.chunks_exact(2).enumerate() {
             let [x, y] = [shift * pair[0], shift * pair[1]];

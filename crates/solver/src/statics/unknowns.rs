@@ -21,24 +21,31 @@ pub(super) struct Unknowns {
     index: Vec<u32>,
 }
 
+/// Slots of each body that moves as one piece without turning of itself.
+fn turning(d: &Dynamics) -> impl Iterator<Item = Range<u32>> {
+    let bodies = d.rigid_bodies().iter().filter(|body| body.turns());
+    bodies.map(|body| body.slots.start as u32..body.slots.end as u32)
+}
+
 impl Unknowns {
     pub(super) fn new(d: &Dynamics) -> Self {
-        let slots: Vec<u32> = d.elastic_slots().into_iter().map(|slot| slot as u32).collect();
-        let mut unknowns = Self::of_slots(d, &slots);
-        let turning = d.rigid_bodies().iter().filter(|body| body.turns());
-        unknowns.pieces = turning.map(|body| body.slots.start as u32..body.slots.end as u32).collect();
-        unknowns.slots.extend(unknowns.pieces.iter().map(|piece| piece.start));
-        unknowns.free.resize(unknowns.slots.len(), [true; 2]);
-        unknowns.number();
-        unknowns
+        let mut slots: Vec<u32> = d.elastic_slots().into_iter().map(|slot| slot as u32).collect();
+        slots.extend(turning(d).map(|piece| piece.start));
+        Self::of_slots(d, &slots)
     }
 
     /// Those of these slots that may move.
     pub(super) fn of_slots(d: &Dynamics, slots: &[u32]) -> Self {
-        let moves = |slot: &u32| d.free_components(*slot as usize) != [false; 2];
-        let slots: Vec<u32> = slots.iter().copied().filter(moves).collect();
-        let free = slots.iter().map(|&slot| d.free_components(slot as usize)).collect();
-        let mut unknowns = Self { slots, free, pieces: Vec::new(), index: vec![FIXED; d.state.x.len()] };
+        let pieces: Vec<Range<u32>> = turning(d).filter(|piece| slots.contains(&piece.start)).collect();
+        let by_itself = |slot: &u32| {
+            d.free_components(*slot as usize) != [false; 2]
+                && pieces.iter().all(|piece| !piece.contains(slot))
+        };
+        let mut slots: Vec<u32> = slots.iter().copied().filter(by_itself).collect();
+        let mut free: Vec<[bool; 2]> = slots.iter().map(|&slot| d.free_components(slot as usize)).collect();
+        slots.extend(pieces.iter().map(|piece| piece.start));
+        free.resize(slots.len(), [true; 2]);
+        let mut unknowns = Self { slots, free, pieces, index: vec![FIXED; d.state.x.len()] };
         unknowns.number();
         unknowns
     }

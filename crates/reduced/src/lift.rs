@@ -1,0 +1,130 @@
+//! What films of oil do to rollers, and through them to modes and rings, in a step and at the start (THEORY §9.4, §9.5).
+
+use stribeck_simd::lanes::LANES;
+
+use crate::{
+    bearing::Bearing,
+    block::Block,
+    oil::{Films, Lubrication, Now, Seen},
+    row::of_one,
+    state::State,
+    step::Turning,
+};
+
+/// What films do to eight rollers, beside the forces on these.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ByOil {
+    /// What they carry at the outer raceway [N].
+    pub(crate) normal: [f64; LANES],
+    /// Moments that the drives of outer and inner ring make good [N m].
+    pub(crate) drive: [f64; 2],
+    /// What their springs hold beside those of contact [J].
+    pub(crate) stored: f64,
+}
+
+impl Bearing {
+    /// Films before the first step, with the rollers as they stand in a state; `None` without oil.
+    pub(crate) fn first_films(&self, state: &State) -> Option<Films> {
+        let oil = self.oil.as_ref()?;
+        let mut films = Films { at: [Vec::new(), Vec::new()], heat: 0.0 };
+        for i in 0..self.rollers {
+            for (k, (race, at)) in oil.races.iter().zip(&mut films.at).enumerate() {
+                let seen = self.seen_at_rest(state, i, k, [0.0; 2]);
+                at.extend(race.first_films(oil.rim(self.rim_of[i]), &seen));
+            }
+        }
+        Some(films)
+    }
+
+    /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former displaced.
+    fn seen_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> Seen {
+        let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
+        let [x, y] = [state.x[i], state.y[i]];
+        let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
+        Seen { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }
+    }
+
+    /// Forces on a roller by the films of steady rolling at the outer and the inner raceway, away from these [N].
+    pub(crate) fn carried_by_oil(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
+        let (Some(oil), Some(mut films)) = (&self.oil, state.films.take()) else { return [0.0; 2] };
+        let rim = oil.rim(self.rim_of[i]);
+        let outwards = [0, 1].map(|k| {
+            let (race, seen) = (&oil.races[k], self.seen_at_rest(state, i, k, moved));
+            let [fx, fy] = race.carried(rim, race.of_roller(&mut films.at[k], i), &seen).force;
+            let [x, y] = seen.centre;
+            (fx * x + fy * y) / x.hypot(y)
+        });
+        state.films = Some(films);
+        [-outwards[0], outwards[1]]
+    }
+
+    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance, or no oil.
+    pub(crate) fn floating(&self, state: &mut State, i: usize, moved: [f64; 2]) -> Option<[f64; 2]> {
+        let oil = self.oil.as_ref()?;
+        let mut films = state.films.take()?;
+        let rim = oil.rim(self.rim_of[i]);
+        let gaps = [0, 1].map(|k| {
+            let (race, seen) = (&oil.races[k], self.seen_at_rest(state, i, k, moved));
+            race.gap(rim, race.of_roller(&mut films.at[k], i), &seen)
+        });
+        state.films = Some(films);
+        let at = state.x[i].hypot(state.y[i]);
+        Some([at - gaps[1], at + gaps[0]]).filter(|[low, high]| low < high)
+    }
+
+    /// Adds the forces of films to those on eight rollers between the raceways, the outer and the inner one of which turn as given.
+    #[inline(never)]
+    pub(crate) fn lift_rollers(
+        &self,
+        oil: &Lubrication,
+        films: &mut Films,
+        block: &mut Block,
+        turning: [Option<Turning>; 2],
+        now: Now,
+    ) -> ByOil {
+        let mut by_oil = ByOil::default();
+        for lane in 0..block.count {
+            let i = block.first + lane;
+            let rim = oil.rim(self.rim_of[i]);
+            let [x, y] = of_one(&block.centre, lane);
+            let velocity @ [vx, vy] = of_one(&block.velocity, lane);
+            let ([bx, by], [mx, my]) = (of_one(&block.by, lane), of_one(&block.moving, lane));
+            let [tx, ty] = of_one(&block.tilt, lane);
+            let distance = block.distance[lane];
+            let orbit = (x * vy - y * vx) / (distance * distance);
+            // The outer raceway under the roller moves with the modes, and because the roller goes on to another place of it.
+            let from_raceway = [[x - bx, y - by], [x, y]];
+            let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
+            for (k, race) in oil.races.iter().enumerate() {
+                let ([x, y], [rx, ry]) = (from_raceway[k], relative[k]);
+                let Turning { rate, turned: [c, s] } = turning[k].unwrap_or(Turning::STILL);
+                let [rx, ry] = [rx + rate * y, ry - rate * x];
+                let contacts = &block.contacts[k];
+                let seen = Seen {
+                    centre: of_one(&contacts.centre, lane),
+                    spin: of_one(&contacts.spin, lane),
+                    velocity: [c * rx + s * ry, c * ry - s * rx],
+                    turning: block.spin[lane] - rate,
+                };
+                let lifted = race.lift(rim, race.of_roller(&mut films.at[k], i), &seen, now);
+                let [fx, fy] = lifted.force;
+                let [fx, fy] = [c * fx - s * fy, s * fx + c * fy];
+                block.force[k][0][lane] += fx;
+                block.force[k][1][lane] += fy;
+                block.moment[lane] += lifted.moment;
+                by_oil.drive[k] += x * fy - y * fx + lifted.moment;
+                by_oil.stored += lifted.stored;
+                films.heat += lifted.heat;
+                if k == 0 {
+                    // As of contact: downhill along a raceway that is displaced more or less (THEORY §9.3).
+                    let uphill = (fx * tx + fy * ty) / distance;
+                    let [rx, ry] = of_one(&block.radial, lane);
+                    block.downhill[0][lane] += uphill * ry;
+                    block.downhill[1][lane] -= uphill * rx;
+                    by_oil.normal[lane] = lifted.normal;
+                }
+            }
+        }
+        by_oil
+    }
+}
