@@ -165,3 +165,56 @@ fn example_films_are_those_of_the_full_model() {
     assert!((reduced - full).abs() < CLEARANCE_M, "{full} m, {reduced} m");
     assert!((heat[1] / heat[0] - 1.0).abs() < HEAT, "{} J, {} J", heat[0], heat[1]);
 }
+
+/// Both rings turn, the outer one with a dent under the oil, and a roller is missing: what drives them makes good what films do, and
+/// forces and films are those of the full model.
+#[test]
+fn example_films_between_turning_rings() {
+    // As of dry arrangements (`example_arrangements_are_felt_as_by_the_full_model`).
+    const ENERGY: f64 = 0.01;
+    const FORCES: f64 = 0.03;
+    // Rings in a rigid housing stay round: what remains is how far they approach each other under 3 kN, some 10 µm, to 4 %.
+    const CLEARANCE_M: f64 = 0.5e-6;
+    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.5), defect: None, housing: rigid(mass_kg: 1), \
+        defects: [(on: roller(4), form: missing), (on: outer, angle_deg: 20, form: dent(length_mm: 4, depth_mm: 0.02))], \
+        mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None), contact: (surface: arc, penalty_scale: 1, friction: 0.05), \
+        solver: (duration_ms: 2, structural_damping: None), \
+        operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500, outer_speed_rpm: -1000))";
+    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let folder = Scratch::create("oil-turning");
+    let info = complete(&scene, &folder, "reduced");
+    complete(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
+    let traces = ["full", "reduced"].map(|name| trace(&folder, name));
+    let (mut square, mut count, mut largest) = (0.0, 0, 0.0_f64);
+    let mut clearances = [Vec::new(), Vec::new()];
+    for i in scene.rollers_in_place() {
+        for c in ["x", "y"] {
+            let [a, b] = traces.each_ref().map(|of| channel(of, &format!("roller.{i}.outer_f{c}_n")));
+            for (a, b) in a.chunks(25).zip(b.chunks(25)) {
+                let [a, b] = [a, b].map(|part| part.iter().sum::<f64>() / part.len() as f64);
+                (square, count, largest) = (square + (a - b).powi(2), count + 1, largest.max(a.abs()));
+            }
+        }
+        let thick = traces.each_ref().map(|of| {
+            let [outer, inner] = ["outer", "inner"].map(|s| channel(of, &format!("roller.{i}.{s}_film_m")));
+            outer.iter().zip(inner).map(|(outer, inner)| outer + inner).collect::<Vec<f64>>()
+        });
+        // Where it floats in both.
+        for (a, b) in thick[0].iter().zip(&thick[1]).filter(|(a, b)| a.min(**b) > 4e-6) {
+            clearances[0].push(*a);
+            clearances[1].push(*b);
+        }
+    }
+    let off = (square / f64::from(count)).sqrt() / largest;
+    let [full, reduced] = clearances.map(median);
+    println!(
+        "off by {:.3} %, forces by {:.2} % of {largest:.0} N, both films {:.2} and {:.2} µm",
+        100.0 * info.energy.max_relative_error,
+        100.0 * off,
+        1e6 * full,
+        1e6 * reduced
+    );
+    assert!(info.energy.max_relative_error < ENERGY, "{}", info.energy.max_relative_error);
+    assert!(off < FORCES, "{off}");
+    assert!((reduced - full).abs() < CLEARANCE_M, "{full} m, {reduced} m");
+}
