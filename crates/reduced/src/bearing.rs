@@ -252,8 +252,8 @@ impl Bearing {
         let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
         let penalty = law.stiffness * g.thickness;
         let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
-        let races = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
-        let oil = Lubrication::new(scene, races, &rounded, penalty)?;
+        let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
+        let oil = Lubrication::new(scene, raceways, &rounded, penalty)?;
         Ok(Self {
             time_step,
             rollers: pockets.len(),

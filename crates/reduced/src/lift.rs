@@ -28,7 +28,7 @@ impl Bearing {
         let oil = self.oil.as_ref()?;
         let mut films = Films { at: [Vec::new(), Vec::new()], heat: 0.0 };
         for i in 0..self.rollers {
-            for (k, (race, at)) in oil.races.iter().zip(&mut films.at).enumerate() {
+            for (k, (race, at)) in oil.raceways.iter().zip(&mut films.at).enumerate() {
                 let seen = self.seen_at_rest(state, i, k, [0.0; 2]);
                 at.extend(race.first_films(oil.rim(self.rim_of[i]), &seen));
             }
@@ -49,7 +49,7 @@ impl Bearing {
         let (Some(oil), Some(mut films)) = (&self.oil, state.films.take()) else { return [0.0; 2] };
         let rim = oil.rim(self.rim_of[i]);
         let outwards = [0, 1].map(|k| {
-            let (race, seen) = (&oil.races[k], self.seen_at_rest(state, i, k, moved));
+            let (race, seen) = (&oil.raceways[k], self.seen_at_rest(state, i, k, moved));
             let [fx, fy] = race.carried(rim, race.of_roller(&mut films.at[k], i), &seen).force;
             let [x, y] = seen.centre;
             (fx * x + fy * y) / x.hypot(y)
@@ -64,7 +64,7 @@ impl Bearing {
         let mut films = state.films.take()?;
         let rim = oil.rim(self.rim_of[i]);
         let gaps = [0, 1].map(|k| {
-            let (race, seen) = (&oil.races[k], self.seen_at_rest(state, i, k, moved));
+            let (race, seen) = (&oil.raceways[k], self.seen_at_rest(state, i, k, moved));
             race.gap(rim, race.of_roller(&mut films.at[k], i), &seen)
         });
         state.films = Some(films);
@@ -95,7 +95,7 @@ impl Bearing {
             // The outer raceway under the roller moves with the modes, and because the roller goes on to another place of it.
             let from_raceway = [[x - bx, y - by], [x, y]];
             let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
-            for (k, race) in oil.races.iter().enumerate() {
+            for (k, race) in oil.raceways.iter().enumerate() {
                 let ([x, y], [rx, ry]) = (from_raceway[k], relative[k]);
                 let Turning { rate, turned: [c, s] } = turning[k].unwrap_or(Turning::STILL);
                 let [rx, ry] = [rx + rate * y, ry - rate * x];

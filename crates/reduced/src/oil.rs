@@ -29,14 +29,14 @@ const FIXED: u64 = 4;
 #[derive(Debug, Clone)]
 pub(crate) struct Lubrication {
     /// Of the outer and the inner raceway.
-    pub(crate) races: [Race; 2],
+    pub(crate) raceways: [Raceway; 2],
     /// Rims of rollers, in the order of the bearing's.
     rims: Vec<Rim>,
 }
 
 /// The lands of a raceway, with the law of a film on each.
 #[derive(Debug, Clone)]
-pub(crate) struct Race {
+pub(crate) struct Raceway {
     curved: Curved,
     films: Vec<FilmLaw<Give>>,
     /// Entrainment speed of rolling without slip [m/s].
@@ -99,7 +99,7 @@ impl Lubrication {
         let [round, others @ ..] = rims else { return Ok(None) };
         let rim = |outline: &Outline| Curved::new("rim of a roller", outline, false);
         let curvature = rim(round)?.lands[0].curvature;
-        let race = |(outline, compliance), hollow, loaded: LoadedFilm| -> Result<Race, Error> {
+        let race = |(outline, compliance), hollow, loaded: LoadedFilm| -> Result<Raceway, Error> {
             let curved = Curved::new("raceway", outline, hollow)?;
             let oil = Oil { viscosity: film.viscosity, least: loaded.least };
             let law = |land: &Land| {
@@ -112,13 +112,13 @@ impl Lubrication {
                 Ok(FilmLaw::new(oil, 1.0 / relative, g.thickness, give))
             };
             let films = curved.lands.iter().map(law).collect::<Result<_, _>>()?;
-            Ok(Race { curved, films, speed: loaded.speed })
+            Ok(Raceway { curved, films, speed: loaded.speed })
         };
         let ([outer, inner], [on_outer, on_inner]) = (raceways, loaded);
         let formed = |outline: &&Outline| rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
         let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
         Ok(Some(Self {
-            races: [race(outer, true, on_outer)?, race(inner, false, on_inner)?],
+            raceways: [race(outer, true, on_outer)?, race(inner, false, on_inner)?],
             rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
         }))
     }
@@ -130,7 +130,7 @@ impl Lubrication {
 
     /// Whether films may be those of rollers with these rims.
     pub(crate) fn fits(&self, films: &Films, rim_of: &[u32]) -> bool {
-        self.races.iter().zip(&films.at).all(|(race, films)| {
+        self.raceways.iter().zip(&films.at).all(|(race, films)| {
             let lands = race.films.len();
             let fits = |(n, film): (usize, &Film)| {
                 let [on_race, on_rim] = film.places;
@@ -145,7 +145,7 @@ impl Lubrication {
     }
 }
 
-impl Race {
+impl Raceway {
     /// Films of a roller before the first step: none yet, but known places.
     pub(crate) fn first_films(&self, rim: &Rim, seen: &Seen) -> impl Iterator<Item = Film> {
         let places = |land| nearest::begin(&self.curved, land, rim, seen);

@@ -90,7 +90,7 @@ impl Bearing {
             let kinds = if self.cage.is_some() { 3 } else { 2 };
             row.extend(sums[..kinds].iter().flatten().map(|sum| sum[lane] / steps));
             if let (Some(oil), Some(films)) = (&self.oil, &state.films) {
-                row.extend(oil.races.iter().zip(&films.at).map(|(race, films)| race.thickness(films, i)));
+                row.extend(oil.raceways.iter().zip(&films.at).map(|(race, films)| race.thickness(films, i)));
             }
         }
         if self.cage.is_some() {

@@ -14,7 +14,7 @@ const MASS: f64 = 0.06;
 const PENALTY: f64 = 6e11;
 const FLEXIBILITY: f64 = 2e-9;
 
-fn race(radius: f64, hollow: bool) -> Race {
+fn race(radius: f64, hollow: bool) -> Raceway {
     let vertices: Vec<[f64; 2]> = (0..1200)
         .map(|i| TAU * f64::from(i) / 1200.0)
         .map(|angle| [radius * angle.cos(), radius * angle.sin()])
@@ -25,7 +25,7 @@ fn race(radius: f64, hollow: bool) -> Race {
     let compliance = Compliance::through(&loads, &loads.map(|load| FLEXIBILITY * load), 48);
     let give = Give::new(PENALTY, relative, &compliance);
     let films = vec![FilmLaw::new(OIL, relative, LENGTH, give)];
-    Race { curved, films, speed: 0.0 }
+    Raceway { curved, films, speed: 0.0 }
 }
 
 fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> Seen {
@@ -77,7 +77,7 @@ fn analytic_a_roller_sinks_through_its_film() {
     // much half as long.
     const TOLERANCE: f64 = 0.01;
     const ORDER: std::ops::Range<f64> = 0.8..1.2;
-    let races = [race(OUTER, true), race(INNER, false)];
+    let raceways = [race(OUTER, true), race(INNER, false)];
     let rim = Rim::Round(RADIUS);
     let start = 0.5 * (OUTER + INNER);
     let farthest = |dt: f64| {
@@ -90,10 +90,10 @@ fn analytic_a_roller_sinks_through_its_film() {
             assert!(step as f64 * dt < 1e-3, "the film stays at {thickness} m");
             let now = Now { step, dt, last: false };
             let mut force = Sinking::WEIGHT;
-            for (race, films) in races.iter().zip(&mut films) {
+            for (race, films) in raceways.iter().zip(&mut films) {
                 force += race.lift(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
             }
-            thickness = races[0].thickness(&films[0], 0);
+            thickness = raceways[0].thickness(&films[0], 0);
             off = off.max((thickness / (known.at[2] + OIL.least) - 1.0).abs());
             v += dt * force / MASS;
             x += dt * v;
