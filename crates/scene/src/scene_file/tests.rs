@@ -418,7 +418,6 @@ fn refuses_housings_that_do_not_fit() {
             "operation.outer_speed_rpm",
             "one speed may change",
         ),
-        ("model: reduced(), film: None, housing: springs()", "housing", "no springs"),
         (
             "bearing: (clearance_change_um: -200)",
             "bearing.clearance_change_um",
