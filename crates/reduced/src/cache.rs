@@ -1,5 +1,5 @@
-//! Reductions that earlier runs made, beside their folders: one serves every start, duration and speed of recording of the same
-//! mesh under the same load.
+//! Reductions that earlier runs made, beside their folders: one serves every start, speed and duration of the same mesh under the
+//! same load.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -78,21 +78,21 @@ pub fn reference(scene: &Scene) -> Scene {
     }
 }
 
-/// Half-way between the least and the largest load of a profile: what is linear about the preload is then nearest to all of
-/// them. The speed is that at the start, either way round: it matters by its square.
+/// At rest, half-way between the least and the largest load of a profile: what is linear about the preload is then nearest to all of
+/// them. What the speed adds, a few newtons by which idle rollers press outwards, is in the equilibrium that a run starts from, so that
+/// one reduction serves all speeds.
 fn between(scene: &Scene) -> OperationScene {
     let fields = OperationScene {
+        speed_rpm: 0.0,
+        outer_speed_rpm: 0.0,
         speed_profile: None,
         load_profile: None,
         rotating_load: None,
         ..scene.operation.clone()
     };
-    let Some(duty) = Duty::varying(scene) else {
-        return OperationScene { speed_rpm: fields.speed_rpm.abs(), ..fields };
-    };
+    let Some(duty) = Duty::varying(scene) else { return fields };
     let [least, most] = duty.load_range_n(LONGEST_RUN_S);
-    let load_n = 0.5 * (least + most);
-    OperationScene { load_n, speed_rpm: duty.speed_rpm(0.0).abs(), ..fields }
+    OperationScene { load_n: 0.5 * (least + most), ..fields }
 }
 
 /// The reduction of a scene, and whether it was there already. `runs` is where the folder of the run lies.
