@@ -67,16 +67,19 @@ const HARMONICS: usize = 3;
 const ALPHA: f64 = 1e-3;
 
 /// The verdict on channel `name` of the record; `None` where it is too short or not recorded.
+///
+/// # Errors
+/// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite signal is refused.
 pub fn of(
     scene: &Scene,
     record: &Record<'_>,
     motion: &KinematicsFinding,
     name: &str,
 ) -> Result<Option<DiagnosisFinding>, Error> {
-    let Some(samples) = record.channel(name) else { return Ok(None) };
+    let Some(samples) = record.part(0..record.len(), |n| n == name)?.take(name) else { return Ok(None) };
     let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * motion.relative_hz);
     let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing) };
-    let channel = Channel::held(name.to_owned(), samples.to_vec()).in_unit(Some("m/s²".to_owned()));
+    let channel = Channel::held(name.to_owned(), samples).in_unit(Some("m/s²".to_owned()));
     let analysis = match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         Ok(analysis) => analysis,
         // A record that is too short, or a sensor that stands still.

@@ -13,6 +13,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
 use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::run_dir::{Run, RunDir, State, write_atomic};
 use stribeck_scene::scene::Scene;
@@ -253,7 +254,7 @@ fn summary_of(path: &Path) -> Result<serde_json::Value> {
     if let Some(there) = there {
         return Ok(there);
     }
-    let findings = Findings::of(&Run::read(path)?)?;
+    let findings = Findings::of(&Record::new(&Run::read(path)?)?)?;
     let text = serde_json::to_string_pretty(&findings.summary)? + "\n";
     // Another part may make the same one at the same time.
     replace(&dir.summary(), &text)?;

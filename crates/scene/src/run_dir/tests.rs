@@ -58,7 +58,7 @@ fn roundtrip_a_run_reads_back_equal() {
     let run = Run::read(folder.path()).expect("complete");
     assert_eq!(run.scene, Scene::default());
     assert_eq!(run.info, info(Status::Complete));
-    assert_eq!(run.trace.get("x"), Some(&[1.0][..]));
+    assert_eq!(run.trace.channel("x").expect("readable"), Some(vec![1.0]));
     assert_eq!(run.energy.len(), 1);
 }
 
