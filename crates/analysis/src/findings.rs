@@ -88,8 +88,6 @@ pub struct SensorSignal {
     pub across_g: Vec<f64>,
     /// Behind the notch; empty when there is none.
     pub filtered_g: Vec<f64>,
-    /// Instantaneous nodal acceleration; empty when it was not recorded.
-    pub instant_g: Vec<f64>,
     /// Density of `raw_g`.
     pub raw_density: Option<Spectrum>,
     /// Density of `filtered_g`.
@@ -153,9 +151,20 @@ impl Findings {
         })?;
         let motion = turning.finding(&prediction.kinematics, record.pockets());
 
-        let mut sensors = sensor_signals(run, record, &mut notes)?;
         // Where the speed changes no line of the mesh or of the defect has a frequency.
         let steady = !run.scene.operation.speed_varies();
+        let span = time.last().copied().unwrap_or(0.0);
+        // Ten periods, or nothing could be said of a record.
+        let long = span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH;
+        let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
+        let leading = vertical.find(|name| run.trace.names().contains(name));
+        // Its transforms are long, and the signals of all sensors not yet in memory.
+        let diagnosis = match leading.filter(|_| steady && long) {
+            Some(name) => diagnosis::of(&run.scene, record, &motion, &name)?,
+            None => None,
+        };
+
+        let mut sensors = sensor_signals(run, record, &mut notes)?;
         let facet_lines = if steady { &prediction.facet_lines[..] } else { &[] };
         let mut lines = tones::harmonics(facet_lines, HARMONICS, 0.5 * record.sample_rate_hz());
         for line in &mut lines {
@@ -198,7 +207,6 @@ impl Findings {
         notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let cage = record.channel("cage.x_m").zip(record.channel("cage.y_m"));
         notes.extend(cage.and_then(|(x, y)| rolling::straying(&run.scene, x, y)));
-        let span = time.last().copied().unwrap_or(0.0);
         let artefacts = match sensors.first().zip(spectrum).filter(|_| steady) {
             Some((sensor, density)) => {
                 let seen =
@@ -208,15 +216,9 @@ impl Findings {
             None => Vec::new(),
         };
         let mut duty = DutyFinding::of(&run.scene, record);
-        let (mut envelope, mut enveloped, mut orders, mut diagnosis) = (None, None, None, None);
+        let (mut envelope, mut enveloped, mut orders) = (None, None, None);
         if steady {
             (envelope, enveloped) = self::envelope(record, &prediction, &motion, &sensors, &mut notes)?;
-            // Ten periods, or nothing could be said of a record.
-            let leading = sensors.first().filter(|_| span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH);
-            let name = |sensor: &SensorSignal| format!("sensor.{}.ay_m_s2", sensor.name);
-            if let Some(sensor) = leading {
-                diagnosis = diagnosis::of(&run.scene, record, &motion, &name(sensor))?;
-            }
         } else {
             notes.push(
                 "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies, \
@@ -333,7 +335,10 @@ fn sensor_signals(
             record.len()
         ));
     }
-    let mut recorded = record.part(0..record.len(), |name| name.starts_with("sensor."))?;
+    let means = |name: &str| {
+        name.starts_with("sensor.") && [".ax_m_s2", ".ay_m_s2"].iter().any(|end| name.ends_with(end))
+    };
+    let mut recorded = record.part(0..record.len(), means)?;
     let mut acceleration_g = |sensor: &str, component: &str| {
         let mut values = recorded.take(&format!("sensor.{sensor}.{component}_m_s2"))?;
         values.iter_mut().for_each(|a| *a /= STANDARD_GRAVITY);
@@ -350,7 +355,6 @@ fn sensor_signals(
             name: sensor.name.clone(),
             angle_deg: sensor.angle_deg,
             across_g: acceleration_g(&sensor.name, "ax").unwrap_or_default(),
-            instant_g: acceleration_g(&sensor.name, "ay_instant").unwrap_or_default(),
             raw_g,
             filtered_g: Vec::new(),
             raw_density,

@@ -10,7 +10,7 @@ use crate::Error;
 use crate::levels::STANDARD_GRAVITY;
 
 /// Channels of rollers that are in memory at once, at most [bytes]; one roller always is.
-const ROLLERS_AT_ONCE_BYTES: usize = 192 << 20;
+const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;
 
 /// What is read of a roller.
 const OF_ROLLER: [&str; 7] =

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use pulp::Arch;
+
 use super::{Motion, SIDEBANDS, Source};
 
 /// Real and imaginary part.
@@ -205,11 +207,14 @@ fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
     let table: [Complex; BLOCK] = std::array::from_fn(turns);
     let step = turns(BLOCK);
     let mut start = (1.0, 0.0);
-    let mut turned = Vec::with_capacity(values.len());
-    for block in values.chunks(BLOCK) {
-        turned.extend(block.iter().zip(&table).map(|(value, turn)| times(times(start, *turn), *value)));
-        start = times(start, step);
-    }
+    let mut turned = values.to_vec();
+    // As here, loops below are compiled for the vectors of each processor. Nothing in them is fused, so all give the same bits.
+    Arch::new().dispatch(|| {
+        for block in turned.chunks_mut(BLOCK) {
+            block.iter_mut().zip(&table).for_each(|(value, turn)| *value = times(times(start, *turn), *value));
+            start = times(start, step);
+        }
+    });
     turned
 }
 
@@ -264,19 +269,32 @@ impl LowPass {
     }
 
     fn apply(&self, values: &[Complex]) -> Vec<Complex> {
-        let average = |part: &[Complex]| {
-            sum(self.taps.iter().zip(part).map(|(tap, value)| (tap * value.0, tap * value.1)))
-        };
-        values.windows(self.taps.len()).step_by(self.step).map(average).collect()
+        let count = (values.len() + self.step).saturating_sub(self.taps.len()) / self.step;
+        let mut averages = vec![(0.0, 0.0); count];
+        Arch::new().dispatch(|| {
+            for (n, average) in averages.iter_mut().enumerate() {
+                let part = &values[n * self.step..][..self.taps.len()];
+                *average = sum(&self.taps, part, |tap, value| (tap * value.0, tap * value.1));
+            }
+        });
+        averages
     }
 }
 
-/// Sum in four parts, which do not wait for each other.
-fn sum(values: impl ExactSizeIterator<Item = Complex>) -> Complex {
+/// Sum of what pairs make, in four parts, which do not wait for each other and may lie in one vector.
+#[inline(always)]
+fn sum<A: Copy, B: Copy>(a: &[A], b: &[B], of: impl Fn(A, B) -> Complex) -> Complex {
+    let (a, b) = (a.as_chunks::<4>(), b.as_chunks::<4>());
     let mut parts = [(0.0, 0.0); 4];
-    for (n, value) in values.enumerate() {
-        let part: &mut Complex = &mut parts[n % 4];
-        *part = (part.0 + value.0, part.1 + value.1);
+    for (a, b) in a.0.iter().zip(b.0) {
+        for (n, part) in parts.iter_mut().enumerate() {
+            let more = of(a[n], b[n]);
+            *part = (part.0 + more.0, part.1 + more.1);
+        }
+    }
+    for ((a, b), part) in a.1.iter().zip(b.1).zip(&mut parts) {
+        let more = of(*a, *b);
+        *part = (part.0 + more.0, part.1 + more.1);
     }
     let [a, b, c, d] = parts;
     ((a.0 + b.0) + (c.0 + d.0), (a.1 + b.1) + (c.1 + d.1))
@@ -284,7 +302,7 @@ fn sum(values: impl ExactSizeIterator<Item = Complex>) -> Complex {
 
 /// Power of a signal in the span of orthonormal columns.
 pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
-    basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
+    Arch::new().dispatch(|| basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum())
 }
 
 /// Adds what `columns` hold beyond `basis` to it, orthonormal: Gram–Schmidt, twice for rounding.
@@ -292,15 +310,15 @@ pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     for column in columns {
         let mut rest = column.clone();
-        for _ in 0..2 {
-            for q in basis.iter() {
+        Arch::new().dispatch(|| {
+            for q in basis.iter().chain(basis.iter()) {
                 let share = dot(q, &rest);
                 for (r, q) in rest.iter_mut().zip(q) {
                     let part = times(share, *q);
                     *r = (r.0 - part.0, r.1 - part.1);
                 }
             }
-        }
+        });
         let length = dot(&rest, &rest).0;
         if length > INDEPENDENT * INDEPENDENT * longest {
             let scale = 1.0 / length.sqrt();
@@ -310,10 +328,12 @@ pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex
 }
 
 /// Σ ā b.
+#[inline(always)]
 pub(super) fn dot(a: &[Complex], b: &[Complex]) -> Complex {
-    sum(a.iter().zip(b).map(|(a, b)| (a.0 * b.0 + a.1 * b.1, a.0 * b.1 - a.1 * b.0)))
+    sum(a, b, |a, b| (a.0 * b.0 + a.1 * b.1, a.0 * b.1 - a.1 * b.0))
 }
 
+#[inline(always)]
 fn times(a: Complex, b: Complex) -> Complex {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }

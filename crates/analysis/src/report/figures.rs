@@ -74,7 +74,7 @@ impl Figures {
         let paper = if findings.of_paper { charts(beating::figures()).collect() } else { Vec::new() };
         Ok(Self {
             acceleration: charts(acceleration::raw(findings))
-                .chain(charts(acceleration::others(findings)))
+                .chain(charts(acceleration::others(record, findings)?))
                 .chain(charts(acceleration::notched(findings)))
                 .collect(),
             duty: charts(duty::figures(record, findings)).collect(),
