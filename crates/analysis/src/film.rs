@@ -31,7 +31,9 @@ impl FilmFinding {
     /// [`Error::Run`] when the trace cannot be read.
     pub fn measure(run: &Run, record: &Record<'_>) -> Result<Option<Self>, Error> {
         let Ok(Some(loaded)) = lubrication::loaded_films(&run.scene) else { return Ok(None) };
-        let films = |name: &str| name.starts_with("roller.") && (name.contains(".outer_") || name.contains(".inner_"));
+        let films = |name: &str| {
+            name.starts_with("roller.") && (name.contains(".outer_") || name.contains(".inner_"))
+        };
         let record = record.part(0..record.len(), films)?;
         let rollers: Vec<usize> = run.scene.rollers_in_place().collect();
         let channel = |roller: usize, side: usize, what: &str| {

@@ -139,6 +139,18 @@ impl Findings {
         let time = record.time_s();
         let mut notes = notes_on(run, record);
 
+        // Where the speed changes no line of the mesh or of the defect has a frequency.
+        let steady = !run.scene.operation.speed_varies();
+        let span = time.last().copied().unwrap_or(0.0);
+        // Ten periods, or nothing could be said of a record.
+        let long = span * prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
+        let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
+        let leading = vertical.find(|name| run.trace.names().contains(name));
+        let analysis = match leading.filter(|_| steady && long) {
+            Some(name) => diagnosis::analysis(&run.scene, record, &prediction.kinematics, &name)?,
+            None => None,
+        };
+
         let along = run.scene.load_direction();
         let mut turning = Turning::new(record, &prediction.kinematics);
         let mut carried = Carried::new(record, along, prediction.facet_period_s());
@@ -150,19 +162,7 @@ impl Findings {
             passages.add(roller, &orbit);
         })?;
         let motion = turning.finding(&prediction.kinematics, record.pockets());
-
-        // Where the speed changes no line of the mesh or of the defect has a frequency.
-        let steady = !run.scene.operation.speed_varies();
-        let span = time.last().copied().unwrap_or(0.0);
-        // Ten periods, or nothing could be said of a record.
-        let long = span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH;
-        let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
-        let leading = vertical.find(|name| run.trace.names().contains(name));
-        // Its transforms are long, and the signals of all sensors not yet in memory.
-        let diagnosis = match leading.filter(|_| steady && long) {
-            Some(name) => diagnosis::of(&run.scene, record, &motion, &name)?,
-            None => None,
-        };
+        let diagnosis = analysis.map(|analysis| diagnosis::of(&run.scene, &motion, &analysis));
 
         let mut sensors = sensor_signals(run, record, &mut notes)?;
         let facet_lines = if steady { &prediction.facet_lines[..] } else { &[] };
@@ -377,7 +377,8 @@ fn heard(
     // Families are told of a shaft that turns clockwise; one that turns the other way is seen in a mirror.
     let sense = prediction.kinematics.sense();
     let numbers = record.roller_numbers();
-    let (start, late) = (record.with_rollers(&numbers, 0..1)?, record.with_rollers(&numbers, early..record.len())?);
+    let (start, late) =
+        (record.with_rollers(&numbers, 0..1)?, record.with_rollers(&numbers, early..record.len())?);
     let track = |(first, late): (Roller<'_>, Roller<'_>)| {
         let place = first.orbit().first().map_or(0.0, |angle| sense * angle);
         let orbit = late.orbit().into_iter().map(|angle| sense * angle).collect();

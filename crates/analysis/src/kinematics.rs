@@ -145,7 +145,7 @@ impl<'a> Turning<'a> {
             bpfo_hz: on_outer.filter(|_| !rollers.is_empty()).map(|hz| hz * pockets as f64),
             cage_on_outer_hz: [on_outer, Some(expected.cage_on_outer_hz)],
             outer_ring_hz: expected.outer_ring_hz,
-            relative_hz: (expected.shaft_rad_s - expected.outer_rad_s).abs() / TAU,
+            relative_hz: relative_hz(expected),
             expected_bpfo_hz: expected.bpfo_hz,
             roller_spin_hz: spin_under_load.zip(cage).map(|(s, c)| (s - c).abs() / TAU),
             expected_roller_spin_hz: expected.roller_spin_hz,
@@ -183,6 +183,11 @@ pub fn rate(time_s: &[f64], angle: &[f64]) -> Option<f64> {
         spread += (t - t0) * (t - t0);
     }
     (spread > 0.0).then(|| moment / spread)
+}
+
+/// The rings against each other [Hz], positive.
+pub(crate) fn relative_hz(expected: &Kinematics) -> f64 {
+    (expected.shaft_rad_s - expected.outer_rad_s).abs() / TAU
 }
 
 /// Arithmetic mean; `None` of nothing.
@@ -227,8 +232,12 @@ mod tests {
             inner_fx: &none,
             inner_fy: &none,
         };
-        let turning =
-            || Turning { time_s: Cow::Borrowed(&time), guided: Some(0.0), rollers: Vec::new(), under_load: [0.0; 2] };
+        let turning = || Turning {
+            time_s: Cow::Borrowed(&time),
+            guided: Some(0.0),
+            rollers: Vec::new(),
+            under_load: [0.0; 2],
+        };
         let expected = Kinematics::new(&BearingScene::default(), 60.0);
         let mut one = turning();
         one.add(&roller, &none, &roller.outer_normal());

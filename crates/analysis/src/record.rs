@@ -112,7 +112,9 @@ impl<'a> Record<'a> {
         let names = self.run.trace.names();
         let there = |name: String| names.contains(&name);
         let in_place = self.run.scene.rollers_in_place();
-        in_place.filter(|number| OF_ROLLER.iter().all(|what| there(format!("roller.{number}.{what}")))).collect()
+        in_place
+            .filter(|number| OF_ROLLER.iter().all(|what| there(format!("roller.{number}.{what}"))))
+            .collect()
     }
 
     /// The run that was recorded.
@@ -161,9 +163,7 @@ impl<'a> Record<'a> {
 
     /// Values of a channel, which is in memory no longer.
     pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
-        let at = self.held.names.iter().position(|held| held == name)?;
-        self.held.names.swap_remove(at);
-        Some(self.held.columns.swap_remove(at))
+        self.held.take(name)
     }
 
     /// Acceleration `ax` or `ay` of a sensor [g], mean over each interval.

@@ -36,7 +36,8 @@ fn example_rollers_float_and_loaded_contacts_are_dry() {
     let (info, run) = run(&oiled(0.5), &folder, 2);
     assert_eq!(info.status, Status::Complete, "{info:?}");
     assert!(info.energy.max_relative_error < LEDGER, "{:?}", info.energy);
-    let channel = |name: String| run.trace.channel(&name).expect("readable").expect("a channel of a scene with oil");
+    let channel =
+        |name: String| run.trace.channel(&name).expect("readable").expect("a channel of a scene with oil");
     let of = |roller: usize, what: &str| channel(format!("roller.{roller}.{what}"));
     // Roller 14 stands at the bottom, in the middle of its clearance: 40 µm less what the load has taken.
     for ring in ["outer", "inner"] {
@@ -76,7 +77,11 @@ fn invariant_oil_goes_on_with_the_same_bits() {
     assert_eq!(info.status, Status::Complete);
     drop(dir);
     let other = Run::read(pieces.path()).expect("what was just written");
-    assert!(one.trace.read_all().expect("readable") == other.trace.read_all().expect("readable") && one.energy.read_all().expect("readable") == other.energy.read_all().expect("readable"), "other bits");
+    assert!(
+        one.trace.read_all().expect("readable") == other.trace.read_all().expect("readable")
+            && one.energy.read_all().expect("readable") == other.energy.read_all().expect("readable"),
+        "other bits"
+    );
 }
 
 #[test]

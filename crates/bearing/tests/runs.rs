@@ -129,8 +129,14 @@ fn invariant_same_bits_with_1_2_and_3_threads() {
     let (_, one) = run(&scene, 1);
     for threads in [2, 3] {
         let (_, other) = run(&scene, threads);
-        assert!(one.trace.read_all().expect("readable") == other.trace.read_all().expect("readable"), "{threads} threads: another trace");
-        assert!(one.energy.read_all().expect("readable") == other.energy.read_all().expect("readable"), "{threads} threads: another ledger");
+        assert!(
+            one.trace.read_all().expect("readable") == other.trace.read_all().expect("readable"),
+            "{threads} threads: another trace"
+        );
+        assert!(
+            one.energy.read_all().expect("readable") == other.energy.read_all().expect("readable"),
+            "{threads} threads: another ledger"
+        );
     }
 }
 
@@ -234,7 +240,10 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     let (_, free) = run(&Scene { cage: None, ..scene }, 1);
     let angle = last_angle_deg(&free, 1);
     assert!(angle > TRAILING_EDGE_DEG, "without a cage roller 1 should stay in the spall, it is at {angle}°");
-    assert!(free.trace.names().iter().all(|name| name != "cage.angle_rad"), "a scene without a cage records none");
+    assert!(
+        free.trace.names().iter().all(|name| name != "cage.angle_rad"),
+        "a scene without a cage records none"
+    );
 }
 
 /// A step above the critical one creates energy: the run stops by itself, says where and what to try, and what it wrote

@@ -39,6 +39,13 @@ impl Trace {
         self.columns.get(at).map(Vec::as_slice)
     }
 
+    /// Values of the channel called `name`, which the trace then has no longer.
+    pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
+        let at = self.names.iter().position(|n| n == name)?;
+        self.names.remove(at);
+        Some(self.columns.remove(at))
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, Vec::len)

@@ -209,12 +209,18 @@ fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
     let mut start = (1.0, 0.0);
     let mut turned = values.to_vec();
     // As here, loops below are compiled for the vectors of each processor. Nothing in them is fused, so all give the same bits.
-    Arch::new().dispatch(|| {
-        for block in turned.chunks_mut(BLOCK) {
-            block.iter_mut().zip(&table).for_each(|(value, turn)| *value = times(times(start, *turn), *value));
-            start = times(start, step);
-        }
-    });
+    Arch::new().dispatch(
+        #[inline(always)]
+        || {
+            for block in turned.chunks_mut(BLOCK) {
+                block
+                    .iter_mut()
+                    .zip(&table)
+                    .for_each(|(value, turn)| *value = times(times(start, *turn), *value));
+                start = times(start, step);
+            }
+        },
+    );
     turned
 }
 
@@ -271,12 +277,15 @@ impl LowPass {
     fn apply(&self, values: &[Complex]) -> Vec<Complex> {
         let count = (values.len() + self.step).saturating_sub(self.taps.len()) / self.step;
         let mut averages = vec![(0.0, 0.0); count];
-        Arch::new().dispatch(|| {
-            for (n, average) in averages.iter_mut().enumerate() {
-                let part = &values[n * self.step..][..self.taps.len()];
-                *average = sum(&self.taps, part, |tap, value| (tap * value.0, tap * value.1));
-            }
-        });
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for (n, average) in averages.iter_mut().enumerate() {
+                    let part = &values[n * self.step..][..self.taps.len()];
+                    *average = sum(&self.taps, part, |tap, value| (tap * value.0, tap * value.1));
+                }
+            },
+        );
         averages
     }
 }
@@ -302,7 +311,10 @@ fn sum<A: Copy, B: Copy>(a: &[A], b: &[B], of: impl Fn(A, B) -> Complex) -> Comp
 
 /// Power of a signal in the span of orthonormal columns.
 pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
-    Arch::new().dispatch(|| basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum())
+    Arch::new().dispatch(
+        #[inline(always)]
+        || basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum(),
+    )
 }
 
 /// Adds what `columns` hold beyond `basis` to it, orthonormal: Gram–Schmidt, twice for rounding.
@@ -310,15 +322,18 @@ pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     for column in columns {
         let mut rest = column.clone();
-        Arch::new().dispatch(|| {
-            for q in basis.iter().chain(basis.iter()) {
-                let share = dot(q, &rest);
-                for (r, q) in rest.iter_mut().zip(q) {
-                    let part = times(share, *q);
-                    *r = (r.0 - part.0, r.1 - part.1);
+        Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for q in basis.iter().chain(basis.iter()) {
+                    let share = dot(q, &rest);
+                    for (r, q) in rest.iter_mut().zip(q) {
+                        let part = times(share, *q);
+                        *r = (r.0 - part.0, r.1 - part.1);
+                    }
                 }
-            }
-        });
+            },
+        );
         let length = dot(&rest, &rest).0;
         if length > INDEPENDENT * INDEPENDENT * longest {
             let scale = 1.0 / length.sqrt();

@@ -54,7 +54,11 @@ impl<'a> Passages<'a> {
     }
 
     /// One event for every passage that begins within the record, in order of expected entry.
-    pub(super) fn events(mut self, record: &Record<'_>, notes: &mut Vec<String>) -> Result<Vec<Event>, Error> {
+    pub(super) fn events(
+        mut self,
+        record: &Record<'_>,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<Event>, Error> {
         let recorded = record.roller_numbers();
         let mut events = Vec::new();
         for (number, (course, seen)) in self.prediction.spalls.iter().zip(&mut self.seen).enumerate() {

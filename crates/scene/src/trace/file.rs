@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::{Trace, header};
+use super::{Trace, TraceWriter, header};
 use crate::error::Error;
 
 /// What is read at once [bytes]: it stays in a core's cache while channels are picked from it.
@@ -133,6 +133,25 @@ impl TraceFile {
         Ok(part.trace)
     }
 
+    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
+    pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
+        const AT_ONCE: usize = 1 << 14;
+        let names: Vec<&String> = self.names.iter().filter(|name| wanted(name)).collect();
+        let mut writer = TraceWriter::create(path, &names)?;
+        for first in (0..self.rows).step_by(AT_ONCE) {
+            let part = self.read(first..first + AT_ONCE, &wanted)?;
+            for n in 0..part.len() {
+                let row: Vec<f64> = part.columns.iter().map(|column| column[n]).collect();
+                writer.push(&row)?;
+            }
+        }
+        writer.sync()
+    }
+
     /// Hands blocks of whole rows to `take` until it says no.
     fn each_block(&self, rows: Range<usize>, mut take: impl FnMut(&[[u8; 8]]) -> bool) -> Result<(), Error> {
         let rows = rows.start..rows.end.min(self.rows);
@@ -172,7 +191,8 @@ impl Part {
 
     fn take(&mut self, rows: &[[u8; 8]]) {
         for (column, &at) in self.trace.columns.iter_mut().zip(&self.places) {
-            column.extend(rows.iter().skip(at).step_by(self.channels).map(|value| f64::from_le_bytes(*value)));
+            column
+                .extend(rows.iter().skip(at).step_by(self.channels).map(|value| f64::from_le_bytes(*value)));
         }
     }
 }

@@ -92,7 +92,8 @@ fn instantaneous(
 ) -> Result<Option<Figure>, Error> {
     let channel = format!("sensor.{}.ay_instant_m_s2", leading.name);
     let recorded = record.part(0..record.len(), |name| name == channel)?;
-    let Some(instant_g) = recorded.acceleration_g(&leading.name, "ay_instant").filter(|g| !g.is_empty()) else {
+    let Some(instant_g) = recorded.acceleration_g(&leading.name, "ay_instant").filter(|g| !g.is_empty())
+    else {
         return Ok(None);
     };
     let figure = over_time("acceleration-instant", "Instantaneous nodal acceleration")

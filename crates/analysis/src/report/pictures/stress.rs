@@ -101,7 +101,8 @@ fn moments(
     let first = all.first().zip(findings.summary.events.first());
     let at = first.map_or(0, |((time, _), _)| record.time_s().partition_point(|t| t < time));
     let at = at.min(record.len().saturating_sub(1));
-    let rollers = record.with_rollers(&first.map_or(Vec::new(), |(_, event)| vec![event.roller]), at..at + 1)?;
+    let rollers =
+        record.with_rollers(&first.map_or(Vec::new(), |(_, event)| vec![event.roller]), at..at + 1)?;
     let loaded = first.and_then(|((time, cells), event)| {
         let roller = rollers.roller(event.roller)?;
         let angle = roller.y.first()?.atan2(*roller.x.first()?).to_degrees();
