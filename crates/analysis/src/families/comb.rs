@@ -2,12 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use pulp::Arch;
-
+use super::kernels::{Complex, averages, dot, orthogonalise, turned, unit};
 use super::{Motion, SIDEBANDS, Source};
-
-/// Real and imaginary part.
-pub(super) type Complex = (f64, f64);
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
 const ORDERS: i32 = 3;
@@ -200,30 +196,6 @@ impl Baseband {
     }
 }
 
-/// Values times exp 2πi f t, t from zero on.
-fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
-    const BLOCK: usize = 16;
-    let turns = |samples: usize| unit(TAU * hz * interval_s * samples as f64);
-    let table: [Complex; BLOCK] = std::array::from_fn(turns);
-    let step = turns(BLOCK);
-    let mut start = (1.0, 0.0);
-    let mut turned = values.to_vec();
-    // As here, loops below are compiled for the vectors of each processor. Nothing in them is fused, so all give the same bits.
-    Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            for block in turned.chunks_mut(BLOCK) {
-                block
-                    .iter_mut()
-                    .zip(&table)
-                    .for_each(|(value, turn)| *value = times(times(start, *turn), *value));
-                start = times(start, step);
-            }
-        },
-    );
-    turned
-}
-
 /// Adds `part` to `sum`.
 fn add(sum: &mut [Complex], part: &[Complex]) {
     for (sum, part) in sum.iter_mut().zip(part) {
@@ -275,86 +247,25 @@ impl LowPass {
     }
 
     fn apply(&self, values: &[Complex]) -> Vec<Complex> {
-        let count = (values.len() + self.step).saturating_sub(self.taps.len()) / self.step;
-        let mut averages = vec![(0.0, 0.0); count];
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                for (n, average) in averages.iter_mut().enumerate() {
-                    let part = &values[n * self.step..][..self.taps.len()];
-                    *average = sum(&self.taps, part, |tap, value| (tap * value.0, tap * value.1));
-                }
-            },
-        );
-        averages
+        averages(values, &self.taps, self.step)
     }
-}
-
-/// Sum of what pairs make, in four parts, which do not wait for each other and may lie in one vector.
-#[inline(always)]
-fn sum<A: Copy, B: Copy>(a: &[A], b: &[B], of: impl Fn(A, B) -> Complex) -> Complex {
-    let (a, b) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let mut parts = [(0.0, 0.0); 4];
-    for (a, b) in a.0.iter().zip(b.0) {
-        for (n, part) in parts.iter_mut().enumerate() {
-            let more = of(a[n], b[n]);
-            *part = (part.0 + more.0, part.1 + more.1);
-        }
-    }
-    for ((a, b), part) in a.1.iter().zip(b.1).zip(&mut parts) {
-        let more = of(*a, *b);
-        *part = (part.0 + more.0, part.1 + more.1);
-    }
-    let [a, b, c, d] = parts;
-    ((a.0 + b.0) + (c.0 + d.0), (a.1 + b.1) + (c.1 + d.1))
 }
 
 /// Power of a signal in the span of orthonormal columns.
 pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
-    Arch::new().dispatch(
-        #[inline(always)]
-        || basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum(),
-    )
+    basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
 }
 
-/// Adds what `columns` hold beyond `basis` to it, orthonormal: Gram–Schmidt, twice for rounding.
+/// Adds what `columns` hold beyond `basis` to it, orthonormal.
 pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex>]) {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     for column in columns {
         let mut rest = column.clone();
-        Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                for q in basis.iter().chain(basis.iter()) {
-                    let share = dot(q, &rest);
-                    for (r, q) in rest.iter_mut().zip(q) {
-                        let part = times(share, *q);
-                        *r = (r.0 - part.0, r.1 - part.1);
-                    }
-                }
-            },
-        );
+        orthogonalise(&mut rest, basis);
         let length = dot(&rest, &rest).0;
         if length > INDEPENDENT * INDEPENDENT * longest {
             let scale = 1.0 / length.sqrt();
             basis.push(rest.iter().map(|r| (r.0 * scale, r.1 * scale)).collect());
         }
     }
-}
-
-/// Σ ā b.
-#[inline(always)]
-pub(super) fn dot(a: &[Complex], b: &[Complex]) -> Complex {
-    sum(a, b, |a, b| (a.0 * b.0 + a.1 * b.1, a.0 * b.1 - a.1 * b.0))
-}
-
-#[inline(always)]
-fn times(a: Complex, b: Complex) -> Complex {
-    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
-}
-
-/// e^{iφ}.
-fn unit(phase: f64) -> Complex {
-    let (sin, cos) = phase.sin_cos();
-    (cos, sin)
 }

@@ -1,6 +1,7 @@
 //! How well a comb explains the channels of a record, where it belongs and elsewhere.
 
-use super::comb::{Columns, Comb, Complex, dot, extend_basis, power, smoothed};
+use super::comb::{Columns, Comb, extend_basis, power, smoothed};
+use super::kernels::{Complex, dot};
 use super::{Channel, LEAST_LEAD, Motion};
 
 /// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
