@@ -146,8 +146,9 @@ impl Findings {
         let long = span * prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
         let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
         let leading = vertical.find(|name| run.trace.names().contains(name));
-        let analysis = match leading.filter(|_| steady && long) {
-            Some(name) => diagnosis::analysis(&run.scene, record, &prediction.kinematics, &name)?,
+        // The transforms of a whole record come before the signals of all sensors are in memory.
+        let analysis = match leading.as_ref().filter(|_| steady && long) {
+            Some(name) => diagnosis::analysis(&run.scene, record, &prediction.kinematics, name)?,
             None => None,
         };
 
@@ -163,6 +164,10 @@ impl Findings {
         })?;
         let motion = turning.finding(&prediction.kinematics, record.pockets());
         let diagnosis = analysis.map(|analysis| diagnosis::of(&run.scene, &motion, &analysis));
+        let envelope = match leading.filter(|_| steady) {
+            Some(name) => envelope(record, &prediction, &motion, &name)?,
+            None => None,
+        };
 
         let mut sensors = sensor_signals(run, record, &mut notes)?;
         let facet_lines = if steady { &prediction.facet_lines[..] } else { &[] };
@@ -216,10 +221,16 @@ impl Findings {
             None => Vec::new(),
         };
         let mut duty = DutyFinding::of(&run.scene, record);
-        let (mut envelope, mut enveloped, mut orders) = (None, None, None);
-        if steady {
-            (envelope, enveloped) = self::envelope(record, &prediction, &motion, &sensors, &mut notes)?;
-        } else {
+        let mut orders = None;
+        let (envelope, enveloped) = match envelope {
+            Some(Ok((spectrum, finding))) => (Some(spectrum), Some(finding)),
+            Some(Err(why)) => {
+                notes.push(why);
+                (None, None)
+            }
+            None => (None, None),
+        };
+        if !steady {
             notes.push(
                 "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies, \
                  the notch among them, are left out. Other frequencies are those at the mean speed"
@@ -506,22 +517,17 @@ fn order_spectrum(
     }
 }
 
-/// The envelope spectrum of the leading sensor when the record is long enough; a note otherwise, instead of a spectrum that
-/// means nothing.
+/// The envelope spectrum of channel `name` and what it shows; why there is none when the record is not long enough, instead of a
+/// spectrum that means nothing; `None` for an empty record.
 fn envelope(
     record: &Record<'_>,
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
-    sensors: &[SensorSignal],
-    notes: &mut Vec<String>,
-) -> Result<(Option<Spectrum>, Option<enveloping::EnvelopeFinding>), Error> {
-    let Some(leading) = sensors.first().filter(|s| !s.raw_g.is_empty()) else { return Ok((None, None)) };
+    name: &str,
+) -> Result<Option<Result<(Spectrum, enveloping::EnvelopeFinding), String>>, Error> {
+    let signal = record.part(0..record.len(), |n| n == name)?.take(name);
+    let Some(mut signal_g) = signal.filter(|s| !s.is_empty()) else { return Ok(None) };
+    signal_g.iter_mut().for_each(|a| *a /= STANDARD_GRAVITY);
     let lines = artefacts::defect_lines(prediction, motion);
-    match enveloping::analyse(&leading.raw_g, record.sample_rate_hz(), &lines)? {
-        Ok((spectrum, finding)) => Ok((Some(spectrum), Some(finding))),
-        Err(why) => {
-            notes.push(why);
-            Ok((None, None))
-        }
-    }
+    enveloping::analyse(&signal_g, record.sample_rate_hz(), &lines).map(Some)
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::kernels::{Complex, averages, dot, orthogonalise, turned, unit};
+use super::kernels::{Complex, Shift, dot, orthogonalise, turned, unit};
 use super::{Motion, SIDEBANDS, Source};
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
@@ -94,10 +94,12 @@ impl Comb {
 
     /// Its columns in the band about `centre_hz`, when it is detuned by `offset_hz`.
     pub(super) fn columns(&self, offset_hz: f64, centre_hz: f64) -> Columns {
-        let band = |values: &Vec<Complex>| self.baseband.band(values, self.rate_hz + offset_hz - centre_hz);
+        let length = self.sums.first().map_or(0, Vec::len);
+        let mut shift = self.baseband.shift(self.rate_hz + offset_hz - centre_hz, length);
+        let mut band = |values: &Vec<Complex>| shift.apply(values);
         Columns {
-            sums: self.sums.iter().map(band).collect(),
-            own: self.own.iter().map(|rollers| rollers.iter().flat_map(band).collect()).collect(),
+            sums: self.sums.iter().map(&mut band).collect(),
+            own: self.own.iter().map(|rollers| rollers.iter().flat_map(&mut band).collect()).collect(),
         }
     }
 
@@ -108,7 +110,7 @@ impl Comb {
         let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
         let steady = vec![(1.0, 0.0); self.baseband.length(motion.samples())];
         let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
-            .map(|m| self.baseband.band(&steady, f64::from(m) * motion.bpfo_hz))
+            .map(|m| self.baseband.shift(f64::from(m) * motion.bpfo_hz, steady.len()).apply(&steady))
             .collect();
         // Lines that are shifted together keep their angles: one basis serves all places, and columns are shifted back.
         let mut basis = Vec::new();
@@ -190,9 +192,9 @@ impl Baseband {
         self.of_samples(|n| (values[n], 0.0), values.len())
     }
 
-    /// What lies in the band once `values` are shifted up by `shift_hz`.
-    pub(super) fn band(&self, values: &[Complex], shift_hz: f64) -> Vec<Complex> {
-        self.filter.apply(&turned(values, shift_hz, self.interval_s))
+    /// What takes out of signals of so many `values` that which lies in the band once they are shifted up by `hz`.
+    pub(super) fn shift(&self, hz: f64, values: usize) -> Shift<'_> {
+        Shift::new(hz, self.interval_s, values, &self.filter.taps, self.filter.step)
     }
 }
 
@@ -244,10 +246,6 @@ impl LowPass {
             (1..=length).map(|n| (PI * n as f64 / (length + 1) as f64).sin().powi(2)).collect();
         let sum: f64 = taps.iter().sum();
         Self { taps: taps.iter().map(|t| t / sum).collect(), step: (length / OVERLAP).max(1) }
-    }
-
-    fn apply(&self, values: &[Complex]) -> Vec<Complex> {
-        averages(values, &self.taps, self.step)
     }
 }
 

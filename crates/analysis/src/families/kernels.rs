@@ -40,17 +40,38 @@ impl WithSimd for Turn<'_> {
     }
 }
 
-/// Averages of `values`, weighted by `taps`, one every `step` values.
-pub(super) fn averages(values: &[Complex], taps: &[f64], step: usize) -> Vec<Complex> {
-    let mut averages = vec![(0.0, 0.0); (values.len() + step).saturating_sub(taps.len()) / step];
-    Arch::new().dispatch(Average { values, taps, step, averages: &mut averages });
-    averages
+/// A shift in frequency, and weighted averages of what was shifted: one every few values.
+pub(super) struct Shift<'a> {
+    /// What each value is multiplied by.
+    turns: Vec<Complex>,
+    taps: &'a [f64],
+    step: usize,
+    shifted: Vec<Complex>,
+}
+
+impl<'a> Shift<'a> {
+    /// By `hz`, of so many values that are `interval_s` apart, and averages weighted by `taps`, one every `step` values.
+    pub(super) fn new(hz: f64, interval_s: f64, values: usize, taps: &'a [f64], step: usize) -> Self {
+        let turns = turned(&vec![(1.0, 0.0); values], hz, interval_s);
+        Self { shifted: turns.clone(), turns, taps, step }
+    }
+
+    /// The averages of one signal.
+    pub(super) fn apply(&mut self, values: &[Complex]) -> Vec<Complex> {
+        let Self { turns, taps, step, shifted } = self;
+        let mut averages = vec![(0.0, 0.0); (values.len() + *step).saturating_sub(taps.len()) / *step];
+        let shifted = &mut shifted[..values.len()];
+        Arch::new().dispatch(Average { values, turns, taps, step: *step, shifted, averages: &mut averages });
+        averages
+    }
 }
 
 struct Average<'a> {
     values: &'a [Complex],
+    turns: &'a [Complex],
     taps: &'a [f64],
     step: usize,
+    shifted: &'a mut [Complex],
     averages: &'a mut [Complex],
 }
 
@@ -59,8 +80,11 @@ impl WithSimd for Average<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
+        for ((shifted, turn), value) in self.shifted.iter_mut().zip(self.turns).zip(self.values) {
+            *shifted = times(*turn, *value);
+        }
         for (n, average) in self.averages.iter_mut().enumerate() {
-            let part = &self.values[n * self.step..][..self.taps.len()];
+            let part = &self.shifted[n * self.step..][..self.taps.len()];
             *average = sum(self.taps, part, |tap, value| (tap * value.0, tap * value.1));
         }
     }

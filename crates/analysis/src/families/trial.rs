@@ -186,10 +186,12 @@ struct Base {
 impl Base {
     /// In the band `offset_hz` off the comb's own.
     fn in_band(&self, comb: &Comb, offset_hz: f64) -> Signals {
-        let band = |values: &Vec<Complex>| comb.baseband.band(values, -offset_hz);
+        let length = self.accelerations.iter().chain(&self.forces).map(Vec::len).max().unwrap_or(0);
+        let mut shift = comb.baseband.shift(-offset_hz, length);
+        let mut band = |values: &Vec<Complex>| shift.apply(values);
         Signals {
-            accelerations: self.accelerations.iter().map(band).collect(),
-            forces: self.forces.iter().flat_map(band).collect(),
+            accelerations: self.accelerations.iter().map(&mut band).collect(),
+            forces: self.forces.iter().flat_map(&mut band).collect(),
         }
     }
 }
