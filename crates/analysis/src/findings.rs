@@ -517,14 +517,17 @@ fn order_spectrum(
     }
 }
 
-/// The envelope spectrum of channel `name` and what it shows; why there is none when the record is not long enough, instead of a
-/// spectrum that means nothing; `None` for an empty record.
+/// The envelope spectrum of a channel and what it shows; why there is none when the record is not long enough, instead of a
+/// spectrum that means nothing.
+type Enveloped = Result<(Spectrum, enveloping::EnvelopeFinding), String>;
+
+/// Of channel `name`; `None` for an empty record.
 fn envelope(
     record: &Record<'_>,
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
     name: &str,
-) -> Result<Option<Result<(Spectrum, enveloping::EnvelopeFinding), String>>, Error> {
+) -> Result<Option<Enveloped>, Error> {
     let signal = record.part(0..record.len(), |n| n == name)?.take(name);
     let Some(mut signal_g) = signal.filter(|s| !s.is_empty()) else { return Ok(None) };
     signal_g.iter_mut().for_each(|a| *a /= STANDARD_GRAVITY);

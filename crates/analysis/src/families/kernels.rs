@@ -11,6 +11,9 @@ pub(super) type Complex = (f64, f64);
 /// Values that are turned with one table.
 const BLOCK: usize = 16;
 
+/// Averages that are taken together, of values that lie near the processor.
+const TOGETHER: usize = 32;
+
 /// Values times exp 2πi f t, t from zero on.
 pub(super) fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
     let turns = |samples: usize| unit(TAU * hz * interval_s * samples as f64);
@@ -46,6 +49,7 @@ pub(super) struct Shift<'a> {
     turns: Vec<Complex>,
     taps: &'a [f64],
     step: usize,
+    /// Of the values, those for a few averages.
     shifted: Vec<Complex>,
 }
 
@@ -53,14 +57,13 @@ impl<'a> Shift<'a> {
     /// By `hz`, of so many values that are `interval_s` apart, and averages weighted by `taps`, one every `step` values.
     pub(super) fn new(hz: f64, interval_s: f64, values: usize, taps: &'a [f64], step: usize) -> Self {
         let turns = turned(&vec![(1.0, 0.0); values], hz, interval_s);
-        Self { shifted: turns.clone(), turns, taps, step }
+        Self { turns, taps, step, shifted: vec![(0.0, 0.0); TOGETHER * step + taps.len()] }
     }
 
     /// The averages of one signal.
     pub(super) fn apply(&mut self, values: &[Complex]) -> Vec<Complex> {
         let Self { turns, taps, step, shifted } = self;
         let mut averages = vec![(0.0, 0.0); (values.len() + *step).saturating_sub(taps.len()) / *step];
-        let shifted = &mut shifted[..values.len()];
         Arch::new().dispatch(Average { values, turns, taps, step: *step, shifted, averages: &mut averages });
         averages
     }
@@ -80,12 +83,18 @@ impl WithSimd for Average<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        for ((shifted, turn), value) in self.shifted.iter_mut().zip(self.turns).zip(self.values) {
-            *shifted = times(*turn, *value);
-        }
-        for (n, average) in self.averages.iter_mut().enumerate() {
-            let part = &self.shifted[n * self.step..][..self.taps.len()];
-            *average = sum(self.taps, part, |tap, value| (tap * value.0, tap * value.1));
+        for (at, averages) in self.averages.chunks_mut(TOGETHER).enumerate() {
+            let from = at * TOGETHER * self.step;
+            let shifted = &mut self.shifted[..(averages.len() - 1) * self.step + self.taps.len()];
+            for ((shifted, turn), value) in
+                shifted.iter_mut().zip(&self.turns[from..]).zip(&self.values[from..])
+            {
+                *shifted = times(*turn, *value);
+            }
+            for (n, average) in averages.iter_mut().enumerate() {
+                let part = &shifted[n * self.step..][..self.taps.len()];
+                *average = sum(self.taps, part, |tap, value| (tap * value.0, tap * value.1));
+            }
         }
     }
 }
