@@ -207,10 +207,10 @@ fn example_straight_pockets_push_along_the_track() {
         let (mut radial, mut all) = (0.0, 0.0);
         for roller in 1..=scene.bearing.rollers {
             let get = |channel: &str| column(&run, &format!("roller.{roller}.{channel}"));
-            let place = get("x_m").iter().zip(get("y_m"));
-            for ((x, y), (fx, fy)) in place.zip(get("cage_fx_n").iter().zip(get("cage_fy_n"))) {
-                radial += (fx * x + fy * y) / x.hypot(y);
-                all += fx.hypot(fy);
+            let [x, y, fx, fy] = ["x_m", "y_m", "cage_fx_n", "cage_fy_n"].map(get);
+            for n in 0..x.len() {
+                radial += (fx[n] * x[n] + fy[n] * y[n]) / x[n].hypot(y[n]);
+                all += fx[n].hypot(fy[n]);
             }
         }
         println!("{pocket:?}: {radial:.1} N outwards of {all:.1} N");
