@@ -172,8 +172,8 @@ impl Agreement {
 
 impl Side {
     fn of(run: &Run) -> Result<Self, Error> {
-        let summary = Findings::of(run)?.summary;
-        let record = Record::new(run);
+        let record = Record::whole(run)?;
+        let summary = Findings::of(&record)?.summary;
         let from = record.time_s().iter().position(|t| *t >= FROM_S).unwrap_or(record.len());
         let width = (MEAN_S / record.interval_s()).round().max(1.0) as usize;
         if record.len() - from < 4 * width {

@@ -6,10 +6,11 @@ use stribeck_dsp::{BandEnvelope, Whitened};
 use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::deviation::RollingSurface;
+use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::Scene;
 
 use crate::Error;
-use crate::kinematics::KinematicsFinding;
+use crate::kinematics::{KinematicsFinding, relative_hz};
 use crate::measured::{Analysis, Family, Machine};
 use crate::record::Record;
 
@@ -66,23 +67,30 @@ const HARMONICS: usize = 3;
 /// Probability that noise makes a line as high, below which it is seen.
 const ALPHA: f64 = 1e-3;
 
-/// The verdict on channel `name` of the record; `None` where it is too short or not recorded.
-pub fn of(
+/// What channel `name` of the record says by itself; `None` where it is too short or not recorded. The longest transforms of a run:
+/// nothing else need be in memory.
+///
+/// # Errors
+/// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite signal is refused.
+pub fn analysis(
     scene: &Scene,
     record: &Record<'_>,
-    motion: &KinematicsFinding,
+    expected: &Kinematics,
     name: &str,
-) -> Result<Option<DiagnosisFinding>, Error> {
-    let Some(samples) = record.channel(name) else { return Ok(None) };
-    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * motion.relative_hz);
+) -> Result<Option<Analysis>, Error> {
+    let Some(samples) = record.part(0..record.len(), |n| n == name)?.take(name) else { return Ok(None) };
+    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * relative_hz(expected));
     let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing) };
-    let channel = Channel::held(name.to_owned(), samples.to_vec()).in_unit(Some("m/s²".to_owned()));
-    let analysis = match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
-        Ok(analysis) => analysis,
+    let channel = Channel::held(name.to_owned(), samples).in_unit(Some("m/s²".to_owned()));
+    match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         // A record that is too short, or a sensor that stands still.
-        Err(Error::NoSignal(_)) => return Ok(None),
-        Err(why) => return Err(why),
-    };
+        Err(Error::NoSignal(_)) => Ok(None),
+        analysis => analysis.map(Some),
+    }
+}
+
+/// The verdict of an `analysis` beside the recorded `motion` and the defects of the scene.
+pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> DiagnosisFinding {
     let present = scene.faults();
     let families = analysis.findings.families.iter().map(|family| {
         let sides = match family.name {
@@ -104,12 +112,12 @@ pub fn of(
             sidebands,
         }
     });
-    Ok(Some(DiagnosisFinding {
-        channel: name.to_owned(),
+    DiagnosisFinding {
+        channel: analysis.findings.channel.clone(),
         verdict: analysis.findings.verdict.clone(),
         resolution_hz: analysis.findings.resolution_hz,
         families: families.collect(),
-    }))
+    }
 }
 
 /// The family of a defect on a surface.

@@ -13,6 +13,7 @@ use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::findings::Findings;
+use crate::record::Record;
 use crate::statistic::Statistic;
 use crate::summary::Event;
 pub use merge::Merged;
@@ -141,6 +142,9 @@ impl EnsembleSummary {
     }
 }
 
+/// Passages whose forces are kept for pictures.
+const CROSSINGS: usize = 12;
+
 /// One start, and what it shows when it is complete.
 fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (StartSummary, Option<Findings>) {
     let folder = dir.start_folder(number);
@@ -201,7 +205,7 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
     }
     let damage = run.damage();
     let findings = if damage.is_empty() {
-        Findings::of(&run).map_err(|why| why.to_string())
+        findings_of(&run).map_err(|why| why.to_string())
     } else {
         Err(damage.join("; "))
     };
@@ -216,6 +220,11 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
             (start, None)
         }
     }
+}
+
+fn findings_of(run: &Run) -> Result<Findings, Error> {
+    let record = Record::new(run)?;
+    Findings::of(&record)?.with_crossings(&record, CROSSINGS)
 }
 
 /// What is missing of the ensemble, and what its runs warn of.

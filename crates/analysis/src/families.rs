@@ -23,6 +23,7 @@
 //! lead comes from, and how often noise reaches it: THEORY §7.7.
 
 mod comb;
+mod kernels;
 mod lines;
 mod trial;
 

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use stribeck_scene::{lubrication, run_dir::Run};
 
+use crate::Error;
 use crate::record::Record;
 
 /// A film that is no more than this much thicker than its least is that of a loaded contact [-].
@@ -25,8 +26,15 @@ pub struct FilmFinding {
 
 impl FilmFinding {
     /// `None` for a scene without oil, or one whose loaded films are not to be had.
-    pub fn measure(run: &Run, record: &Record<'_>) -> Option<Self> {
-        let loaded = lubrication::loaded_films(&run.scene).ok()??;
+    ///
+    /// # Errors
+    /// [`Error::Run`] when the trace cannot be read.
+    pub fn measure(run: &Run, record: &Record<'_>) -> Result<Option<Self>, Error> {
+        let Ok(Some(loaded)) = lubrication::loaded_films(&run.scene) else { return Ok(None) };
+        let films = |name: &str| {
+            name.starts_with("roller.") && (name.contains(".outer_") || name.contains(".inner_"))
+        };
+        let record = record.part(0..record.len(), films)?;
         let rollers: Vec<usize> = run.scene.rollers_in_place().collect();
         let channel = |roller: usize, side: usize, what: &str| {
             let ring = ["outer", "inner"][side];
@@ -50,12 +58,12 @@ impl FilmFinding {
             });
             forces.reduce(f64::max)
         };
-        Some(Self {
+        Ok(Some(Self {
             loaded_um: [0, 1].map(|side: usize| 1e6 * loaded[side].thickness),
             lambda: [0, 1].map(|side: usize| loaded[side].lambda),
             floating_um: [0, 1].map(floating),
             largest_n: [0, 1].map(largest),
-            heat_j: run.energy.get("film_j").and_then(|heat| heat.last().copied()),
-        })
+            heat_j: run.energy.channel("film_j")?.and_then(|heat| heat.last().copied()),
+        }))
     }
 }

@@ -7,7 +7,7 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
-use self::passages::{crossing_forces, level_finding, picked_events, start_up_end_s};
+use self::passages::{Passages, crossing_forces, level_finding, start_up_end_s};
 use crate::Error;
 use crate::artefacts;
 use crate::diagnosis;
@@ -16,8 +16,9 @@ use crate::enveloping;
 use crate::families::{self, Channel, Motion, RollerTrack};
 use crate::film::FilmFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
-use crate::kinematics;
-use crate::load::{self, Distribution};
+use crate::kinematics::{self, Turning};
+use crate::levels::STANDARD_GRAVITY;
+use crate::load::{Carried, Distribution};
 use crate::paper;
 use crate::prediction::{Prediction, StaticCurve};
 use crate::reading::CursorReading;
@@ -55,8 +56,11 @@ pub struct Findings {
     pub interval_s: f64,
     /// One entry a sensor, the leading one first.
     pub sensors: Vec<SensorSignal>,
-    /// Vertical outer-raceway forces of the rollers that cross the defect, in order of entry.
+    /// Vertical outer-raceway forces of the rollers that cross the defect, in order of entry; empty before
+    /// [`Findings::with_crossings`].
     pub crossings: Vec<CrossingForce>,
+    /// Force of all rollers on the outer ring against the load at every sample [N]; empty where no roller was recorded.
+    pub support_n: Vec<f64>,
     /// Mean roller force by angle.
     pub distribution: Distribution,
     /// Squared envelope spectrum of the leading sensor [g⁴]; `None` when the record is too short.
@@ -68,6 +72,7 @@ pub struct Findings {
     pub static_curve: Option<StaticCurve>,
     /// What the families of facet lines were judged by: recorded motion and accelerations [g].
     pub heard: (Motion, Vec<Channel>),
+    filter: Option<Filter>,
 }
 
 /// a_y of one sensor [g] and its spectra [g²/Hz].
@@ -83,8 +88,6 @@ pub struct SensorSignal {
     pub across_g: Vec<f64>,
     /// Behind the notch; empty when there is none.
     pub filtered_g: Vec<f64>,
-    /// Instantaneous nodal acceleration; empty when it was not recorded.
-    pub instant_g: Vec<f64>,
     /// Density of `raw_g`.
     pub raw_density: Option<Spectrum>,
     /// Density of `filtered_g`.
@@ -126,27 +129,54 @@ impl SensorSignal {
 }
 
 impl Findings {
-    /// Analyses `run`. An interrupted or diverged run yields what its samples hold.
+    /// Analyses a record. An interrupted or diverged run yields what its samples hold.
     ///
     /// # Errors
-    /// [`Error::Signal`] when a finite recorded signal is refused all the same.
-    pub fn of(run: &Run) -> Result<Self, Error> {
-        let record = Record::new(run);
+    /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite recorded signal is refused all the same.
+    pub fn of(record: &Record<'_>) -> Result<Self, Error> {
+        let run = record.run();
         let prediction = Prediction::of(&run.scene, &run.info.mesh);
         let time = record.time_s();
-        let mut notes = notes_on(run, &record);
+        let mut notes = notes_on(run, record);
 
-        let mut sensors = sensor_signals(run, &record, &mut notes)?;
-        let motion = kinematics::measure(&record, &prediction.kinematics);
         // Where the speed changes no line of the mesh or of the defect has a frequency.
         let steady = !run.scene.operation.speed_varies();
+        let span = time.last().copied().unwrap_or(0.0);
+        // Ten periods, or nothing could be said of a record.
+        let long = span * prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
+        let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
+        let leading = vertical.find(|name| run.trace.names().contains(name));
+        // The transforms of a whole record come before the signals of all sensors are in memory.
+        let analysis = match leading.as_ref().filter(|_| steady && long) {
+            Some(name) => diagnosis::analysis(&run.scene, record, &prediction.kinematics, name)?,
+            None => None,
+        };
+
+        let along = run.scene.load_direction();
+        let mut turning = Turning::new(record, &prediction.kinematics);
+        let mut carried = Carried::new(record, along, prediction.facet_period_s());
+        let mut passages = Passages::new(&run.scene, time, &prediction);
+        record.each_roller(|roller| {
+            let (orbit, outer_normal) = (roller.orbit(), roller.outer_normal());
+            turning.add(roller, &orbit, &outer_normal);
+            carried.add(roller, &outer_normal);
+            passages.add(roller, &orbit);
+        })?;
+        let motion = turning.finding(&prediction.kinematics, record.pockets());
+        let diagnosis = analysis.map(|analysis| diagnosis::of(&run.scene, &motion, &analysis));
+        let envelope = match leading.filter(|_| steady) {
+            Some(name) => envelope(record, &prediction, &motion, &name)?,
+            None => None,
+        };
+
+        let mut sensors = sensor_signals(run, record, &mut notes)?;
         let facet_lines = if steady { &prediction.facet_lines[..] } else { &[] };
         let mut lines = tones::harmonics(facet_lines, HARMONICS, 0.5 * record.sample_rate_hz());
         for line in &mut lines {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
-        let ((tracks, channels), early) = heard(&record, &prediction, &motion, &sensors);
+        let ((tracks, channels), early) = heard(record, &prediction, &motion, &sensors)?;
         let candidates = if steady { prediction.candidates(&run.scene, &run.info.mesh) } else { Vec::new() };
         if early > 0 && steady {
             let sought_s = record.interval_s() * (time.len() - early) as f64;
@@ -157,22 +187,16 @@ impl Findings {
         }
         let families = families::identify(&tracks, &candidates, &channels)?;
         let filter =
-            if steady { filter(&record, &prediction, &sensors, &measured, &mut notes)? } else { None };
+            if steady { filter(record, &prediction, &sensors, &measured, &mut notes)? } else { None };
         if let Some(filter) = &filter {
-            filter_sensors(filter, &record, &mut sensors)?;
+            filter_sensors(filter, record, &mut sensors)?;
         }
 
-        let mut events = picked_events(&run.scene, &record, &prediction, &mut notes);
+        let mut events = passages.events(record, &mut notes)?;
         let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
-        let crossings = crossing_forces(&record, &prediction, &events, filter.as_ref())?;
         let notch = filter.as_ref().zip(sensors.first()).map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g));
         let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
-        let mut load = load::measure(
-            &record,
-            run.scene.load_direction(),
-            run.info.expected_support_n,
-            prediction.facet_period_s(),
-        );
+        let mut load = carried.finding(record, run.info.expected_support_n);
         let static_curve = match prediction.static_curve(&run.scene, run.info.expected_support_n) {
             Ok(curve) => Some(curve),
             Err(why) => {
@@ -188,7 +212,6 @@ impl Findings {
         notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let cage = record.channel("cage.x_m").zip(record.channel("cage.y_m"));
         notes.extend(cage.and_then(|(x, y)| rolling::straying(&run.scene, x, y)));
-        let span = time.last().copied().unwrap_or(0.0);
         let artefacts = match sensors.first().zip(spectrum).filter(|_| steady) {
             Some((sensor, density)) => {
                 let seen =
@@ -197,23 +220,23 @@ impl Findings {
             }
             None => Vec::new(),
         };
-        let mut duty = DutyFinding::of(&run.scene, &record);
-        let (mut envelope, mut enveloped, mut orders, mut diagnosis) = (None, None, None, None);
-        if steady {
-            (envelope, enveloped) = self::envelope(&record, &prediction, &motion, &sensors, &mut notes)?;
-            // Ten periods, or nothing could be said of a record.
-            let leading = sensors.first().filter(|_| span * motion.expected_bpfo_hz >= PeriodCount::ENOUGH);
-            let name = |sensor: &SensorSignal| format!("sensor.{}.ay_m_s2", sensor.name);
-            if let Some(sensor) = leading {
-                diagnosis = diagnosis::of(&run.scene, &record, &motion, &name(sensor))?;
+        let mut duty = DutyFinding::of(&run.scene, record);
+        let mut orders = None;
+        let (envelope, enveloped) = match envelope {
+            Some(Ok((spectrum, finding))) => (Some(spectrum), Some(finding)),
+            Some(Err(why)) => {
+                notes.push(why);
+                (None, None)
             }
-        } else {
+            None => (None, None),
+        };
+        if !steady {
             notes.push(
                 "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies, \
                  the notch among them, are left out. Other frequencies are those at the mean speed"
                     .into(),
             );
-            orders = order_spectrum(run, &record, &motion, &sensors, duty.as_mut(), &mut notes)?;
+            orders = order_spectrum(run, record, &motion, &sensors, duty.as_mut(), &mut notes)?;
         }
         let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
         let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
@@ -232,7 +255,7 @@ impl Findings {
             events,
             load,
             families,
-            film: FilmFinding::measure(run, &record),
+            film: FilmFinding::measure(run, record)?,
             tones: measured,
             levels,
             notch,
@@ -257,14 +280,26 @@ impl Findings {
             start_s: time.first().copied().unwrap_or(0.0),
             interval_s: record.interval_s(),
             sensors,
-            crossings,
-            distribution: load::distribution(&record),
+            crossings: Vec::new(),
+            distribution: carried.distribution(),
+            support_n: carried.into_support(),
             envelope,
             orders,
             static_curve,
             heard: (tracks, channels),
+            filter,
             prediction,
         })
+    }
+
+    /// The same with the forces of the first `most` passages, for pictures.
+    ///
+    /// # Errors
+    /// As [`Findings::of`].
+    pub fn with_crossings(mut self, record: &Record<'_>, most: usize) -> Result<Self, Error> {
+        let (events, filter) = (&self.summary.events, self.filter.as_ref());
+        self.crossings = crossing_forces(record, &self.prediction, events, filter, most)?;
+        Ok(self)
     }
 
     /// Length of the notch's transient [s]; zero without a notch.
@@ -311,9 +346,18 @@ fn sensor_signals(
             record.len()
         ));
     }
+    let means = |name: &str| {
+        name.starts_with("sensor.") && [".ax_m_s2", ".ay_m_s2"].iter().any(|end| name.ends_with(end))
+    };
+    let mut recorded = record.part(0..record.len(), means)?;
+    let mut acceleration_g = |sensor: &str, component: &str| {
+        let mut values = recorded.take(&format!("sensor.{sensor}.{component}_m_s2"))?;
+        values.iter_mut().for_each(|a| *a /= STANDARD_GRAVITY);
+        Some(values)
+    };
     let mut signals = Vec::new();
     for sensor in &run.scene.output.sensors {
-        let Some(raw_g) = record.acceleration_g(&sensor.name, "ay") else {
+        let Some(raw_g) = acceleration_g(&sensor.name, "ay") else {
             notes.push(format!("sensor `{}` is in the scene but not in the trace", sensor.name));
             continue;
         };
@@ -321,8 +365,7 @@ fn sensor_signals(
         signals.push(SensorSignal {
             name: sensor.name.clone(),
             angle_deg: sensor.angle_deg,
-            across_g: record.acceleration_g(&sensor.name, "ax").unwrap_or_default(),
-            instant_g: record.acceleration_g(&sensor.name, "ay_instant").unwrap_or_default(),
+            across_g: acceleration_g(&sensor.name, "ax").unwrap_or_default(),
             raw_g,
             filtered_g: Vec::new(),
             raw_density,
@@ -338,15 +381,17 @@ fn heard(
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
-) -> ((Motion, Vec<Channel>), usize) {
+) -> Result<((Motion, Vec<Channel>), usize), Error> {
     let interval_s = record.interval_s();
     let bpfo_hz = motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz);
     let early = families::too_early(record.len(), interval_s, bpfo_hz).unwrap_or(0);
     // Families are told of a shaft that turns clockwise; one that turns the other way is seen in a mirror.
     let sense = prediction.kinematics.sense();
-    let track = |r: &Roller<'_>| {
-        let place = r.within(0..record.len().min(1)).orbit().first().map_or(0.0, |angle| sense * angle);
-        let late = r.within(early..record.len());
+    let numbers = record.roller_numbers();
+    let (start, late) =
+        (record.with_rollers(&numbers, 0..1)?, record.with_rollers(&numbers, early..record.len())?);
+    let track = |(first, late): (Roller<'_>, Roller<'_>)| {
+        let place = first.orbit().first().map_or(0.0, |angle| sense * angle);
         let orbit = late.orbit().into_iter().map(|angle| sense * angle).collect();
         let spin = late.spin.iter().map(|angle| sense * angle).collect();
         RollerTrack { place, orbit, spin, load_n: late.outer_normal() }
@@ -356,7 +401,7 @@ fn heard(
         shaft_rad_s: sense * prediction.kinematics.shaft_rad_s,
         outer_rad_s: sense * prediction.kinematics.outer_rad_s,
         bpfo_hz,
-        rollers: record.rollers().iter().map(track).collect(),
+        rollers: start.rollers().into_iter().zip(late.rollers()).map(track).collect(),
     };
     let channels = sensors.iter().flat_map(|sensor| {
         [("ay", &sensor.raw_g), ("ax", &sensor.across_g)].map(|(component, values)| Channel {
@@ -365,7 +410,7 @@ fn heard(
             values: values.get(early..).unwrap_or_default().to_vec(),
         })
     });
-    ((tracks, channels.filter(|channel| !channel.values.is_empty()).collect()), early)
+    Ok(((tracks, channels.filter(|channel| !channel.values.is_empty()).collect()), early))
 }
 
 /// Every line at every sensor.
@@ -472,22 +517,20 @@ fn order_spectrum(
     }
 }
 
-/// The envelope spectrum of the leading sensor when the record is long enough; a note otherwise, instead of a spectrum that
-/// means nothing.
+/// The envelope spectrum of a channel and what it shows; why there is none when the record is not long enough, instead of a
+/// spectrum that means nothing.
+type Enveloped = Result<(Spectrum, enveloping::EnvelopeFinding), String>;
+
+/// Of channel `name`; `None` for an empty record.
 fn envelope(
     record: &Record<'_>,
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
-    sensors: &[SensorSignal],
-    notes: &mut Vec<String>,
-) -> Result<(Option<Spectrum>, Option<enveloping::EnvelopeFinding>), Error> {
-    let Some(leading) = sensors.first().filter(|s| !s.raw_g.is_empty()) else { return Ok((None, None)) };
+    name: &str,
+) -> Result<Option<Enveloped>, Error> {
+    let signal = record.part(0..record.len(), |n| n == name)?.take(name);
+    let Some(mut signal_g) = signal.filter(|s| !s.is_empty()) else { return Ok(None) };
+    signal_g.iter_mut().for_each(|a| *a /= STANDARD_GRAVITY);
     let lines = artefacts::defect_lines(prediction, motion);
-    match enveloping::analyse(&leading.raw_g, record.sample_rate_hz(), &lines)? {
-        Ok((spectrum, finding)) => Ok((Some(spectrum), Some(finding))),
-        Err(why) => {
-            notes.push(why);
-            Ok((None, None))
-        }
-    }
+    enveloping::analyse(&signal_g, record.sample_rate_hz(), &lines).map(Some)
 }

@@ -73,48 +73,85 @@ impl KinematicsFinding {
     }
 }
 
-/// Measures the motion recorded in `record`.
-pub fn measure(record: &Record<'_>, expected: &Kinematics) -> KinematicsFinding {
-    let clock = clock(record, expected);
-    let time = &clock[..];
-    let rollers = record.rollers();
-    let orbits: Vec<Option<f64>> = rollers.iter().map(|r| rate(time, &r.orbit())).collect();
-    let guided = record.channel("cage.angle_rad").and_then(|angle| rate(time, angle));
-    let cage = guided.or_else(|| mean(orbits.iter().copied().flatten()));
+/// How rollers turn, one after the other.
+#[derive(Debug)]
+pub struct Turning<'a> {
+    time_s: Cow<'a, [f64]>,
+    /// Cage, where its angle was recorded [rad/s].
+    guided: Option<f64>,
+    rollers: Vec<Turned>,
+    /// Spin [rad] and time [s], both weighted by the force of the outer raceway.
+    under_load: [f64; 2],
+}
 
-    let mean_load = |r: &Roller<'_>| mean(r.outer_normal().into_iter()).unwrap_or(0.0);
-    let loads: Vec<f64> = rollers.iter().map(mean_load).collect();
-    let largest = loads.iter().copied().fold(0.0, f64::max);
-    let motions: Vec<RollerMotion> = rollers
-        .iter()
-        .zip(&orbits)
-        .zip(&loads)
-        .filter_map(|((roller, orbit), &load)| {
-            let spin = rate(time, roller.spin)? - cage?;
+/// How one of them does.
+#[derive(Debug)]
+struct Turned {
+    number: usize,
+    /// [rad/s]
+    orbit: Option<f64>,
+    /// [rad/s]
+    spin: Option<f64>,
+    /// Mean force of the outer raceway [N].
+    load: f64,
+}
+
+impl<'a> Turning<'a> {
+    /// Before the first roller of a record.
+    pub fn new(record: &'a Record<'_>, expected: &Kinematics) -> Self {
+        let time_s = clock(record, expected);
+        let guided = record.channel("cage.angle_rad").and_then(|angle| rate(&time_s, angle));
+        Self { time_s, guided, rollers: Vec::new(), under_load: [0.0; 2] }
+    }
+
+    /// One roller more, with its orbital angle [rad] and the normal force of the outer raceway [N] at every sample.
+    pub fn add(&mut self, roller: &Roller<'_>, orbit: &[f64], outer_normal: &[f64]) {
+        let time = &self.time_s[..];
+        self.rollers.push(Turned {
+            number: roller.number,
+            orbit: rate(time, orbit),
+            spin: rate(time, roller.spin),
+            load: mean(outer_normal.iter().copied()).unwrap_or(0.0),
+        });
+        let [turned, weight] = &mut self.under_load;
+        for n in 1..time.len() {
+            let load = (outer_normal[n - 1] + outer_normal[n]).max(0.0);
+            *turned += load * (roller.spin[n] - roller.spin[n - 1]);
+            *weight += load * (time[n] - time[n - 1]);
+        }
+    }
+
+    /// What all of them show, beside what is `expected` without slip in a cage of so many `pockets`.
+    pub fn finding(self, expected: &Kinematics, pockets: usize) -> KinematicsFinding {
+        let rollers = &self.rollers;
+        let cage = self.guided.or_else(|| mean(rollers.iter().filter_map(|r| r.orbit)));
+        let largest = rollers.iter().map(|r| r.load).fold(0.0, f64::max);
+        let motion = |roller: &Turned| {
             Some(RollerMotion {
                 roller: roller.number,
-                orbit_hz: (*orbit)?.abs() / TAU,
-                spin_hz: spin.abs() / TAU,
-                loaded: load > LOADED * largest,
+                orbit_hz: roller.orbit?.abs() / TAU,
+                spin_hz: (roller.spin? - cage?).abs() / TAU,
+                loaded: roller.load > LOADED * largest,
             })
-        })
-        .collect();
-
-    let cage_hz = cage.map(|rate| rate.abs() / TAU);
-    let on_outer = cage.map(|rate| (rate - expected.outer_rad_s).abs() / TAU);
-    KinematicsFinding {
-        shaft_hz: expected.shaft_hz,
-        cage_hz,
-        expected_cage_hz: expected.cage_hz,
-        bpfo_hz: on_outer.filter(|_| !rollers.is_empty()).map(|hz| hz * record.pockets() as f64),
-        cage_on_outer_hz: [on_outer, Some(expected.cage_on_outer_hz)],
-        outer_ring_hz: expected.outer_ring_hz,
-        relative_hz: (expected.shaft_rad_s - expected.outer_rad_s).abs() / TAU,
-        expected_bpfo_hz: expected.bpfo_hz,
-        roller_spin_hz: spin_under_load(time, &rollers).zip(cage).map(|(s, c)| (s - c).abs() / TAU),
-        expected_roller_spin_hz: expected.roller_spin_hz,
-        roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
-        rollers: motions,
+        };
+        let motions: Vec<RollerMotion> = rollers.iter().filter_map(motion).collect();
+        let [turned, weight] = self.under_load;
+        let spin_under_load = (weight > 0.0).then(|| turned / weight);
+        let on_outer = cage.map(|rate| (rate - expected.outer_rad_s).abs() / TAU);
+        KinematicsFinding {
+            shaft_hz: expected.shaft_hz,
+            cage_hz: cage.map(|rate| rate.abs() / TAU),
+            expected_cage_hz: expected.cage_hz,
+            bpfo_hz: on_outer.filter(|_| !rollers.is_empty()).map(|hz| hz * pockets as f64),
+            cage_on_outer_hz: [on_outer, Some(expected.cage_on_outer_hz)],
+            outer_ring_hz: expected.outer_ring_hz,
+            relative_hz: relative_hz(expected),
+            expected_bpfo_hz: expected.bpfo_hz,
+            roller_spin_hz: spin_under_load.zip(cage).map(|(s, c)| (s - c).abs() / TAU),
+            expected_roller_spin_hz: expected.roller_spin_hz,
+            roller_spin_all_hz: mean(motions.iter().map(|m| m.spin_hz)),
+            rollers: motions,
+        }
     }
 }
 
@@ -128,27 +165,13 @@ impl KinematicsFinding {
 
 /// Times [s], or where the angle of the shaft was recorded those at which a shaft of constant speed would have come so far: rates
 /// are then those at that speed, whatever the true one did.
-fn clock<'a>(record: &Record<'a>, expected: &Kinematics) -> Cow<'a, [f64]> {
+fn clock<'a>(record: &'a Record<'_>, expected: &Kinematics) -> Cow<'a, [f64]> {
     match record.channel("shaft.angle_rad") {
         Some(angle) if expected.shaft_rad_s != 0.0 => {
             angle.iter().map(|rad| rad / expected.shaft_rad_s).collect()
         }
         _ => Cow::Borrowed(record.time_s()),
     }
-}
-
-/// Mean spin [rad/s] weighted by the normal force of the outer raceway; `None` where nothing is loaded.
-fn spin_under_load(time_s: &[f64], rollers: &[Roller<'_>]) -> Option<f64> {
-    let (mut turned, mut weight) = (0.0, 0.0);
-    for roller in rollers {
-        let force = roller.outer_normal();
-        for n in 1..time_s.len() {
-            let load = (force[n - 1] + force[n]).max(0.0);
-            turned += load * (roller.spin[n] - roller.spin[n - 1]);
-            weight += load * (time_s[n] - time_s[n - 1]);
-        }
-    }
-    (weight > 0.0).then(|| turned / weight)
 }
 
 /// Rate [rad/s] of the straight line of least squares through `angle` [rad]; `None` for fewer than two times.
@@ -162,6 +185,11 @@ pub fn rate(time_s: &[f64], angle: &[f64]) -> Option<f64> {
     (spread > 0.0).then(|| moment / spread)
 }
 
+/// The rings against each other [Hz], positive.
+pub(crate) fn relative_hz(expected: &Kinematics) -> f64 {
+    (expected.shaft_rad_s - expected.outer_rad_s).abs() / TAU
+}
+
 /// Arithmetic mean; `None` of nothing.
 pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0usize), |(sum, count), v| (sum + v, count + 1));
@@ -170,6 +198,8 @@ pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_scene::scene::BearingScene;
+
     use super::*;
 
     #[test]
@@ -202,8 +232,18 @@ mod tests {
             inner_fx: &none,
             inner_fy: &none,
         };
-        assert!((spin_under_load(&time, &[roller]).unwrap() - 40.0).abs() < 1e-9);
-        assert_eq!(spin_under_load(&time, &[]), None);
+        let turning = || Turning {
+            time_s: Cow::Borrowed(&time),
+            guided: Some(0.0),
+            rollers: Vec::new(),
+            under_load: [0.0; 2],
+        };
+        let expected = Kinematics::new(&BearingScene::default(), 60.0);
+        let mut one = turning();
+        one.add(&roller, &none, &roller.outer_normal());
+        let found_hz = one.finding(&expected, 24).roller_spin_hz.unwrap();
+        assert!((TAU * found_hz - 40.0).abs() < 1e-9, "{found_hz}");
+        assert_eq!(turning().finding(&expected, 24).roller_spin_hz, None);
     }
 
     #[test]

@@ -46,35 +46,101 @@ pub struct Distribution {
     pub mean_n: Vec<f64>,
 }
 
-/// Sums and extremes over the record; the static figures are left empty. `along` is the direction of the load.
-pub fn measure(record: &Record<'_>, along: [f64; 2], expected_n: f64, facet_period_s: f64) -> LoadFinding {
-    let rollers = record.rollers();
-    let samples = (facet_period_s / record.interval_s()).round().max(1.0) as usize;
-    let sum = |of: fn(&Roller<'_>) -> Option<[f64; 2]>| -> Option<f64> {
-        rollers.iter().map(of).try_fold(0.0, |sum, f| Some(sum + dot(f?, along)))
-    };
-    let present = !rollers.is_empty() && !record.is_empty();
-    let supported = |total: Option<f64>, sign: f64| total.filter(|_| present).map(|f| sign * f);
-    let largest = |of: &dyn Fn(&Roller<'_>) -> Vec<f64>| {
-        rollers.iter().flat_map(of).reduce(f64::max).filter(|_| present)
-    };
-    let mean_n = supported(sum(|r| mean_vector(r.outer_fx, r.outer_fy)), 1.0);
-    LoadFinding {
-        mean_n,
-        expected_n,
-        relative_error: mean_n.filter(|_| expected_n > 0.0).map(|f| f / expected_n - 1.0),
-        inner_mean_n: supported(sum(|r| mean_vector(r.inner_fx, r.inner_fy)), -1.0),
-        seat_mean_n: record
-            .channel("seat.fx_n")
-            .zip(record.channel("seat.fy_n"))
-            .and_then(|(x, y)| mean_vector(x, y))
-            .map(|force| dot(force, along)),
-        max_roller_n: largest(&|r| running_mean(&r.outer_normal(), samples)),
-        max_roller_peak_n: largest(&|r| r.outer_normal()),
-        static_max_roller_n: None,
-        static_max_roller_defect_n: None,
-        static_loaded_rollers: None,
-        least_rolling_n: None,
+/// What rollers carry, one after the other.
+#[derive(Debug)]
+pub struct Carried {
+    /// Direction of the load.
+    along: [f64; 2],
+    /// Samples in a facet period.
+    width: usize,
+    /// Mean force between rollers and each ring along the load [N]; `None` without a sample.
+    outer_n: Option<f64>,
+    inner_n: Option<f64>,
+    /// Largest force of the outer raceway, and the same averaged over a facet period [N].
+    peak_n: Option<f64>,
+    largest_n: Option<f64>,
+    support_n: Vec<f64>,
+    /// Sum of the forces of the outer raceway [N] and their number in each bin of angle.
+    bins: Vec<(f64, usize)>,
+    rollers: usize,
+}
+
+impl Carried {
+    /// Before the first roller of a record, under a load `along` this direction.
+    pub fn new(record: &Record<'_>, along: [f64; 2], facet_period_s: f64) -> Self {
+        Self {
+            along,
+            width: (facet_period_s / record.interval_s()).round().max(1.0) as usize,
+            outer_n: Some(0.0),
+            inner_n: Some(0.0),
+            peak_n: None,
+            largest_n: None,
+            support_n: vec![0.0; record.len()],
+            bins: vec![(0.0, 0); (360.0 / BIN_DEG) as usize],
+            rollers: 0,
+        }
+    }
+
+    /// One roller more, with the normal force of the outer raceway [N] at every sample.
+    pub fn add(&mut self, roller: &Roller<'_>, outer_normal: &[f64]) {
+        let more = |sum: Option<f64>, x, y| Some(sum? + dot(mean_vector(x, y)?, self.along));
+        self.outer_n = more(self.outer_n, roller.outer_fx, roller.outer_fy);
+        self.inner_n = more(self.inner_n, roller.inner_fx, roller.inner_fy);
+        let larger = |a: Option<f64>, of: &[f64]| a.into_iter().chain(of.iter().copied()).reduce(f64::max);
+        self.peak_n = larger(self.peak_n, outer_normal);
+        self.largest_n = larger(self.largest_n, &running_mean(outer_normal, self.width));
+        let forces = roller.outer_fx.iter().zip(roller.outer_fy);
+        for (sum, (fx, fy)) in self.support_n.iter_mut().zip(forces) {
+            *sum += dot([*fx, *fy], self.along);
+        }
+        let last = self.bins.len() - 1;
+        for (force, (x, y)) in outer_normal.iter().zip(roller.x.iter().zip(roller.y)) {
+            let angle = y.atan2(*x).to_degrees().rem_euclid(360.0);
+            // The remainder of a tiny negative angle rounds to 360 itself.
+            let (sum, count) = &mut self.bins[((angle / BIN_DEG) as usize).min(last)];
+            *sum += force;
+            *count += 1;
+        }
+        self.rollers += 1;
+    }
+
+    /// Sums and extremes over the record; the static figures are left empty.
+    pub fn finding(&self, record: &Record<'_>, expected_n: f64) -> LoadFinding {
+        let present = self.rollers > 0 && !record.is_empty();
+        let supported = |total: Option<f64>, sign: f64| total.filter(|_| present).map(|f| sign * f);
+        let mean_n = supported(self.outer_n, 1.0);
+        LoadFinding {
+            mean_n,
+            expected_n,
+            relative_error: mean_n.filter(|_| expected_n > 0.0).map(|f| f / expected_n - 1.0),
+            inner_mean_n: supported(self.inner_n, -1.0),
+            seat_mean_n: record
+                .channel("seat.fx_n")
+                .zip(record.channel("seat.fy_n"))
+                .and_then(|(x, y)| mean_vector(x, y))
+                .map(|force| dot(force, self.along)),
+            max_roller_n: self.largest_n,
+            max_roller_peak_n: self.peak_n,
+            static_max_roller_n: None,
+            static_max_roller_defect_n: None,
+            static_loaded_rollers: None,
+            least_rolling_n: None,
+        }
+    }
+
+    /// Mean outer-raceway force by angle over all rollers and samples, in bins of one degree.
+    pub fn distribution(&self) -> Distribution {
+        let mean = |(sum, count): &(f64, usize)| if *count > 0 { sum / *count as f64 } else { f64::NAN };
+        Distribution {
+            angle_deg: (0..self.bins.len()).map(|b| (b as f64 + 0.5) * BIN_DEG).collect(),
+            mean_n: self.bins.iter().map(mean).collect(),
+        }
+    }
+
+    /// Force of all rollers on the outer ring against the load at every sample [N]: positive when it supports the load. Empty
+    /// where no roller was recorded.
+    pub fn into_support(self) -> Vec<f64> {
+        if self.rollers > 0 { self.support_n } else { Vec::new() }
     }
 }
 
@@ -94,33 +160,19 @@ fn mean_vector(x: &[f64], y: &[f64]) -> Option<[f64; 2]> {
     Some([mean(x.iter().copied())?, mean(y.iter().copied())?])
 }
 
-/// Mean outer-raceway force by angle over all rollers and samples, in bins of one degree.
-pub fn distribution(record: &Record<'_>) -> Distribution {
-    let bins = (360.0 / BIN_DEG) as usize;
-    let (mut sum, mut count) = (vec![0.0; bins], vec![0usize; bins]);
-    for roller in record.rollers() {
-        let force = roller.outer_normal();
-        for n in 0..force.len() {
-            let angle = roller.y[n].atan2(roller.x[n]).to_degrees().rem_euclid(360.0);
-            // The remainder of a tiny negative angle rounds to 360 itself.
-            let bin = ((angle / BIN_DEG) as usize).min(bins - 1);
-            sum[bin] += force[n];
-            count[bin] += 1;
-        }
-    }
-    let mean = |b: usize| if count[b] > 0 { sum[b] / count[b] as f64 } else { f64::NAN };
-    Distribution {
-        angle_deg: (0..bins).map(|b| (b as f64 + 0.5) * BIN_DEG).collect(),
-        mean_n: (0..bins).map(mean).collect(),
-    }
-}
-
 /// Mean over every whole window of `width` samples; the mean of all when there are fewer.
 pub fn running_mean(values: &[f64], width: usize) -> Vec<f64> {
-    values
-        .windows(width.clamp(1, values.len().max(1)))
-        .map(|w| w.iter().sum::<f64>() / w.len() as f64)
-        .collect()
+    /// Sums that grow side by side, each in the order of its window.
+    const SIDE_BY_SIDE: usize = 1024;
+    let width = width.clamp(1, values.len().max(1));
+    let mut means = vec![0.0; (values.len() + 1).saturating_sub(width)];
+    for (at, sums) in means.chunks_mut(SIDE_BY_SIDE).enumerate() {
+        for n in 0..width {
+            sums.iter_mut().zip(&values[at * SIDE_BY_SIDE + n..]).for_each(|(sum, value)| *sum += value);
+        }
+        sums.iter_mut().for_each(|sum| *sum /= width as f64);
+    }
+    means
 }
 
 #[cfg(test)]

@@ -125,7 +125,7 @@ pub struct Analysis {
     pub enhanced: Option<Enhanced>,
 }
 
-/// Longest segment [samples]: its envelopes take about 150 MB.
+/// Longest segment [samples]: its envelopes take some tens of megabytes.
 const LONGEST_SEGMENT: usize = 1 << 20;
 /// Segments of records that are longer.
 const SEGMENT: usize = 1 << 19;
@@ -234,7 +234,9 @@ impl Analysis {
                 buffer.len() as f64 / rate_hz
             ));
         }
-        let bands = envelopes.bands();
+        let (bands, segments) = (envelopes.bands(), envelopes.segments());
+        // What follows has transforms of its own.
+        drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
         let judged =
             verdict::judge(&bands, machine, screening.count() as f64 / rate_hz, segment as f64 / rate_hz)?;
@@ -254,7 +256,7 @@ impl Analysis {
                 speed_rpm: machine.speed_rpm,
                 bearing: machine.bearing.as_ref().map(|b| format!("{}: {b}", b.name)),
                 resolution_hz,
-                segments: envelopes.segments(),
+                segments,
                 health,
                 velocity_mm_s: velocity.as_ref().and_then(velocity::Level::finish),
                 families: judged.families,

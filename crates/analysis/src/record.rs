@@ -1,17 +1,30 @@
-//! The channels of a run under their names, cut where they stop being numbers.
+//! The samples of a run, cut where they stop being numbers, and its channels under their names.
 
 use std::ops::Range;
 
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::DefectRing;
+use stribeck_scene::trace::Trace;
 
+use crate::Error;
 use crate::levels::STANDARD_GRAVITY;
 
-/// A run's samples, from the first to the last one before any channel stops being finite.
-#[derive(Clone, Copy)]
+/// Channels of rollers that are in memory at once, at most [bytes]; one roller always is.
+const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;
+
+/// What is read of a roller.
+const OF_ROLLER: [&str; 7] =
+    ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"];
+
+/// A run's samples, from the first to the last one before any channel stops being finite. Some channels are in memory, the others
+/// on disk.
+#[derive(Debug)]
 pub struct Record<'a> {
     run: &'a Run,
+    /// Channels in memory.
+    held: Trace,
     len: usize,
+    discarded: usize,
 }
 
 /// Recorded motion and forces of one roller, all slices of one length.
@@ -38,11 +51,75 @@ pub struct Roller<'a> {
 }
 
 impl<'a> Record<'a> {
-    /// All samples up to the first that is not finite in any channel.
-    pub fn new(run: &'a Run) -> Self {
-        let finite = |column: &Vec<f64>| column.iter().position(|v| !v.is_finite()).unwrap_or(column.len());
-        let len = run.trace.columns.iter().map(finite).min().unwrap_or(0);
-        Self { run, len }
+    /// All samples up to the first that is not finite in any channel. Channels of rollers and sensors, which are most, stay on disk.
+    ///
+    /// # Errors
+    /// [`Error::Run`] when the trace cannot be read.
+    pub fn new(run: &'a Run) -> Result<Self, Error> {
+        Self::with(run, |name| !name.starts_with("roller.") && !name.starts_with("sensor."))
+    }
+
+    /// The same with all channels in memory, which a long record may not fit into.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn whole(run: &'a Run) -> Result<Self, Error> {
+        Self::with(run, |_| true)
+    }
+
+    fn with(run: &'a Run, held: impl Fn(&str) -> bool) -> Result<Self, Error> {
+        let held = run.trace.read_finite(|name| name == "time_s" || held(name))?;
+        let len = held.len();
+        Ok(Self { run, held, len, discarded: run.trace.len().saturating_sub(len) })
+    }
+
+    /// Some of the samples, with those channels in memory whose name is `wanted`: one pass over the file.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn part(&self, samples: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Self, Error> {
+        let samples = samples.start..samples.end.min(self.len);
+        let held = self.run.trace.read(samples.clone(), wanted)?;
+        Ok(Self { run: self.run, held, len: samples.len(), discarded: self.discarded })
+    }
+
+    /// Some of the samples, with these rollers in memory.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn with_rollers(&self, numbers: &[usize], samples: Range<usize>) -> Result<Self, Error> {
+        let names: Vec<String> = numbers
+            .iter()
+            .flat_map(|number| OF_ROLLER.map(|what| format!("roller.{number}.{what}")))
+            .collect();
+        self.part(samples, |name| names.iter().any(|wanted| wanted == name))
+    }
+
+    /// Hands every roller whose channels are there to `visit`, in the order of their numbers. A few are in memory at a time.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn each_roller(&self, mut visit: impl FnMut(&Roller<'_>)) -> Result<(), Error> {
+        let of_one = 8 * OF_ROLLER.len() * self.len.max(1);
+        for numbers in self.roller_numbers().chunks((ROLLERS_AT_ONCE_BYTES / of_one).max(1)) {
+            self.with_rollers(numbers, 0..self.len)?.rollers().iter().for_each(&mut visit);
+        }
+        Ok(())
+    }
+
+    /// Numbers of the rollers whose channels are there, ascending, in memory or on disk.
+    pub fn roller_numbers(&self) -> Vec<usize> {
+        let names = self.run.trace.names();
+        let there = |name: String| names.contains(&name);
+        let in_place = self.run.scene.rollers_in_place();
+        in_place
+            .filter(|number| OF_ROLLER.iter().all(|what| there(format!("roller.{number}.{what}"))))
+            .collect()
+    }
+
+    /// The run that was recorded.
+    pub fn run(&self) -> &'a Run {
+        self.run
     }
 
     /// Number of samples.
@@ -57,7 +134,7 @@ impl<'a> Record<'a> {
 
     /// Samples that were written but are not numbers, or follow one that is not.
     pub fn discarded(&self) -> usize {
-        self.run.trace.len().saturating_sub(self.len)
+        self.discarded
     }
 
     /// Sampling interval [s], the recorded one, or that of `run.json` when there are fewer than two samples.
@@ -75,13 +152,18 @@ impl<'a> Record<'a> {
     }
 
     /// Times [s].
-    pub fn time_s(&self) -> &'a [f64] {
+    pub fn time_s(&self) -> &[f64] {
         self.channel("time_s").unwrap_or(&[])
     }
 
-    /// Values of a channel.
-    pub fn channel(&self, name: &str) -> Option<&'a [f64]> {
-        self.run.trace.get(name).map(|values| &values[..self.len.min(values.len())])
+    /// Values of a channel that is in memory.
+    pub fn channel(&self, name: &str) -> Option<&[f64]> {
+        self.held.get(name)
+    }
+
+    /// Values of a channel, which is in memory no longer.
+    pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
+        self.held.take(name)
     }
 
     /// Acceleration `ax` or `ay` of a sensor [g], mean over each interval.
@@ -90,18 +172,19 @@ impl<'a> Record<'a> {
         Some(values.iter().map(|a| a / STANDARD_GRAVITY).collect())
     }
 
-    /// Roller `number`, from 1; `None` when one of its channels is missing.
-    pub fn roller(&self, number: usize) -> Option<Roller<'a>> {
-        let of = |what: &str| self.channel(&format!("roller.{number}.{what}"));
+    /// Roller `number`, from 1; `None` when one of its channels is not in memory.
+    pub fn roller(&self, number: usize) -> Option<Roller<'_>> {
+        let [x, y, spin, outer_fx, outer_fy, inner_fx, inner_fy] =
+            OF_ROLLER.map(|what| self.channel(&format!("roller.{number}.{what}")));
         Some(Roller {
             number,
-            x: of("x_m")?,
-            y: of("y_m")?,
-            spin: of("spin_rad")?,
-            outer_fx: of("outer_fx_n")?,
-            outer_fy: of("outer_fy_n")?,
-            inner_fx: of("inner_fx_n")?,
-            inner_fy: of("inner_fy_n")?,
+            x: x?,
+            y: y?,
+            spin: spin?,
+            outer_fx: outer_fx?,
+            outer_fy: outer_fy?,
+            inner_fx: inner_fx?,
+            inner_fy: inner_fy?,
         })
     }
 
@@ -110,8 +193,8 @@ impl<'a> Record<'a> {
         self.run.scene.bearing.rollers
     }
 
-    /// All rollers whose channels are there.
-    pub fn rollers(&self) -> Vec<Roller<'a>> {
+    /// All rollers whose channels are in memory.
+    pub fn rollers(&self) -> Vec<Roller<'_>> {
         self.run.scene.rollers_in_place().filter_map(|number| self.roller(number)).collect()
     }
 }

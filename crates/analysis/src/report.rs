@@ -34,6 +34,7 @@ pub use trend::{TrendEntry, write_trend};
 
 use crate::findings::Findings;
 use crate::plot;
+use crate::record::Record;
 use crate::summary::Summary;
 use crate::{
     Error,
@@ -53,12 +54,13 @@ use crate::{
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     let run = Run::read(run_dir)?;
     run.check_scene(run_dir)?;
-    let mut findings = Findings::of(&run)?;
+    let record = Record::new(&run)?;
+    let mut findings = Findings::of(&record)?.with_crossings(&record, figures::CROSSINGS)?;
     findings.summary.notes.splice(0..0, run.damage());
-    let pictures = Pictures::of(&run, &findings, run_dir)?;
+    let pictures = Pictures::of(&record, &findings, run_dir)?;
     findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
-    let figures = Figures::of(&run, &findings, pictures);
+    let figures = Figures::of(&record, &findings, pictures)?;
     let all: Vec<&Item> = figures.all().collect();
     write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.

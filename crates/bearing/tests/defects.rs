@@ -120,7 +120,12 @@ fn conserves_energy_and_carries_the_load_over_every_form() {
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     assert!(info.energy.max_relative_error < 0.01, "{}", info.energy.max_relative_error);
     let run = Run::read(folder.path()).expect("a finished run can be read");
-    let up = |i: usize| run.trace.get(&format!("roller.{i}.outer_fy_n")).expect("every roller is recorded");
+    let up = |i: usize| {
+        run.trace
+            .channel(&format!("roller.{i}.outer_fy_n"))
+            .expect("readable")
+            .expect("every roller is recorded")
+    };
     let samples = run.trace.len();
     let carried: f64 = (1..=scene.bearing.rollers).map(|i| -up(i).iter().sum::<f64>() / samples as f64).sum();
     // Over two and a half milliseconds the adapter still swings a little on the bearing.
@@ -133,8 +138,9 @@ fn conserves_energy_and_carries_the_load_over_every_form() {
     simulate(&round, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("it runs");
     let other = Run::read(folder.path()).expect("a finished run can be read");
     let mean = |run: &Run| {
-        let [x, y] =
-            ["x", "y"].map(|c| run.trace.get(&format!("roller.2.outer_f{c}_n")).expect("recorded").to_vec());
+        let [x, y] = ["x", "y"].map(|c| {
+            run.trace.channel(&format!("roller.2.outer_f{c}_n")).expect("readable").expect("recorded")
+        });
         x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).sum::<f64>() / samples as f64
     };
     assert!(mean(&run) < 0.9 * mean(&other), "{} {}", mean(&run), mean(&other));

@@ -22,8 +22,8 @@ fn run(scene: &Scene, folder: &Scratch, name: &str) -> (RunInfo, Run) {
     (info, read)
 }
 
-fn column<'a>(run: &'a Run, name: &str) -> &'a [f64] {
-    run.trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
+fn column(run: &Run, name: &str) -> Vec<f64> {
+    run.trace.channel(name).expect("readable").unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }
 
 /// Turned back, with rollers at mirrored places, the bearing is its mirror image about the y axis.

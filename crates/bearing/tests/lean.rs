@@ -140,7 +140,10 @@ fn first_forces(scene: &Scene) -> Vec<f64> {
     assert_eq!(info.status, Status::Complete);
     let run = Run::read(folder.path()).expect("a finished run can be read");
     let force = |i: usize, c: &str| {
-        run.trace.get(&format!("roller.{i}.outer_f{c}_n")).expect("a column of this name")[0]
+        run.trace
+            .channel(&format!("roller.{i}.outer_f{c}_n"))
+            .expect("readable")
+            .expect("a column of this name")[0]
     };
     (1..=scene.bearing.rollers).map(|i| force(i, "x").hypot(force(i, "y"))).collect()
 }

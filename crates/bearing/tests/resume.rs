@@ -18,7 +18,7 @@ use stribeck_scene::{
     run_dir::RunDir,
     run_info::{RunInfo, Status},
     scene::{Scene, Start},
-    trace::Trace,
+    trace::TraceFile,
 };
 use stribeck_testing::Scratch;
 
@@ -151,7 +151,7 @@ fn invariant_a_run_made_longer_writes_the_bytes_of_a_long_one() {
     assert!(words.contains("0.3 ms") && words.contains("not shorter"), "{words}");
     let words = longer(0.3).expect_err("nothing to do").to_string();
     assert!(words.contains("it is complete"), "{words}");
-    assert_eq!(info.samples, Trace::count(short.file("trace.npy")).expect("a trace") as usize);
+    assert_eq!(info.samples, TraceFile::open(short.file("trace.npy")).expect("a trace").len());
 
     let info = longer(0.5).expect("it goes on");
     assert_same_files(&long, &short, "made longer");

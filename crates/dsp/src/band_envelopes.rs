@@ -25,6 +25,16 @@ pub struct BandEnvelopes {
     spectrum: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
     bands: Vec<Band>,
+    work: Work,
+}
+
+/// What is computed of one band after the other, as long as the longest needs it.
+#[derive(Default)]
+struct Work {
+    analytic: Vec<Complex<f64>>,
+    squared: Vec<f64>,
+    output: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
 }
 
 struct Band {
@@ -32,15 +42,11 @@ struct Band {
     lines: (usize, usize),
     inverse: Arc<dyn Fft<f64>>,
     transform: Arc<dyn RealToComplex<f64>>,
-    analytic: Vec<Complex<f64>>,
-    squared: Vec<f64>,
     window: Vec<f64>,
-    output: Vec<Complex<f64>>,
     /// Sum of the power of each line of the squared envelope.
     power: Vec<f64>,
     /// Sums of the squared envelope and of its square.
     sums: [f64; 2],
-    scratch: Vec<Complex<f64>>,
 }
 
 /// What one band of a record shows.
@@ -107,20 +113,21 @@ impl BandEnvelopes {
             let turn = std::f64::consts::TAU / len as f64;
             bands.push(Band {
                 lines: (first, end),
-                analytic: vec![Complex::default(); len],
-                squared: vec![0.0; len],
                 window: (0..len).map(|n| 0.5 - 0.5 * (turn * n as f64).cos()).collect(),
-                output: transform.make_output_vec(),
                 power: vec![0.0; kept],
                 sums: [0.0; 2],
-                scratch: vec![
-                    Complex::default();
-                    inverse.get_inplace_scratch_len().max(transform.get_scratch_len())
-                ],
                 inverse,
                 transform,
             });
         }
+        let longest = |of: &dyn Fn(&Band) -> usize| bands.iter().map(of).max().unwrap_or(0);
+        let scratch = |b: &Band| b.inverse.get_inplace_scratch_len().max(b.transform.get_scratch_len());
+        let work = Work {
+            analytic: vec![Complex::default(); longest(&|b| b.window.len())],
+            squared: vec![0.0; longest(&|b| b.window.len())],
+            output: vec![Complex::default(); longest(&|b| b.transform.complex_len())],
+            scratch: vec![Complex::default(); longest(&scratch)],
+        };
         Ok(Self {
             sample_rate_hz,
             segment,
@@ -130,6 +137,7 @@ impl BandEnvelopes {
             scratch: forward.make_scratch_vec(),
             forward,
             bands,
+            work,
         })
     }
 
@@ -168,7 +176,7 @@ impl BandEnvelopes {
             .process_with_scratch(&mut self.input, &mut self.spectrum, &mut self.scratch)
             .expect("all three buffers have the plan's lengths");
         let scale = 2.0 / self.segment as f64;
-        self.bands.iter_mut().for_each(|band| band.add(&self.spectrum, scale));
+        self.bands.iter_mut().for_each(|band| band.add(&self.spectrum, scale, &mut self.work));
         self.segments += 1;
         Ok(())
     }
@@ -182,29 +190,31 @@ impl BandEnvelopes {
 }
 
 impl Band {
-    fn add(&mut self, spectrum: &[Complex<f64>], scale: f64) {
-        let (first, end) = self.lines;
-        let (held, rest) = self.analytic.split_at_mut(end - first);
+    fn add(&mut self, spectrum: &[Complex<f64>], scale: f64, work: &mut Work) {
+        let ((first, end), len) = (self.lines, self.window.len());
+        let (analytic, squared) = (&mut work.analytic[..len], &mut work.squared[..len]);
+        let output = &mut work.output[..self.transform.complex_len()];
+        let (held, rest) = analytic.split_at_mut(end - first);
         held.iter_mut().zip(&spectrum[first..end]).for_each(|(a, x)| *a = x * scale);
         rest.fill(Complex::default());
-        self.inverse.process_with_scratch(&mut self.analytic, &mut self.scratch);
-        let count = self.squared.len() as f64;
+        self.inverse.process_with_scratch(analytic, &mut work.scratch);
+        let count = len as f64;
         let mut sums = [0.0; 2];
-        for (e, a) in self.squared.iter_mut().zip(&self.analytic) {
+        for (e, a) in squared.iter_mut().zip(&*analytic) {
             *e = a.norm_sqr();
             sums[0] += *e;
             sums[1] += *e * *e;
         }
         let mean = sums[0] / count;
         self.sums.iter_mut().zip(sums).for_each(|(all, sum)| *all += sum / count);
-        self.squared.iter_mut().zip(&self.window).for_each(|(e, w)| *e = (*e - mean) * w);
+        squared.iter_mut().zip(&self.window).for_each(|(e, w)| *e = (*e - mean) * w);
         let scratch = self.transform.get_scratch_len();
         self.transform
-            .process_with_scratch(&mut self.squared, &mut self.output, &mut self.scratch[..scratch])
+            .process_with_scratch(squared, output, &mut work.scratch[..scratch])
             .expect("all three buffers have the plan's lengths");
         // (Σw)² = count²/4 for the Hann window.
         let scale = 8.0 / (count * count);
-        self.power.iter_mut().zip(&self.output).for_each(|(p, x)| *p += scale * x.norm_sqr());
+        self.power.iter_mut().zip(&*output).for_each(|(p, x)| *p += scale * x.norm_sqr());
     }
 
     fn finish(&self, grid_hz: f64, segments: usize) -> Option<BandEnvelope> {
@@ -286,10 +296,9 @@ mod tests {
     fn invariant_processing_moves_no_buffer() {
         let mut plan = BandEnvelopes::new(RATE_HZ, 1_000, &[(0.0, 5_000.0), (100.0, 900.0)], 500.0).unwrap();
         let places = |plan: &BandEnvelopes| {
-            plan.bands
-                .iter()
-                .map(|b| (b.analytic.as_ptr() as usize, b.power.as_ptr() as usize))
-                .collect::<Vec<_>>()
+            let work = (plan.work.analytic.as_ptr() as usize, plan.work.squared.as_ptr() as usize);
+            let of_bands = plan.bands.iter().map(|b| (b.window.as_ptr() as usize, b.power.as_ptr() as usize));
+            of_bands.chain([work]).collect::<Vec<_>>()
         };
         let before = places(&plan);
         for _ in 0..3 {

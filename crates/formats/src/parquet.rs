@@ -1,5 +1,6 @@
 //! Apache Parquet: tables of named columns, as pandas, polars and DuckDB read them.
 
+use std::borrow::Borrow;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -115,26 +116,33 @@ impl Writer {
         Ok(Self { path: path.to_owned(), schema: columns.iter().map(blank).collect(), file })
     }
 
-    /// Adds a group of rows: the columns of the file, equally long.
+    /// Adds a group of rows: the columns of the file, equally long. Each is asked for when the one before is written, so that they
+    /// need not be in memory together.
     ///
     /// # Errors
-    /// [`Error::DoesNotFit`] for other columns, [`Error::Io`].
-    pub fn add(&mut self, columns: &[Column]) -> Result<()> {
-        let rows = columns.first().map_or(0, Column::rows);
-        let same = |(column, known): (&Column, &Column)| {
-            column.name == known.name
-                && column.rows() == rows
-                && std::mem::discriminant(&column.values) == std::mem::discriminant(&known.values)
-        };
-        if columns.len() != self.schema.len() || !columns.iter().zip(&self.schema).all(same) {
+    /// [`Error::DoesNotFit`] for other columns, [`Error::Io`]. The file is then of no use.
+    pub fn add(&mut self, columns: impl IntoIterator<Item = impl Borrow<Column>>) -> Result<()> {
+        let Self { path, schema, file } = self;
+        let refused = |e: ParquetError| refused(path, &e);
+        let other = || {
             let what = "its groups of rows must have the same columns, equally long".to_owned();
-            return Err(Error::DoesNotFit { path: self.path.clone(), format: FORMAT, what });
-        }
-        let path = self.path.clone();
-        let refused = |e: ParquetError| refused(&path, &e);
-        let mut group = self.file.next_row_group().map_err(refused)?;
+            Error::DoesNotFit { path: path.clone(), format: FORMAT, what }
+        };
+        let (mut known, mut rows) = (schema.iter(), None);
+        let mut group = file.next_row_group().map_err(refused)?;
         for column in columns {
+            let column: &Column = column.borrow();
+            let known = known.next().ok_or_else(other)?;
+            let same = column.name == known.name
+                && column.rows() == *rows.get_or_insert(column.rows())
+                && std::mem::discriminant(&column.values) == std::mem::discriminant(&known.values);
+            if !same {
+                return Err(other());
+            }
             write_column(&mut group, &column.values).map_err(refused)?;
+        }
+        if known.next().is_some() {
+            return Err(other());
         }
         group.close().map_err(refused)?;
         Ok(())

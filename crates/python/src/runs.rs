@@ -11,6 +11,7 @@ use pyo3::prelude::*;
 use stribeck::host;
 use stribeck::{Command, Place};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
 use stribeck_analysis::report as page;
 use stribeck_bearing::simulation::Progress;
 use stribeck_reduced::simulation;
@@ -175,7 +176,7 @@ fn read(run: &Path) -> PyResult<Run> {
 /// The channels of a run in their order: names, and arrays that own the numbers that were read.
 #[pyfunction]
 pub(crate) fn channels(py: Python<'_>, run: PathBuf) -> PyResult<Vec<(String, Bound<'_, PyArray1<f64>>)>> {
-    let trace = py.detach(|| read(&run))?.trace;
+    let trace = py.detach(|| read(&run)?.trace.read_all().map_err(|why| raise(&anyhow!(why))))?;
     Ok(trace.names.into_iter().zip(trace.columns.into_iter().map(|c| c.into_pyarray(py))).collect())
 }
 
@@ -184,7 +185,7 @@ pub(crate) fn channels(py: Python<'_>, run: PathBuf) -> PyResult<Vec<(String, Bo
 pub(crate) fn summary(py: Python<'_>, run: PathBuf) -> PyResult<String> {
     py.detach(|| {
         let of = || -> anyhow::Result<String> {
-            let findings = Findings::of(&Run::read(&run)?)?;
+            let findings = Findings::of(&Record::new(&Run::read(&run)?)?)?;
             serde_json::to_string(&findings.summary).context("the summary cannot be written as JSON")
         };
         of().map_err(|why| raise(&why))

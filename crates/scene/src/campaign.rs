@@ -10,6 +10,7 @@
 //!         (field: "operation.load_n", from: 5000, to: 50000, log: true),
 //!         (field: "contact.surface", values: [facet, arc]),
 //!     ]),
+//!     keep: signals,
 //! )
 //! ```
 //!
@@ -22,6 +23,7 @@ use serde::Deserialize;
 
 use crate::dice::Dice;
 use crate::ensemble::start;
+use crate::run_dir::Keep;
 use crate::scene::Scene;
 use crate::scene_file::dialect;
 
@@ -47,6 +49,8 @@ struct Text {
     variants: Variants,
     #[serde(default)]
     split: Split,
+    #[serde(default)]
+    keep: Keep,
 }
 
 fn one() -> u64 {
@@ -118,6 +122,8 @@ pub struct Campaign {
     pub runs: Vec<Variant>,
     /// What was drawn follows from it.
     pub seed: u64,
+    /// What stays of each run.
+    pub keep: Keep,
 }
 
 /// One run of a campaign.
@@ -153,7 +159,7 @@ impl Campaign {
     fn parse(text: &str, folder: &Path) -> Result<Self, String> {
         let file: Text = dialect::dialect().from_str(text).map_err(|e| {
             format!(
-                "{}:{}: {}. A campaign has `name`, `variants`, and may have `scene`, `set`, `seed`, `starts` and `split`; \
+                "{}:{}: {}. A campaign has `name`, `variants`, and may have `scene`, `set`, `seed`, `starts`, `split` and `keep`; \
                  fixtures/campaigns/quick64.ron is one",
                 e.span.start.line, e.span.start.col, e.code
             )
@@ -203,7 +209,7 @@ impl Campaign {
                 });
             }
         }
-        Ok(Self { name: file.name, text: text.to_owned(), fields, runs, seed: file.seed })
+        Ok(Self { name: file.name, text: text.to_owned(), fields, runs, seed: file.seed, keep: file.keep })
     }
 }
 

@@ -20,6 +20,7 @@
 mod earlier;
 mod ensemble;
 mod files;
+mod kept;
 mod replacement;
 mod reservation;
 mod run;
@@ -33,6 +34,7 @@ use crate::scene::Scene;
 use earlier::Earlier;
 pub use ensemble::State;
 pub use files::write_atomic;
+pub use kept::{Keep, SENSOR};
 pub use reservation::Reservation;
 pub use run::Run;
 
@@ -40,6 +42,7 @@ const SCENE: &str = "scene.ron";
 const INFO: &str = "run.json";
 const ENSEMBLE: &str = "ensemble.json";
 const TRACE: &str = "trace.npy";
+const SIGNALS: &str = "signals.npy";
 const ENERGY: &str = "energy.npy";
 const MESH: &str = "mesh.vtu";
 const CHECKPOINT: &str = "checkpoint";
@@ -53,7 +56,7 @@ const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no run, so it
 /// goes first and nothing half removed is taken for a result.
-const FILES: [&str; 9] = [INFO, ENSEMBLE, REPORT, SUMMARY, TRACE, ENERGY, MESH, CHECKPOINT, SCENE];
+const FILES: [&str; 10] = [INFO, ENSEMBLE, REPORT, SUMMARY, TRACE, SIGNALS, ENERGY, MESH, CHECKPOINT, SCENE];
 
 /// Folders that a run or its report fills, and what they write there.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];

@@ -3,13 +3,18 @@
 //! One record a sample, one named field a channel, so `numpy.load("trace.npy")["sensor.side.ay_m_s2"]` is a
 //! time history. Names end in their unit. The files hold nothing but the samples: equal runs write equal bytes.
 
+mod file;
 mod header;
-mod reader;
 mod writer;
 
+use std::path::Path;
+
+pub use file::TraceFile;
 pub use writer::TraceWriter;
 
-/// Channels sampled at a fixed interval.
+use crate::error::Error;
+
+/// Channels sampled at a fixed interval, in memory.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Trace {
     /// Channel names, in file order; the first is `time_s`.
@@ -19,10 +24,26 @@ pub struct Trace {
 }
 
 impl Trace {
+    /// Reads all channels of the trace at `path`. Memory is bounded by the size of the file.
+    ///
+    /// # Errors
+    ///
+    /// As [`TraceFile::open`].
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        TraceFile::open(path)?.read_all()
+    }
+
     /// Values of the channel called `name`.
     pub fn get(&self, name: &str) -> Option<&[f64]> {
         let at = self.names.iter().position(|n| n == name)?;
         self.columns.get(at).map(Vec::as_slice)
+    }
+
+    /// Values of the channel called `name`, which the trace then has no longer.
+    pub fn take(&mut self, name: &str) -> Option<Vec<f64>> {
+        let at = self.names.iter().position(|n| n == name)?;
+        self.names.remove(at);
+        Some(self.columns.remove(at))
     }
 
     /// Number of samples.

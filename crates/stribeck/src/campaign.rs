@@ -13,8 +13,10 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
+use stribeck_scene::Error;
 use stribeck_scene::campaign::{Campaign, Variant};
-use stribeck_scene::run_dir::{Run, RunDir, State, write_atomic};
+use stribeck_scene::run_dir::{Keep, Run, RunDir, State, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::interrupt::{self, Interrupt};
@@ -105,13 +107,15 @@ enum Stage {
     /// Its scene cannot be, or its run could not be made: the reason.
     Refused(String),
     Failed(String),
+    /// At its end, but its numbers are not made, or more lies there than is to be kept.
+    Ended,
     /// At its end; it may have diverged.
     Done,
     /// To be run or continued.
     Due(State),
 }
 
-fn stage(folder: &Folder, variant: &Variant) -> Result<Stage> {
+fn stage(folder: &Folder, keep: Keep, variant: &Variant) -> Result<Stage> {
     let scene = match &variant.scene {
         Ok(scene) => scene,
         Err(why) => return Ok(Stage::Refused(why.clone())),
@@ -121,7 +125,8 @@ fn stage(folder: &Folder, variant: &Variant) -> Result<Stage> {
     }
     let path = folder.run(scene);
     Ok(match State::of(&path, scene) {
-        State::Done => Stage::Done,
+        State::Done if is_settled(&path, keep)? => Stage::Done,
+        State::Done => Stage::Ended,
         State::Other => bail!("`{}` holds a run of another scene: move it away", shown(&path)),
         state => Stage::Due(state),
     })
@@ -143,9 +148,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     };
     let mut due = Vec::new();
     for variant in campaign.runs.iter().filter(mine) {
-        if let (Stage::Due(state), Ok(scene)) = (stage(&folder, variant)?, &variant.scene) {
-            let (number, scene) = (variant.number, scene.clone());
-            due.push(Due { number, folder: folder.run(&scene), scene, state });
+        let Ok(scene) = &variant.scene else { continue };
+        match stage(&folder, campaign.keep, variant)? {
+            Stage::Due(state) => {
+                let (number, scene) = (variant.number, scene.clone());
+                due.push(Due { number, folder: folder.run(&scene), scene, state });
+            }
+            // What a kill has left; it may free the space that others need.
+            Stage::Ended if !interrupt.is_pressed() => settle(&folder.run(scene), campaign.keep)?,
+            _ => {}
         }
     }
     let limit_gb = options.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
@@ -169,7 +180,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             Some(error) => folder.keep_failure(&due.scene, &error.to_string()),
             // By every job for its own run; the tables only gather.
             None if matches!(State::of(&due.folder, &due.scene), State::Done) => {
-                summary_of(&due.folder).map(drop)
+                settle(&due.folder, campaign.keep)
             }
             None => Ok(()),
         };
@@ -215,8 +226,8 @@ fn conclude(
     let mut stages = Vec::with_capacity(campaign.runs.len());
     let (mut left, mut left_here) = (0, 0);
     for variant in &campaign.runs {
-        let stage = stage(folder, variant)?;
-        let due = matches!(stage, Stage::Due(_));
+        let stage = stage(folder, campaign.keep, variant)?;
+        let due = matches!(stage, Stage::Due(_) | Stage::Ended);
         left += usize::from(due);
         left_here += usize::from(due && mine(&variant));
         stages.push(stage);
@@ -246,6 +257,27 @@ fn conclude(
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
+/// Whether a run that has come to its end has its numbers and no more than is to be kept. Where all is kept, numbers can be made at
+/// any time.
+fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
+    let dir = RunDir::open(path)?;
+    Ok(keep == Keep::All || dir.summary().exists() && dir.keeps_only(keep))
+}
+
+/// Makes the numbers of a run that has come to its end, and removes what is not to be kept.
+fn settle(path: &Path, keep: Keep) -> Result<()> {
+    if keep == Keep::All {
+        return summary_of(path).map(drop);
+    }
+    // Nobody else reads what is being removed.
+    let dir = match RunDir::reopen(path) {
+        Err(Error::FolderInUse { .. }) => return Ok(()),
+        dir => dir?,
+    };
+    summary_of(path)?;
+    Ok(dir.keep_only(keep)?)
+}
+
 /// The summary of a run that has come to its end; it is made when it is not there.
 fn summary_of(path: &Path) -> Result<serde_json::Value> {
     let dir = RunDir::open(path)?;
@@ -253,7 +285,7 @@ fn summary_of(path: &Path) -> Result<serde_json::Value> {
     if let Some(there) = there {
         return Ok(there);
     }
-    let findings = Findings::of(&Run::read(path)?)?;
+    let findings = Findings::of(&Record::new(&Run::read(path)?)?)?;
     let text = serde_json::to_string_pretty(&findings.summary)? + "\n";
     // Another part may make the same one at the same time.
     replace(&dir.summary(), &text)?;

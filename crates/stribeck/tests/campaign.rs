@@ -3,7 +3,7 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
@@ -90,6 +90,132 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     assert_eq!(loads.len(), 8);
     // Once more: nothing is run, and the tables stay.
     says(&run(&desk, &["--out=A"]), &["0 of them to be run", "8 of 8"]);
+}
+
+/// The campaign, of whose runs no more is to stay than this.
+fn keeping(what: &str) -> String {
+    CAMPAIGN.replace("    variants:", &format!("    keep: {what},\n    variants:"))
+}
+
+/// Folders of the runs of a campaign, in the order of their names.
+fn runs(folder: &Path) -> Vec<PathBuf> {
+    let mut runs: Vec<PathBuf> =
+        fs::read_dir(folder.join("runs")).expect("runs").flatten().map(|entry| entry.path()).collect();
+    runs.sort();
+    runs
+}
+
+/// Names of the files of a run.
+fn files(run: &Path) -> Vec<String> {
+    let names = fs::read_dir(run).expect("a run").flatten().map(|entry| entry.file_name());
+    let mut names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
+    names.retain(|name| name != ".lock");
+    names.sort();
+    names
+}
+
+/// Names and numbers of a table, a missing one as not a number.
+fn numbers(table: PathBuf) -> Vec<(String, Vec<u64>)> {
+    let table = Recording::open(table).expect("a table");
+    let bits = |values: Vec<f64>| values.into_iter().map(f64::to_bits).collect();
+    table.channels.iter().map(|c| (c.name.clone(), bits(c.read().expect("numbers")))).collect()
+}
+
+#[test]
+fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
+    let desk = desk("campaign-kept", CAMPAIGN);
+    assert!(run(&desk, &["--out=all"]).status.success());
+    fs::write(desk.join("campaign.ron"), keeping("signals")).expect("a campaign");
+    assert!(run(&desk, &["--out=signals", "--jobs=2"]).status.success());
+    for table in ["runs.parquet", "signals.parquet"] {
+        assert!(
+            numbers(desk.join("all").join(table)) == numbers(desk.join("signals").join(table)),
+            "{table}"
+        );
+    }
+    for kept in runs(&desk.join("signals")) {
+        assert_eq!(files(&kept), ["run.json", "scene.ron", "signals.npy", "summary.json"]);
+    }
+    // Nothing is run again, and the tables are made of what is left; by parts, too.
+    let before = tables(&desk.join("signals"));
+    says(&run(&desk, &["--out=signals"]), &["0 of them to be run", "8 of 8"]);
+    assert_eq!(before, tables(&desk.join("signals")));
+    for part in ["--shard=2/3", "--shard=1/3", "--shard=3/3"] {
+        assert!(run(&desk, &["--out=parts", part]).status.success());
+    }
+    assert_eq!(before, tables(&desk.join("parts")));
+
+    fs::write(desk.join("campaign.ron"), keeping("numbers")).expect("a campaign");
+    let done = run(&desk, &["--out=numbers"]);
+    assert!(done.status.success(), "{}", said(&done));
+    assert!(numbers(desk.join("all/runs.parquet")) == numbers(desk.join("numbers/runs.parquet")));
+    assert!(!desk.join("numbers/signals.parquet").exists());
+    let kept = runs(&desk.join("numbers"));
+    assert_eq!(files(&kept[0]), ["run.json", "scene.ron", "summary.json"]);
+    // What was removed is named when it is asked for.
+    let report =
+        Command::new(env!("CARGO_BIN_EXE_stribeck")).arg("report").arg(&kept[0]).output().expect("it starts");
+    assert!(!report.status.success());
+    says(&report, &["trace.npy", "`keep`"]);
+}
+
+#[test]
+fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
+    let desk = desk("campaign-kept-kills", &keeping("signals"));
+    assert!(run(&desk, &["--out=A", "--jobs=2"]).status.success());
+    let provenance = |folder: &str| -> Vec<(PathBuf, Vec<u8>)> {
+        let finished = runs(&desk.join(folder)).into_iter().filter(|run| run.join("signals.npy").exists());
+        finished.map(|run| (run.clone(), fs::read(run.join("run.json")).expect("a run"))).collect()
+    };
+    let mut noise = Noise::new(5);
+    let mut finished = Vec::new();
+    for _ in 0..10 {
+        let mut child = campaign(&desk, &["--out=B", "--jobs=2"])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("it starts");
+        std::thread::sleep(Duration::from_millis(200 + (400.0 * noise.uniform().abs()) as u64));
+        child.kill().expect("it can be killed");
+        child.wait().expect("it ends");
+        if desk.join("B/runs").exists() {
+            finished = provenance("B");
+        }
+    }
+    assert!(run(&desk, &["--out=B"]).status.success());
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+    // Seconds of wall clock in `run.json` would differ.
+    let last = provenance("B");
+    assert!(finished.iter().all(|run| last.contains(run)), "a finished run was run again");
+    assert_eq!(last.len(), 8);
+
+    // Killed when the run had ended, when its numbers were made, and when its signals were written beside.
+    let whole = desk.join("whole");
+    fs::write(desk.join("campaign.ron"), CAMPAIGN).expect("a campaign");
+    assert!(run(&desk, &["--out=whole"]).status.success());
+    fs::write(desk.join("campaign.ron"), keeping("signals")).expect("a campaign");
+    for (at, gone) in [&["summary.json", "signals.npy"][..], &["signals.npy"], &[]].into_iter().enumerate() {
+        let run = &runs(&desk.join("B"))[at];
+        let from = whole.join("runs").join(run.file_name().expect("a name"));
+        for name in ["trace.npy", "energy.npy", "mesh.vtu", "checkpoint"] {
+            fs::copy(from.join(name), run.join(name)).expect("the same run");
+        }
+        gone.iter().for_each(|name| fs::remove_file(run.join(name)).expect("there"));
+    }
+    says(&run(&desk, &["--out=B"]), &["0 of them to be run", "8 of 8"]);
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+    assert_eq!(provenance("B"), last);
+    for kept in runs(&desk.join("B")) {
+        assert_eq!(files(&kept), ["run.json", "scene.ron", "signals.npy", "summary.json"]);
+    }
+}
+
+#[test]
+fn refuses_to_keep_what_it_does_not_know() {
+    let desk = desk("campaign-kept-refused", &keeping("most"));
+    let refused = run(&desk, &["--out=A"]);
+    assert!(!refused.status.success() && !desk.join("A").exists());
+    says(&refused, &["campaign.ron:6:", "`keep`", "`most`", "`all`", "`signals`", "`numbers`"]);
 }
 
 #[test]

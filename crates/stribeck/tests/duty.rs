@@ -58,7 +58,7 @@ fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
         assert!((line.measured.expect("a line") - moved).abs() < orders.resolution, "{line:?}");
     }
     let read = Run::read(folder.join("run")).expect("a run");
-    let side: Vec<f64> = read.trace.get("sensor.side.ay_m_s2").expect("a sensor").to_vec();
+    let side: Vec<f64> = read.trace.channel("sensor.side.ay_m_s2").expect("readable").expect("a sensor");
     let mean_hz = order * summary.kinematics.shaft_hz;
     let family = tones::harmonics(&[("BPFO".into(), mean_hz)], 4, 1e9);
     let (_, smeared) = enveloping::analyse(&side, 5e4, &family).expect("numbers").expect("periods enough");

@@ -7,6 +7,7 @@ use serde_json::Value;
 use stribeck_analysis::agreement::Agreement;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
+use stribeck_scene::trace::{Trace, TraceWriter};
 use stribeck_testing::{Scratch, said, says};
 
 /// The paper's bearing, coarse, dry and short.
@@ -73,13 +74,24 @@ fn example_both_models_from_the_same_starts() {
     let own = || Run::read(&path).unwrap();
     let same = Agreement::of(&scene, &[[own(), own()]]).unwrap();
     assert!(same.failures().next().is_none() && same.rows.iter().all(|row| row.difference.most.abs() < 1e-9));
-    let mut louder = own();
-    for (name, column) in louder.trace.names.iter().zip(&mut louder.trace.columns) {
-        if name.contains("_fx_n") || name.contains("_fy_n") || name.contains("_m_s2") {
-            column.iter_mut().for_each(|value| *value *= 1.02);
-        }
+    let louder = desk.join("louder");
+    fs::create_dir(&louder).unwrap();
+    for name in ["scene.ron", "run.json", "energy.npy"] {
+        fs::copy(path.join(name), louder.join(name)).unwrap();
     }
-    let other = Agreement::of(&scene, &[[own(), louder]]).unwrap();
+    let trace = Trace::read(path.join("trace.npy")).unwrap();
+    let gain = |name: &String| {
+        let louder = name.contains("_fx_n") || name.contains("_fy_n") || name.contains("_m_s2");
+        if louder { 1.02 } else { 1.0 }
+    };
+    let gains: Vec<f64> = trace.names.iter().map(gain).collect();
+    let mut writer = TraceWriter::create(louder.join("trace.npy"), &trace.names).unwrap();
+    for n in 0..trace.len() {
+        let row: Vec<f64> = trace.columns.iter().zip(&gains).map(|(column, gain)| gain * column[n]).collect();
+        writer.push(&row).unwrap();
+    }
+    writer.finish().unwrap();
+    let other = Agreement::of(&scene, &[[own(), Run::read(&louder).unwrap()]]).unwrap();
     let of = |name: &str| other.rows.iter().find(|row| row.name == name).unwrap();
     assert!((of("load_percent").difference.mean - 2.0).abs() < 1e-9 && !of("load_percent").within);
     let side = of(&format!("octaves_{}_db", scene.output.sensors[0].name));

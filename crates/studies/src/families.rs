@@ -4,6 +4,7 @@
 use anyhow::Result;
 use stribeck_analysis::families::{Candidate, FamilyFinding, Source, identify};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
 use stribeck_scene::run_dir::Run;
 
 use crate::table::number;
@@ -174,7 +175,7 @@ struct Tally {
 fn tally(runs: &[Finished]) -> Result<Tally> {
     let mut tally = Tally { highest: f64::NEG_INFINITY, ..Tally::default() };
     for run in runs.iter().filter(|run| run.numbers().is_some()) {
-        let findings = Findings::of(&Run::read(&run.folder)?)?;
+        let findings = Findings::of(&Record::new(&Run::read(&run.folder)?)?)?;
         let (motion, accelerations) = &findings.heard;
         let kinematics = &findings.prediction.kinematics;
         let count = findings.summary.mesh.roller_facets as f64;

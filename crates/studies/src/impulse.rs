@@ -267,7 +267,7 @@ fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
     run.numbers()?;
     let read = Run::read(&run.folder).ok()?;
     let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages().first()?.exit_s;
-    let (record, name) = (Record::new(&read), &read.scene.output.sensors.get(sensor)?.name);
+    let (record, name) = (Record::whole(&read).ok()?, &read.scene.output.sensors.get(sensor)?.name);
     let interval = record.interval_s();
     let all = record.acceleration_g(name, "ay")?;
     let vertical = all.get(impulse_span(record.time_s(), exit_s))?;

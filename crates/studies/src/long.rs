@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
 use stribeck_scene::run_dir::Run;
 
 use crate::{Answer, Flags, Host, Runner, Sheet, Variant};
@@ -43,7 +44,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
         }
     };
     let run = Run::read(&folder).with_context(|| format!("cannot read the run in {}", folder.display()))?;
-    let findings = Findings::of(&run)?;
+    let findings = Findings::of(&Record::new(&run)?)?;
     let mut sheet = Sheet::new(host.root(), "long", "A long record: 0.35 s");
     tables::cost(&mut sheet, &run, &findings.summary);
     tables::resolution(&mut sheet, &findings);

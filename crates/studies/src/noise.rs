@@ -104,7 +104,7 @@ fn background(sheet: &mut Sheet, long: &[Finished], ends: &[Finished]) {
 
 /// Spectra and forces of the first and the last row of a table, and the paper's filter applied to the first.
 fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> {
-    let (a, b) = (Record::new(first), Record::new(last));
+    let (a, b) = (Record::whole(first)?, Record::whole(last)?);
     let prediction = Prediction::of(&first.scene, &first.info.mesh);
     let Some(line) = prediction.facet_lines.first() else { return Ok(()) };
     let notch = Filter::new(a.sample_rate_hz(), line.1)?;
@@ -163,14 +163,14 @@ fn noise_at(run: &Finished, sensor: usize, hz: Option<f64>) -> Option<Noise> {
     let passages: Vec<(f64, f64)> = prediction.passages().iter().map(|p| (p.entry_s, p.exit_s)).collect();
     let name = read.scene.output.sensors.get(sensor)?.name.clone();
     let line = prediction.facet_lines.first()?.1;
-    measure(&Record::new(&read), &name, &passages, hz.unwrap_or(line))
+    measure(&Record::whole(&read).ok()?, &name, &passages, hz.unwrap_or(line))
 }
 
 /// Amplitude at the seat of the line that the points of the facets make [g]; `None` when samples are too far apart for it.
 fn points_line_g(run: &Finished) -> Option<f64> {
     const SEAT: usize = 2;
     let read = Run::read(&run.folder).ok()?;
-    let record = Record::new(&read);
+    let record = Record::whole(&read).ok()?;
     let line = Prediction::of(&read.scene, &read.info.mesh).facet_lines.first()?.1;
     let hz = line * read.scene.contact.points_per_facet as f64;
     let rate = record.sample_rate_hz();
@@ -197,7 +197,7 @@ fn together(run: &Finished, hz: Option<f64>, of: impl Fn(&Noise) -> f64) -> Opti
 /// Ripple of the most loaded roller's force while roller 1 is over the defect [%].
 fn ripple_percent(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
-    let record = Record::new(&read);
+    let record = Record::whole(&read).ok()?;
     let time = record.time_s();
     let at = |s: f64| time.partition_point(|&t| t < s);
     let span = at(converged::UNLOADED_S.start)..at(converged::UNLOADED_S.end);

@@ -99,7 +99,7 @@ fn measure(choice: &Choice, finished: &Finished) -> Option<Measured> {
     let (summary, info) = (finished.numbers()?, finished.info.as_ref()?);
     let start = choice.starts.iter().position(|v| v.name == finished.variant.name)?;
     let run = Run::read(&finished.folder).ok()?;
-    let record = Record::new(&run);
+    let record = Record::whole(&run).ok()?;
     let roller = record.roller(2)?;
     let loaded = record.time_s().iter().position(|&t| t >= 1e-3 * FROM_MS)?;
     let pushed = roller.outer_fx.iter().zip(roller.outer_fy).skip(loaded).map(|(x, y)| x.hypot(*y));

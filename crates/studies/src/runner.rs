@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
@@ -228,7 +229,10 @@ fn finished(planned: Planned) -> Finished {
     };
     let info = run.as_ref().ok().map(|run| run.info.clone());
     let summary = run.and_then(|run| match run.info.status {
-        Status::Complete => Findings::of(&run).map(|f| f.summary).map_err(|error| error.to_string()),
+        Status::Complete => {
+            let findings = Record::new(&run).and_then(|record| Findings::of(&record));
+            findings.map(|f| f.summary).map_err(|error| error.to_string())
+        }
         _ => Err(run.info.stop_reason.unwrap_or_else(|| "did not complete".to_owned())),
     });
     Finished { variant, folder, scene, summary, info }

@@ -2,10 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use super::kernels::{Complex, Shift, dot, orthogonalise, turned, unit};
 use super::{Motion, SIDEBANDS, Source};
-
-/// Real and imaginary part.
-pub(super) type Complex = (f64, f64);
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
 const ORDERS: i32 = 3;
@@ -96,10 +94,12 @@ impl Comb {
 
     /// Its columns in the band about `centre_hz`, when it is detuned by `offset_hz`.
     pub(super) fn columns(&self, offset_hz: f64, centre_hz: f64) -> Columns {
-        let band = |values: &Vec<Complex>| self.baseband.band(values, self.rate_hz + offset_hz - centre_hz);
+        let length = self.sums.first().map_or(0, Vec::len);
+        let mut shift = self.baseband.shift(self.rate_hz + offset_hz - centre_hz, length);
+        let mut band = |values: &Vec<Complex>| shift.apply(values);
         Columns {
-            sums: self.sums.iter().map(band).collect(),
-            own: self.own.iter().map(|rollers| rollers.iter().flat_map(band).collect()).collect(),
+            sums: self.sums.iter().map(&mut band).collect(),
+            own: self.own.iter().map(|rollers| rollers.iter().flat_map(&mut band).collect()).collect(),
         }
     }
 
@@ -110,7 +110,7 @@ impl Comb {
         let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
         let steady = vec![(1.0, 0.0); self.baseband.length(motion.samples())];
         let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
-            .map(|m| self.baseband.band(&steady, f64::from(m) * motion.bpfo_hz))
+            .map(|m| self.baseband.shift(f64::from(m) * motion.bpfo_hz, steady.len()).apply(&steady))
             .collect();
         // Lines that are shifted together keep their angles: one basis serves all places, and columns are shifted back.
         let mut basis = Vec::new();
@@ -192,25 +192,10 @@ impl Baseband {
         self.of_samples(|n| (values[n], 0.0), values.len())
     }
 
-    /// What lies in the band once `values` are shifted up by `shift_hz`.
-    pub(super) fn band(&self, values: &[Complex], shift_hz: f64) -> Vec<Complex> {
-        self.filter.apply(&turned(values, shift_hz, self.interval_s))
+    /// What takes out of signals of so many `values` that which lies in the band once they are shifted up by `hz`.
+    pub(super) fn shift(&self, hz: f64, values: usize) -> Shift<'_> {
+        Shift::new(hz, self.interval_s, values, &self.filter.taps, self.filter.step)
     }
-}
-
-/// Values times exp 2πi f t, t from zero on.
-fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
-    const BLOCK: usize = 16;
-    let turns = |samples: usize| unit(TAU * hz * interval_s * samples as f64);
-    let table: [Complex; BLOCK] = std::array::from_fn(turns);
-    let step = turns(BLOCK);
-    let mut start = (1.0, 0.0);
-    let mut turned = Vec::with_capacity(values.len());
-    for block in values.chunks(BLOCK) {
-        turned.extend(block.iter().zip(&table).map(|(value, turn)| times(times(start, *turn), *value)));
-        start = times(start, step);
-    }
-    turned
 }
 
 /// Adds `part` to `sum`.
@@ -262,24 +247,6 @@ impl LowPass {
         let sum: f64 = taps.iter().sum();
         Self { taps: taps.iter().map(|t| t / sum).collect(), step: (length / OVERLAP).max(1) }
     }
-
-    fn apply(&self, values: &[Complex]) -> Vec<Complex> {
-        let average = |part: &[Complex]| {
-            sum(self.taps.iter().zip(part).map(|(tap, value)| (tap * value.0, tap * value.1)))
-        };
-        values.windows(self.taps.len()).step_by(self.step).map(average).collect()
-    }
-}
-
-/// Sum in four parts, which do not wait for each other.
-fn sum(values: impl ExactSizeIterator<Item = Complex>) -> Complex {
-    let mut parts = [(0.0, 0.0); 4];
-    for (n, value) in values.enumerate() {
-        let part: &mut Complex = &mut parts[n % 4];
-        *part = (part.0 + value.0, part.1 + value.1);
-    }
-    let [a, b, c, d] = parts;
-    ((a.0 + b.0) + (c.0 + d.0), (a.1 + b.1) + (c.1 + d.1))
 }
 
 /// Power of a signal in the span of orthonormal columns.
@@ -287,39 +254,16 @@ pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
     basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
 }
 
-/// Adds what `columns` hold beyond `basis` to it, orthonormal: Gram–Schmidt, twice for rounding.
+/// Adds what `columns` hold beyond `basis` to it, orthonormal.
 pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex>]) {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     for column in columns {
         let mut rest = column.clone();
-        for _ in 0..2 {
-            for q in basis.iter() {
-                let share = dot(q, &rest);
-                for (r, q) in rest.iter_mut().zip(q) {
-                    let part = times(share, *q);
-                    *r = (r.0 - part.0, r.1 - part.1);
-                }
-            }
-        }
+        orthogonalise(&mut rest, basis);
         let length = dot(&rest, &rest).0;
         if length > INDEPENDENT * INDEPENDENT * longest {
             let scale = 1.0 / length.sqrt();
             basis.push(rest.iter().map(|r| (r.0 * scale, r.1 * scale)).collect());
         }
     }
-}
-
-/// Σ ā b.
-pub(super) fn dot(a: &[Complex], b: &[Complex]) -> Complex {
-    sum(a.iter().zip(b).map(|(a, b)| (a.0 * b.0 + a.1 * b.1, a.0 * b.1 - a.1 * b.0)))
-}
-
-fn times(a: Complex, b: Complex) -> Complex {
-    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
-}
-
-/// e^{iφ}.
-fn unit(phase: f64) -> Complex {
-    let (sin, cos) = phase.sin_cos();
-    (cos, sin)
 }

@@ -1,6 +1,7 @@
 //! How well a comb explains the channels of a record, where it belongs and elsewhere.
 
-use super::comb::{Columns, Comb, Complex, dot, extend_basis, power, smoothed};
+use super::comb::{Columns, Comb, extend_basis, power, smoothed};
+use super::kernels::{Complex, dot};
 use super::{Channel, LEAST_LEAD, Motion};
 
 /// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
@@ -185,10 +186,12 @@ struct Base {
 impl Base {
     /// In the band `offset_hz` off the comb's own.
     fn in_band(&self, comb: &Comb, offset_hz: f64) -> Signals {
-        let band = |values: &Vec<Complex>| comb.baseband.band(values, -offset_hz);
+        let length = self.accelerations.iter().chain(&self.forces).map(Vec::len).max().unwrap_or(0);
+        let mut shift = comb.baseband.shift(-offset_hz, length);
+        let mut band = |values: &Vec<Complex>| shift.apply(values);
         Signals {
-            accelerations: self.accelerations.iter().map(band).collect(),
-            forces: self.forces.iter().flat_map(band).collect(),
+            accelerations: self.accelerations.iter().map(&mut band).collect(),
+            forces: self.forces.iter().flat_map(&mut band).collect(),
         }
     }
 }

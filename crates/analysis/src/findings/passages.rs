@@ -30,21 +30,52 @@ const UNMOVED: f64 = 0.1;
 /// Notes of one kind that are said in full; of the others the number.
 const NOTED: usize = 3;
 
-/// One event for every passage that begins within the record, in order of expected entry.
-pub(super) fn picked_events(
-    scene: &Scene,
-    record: &Record<'_>,
-    prediction: &Prediction,
-    notes: &mut Vec<String>,
-) -> Vec<Event> {
-    let mut events = Vec::new();
-    for (number, course) in prediction.spalls.iter().enumerate() {
-        let mut of_spall = events_of(scene, record, prediction, course, notes);
-        of_spall.iter_mut().for_each(|event| event.spall = number + 1);
-        events.extend(of_spall);
+/// Passages over all spalls, found roller by roller.
+#[derive(Debug)]
+pub(super) struct Passages<'a> {
+    scene: &'a Scene,
+    time_s: &'a [f64],
+    prediction: &'a Prediction,
+    /// By spall: events and what was noted of each, by their place among the spall's passages.
+    seen: Vec<BTreeMap<usize, (Event, Vec<String>)>>,
+}
+
+impl<'a> Passages<'a> {
+    /// Before the first roller of a record that is sampled at `time_s`.
+    pub(super) fn new(scene: &'a Scene, time_s: &'a [f64], prediction: &'a Prediction) -> Self {
+        Self { scene, time_s, prediction, seen: vec![BTreeMap::new(); prediction.spalls.len()] }
     }
-    events.sort_by(|a, b| a.expected_entry_ms.total_cmp(&b.expected_entry_ms));
-    events
+
+    /// One roller more, with its orbital angle [rad].
+    pub(super) fn add(&mut self, roller: &Roller<'_>, orbit: &[f64]) {
+        for (course, seen) in self.prediction.spalls.iter().zip(&mut self.seen) {
+            seen.extend(passages_of(self.scene, self.time_s, self.prediction, course, roller, orbit));
+        }
+    }
+
+    /// One event for every passage that begins within the record, in order of expected entry.
+    pub(super) fn events(
+        mut self,
+        record: &Record<'_>,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<Event>, Error> {
+        let recorded = record.roller_numbers();
+        let mut events = Vec::new();
+        for (number, (course, seen)) in self.prediction.spalls.iter().zip(&mut self.seen).enumerate() {
+            for (at, passage) in course.passages.iter().enumerate() {
+                if !recorded.contains(&passage.roller) {
+                    notes.push(format!("roller {} is not in the trace", passage.roller));
+                    seen.insert(at, (Event::expected(passage, course.spall.ring), Vec::new()));
+                }
+            }
+            let seen = std::mem::take(seen).into_values().collect();
+            let mut of_spall = events_of(record, self.prediction, course, seen, notes)?;
+            of_spall.iter_mut().for_each(|event| event.spall = number + 1);
+            events.extend(of_spall);
+        }
+        events.sort_by(|a, b| a.expected_entry_ms.total_cmp(&b.expected_entry_ms));
+        Ok(events)
+    }
 }
 
 /// When a roller's centre passes the edges of a spall, as recorded.
@@ -60,17 +91,16 @@ struct Path {
 }
 
 impl Path {
-    /// `turned_rad` says how far the raceway has turned at a time [s].
+    /// Of a roller with this orbital angle [rad]. `turned_rad` says how far the raceway has turned at a time [s].
     fn of(
-        roller: &Roller<'_>,
+        orbit: &[f64],
         time: &[f64],
         edges: DefectEdges,
         period_s: Option<f64>,
         turned_rad: impl Fn(f64) -> f64,
     ) -> Self {
         // As the raceway sees it.
-        let mut orbit = roller.orbit();
-        orbit.iter_mut().zip(time).for_each(|(angle, &t)| *angle -= turned_rad(t));
+        let orbit: Vec<f64> = orbit.iter().zip(time).map(|(angle, &t)| angle - turned_rad(t)).collect();
         let over = |edge: f64| events::crossings(time, &orbit, edge.to_radians());
         Self {
             leading: over(edges.leading_deg),
@@ -109,16 +139,20 @@ impl Path {
     }
 }
 
-/// Events of one spall.
-fn events_of(
+/// Events of one roller over one spall that begin within the record, with what was noted of them, by their place among the
+/// spall's passages.
+fn passages_of(
     scene: &Scene,
-    record: &Record<'_>,
+    time_s: &[f64],
     prediction: &Prediction,
     course: &SpallCourse,
-    notes: &mut Vec<String>,
-) -> Vec<Event> {
-    let time = record.time_s();
-    let last = time.last().copied().unwrap_or(f64::NEG_INFINITY);
+    roller: &Roller<'_>,
+    orbit: &[f64],
+) -> Vec<(usize, (Event, Vec<String>))> {
+    let passages: Vec<(usize, &Crossing)> =
+        course.passages.iter().enumerate().filter(|(_, passage)| passage.roller == roller.number).collect();
+    let [(_, first), ..] = &passages[..] else { return Vec::new() };
+    let last = time_s.last().copied().unwrap_or(f64::NEG_INFINITY);
     let ring = course.spall.ring;
     let edge = Edge::of(scene, ring);
     let duty = Duty::of(scene);
@@ -127,21 +161,12 @@ fn events_of(
         DefectRing::Inner => duty.shaft_rad(t),
         DefectRing::Outer => prediction.kinematics.outer_rad_s * t,
     };
-    let mut events: Vec<(Event, Vec<String>)> = Vec::new();
-    let mut paths: BTreeMap<usize, Path> = BTreeMap::new();
-    for (at, passage) in course.passages.iter().enumerate() {
+    let period_s = passages.get(1).map(|(_, later)| later.entry_s - first.entry_s);
+    let mut path = Path::of(orbit, time_s, course.edges, period_s, turned_rad);
+    let mut events = Vec::new();
+    for (at, passage) in passages {
         let mut event = Event::expected(passage, ring);
-        let Some(roller) = record.roller(passage.roller) else {
-            notes.push(format!("roller {} is not in the trace", passage.roller));
-            events.push((event, Vec::new()));
-            continue;
-        };
         let traverse = passage.exit_s - passage.entry_s;
-        let path = paths.entry(passage.roller).or_insert_with(|| {
-            let later = course.passages[at + 1..].iter().find(|later| later.roller == passage.roller);
-            let period_s = later.map(|later| later.entry_s - passage.entry_s);
-            Path::of(&roller, time, course.edges, period_s, turned_rad)
-        });
         let found = path.next(passage);
         [event.path_entry_ms, event.path_exit_ms] = found.map(|t| t.map(|t| 1e3 * t));
         // The path says better than rolling without slip when to look.
@@ -153,8 +178,8 @@ fn events_of(
         let late = if late.abs() > UNMOVED * traverse { late } else { 0.0 };
         // A long record is looked at about the passage alone.
         let [from, until] = [passage.entry_s - ABOUT * traverse, passage.exit_s + ABOUT * traverse];
-        let near = events::span(time, from + late, until + late);
-        let (time, roller) = (&time[near.clone()], roller.within(near));
+        let near = events::span(time_s, from + late, until + late);
+        let (time, roller) = (&time_s[near.clone()], roller.within(near));
         // A shaft whose speed changes has another one at each passage.
         let speed_m_s = if scene.operation.speed_varies() {
             1e-3 * course.spall.length_mm / traverse
@@ -179,8 +204,19 @@ fn events_of(
         let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
         let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
         event.spall_mm = run_s.zip(picked.level_n).map(length);
-        events.push((event, picked.notes));
+        events.push((at, (event, picked.notes)));
     }
+    events
+}
+
+/// Events of one spall, from those `seen` over it in the order of its passages.
+fn events_of(
+    record: &Record<'_>,
+    prediction: &Prediction,
+    course: &SpallCourse,
+    mut events: Vec<(Event, Vec<String>)>,
+    notes: &mut Vec<String>,
+) -> Result<Vec<Event>, Error> {
     if course.turns {
         let all = events.len();
         let most = events.iter().filter_map(|(event, _)| event.level_n).fold(0.0, f64::max);
@@ -189,7 +225,7 @@ fn events_of(
             notes.push(format!(
                 "{} of {all} passages over the spall of the {} raceway lie outside the load zone and are no events",
                 all - events.len(),
-                ring.name()
+                course.spall.ring.name()
             ));
         }
     }
@@ -213,13 +249,13 @@ fn events_of(
     }
     // Where the spall turns a neighbour's load changes by its way through the load zone.
     if !course.turns {
-        compensate(record, prediction, &mut of_spall);
+        compensate(record, prediction, &mut of_spall)?;
     }
-    of_spall
+    Ok(of_spall)
 }
 
 /// Event #3: the largest force that a roller carries while a neighbour is in the defect.
-fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]) {
+fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]) -> Result<(), Error> {
     let time = record.time_s();
     let count = record.pockets();
     let spans: Vec<(usize, f64, f64)> = events
@@ -230,31 +266,38 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
     // In a long record a neighbour comes round again; the one that counts is a roller spacing before or after.
     let spacing_s = 1.0 / prediction.kinematics.bpfo_hz;
     for event in events.iter_mut() {
-        let [own_s, _] = event.extent_s();
+        let [own_from, own_until] = event.extent_s();
         let neighbours = spans.iter().filter(|s| {
             let apart = event.roller.abs_diff(s.0);
-            apart.min(count.saturating_sub(apart)) == 1 && (s.1 - own_s).abs() < 2.0 * spacing_s
+            apart.min(count.saturating_sub(apart)) == 1 && (s.1 - own_from).abs() < 2.0 * spacing_s
         });
-        let Some(roller) = record.roller(event.roller) else { continue };
-        let [own_from, own_until] = event.extent_s();
-        let found = neighbours.filter_map(|&(_, from, to)| {
+        let mut most: Option<(f64, f64, f64)> = None;
+        for &(_, from, to) in neighbours {
             let smoothing = prediction.smoothing_s(to - from);
             let seen = events::span(time, from - 0.5 * (to - from), to);
-            let time = &time[seen.clone()];
-            let force = events::running_median(time, &roller.within(seen).outer_normal(), smoothing);
+            let part = record.with_rollers(&[event.roller], seen.clone())?;
+            let Some(roller) = part.roller(event.roller) else { continue };
+            let time = &time[seen];
+            let force = events::running_median(time, &roller.outer_normal(), smoothing);
             let during = events::span(time, from, to);
             // A roller that is itself over the defect, or only just behind it, tells nothing.
             let free = |n: &usize| time[*n] < own_from - smoothing || time[*n] > own_until + 4.0 * smoothing;
-            let most = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b]))?;
+            let Some(at) = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b])) else {
+                continue;
+            };
             let before = events::median(&mut force[..during.start].to_vec());
-            (before > 0.0 && force[most] > before).then(|| (time[most], force[most] / before, force[most]))
-        });
-        if let Some((at, gain, force_n)) = found.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            let gain = force[at] / before;
+            if before > 0.0 && force[at] > before && most.is_none_or(|(_, most, _)| gain >= most) {
+                most = Some((time[at], gain, force[at]));
+            }
+        }
+        if let Some((at, gain, force_n)) = most {
             event.compensation_ms = Some(1e3 * at);
             event.compensation_n = Some(force_n);
             event.compensation_gain = Some(gain);
         }
     }
+    Ok(())
 }
 
 /// Levels at every sensor; fills in the impulse of each event at the leading one.
@@ -356,19 +399,18 @@ fn components(sensor: &SensorSignal, phases: &[Phase]) -> Vec<ComponentLevels> {
     turned.into_iter().filter_map(level).collect()
 }
 
-/// Passages whose forces are kept for pictures.
-const DRAWN: usize = 12;
-
-/// Forces over the whole record of the rollers that cross a spall first.
+/// Forces over the whole record of the rollers that cross a spall first, in the first `most` passages.
 pub(super) fn crossing_forces(
     record: &Record<'_>,
     prediction: &Prediction,
     events: &[Event],
     filter: Option<&Filter>,
+    most: usize,
 ) -> Result<Vec<CrossingForce>, Error> {
     let mut forces = Vec::new();
-    for event in events.iter().take(DRAWN) {
-        let Some(roller) = record.roller(event.roller) else { continue };
+    for event in events.iter().take(most) {
+        let part = record.with_rollers(&[event.roller], 0..record.len())?;
+        let Some(roller) = part.roller(event.roller) else { continue };
         // The paper's figure has the vertical force; only over a spall that stands still is it the one that tells.
         let standing = prediction.spalls.get(event.spall - 1).is_some_and(|course| !course.turns);
         let vertical = event.ring == DefectRing::Outer && standing;
@@ -450,23 +492,11 @@ mod tests {
         let turn = std::f64::consts::TAU;
         let time: Vec<f64> = (0..100_000).map(|n| n as f64 * interval).collect();
         let angle = |t: f64| 1.7 - turn * expected_hz * (1.0 - slip) * t;
-        let (x, y): (Vec<f64>, Vec<f64>) =
-            time.iter().map(|&t| (0.08 * angle(t).cos(), 0.08 * angle(t).sin())).unzip();
-        let none = vec![0.0; time.len()];
-        let roller = Roller {
-            number: 1,
-            x: &x,
-            y: &y,
-            spin: &none,
-            outer_fx: &none,
-            outer_fy: &none,
-            inner_fx: &none,
-            inner_fy: &none,
-        };
+        let orbit: Vec<f64> = time.iter().map(|&t| angle(t)).collect();
         let edges = DefectEdges { leading_deg: 92.9, middle_deg: 90.0, trailing_deg: 87.1 };
         let over =
             |edge: f64, hz: f64, orbit: usize| (1.7 - edge.to_radians() + turn * orbit as f64) / (turn * hz);
-        let mut path = Path::of(&roller, &time, edges, Some(1.0 / expected_hz), |_| 0.0);
+        let mut path = Path::of(&orbit, &time, edges, Some(1.0 / expected_hz), |_| 0.0);
         for orbit in 0..37 {
             let at = |edge| over(edge, expected_hz, orbit);
             let passage = Crossing {

@@ -10,10 +10,12 @@ mod spectra;
 use maud::Markup;
 use stribeck_scene::run_dir::Run;
 
+pub(super) use self::forces::DRAWN as CROSSINGS;
 use super::pictures::Pictures;
 use crate::Error;
 use crate::findings::Findings;
 use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
+use crate::record::Record;
 
 /// A chart or a picture.
 #[derive(Debug)]
@@ -68,14 +70,14 @@ pub(super) struct Figures {
 }
 
 impl Figures {
-    pub(super) fn of(run: &Run, findings: &Findings, pictures: Pictures) -> Self {
+    pub(super) fn of(record: &Record<'_>, findings: &Findings, pictures: Pictures) -> Result<Self, Error> {
         let paper = if findings.of_paper { charts(beating::figures()).collect() } else { Vec::new() };
-        Self {
+        Ok(Self {
             acceleration: charts(acceleration::raw(findings))
-                .chain(charts(acceleration::others(findings)))
+                .chain(charts(acceleration::others(record, findings)?))
                 .chain(charts(acceleration::notched(findings)))
                 .collect(),
-            duty: charts(duty::figures(run, findings)).collect(),
+            duty: charts(duty::figures(record, findings)).collect(),
             spectra: charts(spectra::raw(findings))
                 .chain(charts(spectra::notched(findings)))
                 .chain(charts(spectra::others(findings)))
@@ -83,13 +85,13 @@ impl Figures {
             forces: charts(forces::crossings(findings)).collect(),
             bearing: drawn(pictures.load)
                 .chain(charts(load(findings)))
-                .chain(charts(forces::sums(run)))
-                .chain(charts(motion::figures(run, findings)))
+                .chain(charts(forces::sums(record, findings)))
+                .chain(charts(motion::figures(record, findings)?))
                 .collect(),
             stress: drawn(pictures.mesh).chain(drawn(pictures.stress)).collect(),
-            energy: charts(energy(run)).collect(),
+            energy: charts(energy(record.run())?).collect(),
             paper,
-        }
+        })
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
@@ -153,8 +155,9 @@ fn load(findings: &Findings) -> Vec<Figure> {
     vec![figure]
 }
 
-fn energy(run: &Run) -> Vec<Figure> {
-    let Some(time) = run.energy.get("time_s").filter(|t| !t.is_empty()) else { return Vec::new() };
+fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
+    let energy = run.energy.read_all()?;
+    let Some(time) = energy.get("time_s").filter(|t| !t.is_empty()) else { return Ok(Vec::new()) };
     let parts = [
         ("kinetic_j", "kinetic", Colour::Blue),
         ("strain_j", "strain", Colour::Orange),
@@ -180,14 +183,14 @@ fn energy(run: &Run) -> Vec<Figure> {
     ))
     .note("Friction, damping and contact damping only grow; kinetic and strain energy go up and down.");
     for (channel, name, colour) in parts {
-        if let Some(values) = run.energy.get(channel).filter(|v| v.iter().any(|&e| e != 0.0)) {
+        if let Some(values) = energy.get(channel).filter(|v| v.iter().any(|&e| e != 0.0)) {
             let first = values.first().copied().unwrap_or(0.0);
             let change = values.iter().map(|e| e - first).collect();
             ledger = ledger.with(Series::listed(name, colour, time.to_vec(), change));
         }
     }
     let mut figures = vec![ledger];
-    if let Some(error) = run.energy.get("relative_error") {
+    if let Some(error) = energy.get("relative_error") {
         let percent = error.iter().map(|e| 100.0 * e).collect();
         figures.push(
             Figure::new(
@@ -204,7 +207,7 @@ fn energy(run: &Run) -> Vec<Figure> {
             )),
         );
     }
-    figures
+    Ok(figures)
 }
 
 pub(super) fn sampled(findings: &Findings, name: &str, colour: Colour, values: &[f64]) -> Series {

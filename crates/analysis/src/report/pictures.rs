@@ -16,6 +16,7 @@ use stribeck_scene::run_dir::{Run, RunDir};
 use crate::Error;
 use crate::findings::Findings;
 use crate::plot::{Picture, Sheet};
+use crate::record::Record;
 
 /// All pictures that the run can yield, by the section that shows them.
 #[derive(Debug, Default)]
@@ -29,7 +30,8 @@ pub(super) struct Pictures {
 
 impl Pictures {
     /// Draws them. `run_dir` is the folder of the run, for its mesh and its frames.
-    pub(super) fn of(run: &Run, findings: &Findings, run_dir: &Path) -> Result<Self, Error> {
+    pub(super) fn of(record: &Record<'_>, findings: &Findings, run_dir: &Path) -> Result<Self, Error> {
+        let run = record.run();
         let mut pictures = Self { load: polar::picture(findings).into_iter().collect(), ..Self::default() };
         let dir = RunDir::open(run_dir)?;
         let mesh = match mesh_of(run, &dir) {
@@ -55,7 +57,7 @@ impl Pictures {
         }
         let frames = frames::read_all(&dir.frames())?;
         match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
-            Some(window) => pictures.stress = stress::pictures(run, findings, &mesh, &window, &frames)?,
+            Some(window) => pictures.stress = stress::pictures(record, findings, &mesh, &window, &frames)?,
             None => pictures
                 .notes
                 .push("no picture of the stress: the run kept no frames (`output.frames`)".into()),

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::{CHECKPOINT, ENSEMBLE, INFO, TRACE, files};
+use super::{CHECKPOINT, ENSEMBLE, INFO, SUMMARY, TRACE, files};
 use crate::ensemble::Ensemble;
 use crate::run_info::{RunInfo, Status};
-use crate::trace::Trace;
+use crate::trace::TraceFile;
 
 /// A run that holds samples, or an ensemble of them.
 #[derive(Debug)]
@@ -33,9 +33,11 @@ impl Earlier {
             let ended = starts.iter().filter(|start| start.has_ended()).count();
             return (!starts.is_empty()).then(|| Self::Ensemble { wanted: read.map(|e| e.starts), ended });
         }
-        // A trace that cannot be read may be worth a lot to its owner; one that is not there is not.
-        let samples = Trace::count(folder.join(TRACE)).unwrap_or(1);
-        (folder.join(TRACE).exists() && samples > 0).then(|| Self::Run {
+        // A trace that cannot be read may be worth a lot to its owner; one that is not there is not, unless its numbers are.
+        let there = |name: &str| folder.join(name).exists();
+        let samples = TraceFile::open(folder.join(TRACE)).map_or(1, |trace| trace.len());
+        let numbers = !there(TRACE) && there(SUMMARY) && there(INFO);
+        (numbers || there(TRACE) && samples > 0).then(|| Self::Run {
             info: files::read_info(&folder.join(INFO)).ok().map(Box::new),
             can_go_on: folder.join(CHECKPOINT).exists(),
         })

@@ -45,13 +45,8 @@ pub(super) fn remove_run(folder: &Path) -> Result<(), Error> {
     for name in FILES {
         remove(&folder.join(name))?;
     }
-    for (name, extensions) in FOLDERS {
-        let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
-        for path in entries.flatten().map(|entry| entry.path()) {
-            if path.extension().and_then(|e| e.to_str()).is_some_and(|e| extensions.contains(&e)) {
-                remove(&path)?;
-            }
-        }
+    for (name, _) in FOLDERS {
+        remove_filled(folder, name)?;
     }
     for start in start_folders(folder) {
         remove_run(&start)?;
@@ -63,6 +58,30 @@ pub(super) fn remove_run(folder: &Path) -> Result<(), Error> {
     Ok(())
 }
 
+/// Removes what a run or its report has put into the folder `name` of `run`, and no other file.
+fn remove_filled(run: &Path, name: &str) -> Result<(), Error> {
+    let extensions =
+        FOLDERS.iter().find(|(folder, _)| *folder == name).map_or(&[][..], |(_, extensions)| extensions);
+    for path in std::fs::read_dir(run.join(name)).into_iter().flatten().flatten().map(|entry| entry.path()) {
+        if path.extension().and_then(|e| e.to_str()).is_some_and(|e| extensions.contains(&e)) {
+            remove(&path)?;
+        }
+    }
+    Ok(())
+}
+
+/// The same, and the folder itself where nothing of its owner lies in it.
+pub(super) fn remove_folder(run: &Path, name: &str) -> Result<(), Error> {
+    remove_filled(run, name)?;
+    std::fs::remove_dir(run.join(name)).ok();
+    Ok(())
+}
+
+/// Gives a complete file its name.
+pub(super) fn rename(from: &Path, to: &Path) -> Result<(), Error> {
+    std::fs::rename(from, to).map_err(|e| cannot("write", to, "What it was made from is still there", e))
+}
+
 /// Folders of all starts in the folder of an ensemble, by number.
 pub(super) fn start_folders(folder: &Path) -> Vec<PathBuf> {
     let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
@@ -71,7 +90,7 @@ pub(super) fn start_folders(folder: &Path) -> Vec<PathBuf> {
     numbers.into_iter().map(|number| folder.join(folder_name(number))).collect()
 }
 
-fn remove(path: &Path) -> Result<(), Error> {
+pub(super) fn remove(path: &Path) -> Result<(), Error> {
     match std::fs::remove_file(path) {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
             Err(cannot("remove", path, "The other files of the earlier run may already be gone", e))

@@ -6,19 +6,19 @@ use super::{ENERGY, RunDir, TRACE};
 use crate::error::Error;
 use crate::run_info::RunInfo;
 use crate::scene::Scene;
-use crate::trace::Trace;
+use crate::trace::TraceFile;
 
 /// A run as the report sees it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub struct Run {
     /// The complete scene.
     pub scene: Scene,
     /// Provenance, sizes and cost.
     pub info: RunInfo,
-    /// Sampled channels.
-    pub trace: Trace,
-    /// Sampled energy ledger.
-    pub energy: Trace,
+    /// Sampled channels, on disk.
+    pub trace: TraceFile,
+    /// Sampled energy ledger, on disk.
+    pub energy: TraceFile,
 }
 
 impl Run {
@@ -46,7 +46,8 @@ impl Run {
         Err(Error::OtherScene { path: path.to_owned(), found, expected: expected.clone() })
     }
 
-    /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going.
+    /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going. Its samples stay on disk until
+    /// they are asked for.
     ///
     /// # Errors
     ///
@@ -56,8 +57,8 @@ impl Run {
         Ok(Self {
             scene: Scene::read(dir.scene())?,
             info: dir.read_info()?,
-            trace: Trace::read(dir.trace())?,
-            energy: Trace::read(dir.energy())?,
+            trace: TraceFile::open(dir.trace())?,
+            energy: TraceFile::open(dir.energy())?,
         })
     }
 }

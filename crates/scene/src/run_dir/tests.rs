@@ -58,7 +58,7 @@ fn roundtrip_a_run_reads_back_equal() {
     let run = Run::read(folder.path()).expect("complete");
     assert_eq!(run.scene, Scene::default());
     assert_eq!(run.info, info(Status::Complete));
-    assert_eq!(run.trace.get("x"), Some(&[1.0][..]));
+    assert_eq!(run.trace.channel("x").expect("readable"), Some(vec![1.0]));
     assert_eq!(run.energy.len(), 1);
 }
 
@@ -131,6 +131,50 @@ fn invariant_a_run_that_never_starts_takes_away_the_folders_above_it() {
     let mut ended = false;
     dir.reservation().unless_started(|| ended = true);
     assert!(ended && !folder.path().exists());
+}
+
+#[test]
+fn example_of_a_run_its_signals_stay() {
+    let folder = Scratch::new("kept");
+    for (keep, left) in [
+        (Keep::All, &[CHECKPOINT, ENERGY, FRAMES, MESH, INFO, SCENE, SUMMARY, TRACE][..]),
+        (Keep::Signals, &[INFO, SCENE, SIGNALS, SUMMARY]),
+        (Keep::Numbers, &[INFO, SCENE, SUMMARY]),
+    ] {
+        let path = folder.join(format!("{keep:?}"));
+        let dir = RunDir::create(&path).expect("free");
+        dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
+        for file in [dir.trace(), dir.energy()] {
+            let mut trace =
+                TraceWriter::create(file, &["time_s", "x", "sensor.a.ay_m_s2"]).expect("writable");
+            trace.push(&[0.0, 1.0, 2.0]).expect("writable");
+            trace.push(&[1.0, f64::NAN, 3.0]).expect("writable");
+        }
+        std::fs::create_dir_all(dir.frames()).expect("writable");
+        let others = [dir.mesh(), dir.checkpoint(), dir.summary(), dir.frames().join("000000.npy")];
+        others.iter().for_each(|file| std::fs::write(file, "bytes").expect("writable"));
+        dir.write_info(&info(Status::Complete)).expect("writable");
+        for _ in 0..2 {
+            dir.keep_only(keep).expect("writable");
+            assert!(dir.keeps_only(keep));
+        }
+        let names = std::fs::read_dir(&path).expect("readable").flatten().map(|entry| entry.file_name());
+        let mut names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
+        names.retain(|name| name != LOCK);
+        names.sort();
+        let mut left = left.to_vec();
+        left.sort_unstable();
+        assert_eq!(names, left);
+        if keep == Keep::Signals {
+            let signals = Trace::read(dir.signals()).expect("readable");
+            assert_eq!(signals.names, ["time_s", "sensor.a.ay_m_s2"]);
+            assert_eq!(signals.columns, [[0.0, 1.0], [2.0, 3.0]]);
+        }
+        drop(dir);
+        // It is a run as before, and done.
+        assert_eq!(State::of(&path, &Scene::default()), State::Done);
+        assert!(matches!(RunDir::create(&path), Err(Error::FolderHoldsRun { .. })));
+    }
 }
 
 #[test]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use proptest::prelude::*;
 use stribeck_testing::Scratch;
 
-use super::{Trace, TraceWriter, header};
+use super::{Trace, TraceFile, TraceWriter, header};
 use crate::error::Error;
 
 /// A file of its own for each call, removed at the end.
@@ -59,6 +59,37 @@ fn example_the_file_is_a_structured_npy_array() {
 fn invariant_equal_samples_make_equal_bytes() {
     let (a, b) = (File::new(), File::new());
     assert_eq!(a.write(&["time_s", "x"], &rows(250)), b.write(&["time_s", "x"], &rows(250)));
+}
+
+#[test]
+fn invariant_parts_are_those_of_the_whole() {
+    let file = File::new();
+    // Some blocks' worth of rows.
+    let mut all = rows(40_000);
+    file.write(&["time_s", "x"], &all);
+    let trace = TraceFile::open(file.path()).expect("readable");
+    assert_eq!((trace.len(), trace.names()), (40_000, &["time_s".to_owned(), "x".to_owned()][..]));
+    let whole = trace.read_all().expect("readable");
+    let column = |at: usize| all.iter().map(|row| row[at]).collect::<Vec<_>>();
+    assert_eq!(whole.columns, [column(0), column(1)]);
+    for rows in [0..0, 3..4, 17_000..40_000, 39_999..50_000] {
+        let part = trace.read(rows.clone(), |name| name == "x").expect("readable");
+        let expected = &whole.columns[1][rows.start..rows.end.min(40_000)];
+        assert_eq!((part.get("time_s"), part.get("x")), (None, Some(expected)), "{rows:?}");
+    }
+    assert!(
+        trace.channel("x").expect("readable") == Some(column(1))
+            && trace.read_finite(|_| true).unwrap() == whole
+    );
+    assert_eq!(trace.channel("y").expect("readable"), None);
+    // Up to the first that is no number, in whichever channel.
+    for (at, value) in [(39_999, f64::NAN), (16_384, f64::INFINITY), (0, f64::NEG_INFINITY)] {
+        all[at][1] = value;
+        file.write(&["time_s", "x"], &all);
+        let trace = TraceFile::open(file.path()).expect("readable");
+        let finite = trace.read_finite(|name| name == "time_s").expect("readable");
+        assert_eq!(finite.columns, [&whole.columns[0][..at]]);
+    }
 }
 
 #[test]

@@ -6,22 +6,19 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde_json::Value;
 use stribeck_formats::parquet::{Column, Values, Writer, write_table};
-use stribeck_formats::{Channel, Recording};
 use stribeck_scene::campaign::Campaign;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::run_dir::{Keep, RunDir, SENSOR};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_scene::trace::{Trace, TraceFile};
 
 use super::{Folder, Stage, summary_of};
 
 /// Names of the two tables.
 pub(super) const RUNS: &str = "runs.parquet";
 pub(super) const SIGNALS: &str = "signals.parquet";
-
-/// Channels that the table of signals holds.
-const SIGNAL: &str = "sensor.";
 
 /// One run in the table. What depends on the machine or on interruptions, such as seconds, stays in its folder.
 pub(super) struct Row {
@@ -90,7 +87,7 @@ fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
     }
 }
 
-/// Writes both tables, each whole or not at all; gives the columns of the first.
+/// Writes both tables, each whole or not at all; gives the columns of the first. The second needs the runs' signals.
 pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Result<Vec<String>> {
     let columns = columns(campaign, rows);
     let notes = vec![
@@ -98,7 +95,9 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
         ("stribeck".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
     ];
     replace(&folder.0.join(RUNS), |path| Ok(write_table(path, &columns, &notes)?))?;
-    replace(&folder.0.join(SIGNALS), |path| signals(path, rows, &notes))?;
+    if campaign.keep != Keep::Numbers {
+        replace(&folder.0.join(SIGNALS), |path| signals(path, rows, &notes))?;
+    }
     Ok(columns.into_iter().map(|column| column.name).collect())
 }
 
@@ -183,50 +182,46 @@ fn fault_size_mm(scene: &Scene) -> Option<f64> {
     of_defect.or_else(|| scene.defects.iter().find_map(|deviation| deviation.form.length_mm()))
 }
 
-/// One group of rows for each run that has signals: a row a sample.
+/// One group of rows for each run that has signals: a row a sample. The signals of one run are in memory at a time.
 fn signals(path: &Path, rows: &[Row], notes: &[(String, String)]) -> Result<()> {
-    let recordings = || {
+    let recorded = || {
         rows.iter().filter_map(|row| {
-            let folder = row.folder.as_ref()?;
-            Some((row, RunDir::open(folder).ok()?.trace()))
+            let dir = RunDir::open(row.folder.as_ref()?).ok()?;
+            Some((row, if dir.signals().exists() { dir.signals() } else { dir.trace() }))
         })
     };
     let mut names = BTreeSet::new();
-    for (_, trace) in recordings() {
-        let channels = Recording::open(&trace)?.channels;
-        names.extend(channels.into_iter().map(|c| c.name).filter(|name| name.starts_with(SIGNAL)));
+    for (_, file) in recorded() {
+        names.extend(TraceFile::open(file)?.names().iter().filter(|name| name.starts_with(SENSOR)).cloned());
     }
-    let group = |row: Option<&Row>, channels: &[Channel]| -> Result<Vec<Column>> {
-        let read = |name: &str| -> Result<Option<Vec<f64>>> {
-            let channel = channels.iter().find(|c| c.name == name);
-            Ok(channel.map(Channel::read).transpose()?)
-        };
-        let time = read("time_s")?.unwrap_or_default();
-        let all = time.len();
-        let mut columns = vec![
-            Column {
-                name: "run".into(),
-                values: Values::Count(vec![row.and_then(|row| i64::try_from(row.number).ok()); all]),
-            },
-            Column {
-                name: "split".into(),
-                values: Values::Text(vec![row.map(|row| row.split.to_owned()); all]),
-            },
-            Column::numbers("time_s", time),
-        ];
-        for name in &names {
-            let values = match read(name)? {
-                Some(values) => values.into_iter().map(Some).collect(),
-                None => vec![None; all],
-            };
-            columns.push(Column { name: name.clone(), values: Values::Number(values) });
-        }
-        Ok(columns)
-    };
-    let mut writer = Writer::create(path, &group(None, &[])?, notes)?;
-    for (row, trace) in recordings() {
-        writer.add(&group(Some(row), &Recording::open(&trace)?.channels)?)?;
+    let schema: Vec<Column> = group(None, &names, Trace::default()).collect();
+    let mut writer = Writer::create(path, &schema, notes)?;
+    for (row, file) in recorded() {
+        let file = TraceFile::open(file)?;
+        let trace = file.read(0..file.len(), |name| name == "time_s" || name.starts_with(SENSOR))?;
+        writer.add(group(Some(row), &names, trace))?;
     }
     writer.finish()?;
     Ok(())
+}
+
+/// The columns of a run's signals; one that it has not recorded is empty.
+fn group<'a>(
+    row: Option<&'a Row>,
+    names: &'a BTreeSet<String>,
+    mut trace: Trace,
+) -> impl Iterator<Item = Column> + use<'a> {
+    let all = trace.len();
+    let column = |name: &str, values| Column { name: name.to_owned(), values };
+    let run = move || row.and_then(|row| i64::try_from(row.number).ok());
+    let split = move || row.map(|row| row.split.to_owned());
+    let run = std::iter::once_with(move || column("run", Values::Count(vec![run(); all])));
+    let split = std::iter::once_with(move || column("split", Values::Text(vec![split(); all])));
+    let time = trace.take("time_s").unwrap_or_default();
+    let time = std::iter::once_with(move || Column::numbers("time_s", time));
+    let signals = names.iter().map(move |name| match trace.take(name) {
+        Some(values) => Column::numbers(name.clone(), values),
+        None => column(name, Values::Number(vec![None; all])),
+    });
+    run.chain(split).chain(time).chain(signals)
 }

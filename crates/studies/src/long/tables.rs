@@ -40,7 +40,7 @@ pub(super) fn cost(sheet: &mut Sheet, run: &Run, summary: &Summary) {
         100.0 * summary.energy.max_relative_error
     ));
     let gained = |column: &str| {
-        let values = run.energy.get(column)?;
+        let values = run.energy.channel(column).ok()??;
         Some(values.last()? - values.first()?)
     };
     if let (Some(load), Some(drive)) = (gained("external_j"), gained("drive_j")) {

@@ -30,7 +30,7 @@ const QUANTITIES: [Quantity; 8] = [
 /// Mean of each roller's force on the outer ring [N].
 fn forces(run: &Finished) -> Vec<f64> {
     let Ok(read) = Run::read(&run.folder) else { return Vec::new() };
-    let record = Record::new(&read);
+    let Ok(record) = Record::whole(&read) else { return Vec::new() };
     let time = record.time_s();
     let at = |s: f64| time.partition_point(|&t| t < s);
     let span = at(UNLOADED_S.start)..at(UNLOADED_S.end);

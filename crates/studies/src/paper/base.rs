@@ -208,7 +208,7 @@ const DISSIPATION: [Column; 8] = [
 /// Root mean square of a_y of single steps at the leading sensor from 7 ms on [g]: after the exit and its ringing.
 fn instant_g(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
-    let record = Record::new(&read);
+    let record = Record::whole(&read).ok()?;
     let from = record.time_s().partition_point(|&t| t < 7e-3);
     let until = record.time_s().partition_point(|&t| t < 11.4e-3);
     let all = record.acceleration_g(&run.scene.output.sensors.first()?.name, "ay_instant")?;
@@ -218,7 +218,7 @@ fn instant_g(run: &Finished) -> Option<f64> {
 
 /// Heat of mass and stiffness damping [J].
 fn heat_j(run: &Finished) -> Option<f64> {
-    Run::read(&run.folder).ok()?.energy.get("damping_j")?.last().copied()
+    Run::read(&run.folder).ok()?.energy.channel("damping_j").ok()??.last().copied()
 }
 
 /// Copies in one orientation against copies turned with the pattern, over three passages, each run twice: the second with

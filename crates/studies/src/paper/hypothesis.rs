@@ -94,7 +94,7 @@ fn line_at(run: &Finished, sensor: &str) -> Option<Line> {
 /// The highest peak within a resolution of N_v × spin or of the pattern's line.
 fn peak_at(run: &Finished, sensor: &str) -> Option<Line> {
     let read = Run::read(&run.folder).ok()?;
-    let record = Record::new(&read);
+    let record = Record::whole(&read).ok()?;
     let (free, reach) = (lumped(run)?.frequency_hz, resolution(run)?);
     let pattern = pattern(run).unwrap_or(free);
     let signal = record.acceleration_g(sensor, "ay")?;
@@ -136,7 +136,7 @@ fn off(run: &Finished) -> Option<f64> {
 /// Amplitude of the roller line in the vertical force of all rollers [N].
 fn force_line(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
-    let record = Record::new(&read);
+    let record = Record::whole(&read).ok()?;
     signal::amplitude(
         &support(&record, run.scene.load_direction()),
         record.sample_rate_hz(),

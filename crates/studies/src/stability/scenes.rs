@@ -176,7 +176,8 @@ pub(super) fn concluded(done: &str, info: &RunInfo, right: bool, mut seen: Strin
 fn support(run: &Run) -> f64 {
     let mut sum = 0.0;
     for i in 1..=run.scene.bearing.rollers {
-        sum -= run.trace.get(&format!("roller.{i}.outer_fy_n")).map_or(f64::NAN, |f| f.iter().sum());
+        let force = run.trace.channel(&format!("roller.{i}.outer_fy_n")).ok().flatten();
+        sum -= force.map_or(f64::NAN, |f| f.iter().sum());
     }
     sum / run.trace.len() as f64
 }

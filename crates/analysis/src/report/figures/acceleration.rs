@@ -1,9 +1,11 @@
 //! Acceleration over time: the paper's Figs. 2 and 6, the other sensors, the instantaneous one.
 
 use super::{mark, sampled, transient};
+use crate::Error;
 use crate::findings::{Findings, SensorSignal};
 use crate::paper;
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
+use crate::record::Record;
 use crate::summary::Event;
 
 /// Most exits that are named in full.
@@ -58,7 +60,7 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
 }
 
 /// Every other sensor, and what the mean over an interval leaves out.
-pub(super) fn others(findings: &Findings) -> Vec<Figure> {
+pub(super) fn others(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for sensor in findings.sensors.iter().skip(1) {
         let mut figure =
@@ -77,25 +79,34 @@ pub(super) fn others(findings: &Findings) -> Vec<Figure> {
             gravities(of_sensor.and_then(|l| l.phases.gap_g)),
         )));
     }
-    figures.extend(findings.sensors.first().and_then(|leading| instantaneous(findings, leading)));
-    figures
+    if let Some(leading) = findings.sensors.first() {
+        figures.extend(instantaneous(record, findings, leading)?);
+    }
+    Ok(figures)
 }
 
-fn instantaneous(findings: &Findings, leading: &SensorSignal) -> Option<Figure> {
-    if leading.instant_g.is_empty() {
-        return None;
-    }
+fn instantaneous(
+    record: &Record<'_>,
+    findings: &Findings,
+    leading: &SensorSignal,
+) -> Result<Option<Figure>, Error> {
+    let channel = format!("sensor.{}.ay_instant_m_s2", leading.name);
+    let recorded = record.part(0..record.len(), |name| name == channel)?;
+    let Some(instant_g) = recorded.acceleration_g(&leading.name, "ay_instant").filter(|g| !g.is_empty())
+    else {
+        return Ok(None);
+    };
     let figure = over_time("acceleration-instant", "Instantaneous nodal acceleration")
-        .with(sampled(findings, "instantaneous", Colour::Grey, &leading.instant_g))
+        .with(sampled(findings, "instantaneous", Colour::Grey, &instant_g))
         .with(sampled(findings, "mean over each interval", Colour::Blue, &leading.raw_g));
-    Some(
+    Ok(Some(
         figure
             .caption(
                 "A node rings with the mesh far above half the sampling rate; its instantaneous acceleration aliases, so \
                  every other figure uses the mean over each sampling interval.",
             )
             .note("The mean is the change of velocity over one interval divided by the interval."),
-    )
+    ))
 }
 
 fn over_time(id: &str, title: &str) -> Figure {

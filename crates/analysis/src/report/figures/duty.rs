@@ -2,8 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_scene::run_dir::Run;
-
 use crate::findings::Findings;
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use crate::record::Record;
@@ -14,15 +12,14 @@ const FAMILY: usize = 6;
 const DEPTH_DB: f64 = 80.0;
 
 /// Speed, load and orders, as far as they change.
-pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
+pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Vec<Figure> {
     if findings.summary.duty.is_none() {
         return Vec::new();
     }
-    let record = Record::new(run);
     let interval_s = record.interval_s();
     let mut figures = Vec::new();
     if let Some(angle) = record.channel("shaft.angle_rad").filter(|angle| angle.len() > 2)
-        && run.scene.operation.speed_varies()
+        && record.run().scene.operation.speed_varies()
     {
         let rpm = angle.windows(2).map(|pair| -60.0 / TAU * (pair[1] - pair[0]) / interval_s).collect();
         figures.push(

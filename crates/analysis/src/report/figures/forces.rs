@@ -1,23 +1,20 @@
 //! Contact forces over time (the paper's Fig. 8), and their sum against the load.
 
-use stribeck_scene::run_dir::Run;
-
 use super::{mark, sampled, transient};
 use crate::findings::{CrossingForce, Findings};
-use crate::load;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
 use crate::record::Record;
 use crate::summary::Event;
 
 /// Rollers whose force is drawn: the paper's three. All others are in the table.
-const DRAWN: usize = 3;
+pub(in crate::report) const DRAWN: usize = 3;
 
 /// A record of more roller spacings is drawn about each passage only.
 const LONG_SPACINGS: f64 = 6.0;
 
 /// Force of the raceway on each roller that crosses its spall.
 pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
-    let crossings = findings.crossings.iter().zip(&findings.summary.events).take(DRAWN);
+    let crossings = findings.crossings.iter().zip(&findings.summary.events);
     crossings.enumerate().map(|(at, (crossing, event))| force(findings, crossing, event, at)).collect()
 }
 
@@ -76,13 +73,12 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
 }
 
 /// What all rollers carry together, sample by sample.
-pub(super) fn sums(run: &Run) -> Option<Figure> {
-    let record = Record::new(run);
-    if record.rollers().is_empty() || record.is_empty() {
+pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
+    let sum = &findings.support_n;
+    if sum.is_empty() {
         return None;
     }
-    let sum = load::support(&record, run.scene.load_direction());
-    let supported = run.info.expected_support_n;
+    let supported = record.run().info.expected_support_n;
     let off = |n: f64| 100.0 * (n / supported - 1.0);
     let count = sum.len() as f64;
     let mean = sum.iter().sum::<f64>() / count;

@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_scene::run_dir::Run;
-
+use crate::Error;
 use crate::findings::Findings;
 use crate::load::running_mean;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
@@ -16,10 +15,9 @@ const SMOOTHING_S: f64 = 0.5e-3;
 const LEAST_PACE: f64 = 0.05;
 
 /// Spin of the rollers that cross the defect, and orbit of rollers and cage.
-pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
-    let record = Record::new(run);
+pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
     if record.len() < 20 {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let width = ((SMOOTHING_S / record.interval_s()) as usize).clamp(1, record.len() / 10).max(1);
     let k = &findings.prediction.kinematics;
@@ -42,8 +40,9 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
         chart("spin", "Spin of the rollers that cross the defect", "Spin against rolling without slip");
     let mut orbit =
         chart("orbit", "Speed of the cage and of these rollers", "Orbit against rolling without slip");
+    let rollers = record.with_rollers(&crossing, 0..record.len())?;
     for (&number, colour) in crossing.iter().zip(colours) {
-        let Some(roller) = record.roller(number) else { continue };
+        let Some(roller) = rollers.roller(number) else { continue };
         let name = format!("roller {number}");
         spin = spin.with(percent(&name, colour, roller.spin, k.roller_rad_s));
         orbit = orbit.with(percent(&name, colour, &roller.orbit(), TAU * k.cage_hz));
@@ -52,7 +51,7 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
         orbit = orbit.with(percent("cage", Colour::Black, angle, TAU * k.cage_hz));
     }
     if spin.series.is_empty() && orbit.series.is_empty() {
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let motion = &findings.summary.kinematics;
     let slip = motion
@@ -62,7 +61,7 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
         "Mean over {:.2} ms. Measured rates of every roller stand in the table of kinematics.",
         1e3 * width as f64 * record.interval_s()
     );
-    vec![
+    Ok(vec![
         spin.caption(
             "A loaded roller rolls; in the defect and outside the load zone nothing drives it at the outer raceway, and where its \
              speed then differs from rolling it slips until the contact has it again.",
@@ -71,7 +70,7 @@ pub(super) fn figures(run: &Run, findings: &Findings) -> Vec<Figure> {
         orbit
             .caption(format!("The cage turns {slip} of its speed without slip, over the whole record.").replace('-', "−"))
             .note(note),
-    ]
+    ])
 }
 
 fn chart(id: &str, title: &str, quantity: &str) -> Figure {

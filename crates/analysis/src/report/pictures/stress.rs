@@ -5,7 +5,6 @@ use std::f64::consts::PI;
 use stribeck_scene::frames::{Frame, Window};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::run_dir::Run;
 
 use crate::Error;
 use crate::findings::Findings;
@@ -67,17 +66,17 @@ impl Hertz {
 }
 
 pub(super) fn pictures(
-    run: &Run,
+    record: &Record<'_>,
     findings: &Findings,
     mesh: &RunMesh,
     window: &Window,
     frames: &[Frame],
 ) -> Result<Vec<Picture>, Error> {
-    let geometry = Geometry::of(&run.scene);
+    let geometry = Geometry::of(&record.run().scene);
     let lame = Lame::of(&geometry.material);
     let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
     let mut pictures = Vec::new();
-    let moments = moments(run, &geometry, findings, window, &all);
+    let moments = moments(record, &geometry, findings, window, &all)?;
     if !moments.is_empty() {
         pictures.push(still(&moments, window));
     }
@@ -90,21 +89,24 @@ pub(super) fn pictures(
 /// The first frame, seen where its roller touches the outer raceway, and the frame with the highest stress near the
 /// trailing edge while the roller climbs out.
 fn moments(
-    run: &Run,
+    record: &Record<'_>,
     geometry: &Geometry,
     findings: &Findings,
     window: &Window,
     all: &[(f64, Vec<Cell>)],
-) -> Vec<Moment> {
-    let record = Record::new(run);
+) -> Result<Vec<Moment>, Error> {
     let radius = geometry.outer_race_radius;
     let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
     let mut moments = Vec::new();
-    let loaded = all.first().zip(findings.summary.events.first()).and_then(|((time, cells), event)| {
-        let roller = record.roller(event.roller)?;
-        let at = record.time_s().partition_point(|t| t < time).min(record.len().checked_sub(1)?);
-        let angle = roller.y[at].atan2(roller.x[at]).to_degrees();
-        let force = roller.outer_normal()[at];
+    let first = all.first().zip(findings.summary.events.first());
+    let at = first.map_or(0, |((time, _), _)| record.time_s().partition_point(|t| t < time));
+    let at = at.min(record.len().saturating_sub(1));
+    let rollers =
+        record.with_rollers(&first.map_or(Vec::new(), |(_, event)| vec![event.roller]), at..at + 1)?;
+    let loaded = first.and_then(|((time, cells), event)| {
+        let roller = rollers.roller(event.roller)?;
+        let angle = roller.y.first()?.atan2(*roller.x.first()?).to_degrees();
+        let force = *roller.outer_normal().first()?;
         let title = format!("roller {} carries {:.1} kN", event.roller, 1e-3 * force);
         let hertz = (force > 0.0).then(|| Hertz::of(geometry, force));
         Some(Moment {
@@ -133,7 +135,7 @@ fn moments(
             Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus, hertz: None })
         });
     moments.extend(exit);
-    moments
+    Ok(moments)
 }
 
 fn centre(cell: &Cell, window: &Window) -> [f64; 2] {

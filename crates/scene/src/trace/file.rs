@@ -1,0 +1,211 @@
+//! A trace that stays on disk: its channels are read when they are asked for, also those of a run that was killed.
+
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use super::{Trace, TraceWriter, header};
+use crate::error::Error;
+
+/// What is read at once [bytes]: it stays in a core's cache while channels are picked from it.
+const BLOCK_BYTES: usize = 1 << 18;
+
+/// An open trace. Its memory does not depend on how long it is.
+#[derive(Debug)]
+pub struct TraceFile {
+    path: PathBuf,
+    names: Vec<String>,
+    /// Whole rows, by the size of the file when it was opened.
+    rows: usize,
+    /// Where the rows begin [bytes].
+    start: u64,
+    file: Mutex<File>,
+}
+
+impl TraceFile {
+    /// Opens the trace at `path`.
+    ///
+    /// The number of rows comes from the file's size, because a killed run leaves a stale number in the header; a last
+    /// row that was not finished is left out.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read; [`Error::Trace`] when its header is cut off or belongs to other data.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref().to_owned();
+        let io = |source| cannot_read(&path, source);
+        let bad = |message: String| Error::Trace {
+            path: path.clone(),
+            message: format!("{message}. Repeat the run, or check the path"),
+        };
+        let file = File::open(&path).map_err(io)?;
+        let about = file.metadata().map_err(io)?;
+        if !about.is_file() {
+            return Err(bad("it is not a regular file".to_owned()));
+        }
+        let mut source = BufReader::new(file);
+        let mut first = Vec::with_capacity(12);
+        source.by_ref().take(10).read_to_end(&mut first).map_err(io)?;
+        if first.get(6).is_some_and(|version| *version > 1) {
+            source.by_ref().take(2).read_to_end(&mut first).map_err(io)?;
+        }
+        let (prefix, length) = header::extent(&first).map_err(bad)?;
+        let mut text = Vec::with_capacity(length);
+        source.by_ref().take(length as u64).read_to_end(&mut text).map_err(io)?;
+        if text.len() < length {
+            return Err(bad("it ends inside its header".to_owned()));
+        }
+        let names = header::decode(&text).map_err(bad)?;
+        let start = (prefix + length) as u64;
+        let rows = about.len().saturating_sub(start) / (8 * names.len() as u64);
+        let rows = usize::try_from(rows).unwrap_or(usize::MAX);
+        Ok(Self { path, names, rows, start, file: Mutex::new(source.into_inner()) })
+    }
+
+    /// Channel names, in file order; the first is `time_s`.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.rows
+    }
+
+    /// True when nothing was sampled.
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// Every channel, over all samples.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read.
+    pub fn read_all(&self) -> Result<Trace, Error> {
+        self.read(0..self.rows, |_| true)
+    }
+
+    /// The channel called `name`, over all samples; `None` when it was not sampled.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read.
+    pub fn channel(&self, name: &str) -> Result<Option<Vec<f64>>, Error> {
+        if !self.names.iter().any(|n| n == name) {
+            return Ok(None);
+        }
+        Ok(self.read(0..self.rows, |n| n == name)?.columns.pop())
+    }
+
+    /// The channels that are `wanted`, in file order, over the samples `rows` as far as they are there. One pass over these rows,
+    /// however many channels.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read.
+    pub fn read(&self, rows: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
+        let mut part = Part::of(self, rows.len().min(self.rows), wanted);
+        self.each_block(rows, |block| {
+            part.take(block);
+            true
+        })?;
+        Ok(part.trace)
+    }
+
+    /// As [`TraceFile::read`], from the first sample to the last before any channel, wanted or not, stops being a number.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read.
+    pub fn read_finite(&self, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
+        let mut part = Part::of(self, self.rows, wanted);
+        let finite = |value: &[u8; 8]| f64::from_le_bytes(*value).is_finite();
+        self.each_block(0..self.rows, |block| {
+            // Without a branch a value: nearly every block is whole.
+            let whole = block.iter().fold(true, |whole, value| whole & finite(value));
+            let end = if whole { None } else { block.iter().position(|value| !finite(value)) };
+            part.take(&block[..end.map_or(block.len(), |at| at - at % self.names.len())]);
+            whole
+        })?;
+        Ok(part.trace)
+    }
+
+    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
+    pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
+        const AT_ONCE: usize = 1 << 14;
+        let names: Vec<&String> = self.names.iter().filter(|name| wanted(name)).collect();
+        let mut writer = TraceWriter::create(path, &names)?;
+        for first in (0..self.rows).step_by(AT_ONCE) {
+            let part = self.read(first..first + AT_ONCE, &wanted)?;
+            for n in 0..part.len() {
+                let row: Vec<f64> = part.columns.iter().map(|column| column[n]).collect();
+                writer.push(&row)?;
+            }
+        }
+        writer.sync()
+    }
+
+    /// Hands blocks of whole rows to `take` until it says no.
+    fn each_block(&self, rows: Range<usize>, mut take: impl FnMut(&[[u8; 8]]) -> bool) -> Result<(), Error> {
+        let rows = rows.start..rows.end.min(self.rows);
+        let row = 8 * self.names.len();
+        let at_once = (BLOCK_BYTES / row).max(1);
+        let mut block = vec![0; row * at_once.min(rows.len())];
+        let io = |source| cannot_read(&self.path, source);
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        file.seek(SeekFrom::Start(self.start + (row * rows.start) as u64)).map_err(io)?;
+        for first in rows.clone().step_by(at_once) {
+            let block = &mut block[..row * at_once.min(rows.end - first)];
+            file.read_exact(block).map_err(io)?;
+            if !take(block.as_chunks().0) {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Some channels of a trace, picked from its rows.
+struct Part {
+    trace: Trace,
+    /// Where in a row each of them stands.
+    places: Vec<usize>,
+    channels: usize,
+}
+
+impl Part {
+    /// With room for so many `rows`.
+    fn of(file: &TraceFile, rows: usize, wanted: impl Fn(&str) -> bool) -> Self {
+        let places: Vec<usize> = (0..file.names.len()).filter(|&at| wanted(&file.names[at])).collect();
+        let names = places.iter().map(|&at| file.names[at].clone()).collect();
+        let trace = Trace { names, columns: places.iter().map(|_| Vec::with_capacity(rows)).collect() };
+        Self { trace, places, channels: file.names.len() }
+    }
+
+    fn take(&mut self, rows: &[[u8; 8]]) {
+        for (column, &at) in self.trace.columns.iter_mut().zip(&self.places) {
+            column
+                .extend(rows.iter().skip(at).step_by(self.channels).map(|value| f64::from_le_bytes(*value)));
+        }
+    }
+}
+
+fn cannot_read(path: &Path, source: std::io::Error) -> Error {
+    let kept = match source.kind() {
+        ErrorKind::NotFound => {
+            "Check the path; `stribeck simulate` writes traces, and a campaign with `keep` may have removed them"
+        }
+        ErrorKind::PermissionDenied => {
+            "The file is there, and you may not read it: ask its owner, or `chmod +r` it"
+        }
+        _ => "Check the disk and the file",
+    };
+    Error::Io { action: "read", path: path.to_owned(), kept: kept.to_owned(), source }
+}
