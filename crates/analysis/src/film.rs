@@ -9,6 +9,11 @@ use crate::record::Record;
 /// A film that is no more than this much thicker than its least is that of a loaded contact [-].
 const LOADED: f64 = 0.01;
 
+/// Rollers whose films and forces are in memory at once.
+const ROLLERS_AT_ONCE: usize = 4;
+
+const RINGS: [&str; 2] = ["outer", "inner"];
+
 /// Oil on the outer and on the inner raceway.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FilmFinding {
@@ -31,38 +36,36 @@ impl FilmFinding {
     /// [`Error::Run`] when the trace cannot be read.
     pub fn measure(run: &Run, record: &Record<'_>) -> Result<Option<Self>, Error> {
         let Ok(Some(loaded)) = lubrication::loaded_films(&run.scene) else { return Ok(None) };
-        let films = |name: &str| {
-            name.starts_with("roller.") && (name.contains(".outer_") || name.contains(".inner_"))
-        };
-        let record = record.part(0..record.len(), films)?;
         let rollers: Vec<usize> = run.scene.rollers_in_place().collect();
-        let channel = |roller: usize, side: usize, what: &str| {
-            let ring = ["outer", "inner"][side];
-            record.channel(&format!("roller.{roller}.{ring}_{what}"))
-        };
-        let floats = |side: usize, thickness: f64| thickness > (1.0 + LOADED) * loaded[side].least;
-        let floating = |side: usize| {
-            let thick = rollers.iter().filter_map(|r| channel(*r, side, "film_m")).flatten();
-            let mut thick: Vec<f64> = thick.copied().filter(|h| floats(side, *h)).collect();
+        let mut floating = [Vec::new(), Vec::new()];
+        let mut largest = [None; 2];
+        for few in rollers.chunks(ROLLERS_AT_ONCE) {
+            let wanted = |name: &str| {
+                let of =
+                    |r: &usize| RINGS.iter().any(|ring| name.starts_with(&format!("roller.{r}.{ring}_")));
+                few.iter().any(of)
+            };
+            let part = record.part(0..record.len(), wanted)?;
+            for (roller, side) in few.iter().flat_map(|&roller| [(roller, 0), (roller, 1)]) {
+                let channel = |what: &str| part.channel(&format!("roller.{roller}.{}_{what}", RINGS[side]));
+                let Some(thick) = channel("film_m") else { continue };
+                let floats = |thickness: f64| thickness > (1.0 + LOADED) * loaded[side].least;
+                floating[side].extend(thick.iter().copied().filter(|h| floats(*h)));
+                let (Some(x), Some(y)) = (channel("fx_n"), channel("fy_n")) else { continue };
+                let between = (1..thick.len()).filter(|&n| floats(thick[n - 1]) && floats(thick[n]));
+                let most = between.map(|n| x[n].hypot(y[n])).reduce(f64::max);
+                largest[side] = largest[side].into_iter().chain(most).reduce(f64::max);
+            }
+        }
+        let median = |mut thick: Vec<f64>| {
             let middle = thick.len() / 2;
             (!thick.is_empty()).then(|| 1e6 * *thick.select_nth_unstable_by(middle, f64::total_cmp).1)
-        };
-        let largest = |side: usize| {
-            let of = |r: &usize| {
-                let r = *r;
-                Some((channel(r, side, "film_m")?, channel(r, side, "fx_n")?, channel(r, side, "fy_n")?))
-            };
-            let forces = rollers.iter().filter_map(of).flat_map(|(thick, x, y)| {
-                let floats = move |n: usize| floats(side, thick[n - 1]) && floats(side, thick[n]);
-                (1..thick.len()).filter(move |n| floats(*n)).map(|n| x[n].hypot(y[n]))
-            });
-            forces.reduce(f64::max)
         };
         Ok(Some(Self {
             loaded_um: [0, 1].map(|side: usize| 1e6 * loaded[side].thickness),
             lambda: [0, 1].map(|side: usize| loaded[side].lambda),
-            floating_um: [0, 1].map(floating),
-            largest_n: [0, 1].map(largest),
+            floating_um: floating.map(median),
+            largest_n: largest,
             heat_j: run.energy.channel("film_j")?.and_then(|heat| heat.last().copied()),
         }))
     }

@@ -303,7 +303,11 @@ impl Bearing {
         let of_roller = ((1.0 + c) * outer + inner) / mass;
         // Few rollers share the modes of highest participation; each adds its own part.
         let of_modes = highest + (1.0 + 1.0 / c) * outer * modes;
-        2.0 / of_roller.max(of_modes).sqrt()
+        let square = of_roller.max(of_modes);
+        // Dampers act half a step late: ω² Δt²/4 + d Δt/2 < 1, where d is the sum over all modes at most.
+        let r = self.reduction.padded;
+        let d: f64 = self.reduction.dampers.iter().step_by(r + 1).sum();
+        2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
     }
 
     /// The rim of a roller, from 0.

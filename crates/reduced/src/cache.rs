@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
-    duty::Duty,
+    duty::{Duty, LONGEST_RUN_S},
     run_dir::write_atomic,
     scene::{
         CageScene, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene, ReducedScene, Scene,
@@ -14,9 +14,6 @@ use stribeck_scene::{
 };
 
 use crate::{error::Error, reduction::Reduction};
-
-/// Longest run that a scene may ask for [s].
-const LONGEST_RUN_S: f64 = 60.0;
 
 /// Folder of the reductions, in the parent of a run's folder.
 const FOLDER: &str = ".reduced";

@@ -138,7 +138,8 @@ impl Guards {
 
     fn support(&self, info: &mut RunInfo, state: &State, when: &str) {
         let enough = CARRIES * info.expected_support_n;
-        let carried = state.force[0].iter().any(|&force| force > enough);
+        let by_oil = state.films.as_ref().is_some_and(|films| films.carry(enough));
+        let carried = by_oil || state.force[0].iter().any(|&force| force > enough);
         let unsupported = 1e-3 * self.limits.unsupported_warning_ms;
         let seen = &mut info.guards;
         seen.unsupported_samples = if carried { 0 } else { seen.unsupported_samples + 1 };

@@ -1,6 +1,6 @@
-//! Rolling element bearings in a few modes: a simulated second in some ten seconds.
+//! Rolling element bearings in a few modes: a simulated second in a few seconds.
 //!
-//! Outer ring and adapter are reduced, from the very mesh and elements of the full model at its preload, to their natural
+//! Outer ring and housing are reduced, from the very mesh and elements of the full model at its preload, to their natural
 //! modes below a frequency ([`reduction`]); what contacts press in locally is a curve from a small static problem
 //! ([`compliance`]). Rollers and cage are rigid, with the facets that they are meshed with; what overlaps is integrated exactly
 //! ([`overlap`]). [`simulation`] runs the model that a scene asks for, into the same folder as the full one.

@@ -63,6 +63,13 @@ pub struct Film {
     fixed: bool,
 }
 
+impl Films {
+    /// Whether one at the outer raceway carries more than a force [N].
+    pub(crate) fn carry(&self, enough: f64) -> bool {
+        self.at[0].iter().filter_map(|film| film.layer).any(|layer| layer.force > enough)
+    }
+}
+
 /// The present step of all films.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Now {
@@ -97,16 +104,19 @@ impl Lubrication {
         let g = Geometry::of(scene);
         let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(None) };
         let [round, others @ ..] = rims else { return Ok(None) };
-        let rim = |outline: &Outline| Curved::new("rim of a roller", outline, false);
-        let curvature = rim(round)?.lands[0].curvature;
-        let race = |(outline, compliance), hollow, loaded: LoadedFilm| -> Result<Raceway, Error> {
-            let curved = Curved::new("raceway", outline, hollow)?;
+        let curvature = Curved::rim(round)?.lands[0].curvature;
+        let race = |name: &str,
+                    (outline, compliance),
+                    hollow,
+                    loaded: LoadedFilm|
+         -> Result<Raceway, Error> {
+            let curved = Curved::new(name, outline, hollow)?;
             let oil = Oil { viscosity: film.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
                 if relative <= 0.0 {
-                    let reason = "is too narrow for its rollers: a film needs a larger radius";
-                    return Err(ContactError::BadSurface { name: "raceway".into(), reason });
+                    let reason = "is too narrow for its rollers: a film needs a larger radius than `bearing.roller_diameter_mm` has";
+                    return Err(ContactError::BadSurface { name: name.to_owned(), reason });
                 }
                 let give = Give::new(penalty, 1.0 / relative, compliance);
                 Ok(FilmLaw::new(oil, 1.0 / relative, g.thickness, give))
@@ -115,10 +125,13 @@ impl Lubrication {
             Ok(Raceway { curved, films, speed: loaded.speed })
         };
         let ([outer, inner], [on_outer, on_inner]) = (raceways, loaded);
-        let formed = |outline: &&Outline| rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
+        let formed = |outline: &&Outline| Curved::rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
         let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
         Ok(Some(Self {
-            raceways: [race(outer, true, on_outer)?, race(inner, false, on_inner)?],
+            raceways: [
+                race("outer raceway", outer, true, on_outer)?,
+                race("inner raceway", inner, false, on_inner)?,
+            ],
             rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
         }))
     }

@@ -155,10 +155,11 @@ fn on_one_thread<'a>(host: &Host<'a>) -> Host<'a> {
     }
 }
 
-/// A whole number of steps, none longer than the scene allows.
+/// A whole number of steps, none longer than the scene allows, and two at least: what a sensor hears beyond the modes is a difference
+/// between two steps of a sample.
 fn steps_per_sample(scene: &Scene, reduced: &ReducedScene) -> usize {
     // A quotient of 5.000…1 is no sixth step.
-    (scene.output.interval_us / reduced.step_us - 1e-9).ceil().max(1.0) as usize
+    (scene.output.interval_us / reduced.step_us - 1e-9).ceil().max(2.0) as usize
 }
 
 impl Reduction {

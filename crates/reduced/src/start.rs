@@ -29,7 +29,6 @@ impl Bearing {
         let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
         let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers];
-        let mut residual = 0.0;
         for iteration in 0..ITERATIONS {
             let mut force = self.reduction.constant.clone();
             let mut matrix = Mat::<f64>::zeros(r, r);
@@ -104,7 +103,7 @@ impl Bearing {
             }
             // A motion that nothing resists, the turn of ring and adapter, is left to inertia.
             let step = matrix.partial_piv_lu().solve(&Mat::from_fn(r, 1, |n, _| force[n]));
-            residual = (0..r).map(|n| (force[n] * step[(n, 0)]).abs()).sum::<f64>();
+            let residual = (0..r).map(|n| (force[n] * step[(n, 0)]).abs()).sum::<f64>();
             for n in 0..r {
                 state.q[n] += step[(n, 0)];
             }
@@ -116,7 +115,6 @@ impl Bearing {
                 return Err(Error::NoEquilibrium { residual_n: residual, iterations: ITERATIONS });
             }
         }
-        let _ = residual;
         let half = 0.5 * self.time_step;
         for i in 0..self.rollers {
             let [x, y] = [state.x[i], state.y[i]];

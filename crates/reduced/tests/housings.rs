@@ -25,6 +25,7 @@ fn small(more: &str) -> Scene {
 
 /// Of a frame on springs so soft that the ring stays round: both move together, in either direction, without resistance, or against
 /// each other with ω² = k (1/m + 1/M). Dampers of c take c (1/m + 1/M) of such a motion's momentum a second.
+/// Source: two masses on a spring, Meirovitch 2001, §5.1.
 #[test]
 fn analytic_a_ring_on_springs_bounces_in_its_frame() {
     // The ring gives way by 1 % of what the springs do.

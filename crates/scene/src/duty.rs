@@ -29,6 +29,9 @@ pub struct Duty {
     guided: bool,
 }
 
+/// Longest run that a scene may ask for [s].
+pub const LONGEST_RUN_S: f64 = 60.0;
+
 /// A number over time.
 #[derive(Debug, Clone, PartialEq)]
 enum Course {

@@ -2,11 +2,13 @@
 //! keeps (THEORY §4.6). No pressure is computed.
 
 use crate::{
-    duty::Duty, error::Error, geometry::Geometry, kinematics::Kinematics, scene::Scene, static_load,
+    duty::{Duty, LONGEST_RUN_S},
+    error::Error,
+    geometry::Geometry,
+    kinematics::Kinematics,
+    scene::Scene,
+    static_load,
 };
-
-/// Longest run that a scene may ask for [s].
-const LONGEST_RUN_S: f64 = 60.0;
 
 /// The film of the most loaded roller on one raceway.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -53,7 +53,7 @@ pub enum ModelScene {
     /// All bodies of finite elements.
     #[default]
     Full,
-    /// Outer ring and adapter in their modes below a frequency, rollers and cage rigid with local compliance: a second in
+    /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local compliance: a second in
     /// a few seconds.
     Reduced(ReducedScene),
 }

@@ -155,7 +155,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
                 due.push(Due { number, folder: folder.run(&scene), scene, state });
             }
             // What a kill has left; it may free the space that others need.
-            Stage::Ended if !interrupt.is_pressed() => settle(&folder.run(scene), campaign.keep)?,
+            Stage::Ended if !interrupt.is_pressed() => {
+                if let Err(why) = settle(&folder.run(scene), campaign.keep) {
+                    eprintln!("warning: {why:#}");
+                }
+            }
             _ => {}
         }
     }
@@ -241,7 +245,7 @@ fn conclude(
             return Ok(ExitCode::SUCCESS);
         }
         eprintln!(
-            "{left} of {all} runs are not at their end; the same command goes on. Tables are made when all are"
+            "{left} of {all} runs are not at their end or without their numbers; the same command goes on. Tables are made when all are"
         );
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }

@@ -31,12 +31,14 @@ impl Give {
 
     /// Force at a depth above zero: Newton's method for the cube root of it, in which the depth is convex.
     fn seek(&self, depth: f64, mut root: f64) -> f64 {
+        let most = (depth / self.softness).sqrt();
         for _ in 0..CORRECTIONS {
             let square = root * root;
             let ([given, give], _) = self.curve.approach(square * root);
             let slope = 2.0 * self.softness * root + 3.0 * square * give;
             let by = (self.softness * square + given - depth) / slope;
-            root -= by;
+            // No more than penalty alone would take.
+            root = (root - by).min(most);
             if by.abs() <= ENOUGH * root {
                 break;
             }

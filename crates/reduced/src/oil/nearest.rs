@@ -1,6 +1,6 @@
 //! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast both sweep past there.
 
-use stribeck_contact::{Land, Place, Point, Smoothing, Surface};
+use stribeck_contact::{Error as ContactError, Land, Place, Point, Smoothing, Surface};
 
 use crate::{error::Error, outline::Outline};
 
@@ -53,6 +53,9 @@ pub(crate) struct Nearest {
 
 impl Curved {
     /// The curve through an outline around its solid, or with `hollow` within it.
+    ///
+    /// # Errors
+    /// When facets meet at such angles that no film lies across a vertex.
     pub(crate) fn new(name: &str, outline: &Outline, hollow: bool) -> Result<Self, Error> {
         let mut slots: Vec<u32> = (0..outline.len() as u32).collect();
         if hollow {
@@ -61,7 +64,24 @@ impl Curved {
         let (x, y) = (outline.x.clone(), outline.y.clone());
         let surface = Surface::new(name, slots, true, &x, &y)?.smoothed(Smoothing::Nagata, &x, &y)?;
         let lands = Land::of(&surface, &x, &y);
+        if lands.is_empty() {
+            let reason = "has nothing but corners, which no film lies across: oil needs facets that meet at less than 20°, by `mesh.size_mm`, \
+                          `mesh.outer_facets` and `mesh.inner_facets`";
+            return Err(ContactError::BadSurface { name: name.to_owned(), reason }.into());
+        }
         Ok(Self { x, y, surface, lands })
+    }
+
+    /// The rim of a roller: one land all around.
+    ///
+    /// # Errors
+    /// When there are corners in it.
+    pub(crate) fn rim(outline: &Outline) -> Result<Self, Error> {
+        let name = "rim of a roller";
+        let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more `mesh.roller_facets`, 24 at least";
+        let corners = || ContactError::BadSurface { name: name.to_owned(), reason };
+        let curved = Self::new(name, outline, false).map_err(|_| corners())?;
+        if curved.lands.len() == 1 { Ok(curved) } else { Err(corners().into()) }
     }
 
     /// Whether it has such a place.

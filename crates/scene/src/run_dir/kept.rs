@@ -30,7 +30,7 @@ impl RunDir {
         self.path.join(SIGNALS)
     }
 
-    /// Whether no more is there than `keep` names, and all of it.
+    /// Whether the trace is gone, which goes last, and what `keep` names of its samples is there.
     pub fn keeps_only(&self, keep: Keep) -> bool {
         match keep {
             Keep::All => true,

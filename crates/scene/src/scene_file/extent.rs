@@ -6,9 +6,11 @@ use std::f64::consts::PI;
 use super::finding::{Finding, Remedy};
 use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, round_up, shown};
+use crate::deviation::RollingSurface;
 use crate::duty::Duty;
+use crate::faults::rolling_circle;
 use crate::housing::HousingScene;
-use crate::scene::{ModelScene, ProfileScene, Scene, Start};
+use crate::scene::{DefectRing, ModelScene, ProfileScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
@@ -18,7 +20,11 @@ const MAX_SAMPLES: f64 = 1e7;
 /// Upper over lower end of the narrowest band of structural damping.
 const NARROWEST_BAND: f64 = 2.0;
 
-/// Least slope of a defect's edges under oil [°]: a vertex is a corner when it turns by 20°, less what the raceway itself turns.
+/// A vertex is a corner when it turns by this angle [°] …
+const CORNER_DEG: f64 = 20.1;
+
+/// … and an edge of a defect turns by its slope less half of what the raceway turns from facet to facet, up to a few degrees. None
+/// slopes less under oil [°].
 const LEAST_EDGE_DEG: f64 = 22.0;
 
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
@@ -207,13 +213,23 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
 
 /// Oil ends at the edges of a defect: walls that a surface turns into more gently are no end, and a film would lie across them.
 fn oiled_edges(scene: &Scene) -> Option<Finding> {
-    let defect = scene.defect.as_ref().filter(|defect| defect.edge_slope_deg < LEAST_EDGE_DEG)?;
     scene.film.as_ref()?;
+    let defect = scene.defect.as_ref()?;
+    let ring = match defect.ring {
+        DefectRing::Outer => RollingSurface::Outer,
+        DefectRing::Inner => RollingSurface::Inner,
+    };
+    let [diameter, facet] = rolling_circle(scene, ring);
+    let least = LEAST_EDGE_DEG.max((CORNER_DEG + (facet / diameter).to_degrees()).ceil());
+    if defect.edge_slope_deg >= least {
+        return None;
+    }
     let message = format!(
-        "`film` is there, and the edges of `defect` slope by {}°: oil knows edges of {LEAST_EDGE_DEG}° or more",
-        number(defect.edge_slope_deg)
+        "`film` is there, and the edges of `defect` slope by {}°: oil knows edges of {least}° or more on facets of {} mm",
+        number(defect.edge_slope_deg),
+        number(facet)
     );
-    let slope = Remedy::new("defect.edge_slope_deg", format!("{LEAST_EDGE_DEG}° or more"));
+    let slope = Remedy::new("defect.edge_slope_deg", format!("{least}° or more"));
     let dry = Remedy::new("film", "`None`").value("None", "dry");
     Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
 }

@@ -21,7 +21,7 @@ pub(super) struct Unknowns {
     index: Vec<u32>,
 }
 
-/// Slots of each body that moves as one piece without turning of itself.
+/// Slots of each body that moves as one piece and whose turn is prescribed.
 fn turning(d: &Dynamics) -> impl Iterator<Item = Range<u32>> {
     let bodies = d.rigid_bodies().iter().filter(|body| body.turns());
     bodies.map(|body| body.slots.start as u32..body.slots.end as u32)

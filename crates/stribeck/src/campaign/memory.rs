@@ -6,14 +6,19 @@ use stribeck_scene::scene::Scene;
 /// Of a model [GB]: 100 000 elements with the factors of their preload, or the modes of as many.
 const MODEL_GB: f64 = 0.3;
 
-/// Channels as long as the record that its numbers take at once: time, cage and sensors, these filtered too, and the transforms of
-/// one. Rollers are read a few at a time.
-const CHANNELS: f64 = 40.0;
+/// Channels as long as the record that its numbers take at once: time and cage, the transforms of one sensor, and a few rollers …
+const CHANNELS: f64 = 24.0;
+/// … of each sensor, filtered too …
+const OF_SENSOR: f64 = 4.0;
+/// … and of each roller in oil, how thick films are that float.
+const OF_FLOATING: f64 = 2.0;
 
 /// What the run of a scene takes [GB], while it runs or when its numbers are made.
 pub(super) fn need_gb(scene: &Scene) -> f64 {
     let g = Geometry::of(scene);
-    MODEL_GB + 8e-9 * CHANNELS * g.duration / g.interval
+    let floating = if scene.film.is_some() { OF_FLOATING * g.rollers as f64 } else { 0.0 };
+    let channels = CHANNELS + OF_SENSOR * scene.output.sensors.len() as f64 + floating;
+    MODEL_GB + 8e-9 * channels * g.duration / g.interval
 }
 
 /// What programs may still take, and this one where it has a limit of its own [GB]; `None` where the system does not tell.
@@ -34,17 +39,21 @@ pub(super) fn free_gb() -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_scene::scene::FilmScene;
+
     use super::*;
 
     #[test]
     fn example_long_records_take_more() {
-        let mut scene = Scene::default();
+        let mut scene = Scene { film: None, ..Scene::default() };
         let short = need_gb(&scene);
         assert!((MODEL_GB..1.1 * MODEL_GB).contains(&short), "{short}");
         // A million samples.
         scene.solver.duration_ms = 1e4;
         let long = need_gb(&scene);
         assert!((0.5..0.8).contains(&long), "{long}");
+        let oiled = need_gb(&Scene { film: Some(FilmScene::default()), ..scene });
+        assert!((0.9..1.2).contains(&oiled), "{oiled}");
         assert!(free_gb().is_none_or(|free| free > 0.0));
     }
 }
