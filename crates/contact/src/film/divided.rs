@@ -72,8 +72,10 @@ impl Interactions for Films {
     fn hear(&mut self, which: usize, report: &[f64]) {
         let film = &mut self.films[which];
         let &[heat, force, depth, dry, above, ref shares @ ..] = report else { return };
-        film.pushed = Pushed { heat, force, pressed: [depth, dry], ..Pushed::default() };
-        film.memory.layer = (!above.is_nan()).then(|| Layer::at(above));
+        // What others need not know stays with the rank that computes the film: where it ends, what it carries, whether it is solid.
+        film.pushed = Pushed { heat, force, pressed: [depth, dry], ..film.pushed };
+        let layer = film.memory.layer.unwrap_or(Layer::at(above));
+        film.memory.layer = (!above.is_nan()).then_some(Layer { above, ..layer });
         film.memory.shares.as_flattened_mut().copy_from_slice(shares);
     }
 

@@ -78,7 +78,7 @@ impl Curved {
     /// When there are corners in it.
     pub(crate) fn rim(outline: &Outline) -> Result<Self, Error> {
         let name = "rim of a roller";
-        let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more `mesh.roller_facets`, 24 at least";
+        let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more `mesh.roller_facets`, 19 at least";
         let corners = || ContactError::BadSurface { name: name.to_owned(), reason };
         let curved = Self::new(name, outline, false).map_err(|_| corners())?;
         if curved.lands.len() == 1 { Ok(curved) } else { Err(corners().into()) }
