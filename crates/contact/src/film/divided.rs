@@ -74,8 +74,9 @@ impl Interactions for Films {
         let &[heat, force, depth, dry, above, ref shares @ ..] = report else { return };
         // What others need not know stays with the rank that computes the film: where it ends, what it carries, whether it is solid.
         film.pushed = Pushed { heat, force, pressed: [depth, dry], ..film.pushed };
-        let layer = film.memory.layer.unwrap_or(Layer::at(above));
-        film.memory.layer = (!above.is_nan()).then_some(Layer { above, ..layer });
+        let mut layer = film.memory.layer.unwrap_or(Layer::at(above));
+        layer.above = above;
+        film.memory.layer = (!above.is_nan()).then_some(layer);
         film.memory.shares.as_flattened_mut().copy_from_slice(shares);
     }
 
