@@ -23,6 +23,8 @@ pub struct Record<'a> {
     run: &'a Run,
     /// Channels in memory.
     held: Trace,
+    /// Its samples lie behind this one of the run.
+    first: usize,
     len: usize,
     discarded: usize,
 }
@@ -70,7 +72,7 @@ impl<'a> Record<'a> {
     fn with(run: &'a Run, held: impl Fn(&str) -> bool) -> Result<Self, Error> {
         let held = run.trace.read_finite(|name| name == "time_s" || held(name))?;
         let len = held.len();
-        Ok(Self { run, held, len, discarded: run.trace.len().saturating_sub(len) })
+        Ok(Self { run, held, first: 0, len, discarded: run.trace.len().saturating_sub(len) })
     }
 
     /// Some of the samples, with those channels in memory whose name is `wanted`: one pass over the file.
@@ -78,9 +80,10 @@ impl<'a> Record<'a> {
     /// # Errors
     /// As [`Record::new`].
     pub fn part(&self, samples: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Self, Error> {
-        let samples = samples.start..samples.end.min(self.len);
-        let held = self.run.trace.read(samples.clone(), wanted)?;
-        Ok(Self { run: self.run, held, len: samples.len(), discarded: self.discarded })
+        let [start, end] = [samples.start, samples.end].map(|at| self.first + at.min(self.len));
+        let held = self.run.trace.read(start..end, wanted)?;
+        let len = end.saturating_sub(start);
+        Ok(Self { run: self.run, held, first: start, len, discarded: self.discarded })
     }
 
     /// Some of the samples, with these rollers in memory.

@@ -19,8 +19,9 @@ use crate::{
     oil::Lubrication,
     outline::Outline,
     overlap::Sides,
-    reduction::{Reduction, STICKING},
+    reduction::Reduction,
     row::{Row, Rows},
+    seat::{STICKING, Springs},
     state::State,
 };
 
@@ -68,6 +69,8 @@ pub struct Bearing {
     /// Angular velocity of an outer ring that turns [rad/s].
     pub(crate) outer_rad_s: Option<f64>,
     pub(crate) cage: Option<Cage>,
+    /// Seat of the outer ring, where it may open and slip.
+    pub(crate) seat: Option<Springs>,
     /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
     /// Speed and load, where they change.
@@ -245,7 +248,9 @@ impl Bearing {
             .map(|([mass, inertia], centre)| Cage::new(&g, &pockets, [mass, inertia], centre, scene));
         let kinematics = Kinematics::of(scene);
         let mut reduction = reduction;
-        level_walls(&mut reduction, &per_angle(&outer));
+        let angles = per_angle(&outer);
+        level_walls(&mut reduction.shapes, &angles);
+        reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
         let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
@@ -254,8 +259,11 @@ impl Bearing {
         let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
         let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
         let oil = Lubrication::new(scene, raceways, &rounded, penalty)?;
+        let seat = reduction.springs.as_ref();
+        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, scene.contact.seat_friction));
         Ok(Self {
             time_step,
+            seat,
             rollers: pockets.len(),
             pockets,
             oil,
@@ -344,6 +352,7 @@ impl Bearing {
             cage_velocity: [0.0, 0.0, k.cage_rad_s],
             shaft: 0.0,
             work: Default::default(),
+            seat: None,
             films: None,
             steps: 0,
         };
@@ -351,6 +360,7 @@ impl Bearing {
             let (s, c) = g.roller_angle(pocket).sin_cos();
             (state.x[i], state.y[i]) = (path * c, path * s);
         }
+        state.seat = self.seat.as_ref().map(|seat| seat.at_rest(r, n));
         state.hints = self.first_hints(&state);
         state.films = self.first_films(&state);
         state
@@ -447,14 +457,16 @@ fn formed(outline: &Outline, relief: Option<&Relief>, circle: Circle) -> Outline
     Outline::new(&vertices)
 }
 
-/// Gives both ends of a wall their mean shape: a roller that passes over it has no height to tell them apart by.
-fn level_walls(reduction: &mut Reduction, per_angle: &[f64]) {
-    let (n, width) = (per_angle.len(), 2 * reduction.padded);
+/// Gives both ends of a wall the mean of what belongs to them, vertex by vertex: a roller that passes over it has no height to tell them
+/// apart by.
+fn level_walls(of_vertices: &mut [f64], per_angle: &[f64]) {
+    let n = per_angle.len();
+    let width = of_vertices.len() / n;
     for (a, _) in per_angle.iter().enumerate().filter(|(_, angle)| **angle == 0.0) {
         let b = (a + 1) % n;
         for k in 0..width {
-            let mean = 0.5 * (reduction.shapes[a * width + k] + reduction.shapes[b * width + k]);
-            (reduction.shapes[a * width + k], reduction.shapes[b * width + k]) = (mean, mean);
+            let mean = 0.5 * (of_vertices[a * width + k] + of_vertices[b * width + k]);
+            (of_vertices[a * width + k], of_vertices[b * width + k]) = (mean, mean);
         }
     }
 }

@@ -12,6 +12,10 @@ pub enum Error {
     #[error("solver: {0}")]
     Solver(#[from] stribeck_solver::Error),
 
+    /// Modes of the seat that holds cannot be found.
+    #[error("the modes of outer ring and housing cannot be found: their stiffness is no finite number")]
+    NoModes,
+
     /// Contact's law has impossible numbers.
     #[error("contact: {0}")]
     Contact(#[from] stribeck_contact::Error),

@@ -39,6 +39,7 @@ pub mod oil;
 mod pocket;
 mod raceway;
 mod row;
+pub mod seat;
 pub mod step;
 mod touch;
 

@@ -8,7 +8,9 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{
     bearing::Bearing,
     row::Row,
+    seat::Springs,
     state::{Spent, State, Stored},
+    step::Heard,
 };
 
 /// A place on the outer raceway: a facet, the share of its second vertex, and the shapes at both of them.
@@ -39,14 +41,17 @@ pub(crate) struct Modes {
     pub(crate) push: Vec<Row>,
     /// Forces of dampers, negative; empty without dampers.
     pub(crate) drag: Vec<Row>,
+    /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
+    pub(crate) tension: Vec<Row>,
 }
 
 impl Modes {
     /// Room for those of a bearing.
     pub(crate) fn new(bearing: &Bearing) -> Self {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
+        let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
         let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self { q: rows.clone(), v: rows.clone(), push: rows, drag }
+        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -67,6 +72,12 @@ impl Bearing {
         let outline = &self.outer.outline;
         let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
         self.place(facet, outline.share(facet, radial))
+    }
+
+    /// What a roller in this direction presses with `force`, near the facet `hint`.
+    pub(crate) fn heard_at(&self, hint: u32, radial: [f64; 2], force: f64) -> Heard {
+        let Place { facet, share, .. } = self.place_along(radial, hint);
+        Heard { facet: facet as u32, share, force, growth: 0.0 }
     }
 
     /// The place on a facet with this share of its second vertex.

@@ -64,6 +64,10 @@ impl Saved {
             && [&s.q, &s.v].iter().all(|v| v.len() == r)
             && s.branches.len() == bearing.branches.len()
             && s.branches.iter().all(|v| v.len() == r)
+            && match (&bearing.seat, &s.seat) {
+                (Some(seat), Some(hold)) => seat.fits(hold, r, n),
+                (seat, hold) => seat.is_none() && hold.is_none(),
+            }
             && match (&bearing.oil, &s.films) {
                 (Some(oil), Some(films)) => oil.fits(films, &bearing.rim_of),
                 (oil, films) => oil.is_none() && films.is_none(),

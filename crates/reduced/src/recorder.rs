@@ -5,6 +5,8 @@ use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
+    row::Row,
+    seat::{Hold, Seat},
     state::State,
     step::{Heard, Scratch},
 };
@@ -56,6 +58,25 @@ impl Bearing {
         sum
     }
 
+    /// Displacement of the sensors beyond the modes by the seat [m].
+    pub(crate) fn heard_from_the_seat<'a>(
+        &'a self,
+        hold: &'a Hold,
+        tension: &'a [Row],
+    ) -> impl Iterator<Item = [f64; 2]> + 'a {
+        let of_sensor = move |seat: &'a Seat, heard: &'a Vec<[f64; 2]>| {
+            // Across the seat by what is missing where it is open, along it by what holds.
+            let missing = seat.across.iter().zip(&hold.open).map(|(stiffness, open)| -stiffness * open);
+            let holding = tension.iter().flat_map(|row| row.iter().copied()).skip(seat.padded);
+            heard
+                .iter()
+                .zip(missing.chain(holding))
+                .fold([0.0; 2], |[x, y], ([hx, hy], force)| [hx * force + x, hy * force + y])
+        };
+        let seat = self.reduction.springs.iter();
+        seat.flat_map(move |seat| seat.heard.iter().map(move |heard| of_sensor(seat, heard)))
+    }
+
     /// Where the sensors are before the last step of a sample.
     pub(crate) fn before_last_step(&self, state: &State) -> Before {
         Before { velocity: self.modal_velocity(state) }
@@ -75,10 +96,18 @@ impl Bearing {
         row.clear();
         row.push(state.steps as f64 * dt);
         let modal = self.modal_velocity(state);
+        let seated: Vec<[f64; 2]> = state
+            .seat
+            .iter()
+            .flat_map(|hold| self.heard_from_the_seat(hold, &scratch.modes.tension))
+            .collect();
         for (i, now) in modal.iter().enumerate() {
             // The velocity beyond the modes is that of the last step.
             let [new, old] = [&scratch.heard, &scratch.before].map(|heard| self.residual(i, heard));
-            let now: [f64; 2] = std::array::from_fn(|c| now[c] + (new[c] - old[c]) / dt);
+            let [seat_now, seat_before] =
+                [&seated, &scratch.seated].map(|of| of.get(i).copied().unwrap_or_default());
+            let now: [f64; 2] =
+                std::array::from_fn(|c| now[c] + (new[c] - old[c] + seat_now[c] - seat_before[c]) / dt);
             row.extend((0..2).map(|c| (now[c] - memory.velocity[i][c]) / interval));
             row.extend((0..2).map(|c| (modal[i][c] - before.velocity[i][c]) / dt));
             memory.velocity[i] = now;
@@ -97,16 +126,15 @@ impl Bearing {
             let centre = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
             row.extend([centre[0] + state.cage[0], centre[1] + state.cage[1], state.cage[2]]);
         }
-        row.extend(self.seat_force(state).into_iter().flatten());
+        row.extend(self.seat_force(&scratch.modes.tension).into_iter().flatten());
         row.extend(self.tacho.sample(state.steps as f64 * dt));
     }
 
     /// Force of the housing on the outer ring that sits in it [N].
-    fn seat_force(&self, state: &State) -> Option<[f64; 2]> {
-        let r = self.reduction.padded;
-        let shapes = &self.reduction.seat_shapes;
-        let by_modes =
-            |c: usize| shapes[c * r..(c + 1) * r].iter().zip(&state.q).map(|(s, q)| s * q).sum::<f64>();
-        self.reduction.seat.map(|at_rest| [0, 1].map(|c| at_rest[c] + by_modes(c)))
+    fn seat_force(&self, tension: &[Row]) -> Option<[f64; 2]> {
+        let at_rest = self.reduction.seat?;
+        let more = self.reduction.springs.iter().flat_map(|seat| &seat.on_ring);
+        let more = more.zip(tension.iter().flat_map(|row| row.iter()));
+        Some(more.fold(at_rest, |[x, y], ([fx, fy], tension)| [x + fx * tension, y + fy * tension]))
     }
 }

@@ -23,6 +23,7 @@ use crate::{
     compliance::{Compliance, Pressed},
     error::Error,
     outline::Outline,
+    seat::{self, Seat},
     structure::{Structure, flexibility},
 };
 
@@ -79,8 +80,8 @@ pub struct Reduction {
     pub preload: Vec<f64>,
     /// Force of the housing on the outer ring that sits in it, at the preload [N].
     pub seat: Option<[f64; 2]>,
-    /// By how much it grows with each mode [N/(√kg m)]: x of all modes, then y.
-    pub seat_shapes: Vec<f64>,
+    /// Its springs, which may open and slip.
+    pub springs: Option<Seat>,
     /// Counts of the mesh.
     pub mesh: MeshInfo,
     /// The mesh at the preload, as a file.
@@ -190,10 +191,6 @@ impl Reduction {
                 }
             });
         }
-        if scene.contact.seat_friction > 0.0 {
-            let sticking: Vec<Spring> = springs.iter().map(sticking).collect();
-            springs.extend(sticking);
-        }
         {
             let d: &Dynamics = &parts.dynamics;
             d.elastic_forces(&d.state.x, &d.state.y, &mut all.fx, &mut all.fy);
@@ -207,11 +204,36 @@ impl Reduction {
         let mut structure = if scene.housing.is_rigid() {
             Structure::Rigid { root_mass: structure_mass.sqrt(), slots: of_structure }
         } else {
-            let springs = [&springs[..], &suspension].concat();
-            let mut motions = SmallMotions::new(&parts.dynamics, &of_structure, &springs, SHIFT)?;
+            let all = [&springs[..], &suspension].concat();
+            let mut motions = SmallMotions::new(&parts.dynamics, &of_structure, &all, SHIFT)?;
             let modes = modes_below(&mut motions, 1e3 * Self::khz(scene))?;
             Structure::Elastic { motions: Box::new(motions), modes, slots: of_structure }
         };
+        let on_ring: BTreeSet<u32> = slots(&on_ring).into_iter().collect();
+        let back: Vec<(u32, [f64; 2])> =
+            machine.back.iter().map(|&n| (slot_of[n as usize], forces[n as usize])).collect();
+        let raceway: Vec<(u32, [f64; 2], f64)> = nodes
+            .outer
+            .iter()
+            .map(|&n| {
+                let [x, y] = place(&n);
+                let [nx, ny] = [x / x.hypot(y), y / x.hypot(y)];
+                let [fx, fy] = forces[n as usize];
+                (slot_of[n as usize], [nx, ny], nx * fx + ny * fy)
+            })
+            .collect();
+        let seat_parts = seat::Parts {
+            raceway: &raceway,
+            springs: &springs,
+            friction: scene.contact.seat_friction > 0.0,
+            x,
+            y,
+            back: &back,
+            sensors: &slots(&nodes.sensors),
+            of_ring: &|slot| on_ring.contains(&slot),
+            thickness: g.outer_ring_thickness,
+        };
+        let seat_springs = Seat::of(&mut structure, &seat_parts)?;
         let kept = structure.squares().len();
         let padded = kept.next_multiple_of(LANES);
         // What the rollers do to the outer raceway at the preload.
@@ -241,7 +263,7 @@ impl Reduction {
 
         // The raceway without the dents of the rollers, which the local compliance makes anew.
         let on_raceway = slots(&nodes.outer);
-        let dents = structure.residual(&pressed, &on_raceway);
+        let dents = structure.residuals(&[pressed], &on_raceway).remove(0);
         let without_dent = |(n, [dx, dy]): (&u32, &[f64; 2])| {
             let [x, y] = place(n);
             [x - dx, y - dy]
@@ -250,38 +272,29 @@ impl Reduction {
         let shapes = on_raceway.iter().flat_map(|&slot| structure.shape_at(slot, padded)).collect();
 
         let direction = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
-        let mut sensors = Vec::new();
-        for &n in &nodes.sensors {
-            let shape = structure.shape_at(slot_of[n as usize], padded);
-            let mut heard = vec![[0.0; 2]; nodes.outer.len()];
-            for component in 0..2 {
-                // By reciprocity: a unit force at the sensor moves the raceway as one there moves the sensor.
+        // By reciprocity: a unit force at a sensor moves the raceway as one there moves the sensor.
+        let units: Vec<NodeForces> = nodes
+            .sensors
+            .iter()
+            .flat_map(|&n| [[1.0, 0.0], [0.0, 1.0]].map(|along| (slot_of[n as usize] as usize, along)))
+            .map(|(slot, along)| {
                 let mut unit = NodeForces::zeros(count);
-                let along = if component == 0 { &mut unit.fx } else { &mut unit.fy };
-                along[slot_of[n as usize] as usize] = 1.0;
-                let moved = structure.residual(&unit, &on_raceway);
-                for ((heard, [x, y]), place) in heard.iter_mut().zip(&moved).zip(&outer) {
-                    let [nx, ny] = direction(*place);
-                    heard[component] = nx * x + ny * y;
-                }
-            }
-            sensors.push(Sensor { shape, residual: heard });
-        }
-
-        let on_ring: BTreeSet<u32> = slots(&on_ring).into_iter().collect();
-        let mut seat_shapes = vec![0.0; 2 * padded];
-        for spring in &springs {
-            // What a unit of stretch does to the ring.
-            let mut on = [0.0; 2];
-            let ends = spring.slots.iter().zip(spring.direction.chunks_exact(2));
-            for (_, along) in ends.filter(|(slot, _)| on_ring.contains(slot)) {
-                on = [on[0] - spring.stiffness * along[0], on[1] - spring.stiffness * along[1]];
-            }
-            for (k, stretch) in structure.stretch(spring, padded).iter().enumerate() {
-                seat_shapes[k] += on[0] * stretch;
-                seat_shapes[padded + k] += on[1] * stretch;
-            }
-        }
+                [unit.fx[slot], unit.fy[slot]] = along;
+                unit
+            })
+            .collect();
+        let moved = structure.residuals(&units, &on_raceway);
+        let sensors = nodes.sensors.iter().zip(moved.chunks_exact(2)).map(|(&n, moved)| {
+            let heard = outer.iter().enumerate().map(|(vertex, place)| {
+                let [nx, ny] = direction(*place);
+                [0, 1].map(|component: usize| {
+                    let [x, y] = moved[component][vertex];
+                    nx * x + ny * y
+                })
+            });
+            Sensor { shape: structure.shape_at(slot_of[n as usize], padded), residual: heard.collect() }
+        });
+        let sensors = sensors.collect();
 
         // Local compliances: one flexibility of each surface.
         let most = OVERLOAD * static_load::at_start(scene).map_or(g.load, |load| load.max_roller_n());
@@ -395,7 +408,7 @@ impl Reduction {
             structure_mass,
             preload,
             seat,
-            seat_shapes,
+            springs: seat_springs,
             mesh: MeshInfo::default(),
             picture: Vec::new(),
             warning: None,
@@ -415,15 +428,6 @@ fn dampers(structure: &Structure, springs: &[Spring], ratio: f64, padded: usize)
     }
     sums
 }
-
-/// The spring across a normal one: the same nodes, directions turned by a right angle.
-fn sticking(normal: &Spring) -> Spring {
-    let turned = normal.direction.chunks_exact(2).flat_map(|d| [-d[1], d[0]]).collect();
-    Spring { slots: normal.slots.clone(), direction: turned, stiffness: STICKING * normal.stiffness }
-}
-
-/// Tangential over normal stiffness of contact, as in the full model (THEORY §4.3).
-pub(crate) const STICKING: f64 = 0.8;
 
 impl Nodes {
     fn of(machine: &Machine, g: &Geometry) -> Result<Self, Error> {

@@ -15,6 +15,9 @@ const TOLERANCE: f64 = 1e-9;
 /// Holds motions of modes that nothing resists while the iteration runs [rad²/s²].
 const HOLD: f64 = 1e4;
 
+/// How often the seat slips and all comes into equilibrium again.
+const SEATINGS: usize = 8;
+
 impl Bearing {
     /// The state of equilibrium under load, gravity and the inertia of rolling, with rolling velocities half a step earlier.
     ///
@@ -22,6 +25,29 @@ impl Bearing {
     /// When the iteration does not converge.
     pub fn at_start(&self, scene: &Scene) -> Result<State, Error> {
         let mut state = self.rest(scene);
+        self.equilibrium(scene, &mut state)?;
+        if let Some(seat) = &self.seat {
+            // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction holds it.
+            for _ in 0..SEATINGS {
+                let State { seat: hold, q, .. } = &mut state;
+                hold.iter_mut().for_each(|hold| seat.slip(hold, q));
+                self.equilibrium(scene, &mut state)?;
+            }
+        }
+        let half = 0.5 * self.time_step;
+        for i in 0..self.rollers {
+            let [x, y] = [state.x[i], state.y[i]];
+            let (orbit, square) = (self.kinematics.cage_rad_s, self.kinematics.cage_rad_s.powi(2));
+            (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
+        }
+        state.hints = self.first_hints(&state);
+        // They begin at the first step, with the thickness of steady rolling.
+        state.films.iter_mut().for_each(Films::forget);
+        Ok(state)
+    }
+
+    /// Brings modes and rollers into equilibrium while the seat stays as it is.
+    fn equilibrium(&self, scene: &Scene, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
         let k = &self.kinematics;
         let at_start = Duty::of(scene).load_n(0.0);
@@ -32,6 +58,9 @@ impl Bearing {
         for iteration in 0..ITERATIONS {
             let mut force = self.reduction.constant.clone();
             let mut matrix = Mat::<f64>::zeros(r, r);
+            if let Some(hold) = &state.seat {
+                force.iter_mut().zip(&hold.push).for_each(|(force, push)| *force += push);
+            }
             for n in 0..r {
                 force[n] += further[0] * self.reduction.load.along[n]
                     + further[1] * self.reduction.load.across[n]
@@ -42,7 +71,7 @@ impl Bearing {
                 let angle = state.y[i].atan2(state.x[i]);
                 let (s, c) = angle.sin_cos();
                 let under = &mut shapes[2 * r * i..2 * r * (i + 1)];
-                let moved = self.shapes_under(&state, i, [c, s], under);
+                let moved = self.shapes_under(state, i, [c, s], under);
                 let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
                 // The roller's own balance: pressed outwards by the inner raceway and its orbit.
                 let inertia = |rho: f64| mass * (k.cage_rad_s * k.cage_rad_s * rho - self.gravity * s);
@@ -54,21 +83,21 @@ impl Bearing {
                 };
                 // The balance falls with the radius: a bracket, then bisection. Films keep a roller with clearance between the circles;
                 // beyond them polygons that do not touch yet would leave it a second balance.
-                let floats = self.floating(&mut state, i, moved);
+                let floats = self.floating(state, i, moved);
                 let [mut low, mut high] = floats.unwrap_or([at; 2]);
                 let mut width = 1e-7;
-                while balance(&mut state, low).0 < 0.0 && width < 1e-2 {
+                while balance(state, low).0 < 0.0 && width < 1e-2 {
                     low -= width;
                     width *= 2.0;
                 }
                 width = 1e-7;
-                while balance(&mut state, high).0 > 0.0 && width < 1e-2 {
+                while balance(state, high).0 > 0.0 && width < 1e-2 {
                     high += width;
                     width *= 2.0;
                 }
                 for _ in 0..200 {
                     at = 0.5 * (low + high);
-                    if balance(&mut state, at).0 > 0.0 {
+                    if balance(state, at).0 > 0.0 {
                         low = at
                     } else {
                         high = at
@@ -77,7 +106,7 @@ impl Bearing {
                         break;
                     }
                 }
-                let (_, outer) = balance(&mut state, at);
+                let (_, outer) = balance(state, at);
                 // How the force grows with the raceway's displacement, the roller following.
                 let step = 1e-9;
                 let stiffness = |outer_moves: f64, state: &mut State| {
@@ -85,13 +114,16 @@ impl Bearing {
                         self.pressed(state, i, [moved[0] + outer_moves * c, moved[1] + outer_moves * s]);
                     [a, b]
                 };
-                let [a0, b0] = stiffness(0.0, &mut state);
-                let [a1, _] = stiffness(-step, &mut state);
+                let [a0, b0] = stiffness(0.0, state);
+                let [a1, _] = stiffness(-step, state);
                 let outer_stiffness = (a1 - a0) / step;
                 (state.x[i], state.y[i]) = ((at - step) * c, (at - step) * s);
-                let [_, b1] = self.pressed(&mut state, i, moved);
+                let [_, b1] = self.pressed(state, i, moved);
                 let inner_stiffness = (b1 - b0) / step;
                 (state.x[i], state.y[i]) = (at * c, at * s);
+                if let Some(hold) = &mut state.seat {
+                    hold.pressed[i] = self.heard_at(state.hints[0][i][1], [c, s], outer);
+                }
                 let both = outer_stiffness + inner_stiffness;
                 let together = if both > 0.0 { outer_stiffness * inner_stiffness / both } else { 0.0 };
                 for n in 0..r {
@@ -115,16 +147,7 @@ impl Bearing {
                 return Err(Error::NoEquilibrium { residual_n: residual, iterations: ITERATIONS });
             }
         }
-        let half = 0.5 * self.time_step;
-        for i in 0..self.rollers {
-            let [x, y] = [state.x[i], state.y[i]];
-            let (orbit, square) = (k.cage_rad_s, k.cage_rad_s * k.cage_rad_s);
-            (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
-        }
-        state.hints = self.first_hints(&state);
-        // They begin at the first step, with the thickness of steady rolling.
-        state.films.iter_mut().for_each(Films::forget);
-        Ok(state)
+        Ok(())
     }
 
     /// By what the load exceeds that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of it.
@@ -147,7 +170,13 @@ impl Bearing {
             under[n] = a + share * (b - a);
         }
         let sum = |from: usize| (0..r).map(|n| under[from + n] * state.q[n]).sum();
-        [sum(0), sum(r)]
+        let mut moved = [sum(0), sum(r)];
+        if let (Some(seat), Some(hold)) = (&self.seat, &state.seat) {
+            let [a, b] = seat.under(Scalar::new(), hold, facet);
+            let further = a + share * (b - a);
+            moved = [moved[0] + further * radial[0], moved[1] + further * radial[1]];
+        }
+        moved
     }
 
     /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.

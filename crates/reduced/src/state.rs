@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::oil::Films;
+use crate::{oil::Films, seat::Hold};
 
 /// Positions at one time, velocities half a step earlier.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,6 +47,8 @@ pub struct State {
     pub shaft: f64,
     /// Work since the start.
     pub work: Work,
+    /// By how much the seat has opened and slipped; `None` where there is none.
+    pub seat: Option<Hold>,
     /// Films of oil; `None` without any.
     pub films: Option<Films>,
     /// Steps taken.

@@ -4,6 +4,7 @@
 //! roller after the other.
 
 use pulp::{Arch, Simd, WithSimd};
+use serde::{Deserialize, Serialize};
 use stribeck_scene::scene::DampingFrame;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
@@ -15,6 +16,7 @@ use crate::{
     pocket::PlacedCage,
     raceway::Rolling,
     row::{load, of_one, store},
+    seat::Hold,
     state::{Spent, State, Stored, count},
 };
 
@@ -24,12 +26,14 @@ pub struct Scratch {
     /// The rollers during some steps.
     pub(crate) blocks: Vec<Block>,
     /// The modes during a step.
-    modes: Modes,
+    pub(crate) modes: Modes,
     /// Steps in the sums of the blocks.
     pub(crate) summed: usize,
     /// Normal forces on the outer raceway in the step before [N], and where they were.
     pub(crate) before: Vec<Heard>,
     pub(crate) heard: Vec<Heard>,
+    /// Displacement of the sensors by the seat, beyond the modes, in the step before [m].
+    pub(crate) seated: Vec<[f64; 2]>,
     /// Energies at the positions of the last step, when it was asked for.
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
@@ -37,11 +41,13 @@ pub struct Scratch {
 }
 
 /// A force that sensors hear beyond the modes: its facet, the share of the facet's second vertex, and how large it is.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Heard {
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Heard {
     pub(crate) facet: u32,
     pub(crate) share: f64,
     pub(crate) force: f64,
+    /// By how much it has grown in the last step.
+    pub(crate) growth: f64,
 }
 
 impl Scratch {
@@ -63,11 +69,17 @@ impl Scratch {
             block.sums = Default::default();
         }
         (self.summed, self.deepest) = (0, 0.0);
+        if let Some(hold) = &state.seat {
+            self.heard.clone_from(&hold.pressed);
+        }
     }
 
     /// Leaves the rollers to the state.
     pub(crate) fn end(&self, state: &mut State) {
         self.blocks.iter().for_each(|block| block.store(state));
+        if let Some(hold) = &mut state.seat {
+            hold.pressed.clone_from(&self.heard);
+        }
     }
 }
 
@@ -120,6 +132,16 @@ impl Bearing {
         if last {
             scratch.before.copy_from_slice(&scratch.heard);
         }
+        let mut spent = Spent::default();
+        if let (Some(seat), Some(hold)) = (&self.seat, &mut state.seat) {
+            if last {
+                scratch.seated.clear();
+                scratch.seated.extend(self.heard_from_the_seat(hold, &scratch.modes.tension));
+            }
+            let [heat, stored] = seat.hold(simd, hold, &state.q, &scratch.heard, &mut scratch.modes, last);
+            spent.heat[0] += 2.0 * heat / dt;
+            energy.strain += stored;
+        }
         let (cs, cc) = state.cage[2].sin_cos();
         let inner = Turning { rate, turned: turned(state.shaft) };
         let outer =
@@ -128,11 +150,10 @@ impl Bearing {
             PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
         let mut on_cage = [0.0; 3];
-        let mut spent = Spent::default();
         let mut sums = Sums::<S>::new(simd);
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
-            self.place_rollers(simd, &scratch.modes, block, outer, inner);
+            self.place_rollers(simd, &scratch.modes, state.seat.as_ref(), block, outer, inner);
             let Block { first, top, bits, contacts: [on_outer, on_inner], .. } = block;
             self.press_together(simd, &self.outer, *first, top, *bits, on_outer);
             self.press_together(simd, &self.inner, *first, top, *bits, on_inner);
@@ -154,7 +175,8 @@ impl Bearing {
                     self.press(simd, &self.place(facet as usize, share), force, &mut scratch.modes);
                 }
                 let force = block.contacts[0].normal[lane] + lifted[lane];
-                scratch.heard[block.first + lane] = Heard { facet, share, force };
+                let heard = &mut scratch.heard[block.first + lane];
+                *heard = Heard { facet, share, force, growth: force - heard.force };
             }
             for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
                 scratch.deepest = scratch.deepest.max(Self::deepest(contacts));
@@ -224,6 +246,7 @@ impl Bearing {
         &self,
         simd: S,
         modes: &Modes,
+        hold: Option<&Hold>,
         block: &mut Block,
         outer: Option<Turning>,
         inner: Turning,
@@ -246,7 +269,16 @@ impl Bearing {
             let place = self.place_along(radial, *hint);
             *hint = place.facet as u32;
             (block.facet[lane], block.share[lane]) = (place.facet as u32, place.share);
-            let Moved { by, velocity, tilt } = self.moved(simd, &place, modes);
+            let Moved { mut by, velocity, mut tilt } = self.moved(simd, &place, modes);
+            if let (Some(seat), Some(hold)) = (&self.seat, hold) {
+                let [first, second] = seat.under(simd, hold, place.facet);
+                let outwards = first + place.share * (second - first);
+                let slope = (second - first) * self.outer.angle[place.facet];
+                // It points outwards at every place, so that it turns along the raceway.
+                let [x, y] = radial;
+                by = [by[0] + x * outwards, by[1] + y * outwards];
+                tilt = [tilt[0] + x * slope - y * outwards, tilt[1] + y * slope + x * outwards];
+            }
             for c in 0..2 {
                 block.by[c][lane] = by[c];
                 block.moving[c][lane] = velocity[c];

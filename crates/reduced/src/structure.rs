@@ -1,5 +1,6 @@
 //! Outer ring and housing as a reduction sees them: in natural modes, or as one piece (THEORY §9.1).
 
+use faer::{Accum, Mat, MatMut, MatRef, Par, linalg::matmul::matmul};
 use stribeck_solver::{
     state::NodeForces,
     statics::{Modes, SmallMotions, Spring},
@@ -20,6 +21,16 @@ impl Structure {
             Self::Elastic { modes, .. } => &modes.squares,
             Self::Rigid { .. } => &[0.0; 2],
         }
+    }
+
+    /// Takes sums of the modes for modes: `turned` has those of the new ones in its columns, `squares` their ω².
+    pub(crate) fn turn(&mut self, turned: MatRef<'_, f64>, squares: Vec<f64>) {
+        let Self::Elastic { modes, .. } = self else { return };
+        let n = modes.shapes.first().map_or(0, Vec::len);
+        let old = Mat::from_fn(n, modes.shapes.len(), |at, mode| modes.shapes[mode][at]);
+        let new = product(old.as_ref(), turned);
+        let shapes = (0..new.ncols()).map(|mode| new.col_as_slice(mode).to_vec()).collect();
+        *modes = Modes { shapes, squares };
     }
 
     /// Shapes at a slot [1/√kg], filled up to `padded` modes: x of all, then y.
@@ -72,12 +83,17 @@ impl Structure {
         stretch
     }
 
-    /// Displacements of slots `at` [m] by forces, beyond the modes.
-    pub(crate) fn residual(&mut self, force: &NodeForces, at: &[u32]) -> Vec<[f64; 2]> {
-        let Self::Elastic { motions, modes, slots } = self else { return vec![[0.0; 2]; at.len()] };
-        let mut moved = field(motions, slots, force);
-        residual(motions, modes, &mut moved);
-        at.iter().map(|&n| motions.equation(n).map_or([0.0; 2], |at| [moved[at], moved[at + 1]])).collect()
+    /// Displacements of slots `at` [m] by each of some forces, beyond the modes.
+    pub(crate) fn residuals(&mut self, forces: &[NodeForces], at: &[u32]) -> Vec<Vec<[f64; 2]>> {
+        let Self::Elastic { motions, modes, slots } = self else {
+            return vec![vec![[0.0; 2]; at.len()]; forces.len()];
+        };
+        let fields: Vec<Vec<f64>> = forces.iter().map(|force| field(motions, slots, force)).collect();
+        let seen = |motions: &SmallMotions, moved: &[f64]| -> Vec<[f64; 2]> {
+            let of = |n: &u32| motions.equation(*n).map_or([0.0; 2], |at| [moved[at], moved[at + 1]]);
+            at.iter().map(of).collect()
+        };
+        each_response(motions, Some(modes), &fields, &seen)
     }
 
     /// As [`flexibility`], beyond the modes.
@@ -109,21 +125,49 @@ fn field(motions: &SmallMotions, slots: &[u32], force: &NodeForces) -> Vec<f64> 
     field
 }
 
-/// Turns forces into the displacements that the modes do not hold: (K + σM)⁻¹ (1 − MΦΦᵀ) f.
-fn residual(motions: &mut SmallMotions, modes: &Modes, field: &mut [f64]) {
+/// What is `seen` of the displacements by each of some fields of forces; with modes, of those that the modes do not hold,
+/// (K + σM)⁻¹ (1 − MΦΦᵀ) f. Eight fields at a time, because modes and factor are larger than what a cache holds.
+fn each_response<T>(
+    motions: &mut SmallMotions,
+    modes: Option<&Modes>,
+    fields: &[Vec<f64>],
+    seen: &dyn Fn(&SmallMotions, &[f64]) -> T,
+) -> Vec<T> {
+    let n = motions.equations();
     let mass = motions.mass().to_vec();
-    let shares: Vec<f64> =
-        modes.shapes.iter().map(|m| m.iter().zip(&*field).map(|(u, f)| u * f).sum()).collect();
-    for (mode, share) in modes.shapes.iter().zip(&shares) {
-        for ((f, u), m) in field.iter_mut().zip(mode).zip(&mass) {
-            *f -= share * m * u;
+    let shapes = modes.map(|modes| {
+        let shapes = Mat::from_fn(n, modes.shapes.len(), |at, mode| modes.shapes[mode][at]);
+        let momenta = Mat::from_fn(n, modes.shapes.len(), |at, mode| mass[at] * modes.shapes[mode][at]);
+        (shapes, momenta)
+    });
+    let mut all = Vec::with_capacity(fields.len());
+    for fields in fields.chunks(AT_ONCE) {
+        let mut moved = fields.concat();
+        let take_out = |moved: &mut [f64], by: &Mat<f64>, of: &Mat<f64>| {
+            let moved = MatMut::from_column_major_slice_mut(moved, n, fields.len());
+            let shares = product(of.transpose(), moved.as_ref());
+            matmul(moved, Accum::Add, by.as_ref(), shares.as_ref(), -1.0, Par::Seq);
+        };
+        if let Some((shapes, momenta)) = &shapes {
+            take_out(&mut moved, momenta, shapes);
         }
+        motions.solve(&mut moved);
+        if let Some((shapes, momenta)) = &shapes {
+            take_out(&mut moved, shapes, momenta);
+        }
+        all.extend(moved.chunks_exact(n).map(|moved| seen(motions, moved)));
     }
-    motions.solve(field);
-    for mode in &modes.shapes {
-        let share: f64 = mode.iter().zip(&*field).zip(&mass).map(|((u, w), m)| u * w * m).sum();
-        field.iter_mut().zip(mode).for_each(|(w, u)| *w -= share * u);
-    }
+    all
+}
+
+/// Fields that are solved at once.
+const AT_ONCE: usize = 8;
+
+/// a b, with the same bits on any number of threads.
+pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(a.nrows(), b.ncols());
+    matmul(product.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    product
 }
 
 /// Displacement of node i along its direction by a unit force on node j along its own, beyond the modes [m/N].
@@ -136,21 +180,20 @@ pub(crate) fn flexibility(
 ) -> Vec<Vec<f64>> {
     let at: Vec<Option<usize>> = nodes.iter().map(|&n| motions.equation(slot_of(n))).collect();
     let along: Vec<[f64; 2]> = nodes.iter().map(|&n| direction(n)).collect();
-    let mut columns = Vec::new();
-    for (at_load, [nx, ny]) in at.iter().zip(&along) {
+    let unit = |(at, [nx, ny]): (&Option<usize>, &[f64; 2])| {
         let mut unit = vec![0.0; motions.equations()];
-        if let Some(at) = at_load {
+        if let Some(at) = at {
             (unit[*at], unit[*at + 1]) = (*nx, *ny);
         }
-        match modes {
-            Some(modes) => residual(motions, modes, &mut unit),
-            None => motions.solve(&mut unit),
-        }
-        let seen = at
-            .iter()
+        unit
+    };
+    let units: Vec<Vec<f64>> = at.iter().zip(&along).map(unit).collect();
+    let seen = |_: &SmallMotions, moved: &[f64]| -> Vec<f64> {
+        at.iter()
             .zip(&along)
-            .map(|(at, [nx, ny])| at.map_or(0.0, |at| nx * unit[at] + ny * unit[at + 1]));
-        columns.push(seen.collect::<Vec<f64>>());
-    }
+            .map(|(at, [nx, ny])| at.map_or(0.0, |at| nx * moved[at] + ny * moved[at + 1]))
+            .collect()
+    };
+    let columns = each_response(motions, modes, &units, &seen);
     (0..nodes.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
 }

@@ -49,7 +49,8 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     let whole = run(&scene, &folder, "whole", 1);
     assert_eq!(whole.status, Status::Complete, "{:?}", whole.stop_reason);
     let kept = whole.reduced.expect("what was kept");
-    assert!(!kept.from_cache && kept.modes > 8 && kept.highest_hz < 15e3);
+    // Modes of a seat that slides lie below 15 kHz; friction makes them faster.
+    assert!(!kept.from_cache && kept.modes > 8 && kept.highest_hz < 30e3, "{kept:?}");
     let dir = RunDir::create(folder.join("pieces")).expect("the folder is new");
     let mut seen = 0;
     let mut stop = |progress: &Progress| {
@@ -225,7 +226,7 @@ fn analytic_a_start_from_rest_takes_the_rollers_along() {
     // The clearance of a pocket is 1.1 mrad. The cage lies some ten of them behind: rollers outside the load zone are pushed by its
     // corners until they have come round.
     const BEHIND: f64 = 0.02;
-    // Roller 1 leaves the load zone behind and creeps.
+    // Roller 3 goes from 124° to 75°, under the load all the way.
     const ROLLING: f64 = 0.01;
     const ENERGY: f64 = 0.005;
     let folder = Scratch::create("reduced-ramp");
@@ -247,7 +248,7 @@ fn analytic_a_start_from_rest_takes_the_rollers_along() {
     let last = time.len() - 1;
     let cage = channel(&trace, "cage.angle_rad")[last];
     assert!((cage - share * shaft[last]).abs() < BEHIND, "{cage} of {}", share * shaft[last]);
-    let [x, y] = ["x_m", "y_m"].map(|c| channel(&trace, &format!("roller.1.{c}")));
+    let [x, y] = ["x_m", "y_m"].map(|c| channel(&trace, &format!("roller.3.{c}")));
     let place = |n: usize| y[n].atan2(x[n]);
     let rolled = (place(last) - place(0)) / (shaft[last] - shaft[0]);
     assert!((rolled / share - 1.0).abs() < ROLLING, "{rolled} of {share}");

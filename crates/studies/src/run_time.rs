@@ -8,6 +8,7 @@ use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::ModelScene;
 
 use self::variants::{Choice, choices};
 use crate::impulse::statistics::{Sample, ratio};
@@ -40,8 +41,8 @@ struct Measured {
     start: usize,
     /// Processor time of a simulated millisecond [s].
     seconds: f64,
-    /// Processor time of one element in one step [ns].
-    nanoseconds: f64,
+    /// Processor time of one element in one step [ns]; `None` of the reduced model, which has no elements.
+    nanoseconds: Option<f64>,
     /// Mean force of the outer raceway on roller 2, which stands beside the defect the whole time [N].
     force_n: f64,
     /// When roller 1 loses the raceway and meets it again [ms].
@@ -58,7 +59,7 @@ struct Row {
     choice: Choice,
     starts: Vec<Measured>,
     seconds: f64,
-    nanoseconds: f64,
+    nanoseconds: Option<f64>,
     /// Relative errors, means over the starts that the reference has too.
     force: Option<f64>,
     /// Of the time from entry to exit.
@@ -112,7 +113,8 @@ fn measure(choice: &Choice, finished: &Finished) -> Option<Measured> {
     Some(Measured {
         start,
         seconds: info.loop_cpu_s / run.scene.solver.duration_ms,
-        nanoseconds: 1e9 * info.loop_cpu_s / (info.steps as f64 * elements),
+        nanoseconds: (run.scene.model == ModelScene::Full)
+            .then(|| 1e9 * info.loop_cpu_s / (info.steps as f64 * elements)),
         force_n,
         events_ms,
         impulse_g: noise::impulse(&record, sensor, exit_s).map(|i| i.peak_g),
@@ -136,7 +138,7 @@ impl Row {
         Self {
             // Other work on the machine adds to the time, and never takes from it.
             seconds: least(starts.iter().map(|m| m.seconds)),
-            nanoseconds: least(starts.iter().map(|m| m.nanoseconds)),
+            nanoseconds: starts.iter().filter_map(|m| m.nanoseconds).reduce(f64::min),
             force: force.filter(|_| !own),
             events: events.filter(|_| !own),
             impulse,
@@ -174,7 +176,8 @@ fn introduce(sheet: &mut Sheet, rows: &[Row]) {
     sheet.say(&format!(
         "What a simulated millisecond of the paper\u{2019}s bearing costs, and how far the result is from the finest mesh\u{2019}s \
          ({finest} at the contacts and the defect, {starts} starts). Contact keeps its stiffness and its damping over an area on all meshes, so that \
-         only the mesh, the step and the way contact is evaluated differ. *Seconds* are processor time of the time loop, \
+         only the mesh, the step and the way contact is evaluated differ. *Reduced* points have the modes of outer ring and \
+         adapter on such a mesh (THEORY §9), at one step or another, with more modes or fewer, on coarser facets or on arcs. *Seconds* are processor time of the time loop, \
          the least over the starts, because other work on the machine only adds to it. *Force* is the mean of the outer raceway on roller 2 from {FROM_MS} to 6.5 ms; *events* are when roller 1 \
          loses the raceway and meets it again, the larger error as a share of the time in between; both start by start. The \
          *impulse* after the exit is chaotic: starts 0.01° of the cage apart differ more than meshes do, so its mean over \
@@ -195,8 +198,18 @@ fn curves(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
     curves
 }
 
-const COLOURS: [Colour; 7] =
-    [Colour::Grey, Colour::Blue, Colour::Purple, Colour::Orange, Colour::Teal, Colour::Green, Colour::Red];
+const COLOURS: [Colour; 10] = [
+    Colour::Grey,
+    Colour::Blue,
+    Colour::Purple,
+    Colour::Orange,
+    Colour::Teal,
+    Colour::Green,
+    Colour::Red,
+    Colour::Brown,
+    Colour::Pink,
+    Colour::Black,
+];
 
 fn pictures(sheet: &mut Sheet, rows: &[Row]) -> Result<()> {
     let against = |id: &str, title: &str, quantity: &str, of: &dyn Fn(&Row) -> Option<f64>| {
@@ -243,7 +256,7 @@ fn table(sheet: &mut Sheet, rows: &[Row]) {
         let name = &row.choice.name;
         let values = [
             ("seconds a millisecond", Some(row.seconds)),
-            ("ns an element-step", Some(row.nanoseconds)),
+            ("ns an element-step", row.nanoseconds),
             ("force error", row.force),
             ("events error", row.events),
             ("impulse g", row.impulse.map(|s| s.mean)),
@@ -275,7 +288,7 @@ fn table(sheet: &mut Sheet, rows: &[Row]) {
             row.choice.shows.to_owned(),
             row.starts.len().to_string(),
             number(row.seconds, 2),
-            number(row.nanoseconds, 1),
+            row.nanoseconds.map_or("–".to_owned(), |ns| number(ns, 1)),
             percent(row.force, 2),
             percent(row.events, 2),
             impulse,
@@ -348,7 +361,7 @@ mod tests {
 
     fn measured(start: usize, seconds: f64, force_n: f64, exit: f64, impulse: f64) -> Measured {
         let (events_ms, impulse_g) = (Some([1.0, exit]), Some(impulse));
-        Measured { start, seconds, nanoseconds: 3.0, force_n, events_ms, impulse_g }
+        Measured { start, seconds, nanoseconds: Some(3.0), force_n, events_ms, impulse_g }
     }
 
     #[test]

@@ -9,6 +9,11 @@ use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 
 use crate::{Answer, Host, Sheet};
 
+/// Where the bearing as a whole is.
+const BEARING: &str = "The whole bearing has no known answer. What a simulated millisecond costs, and how far it then is from the finest \
+     mesh, is in [run_time](run_time.md), by the full model and by the reduced one: its modes, its step, its facets.\n\n\
+     ![Error of the force on a loaded roller against processor time](run_time-force.svg)";
+
 /// One calculation.
 #[derive(Debug, Clone, Copy)]
 struct Point {
@@ -224,6 +229,8 @@ pub(crate) fn run(host: &dyn Host) -> Result<Answer> {
     for problem in &all {
         problem.write(&mut sheet)?;
     }
+    sheet.heading("The bearing");
+    sheet.say(BEARING);
     sheet.heading("In short");
     for problem in &all {
         if let Some(words) = problem.advice().into_iter().rev().find(|a| a.starts_with("for 1 %")) {

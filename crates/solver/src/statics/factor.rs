@@ -66,10 +66,14 @@ impl Factor {
         Ok(())
     }
 
-    /// Solves for one right-hand side in place.
-    pub(super) fn solve(&mut self, rhs: &mut [f64]) {
-        let n = rhs.len();
-        let rhs = MatMut::from_column_major_slice_mut(rhs, n, 1);
+    /// Solves in place for right-hand sides of `n` numbers that follow one another: the factor is read once for all of them.
+    pub(super) fn solve(&mut self, rhs: &mut [f64], n: usize) {
+        let columns = rhs.len() / n.max(1);
+        let needed = self.symbolic.solve_in_place_scratch::<f64>(columns, PAR);
+        if needed.unaligned_bytes_required() > self.scratch.len() {
+            self.scratch = MemBuffer::new(needed);
+        }
+        let rhs = MatMut::from_column_major_slice_mut(rhs, n, columns);
         let stack = MemStack::new(&mut self.scratch);
         LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, rhs, PAR, stack);
     }

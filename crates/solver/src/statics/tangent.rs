@@ -84,7 +84,8 @@ impl Tangent {
         });
         let mut step: Vec<f64> = force.collect();
         if let Some(laid_out) = &mut self.laid_out {
-            laid_out.factor.solve(&mut step);
+            let unknowns = step.len();
+            laid_out.factor.solve(&mut step, unknowns);
         }
         let (pairs, _) = step.as_chunks::<2>();
         let mut step = pairs.to_vec();

@@ -60,7 +60,7 @@ pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
     let choice = |curve, name: &str, shows, scene, set: Vec<String>, starts: u16| {
         let id: String =
             name.chars().filter(|c| !matches!(c, ',' | '.')).collect::<String>().replace(' ', "-");
-        let id = id.replace('Δ', "d").replace('×', "x");
+        let id = id.replace('Δ', "d").replace('×', "x").replace('µ', "u");
         let variant = |k: u16| {
             let all = set
                 .iter()
@@ -98,6 +98,22 @@ pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
     }
     let arcs = graded(1.0).into_iter().chain(owned(&ARCS)).collect();
     all.push(choice("arcs", "graded, 1 mm, arcs", "the same on coarser elements", LEAN, arcs, starts));
+    let mut reduced = |curve, [khz, step_us]: [f64; 2], shows, name: &str, mesh: Vec<String>| {
+        let model = format!("model=reduced(modes_khz: {khz:?}, step_us: {step_us:?})");
+        let name = format!("reduced, {khz} kHz, {step_us} µs{name}");
+        all.push(choice(curve, &name, shows, LEAN, mesh.into_iter().chain([model]).collect(), starts));
+    };
+    for (step_us, shows) in [(2.0, "the reduced model"), (1.0, "half its step"), (0.5, "a quarter of it")] {
+        reduced("reduced, step", [30.0, step_us], shows, "", graded(BASE_MM));
+    }
+    for (khz, shows) in [(5.0, "fewer modes"), (15.0, "fewer modes"), (60.0, "more modes")] {
+        reduced("reduced, modes", [khz, 1.0], shows, "", graded(BASE_MM));
+    }
+    for size in [2.0, 1.0] {
+        reduced("reduced, facets", [30.0, 1.0], "fewer facets", &format!(", {size} mm"), graded(size));
+    }
+    let arcs = graded(BASE_MM).into_iter().chain(owned(&ARCS)).collect();
+    reduced("reduced, arcs", [30.0, 1.0], "without facets", ", arcs", arcs);
     all
 }
 

@@ -1,0 +1,372 @@
+//! The seat during a run: which of its springs hold, open and slip (THEORY §9.1).
+
+use pulp::{Scalar, Simd};
+use serde::{Deserialize, Serialize};
+use stribeck_simd::lanes::{LANES, Number, Vector};
+
+use crate::{modes::Modes, row::Row, seat::Seat, step::Heard};
+
+/// Passes over the panels in a step at most, and before the first step.
+const PASSES: usize = 4;
+const PASSES_AT_REST: usize = 1000;
+
+/// Passes end when no tension changes by more than this share of the mean force on a panel.
+const STILL: f64 = 1e-4;
+
+/// What is looked up of the seat in every step, in rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Springs {
+    panels: usize,
+    padded: usize,
+    /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
+    by_mode: Vec<Row>,
+    by_spring: Vec<Row>,
+    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of the preload.
+    by_rollers: Vec<Row>,
+    at_preload: Vec<Row>,
+    /// Loss of tension of all springs by a unit that one opens or slips.
+    stiffness: Vec<Row>,
+    /// The same of each by its own [N/m].
+    own: Vec<f64>,
+    /// Force that presses each panel at the preload [N].
+    pressed: Vec<f64>,
+    friction: f64,
+    still: f64,
+}
+
+/// By how much the seat has opened and slipped, and what comes of it: part of the checkpoint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hold {
+    /// Gap of each panel, then its slip [m].
+    pub(crate) open: Vec<f64>,
+    /// The same before the last step.
+    before: Vec<f64>,
+    /// Tension that each spring has lost by it [N].
+    lost: Vec<f64>,
+    /// What that does to each mode [N/√kg].
+    pub(crate) push: Vec<f64>,
+    /// What rollers press in the last step.
+    pub(crate) pressed: Vec<Heard>,
+}
+
+impl Springs {
+    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64) -> Self {
+        let n = 2 * seat.padded;
+        let rows =
+            |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
+        let found = seat.tension.len() / n;
+        let of =
+            |spring: usize, mode: usize| if mode < found { seat.tension[mode * n + spring] } else { 0.0 };
+        let by_spring: Vec<f64> =
+            (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
+        Self {
+            panels: seat.panels,
+            padded: seat.padded,
+            by_mode: rows(&seat.tension),
+            by_spring: rows(&by_spring),
+            by_rollers: rows(&seat.by_rollers),
+            at_preload: rows(&seat.at_preload),
+            own: seat.stiffness.iter().step_by(n + 1).copied().collect(),
+            stiffness: rows(&seat.stiffness),
+            pressed: seat.pressed.clone(),
+            friction,
+            still: STILL * seat.pressed.iter().sum::<f64>() / seat.panels as f64,
+        }
+    }
+
+    /// Rows of tensions.
+    pub(crate) fn rows(&self) -> usize {
+        2 * self.padded / LANES
+    }
+
+    /// Nothing has opened or slipped yet.
+    pub(crate) fn at_rest(&self, modes: usize, rollers: usize) -> Hold {
+        let zeros = vec![0.0; 2 * self.padded];
+        Hold {
+            open: zeros.clone(),
+            before: zeros.clone(),
+            lost: zeros,
+            push: vec![0.0; modes],
+            pressed: vec![Heard::default(); rollers],
+        }
+    }
+
+    /// Whether it may belong to this seat.
+    pub(crate) fn fits(&self, hold: &Hold, modes: usize, rollers: usize) -> bool {
+        [&hold.open, &hold.before, &hold.lost].iter().all(|v| v.len() == 2 * self.padded)
+            && hold.push.len() == modes
+            && hold.pressed.len() == rollers
+    }
+
+    /// Lets the seat open and slip where it does at rest, the modes being at `q`.
+    pub(crate) fn slip(&self, hold: &mut Hold, q: &[f64]) {
+        let simd = Scalar::new();
+        let mut tension = vec![Row::default(); self.rows()];
+        let rollers = std::mem::take(&mut hold.pressed);
+        self.pull(simd, hold, q, &rollers, &mut tension);
+        hold.pressed = rollers;
+        self.settle(simd, hold, &mut tension, PASSES_AT_REST);
+    }
+
+    /// Finds out what opens and slips where the modes are now, and pushes the modes. Returns the heat of this step [J] and, when it is
+    /// the `last` of a sample, the energy that is stored by it [J].
+    #[inline(always)]
+    pub(crate) fn hold<S: Simd>(
+        &self,
+        simd: S,
+        hold: &mut Hold,
+        q: &[f64],
+        rollers: &[Heard],
+        modes: &mut Modes,
+        last: bool,
+    ) -> [f64; 2] {
+        let Modes { push, tension, .. } = modes;
+        self.pull(simd, hold, q, rollers, tension);
+        let heat = self.settle(simd, hold, tension, PASSES);
+        for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
+            for (push, more) in push.iter_mut().zip(more) {
+                *push += more;
+            }
+        }
+        if !last {
+            return [heat, 0.0];
+        }
+        // What rollers press is part of the tensions, and its work part of their own energy.
+        let by_rollers = rollers.iter().filter(|roller| roller.force != 0.0).map(|roller| {
+            let [first, second] = self.under(simd, hold, roller.facet as usize);
+            (roller.force + roller.growth) * (first + roller.share * (second - first))
+        });
+        [heat, self.stored(hold, tension) + by_rollers.sum::<f64>()]
+    }
+
+    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m].
+    #[inline(always)]
+    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [f64; 2] {
+        let groups = self.rows();
+        let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
+        let mut both = [0.0; 2];
+        for (by, vertex) in both.iter_mut().zip([facet, second]) {
+            let rows = &self.by_rollers[groups * vertex..groups * (vertex + 1)];
+            let mut sum = Vector::all(simd, 0.0);
+            for (row, open) in rows.iter().zip(hold.open.as_chunks::<LANES>().0) {
+                let mut at = 0;
+                while at < LANES {
+                    sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, open, at), sum);
+                    at += Vector::<S>::LEN;
+                }
+            }
+            *by = sum.sum();
+        }
+        both
+    }
+
+    /// Tensions at the coordinates `q` of the modes, while `rollers` press, less what has been lost; across the seat beyond the preload.
+    #[inline(always)]
+    fn pull<S: Simd>(&self, simd: S, hold: &Hold, q: &[f64], rollers: &[Heard], tension: &mut [Row]) {
+        let groups = tension.len();
+        let vertices = self.by_rollers.len() / groups;
+        for (tension, at_preload) in tension.iter_mut().zip(&self.at_preload) {
+            *tension = Row(at_preload.0.map(|value| -value));
+        }
+        for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
+            // Rollers have not been moved yet: what they will press in this step, if they go on as they did.
+            let force = roller.force + roller.growth;
+            let first = roller.facet as usize;
+            let second = if first + 1 == vertices { 0 } else { first + 1 };
+            for (vertex, force) in [(first, (1.0 - roller.share) * force), (second, roller.share * force)] {
+                let force = Vector::all(simd, force);
+                let rows = &self.by_rollers[groups * vertex..groups * (vertex + 1)];
+                for (tension, row) in tension.iter_mut().zip(rows) {
+                    let mut at = 0;
+                    while at < LANES {
+                        let sum =
+                            Vector::load(simd, row, at).times_plus(force, Vector::load(simd, tension, at));
+                        sum.store(tension, at);
+                        at += Vector::<S>::LEN;
+                    }
+                }
+            }
+        }
+        for (group, (tension, lost)) in tension.iter_mut().zip(hold.lost.as_chunks::<LANES>().0).enumerate() {
+            let mut at = 0;
+            while at < LANES {
+                let mut sum = Vector::load(simd, tension, at) - Vector::load(simd, lost, at);
+                for (row, q) in self.by_mode[group..].iter().step_by(groups).zip(q) {
+                    sum = Vector::load(simd, row, at).times_plus(Vector::all(simd, *q), sum);
+                }
+                sum.store(tension, at);
+                at += Vector::<S>::LEN;
+            }
+        }
+    }
+
+    /// Passes over the panels until no tension changes any more; returns the heat [J].
+    #[inline(always)]
+    fn settle<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], passes: usize) -> f64 {
+        hold.before.copy_from_slice(&hold.open);
+
+        for _ in 0..passes {
+            let mut most: f64 = 0.0;
+            for panel in 0..self.panels {
+                if self.own[panel] <= 0.0 {
+                    continue;
+                }
+                let pulls = tension[panel / LANES][panel % LANES] - self.pressed[panel];
+                let had = hold.open[panel];
+                // It pulls and opens, or was open and closes.
+                if pulls > 0.0 || had > 0.0 {
+                    let has = (had + pulls / self.own[panel]).max(0.0);
+                    most = most.max(self.own[panel] * (has - had).abs());
+                    self.change(simd, hold, tension, panel, has);
+                }
+                let at = self.padded + panel;
+                if self.own[at] <= 0.0 {
+                    continue;
+                }
+                let pulls = tension[at / LANES][at % LANES];
+                let pressing = self.pressed[panel] - tension[panel / LANES][panel % LANES];
+                let limit = self.friction * pressing.max(0.0);
+                // Held where it was before, and let go by what friction cannot hold: what slips first must not slip too far.
+                let [had, before] = [hold.open[at], hold.before[at]];
+                let holding = pulls + self.own[at] * (had - before);
+                let excess = (holding.abs() - limit).max(0.0).copysign(holding);
+                let has = before + excess / self.own[at];
+                if has != had {
+                    most = most.max(self.own[at] * (has - had).abs());
+                    self.change(simd, hold, tension, at, has);
+                }
+            }
+            if most <= self.still {
+                break;
+            }
+        }
+        let along = self.padded..self.padded + self.panels;
+        let slipped = hold.open[along.clone()].iter().zip(&hold.before[along.clone()]);
+        let held_by = tension.iter().flat_map(|row| row.iter()).skip(along.start);
+        slipped.zip(held_by).map(|((open, before), tension)| tension * (open - before)).sum()
+    }
+
+    /// Opens or shifts a panel.
+    #[inline(always)]
+    fn change<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], spring: usize, has: f64) {
+        let more = has - hold.open[spring];
+        hold.open[spring] = has;
+        let groups = tension.len();
+        let by = Vector::all(simd, more);
+        let losses = &self.stiffness[groups * spring..groups * (spring + 1)];
+        for ((row, tension), lost) in losses.iter().zip(tension).zip(hold.lost.as_chunks_mut::<LANES>().0) {
+            let mut at = 0;
+            while at < LANES {
+                let row = Vector::load(simd, row, at);
+                row.times_plus(-by, Vector::load(simd, tension, at)).store(tension, at);
+                row.times_plus(by, Vector::load(simd, lost, at)).store(lost, at);
+                at += Vector::<S>::LEN;
+            }
+        }
+        let modes = hold.push.len() / LANES;
+        let shapes = &self.by_spring[modes * spring..modes * (spring + 1)];
+        for (row, push) in shapes.iter().zip(hold.push.as_chunks_mut::<LANES>().0) {
+            let mut at = 0;
+            while at < LANES {
+                Vector::load(simd, row, at).times_plus(by, Vector::load(simd, push, at)).store(push, at);
+                at += Vector::<S>::LEN;
+            }
+        }
+    }
+
+    /// Energy of the seat beyond that of one that holds, less the work of rollers [J].
+    fn stored(&self, hold: &Hold, tension: &[Row]) -> f64 {
+        let tensions = tension.iter().flat_map(|row| row.iter());
+        let each = hold.open.iter().zip(&hold.lost).zip(tensions);
+        -each.map(|((open, lost), tension)| open * (0.5 * lost + tension)).sum::<f64>()
+            + hold.open.iter().zip(&self.pressed).map(|(open, pressed)| open * pressed).sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A seat of one panel and two modes, the first of which opens it and the second shifts it: 1 N/µm each, pressed by 100 N.
+    fn one_panel(friction: f64) -> (Springs, Hold) {
+        let padded = LANES;
+        let n = 2 * padded;
+        let unit = |mode: usize, spring: usize, value: f64| {
+            let mut all = vec![0.0; n * if mode == usize::MAX { n } else { LANES }];
+            if mode == usize::MAX {
+                all[0] = value;
+                all[padded * n + padded] = value;
+            } else {
+                all[mode * n + spring] = value;
+            }
+            all
+        };
+        let tension =
+            unit(0, 0, 1e6).iter().zip(unit(1, padded, 1e6)).map(|(across, along)| across + along).collect();
+        let mut pressed = vec![0.0; padded];
+        pressed[0] = 100.0;
+        let seat = Seat {
+            panels: 1,
+            padded,
+            pressed,
+            across: vec![1e6; padded],
+            tension,
+            by_rollers: vec![0.0; n],
+            at_preload: vec![0.0; n],
+            stiffness: unit(usize::MAX, 0, 1e6),
+            on_ring: vec![[0.0; 2]; n],
+            heard: Vec::new(),
+        };
+        let springs = Springs::new(&seat, LANES, friction);
+        let hold = springs.at_rest(LANES, 0);
+        (springs, hold)
+    }
+
+    /// Heat of a step, energy and tensions across and along at the coordinates of both modes [m].
+    fn at(springs: &Springs, hold: &mut Hold, q: [f64; 2]) -> [f64; 4] {
+        let mut all = vec![0.0; LANES];
+        all[..2].copy_from_slice(&q);
+        let mut tension = vec![Row::default(); springs.rows()];
+        springs.pull(Scalar::new(), hold, &all, &[], &mut tension);
+        let heat = springs.settle(Scalar::new(), hold, &mut tension, PASSES);
+        [heat, springs.stored(hold, &tension), tension[0][0] - springs.pressed[0], tension[1][0]]
+    }
+
+    /// A spring and a slider in series: 4 µN (A − µN/k) of heat in a cycle of the amplitude A.
+    /// Source: own, the area of the loop; a Jenkins element.
+    #[test]
+    fn analytic_a_panel_that_slips_back_and_forth_turns_the_area_of_its_loop_into_heat() {
+        let (springs, mut hold) = one_panel(0.2);
+        let (amplitude, limit, stiffness) = (100e-6, 20.0, 1e6);
+        let mut heat = 0.0;
+        let cycle = |hold: &mut Hold, heat: &mut f64| {
+            for n in 0..4000 {
+                let shift = amplitude * (std::f64::consts::TAU * n as f64 / 4000.0).sin();
+                let [of_step, _, _, along] = at(&springs, hold, [0.0, shift]);
+                *heat += of_step;
+                assert!(along.abs() <= limit * (1.0 + 1e-12), "{along} N");
+            }
+        };
+        cycle(&mut hold, &mut heat);
+        let first = heat;
+        cycle(&mut hold, &mut heat);
+        let expected = 4.0 * limit * (amplitude - limit / stiffness);
+        let found = heat - first;
+        assert!((found / expected - 1.0).abs() < 2e-3, "{found} J, {expected} J");
+    }
+
+    /// What opens lets go of all tension, and takes the energy of the springs along: nothing is lost on the way there and back.
+    #[test]
+    fn analytic_a_panel_opens_where_it_would_pull() {
+        let (springs, mut hold) = one_panel(0.2);
+        // 100 N over 1 N/µm: it opens 100 µm off.
+        let [heat, stored, across, _] = at(&springs, &mut hold, [150e-6, 0.0]);
+        assert!(across.abs() < 1e-9 && heat == 0.0, "{across} N, {heat} J");
+        assert!((hold.open[0] - 50e-6).abs() < 1e-15, "{}", hold.open[0]);
+        // A spring that holds would have ½k (50 µm)² more than one that lets go.
+        assert!((stored + 0.5 * 1e6 * 50e-6_f64.powi(2)).abs() < 1e-12, "{stored} J");
+        let [_, stored, across, _] = at(&springs, &mut hold, [50e-6, 0.0]);
+        assert!(stored == 0.0 && hold.open[0] == 0.0, "{stored} J");
+        assert!((across + 50.0).abs() < 1e-9, "{across} N");
+    }
+}
