@@ -92,6 +92,36 @@ fn conserves_energy_and_carries_the_load() {
     assert!((-sum / info.expected_support_n - 1.0).abs() < LOAD, "{sum} N");
 }
 
+/// What the seat slips by in time, the ring's creep in its housing, costs no energy that the ledger does not know of.
+#[test]
+fn conserves_energy_while_the_ring_creeps_in_its_seat() {
+    // Of the heat: what rollers that strike walls lose or win by a raceway displaced by the creep would grow with the square of time.
+    const OF_HEAT: f64 = 5e-4;
+    let folder = Scratch::create("reduced-creep");
+    let mut scene = coarse(200.0);
+    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 1.0 });
+    scene.solver.mass_damping_per_s = 1000.0;
+    // Straight pockets let the cage wander in that time (THEORY §9.6).
+    scene.cage.iter_mut().for_each(|cage| cage.pocket = PocketWalls::Corners);
+    let mut held = scene.clone();
+    held.contact.seat_friction = 2.0;
+    let friction = |scene: &Scene, name: &str| {
+        let info = run(scene, &folder, name, 1);
+        assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+        let energy = Trace::read(folder.join(name).join("energy.npy")).expect("a ledger");
+        let last = |channel: &str| *energy.get(channel).expect("a channel").last().expect("a row");
+        let heat = last("friction_j") + last("damping_j") + last("contact_damping_j");
+        let stored = ["kinetic_j", "strain_j", "hourglass_j", "contact_j"];
+        let stored: f64 =
+            stored.iter().map(|name| last(name) - energy.get(name).expect("a channel")[0]).sum();
+        let off = stored + heat - last("external_j") - last("drive_j");
+        assert!(off.abs() < OF_HEAT * heat, "{name}: {off} J of {heat} J");
+        last("friction_j")
+    };
+    let (slips, holds) = (friction(&scene, "slips"), friction(&held, "holds"));
+    assert!(slips > 1.05 * holds, "{slips} J where it slips, {holds} J where it holds");
+}
+
 /// Over defects on raceways and rollers, in both models from one start: the same forces, and the energy balances.
 #[test]
 fn example_defects_are_felt_as_by_the_full_model() {
