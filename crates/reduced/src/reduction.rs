@@ -242,7 +242,14 @@ impl Reduction {
             let slot = slot_of[n as usize] as usize;
             [pressed.fx[slot], pressed.fy[slot]] = forces[n as usize];
         }
-        let by_rollers = structure.generalised(&pressed, padded);
+        let mut by_rollers = structure.generalised(&pressed, padded);
+        let taken_back = |vertex: usize| {
+            let all = seat_springs.as_ref().map_or(&[][..], |seat| &seat.taken_back);
+            all.iter().skip(vertex * kept).take(kept)
+        };
+        for (vertex, (_, _, force)) in raceway.iter().enumerate() {
+            by_rollers.iter_mut().zip(taken_back(vertex)).for_each(|(sum, back)| *sum -= force * back);
+        }
         let unbalanced = structure.generalised(&all, padded);
         let constant = unbalanced.iter().zip(&by_rollers).map(|(all, rollers)| all - rollers).collect();
         let external = structure.generalised(&outside, padded);
@@ -269,7 +276,16 @@ impl Reduction {
             [x - dx, y - dy]
         };
         let outer: Vec<[f64; 2]> = nodes.outer.iter().zip(&dents).map(without_dent).collect();
-        let shapes = on_raceway.iter().flat_map(|&slot| structure.shape_at(slot, padded)).collect();
+        let mut shapes: Vec<f64> =
+            on_raceway.iter().flat_map(|&slot| structure.shape_at(slot, padded)).collect();
+        for (vertex, (shape, (_, [nx, ny], _))) in
+            shapes.chunks_exact_mut(2 * padded).zip(&raceway).enumerate()
+        {
+            let (x, y) = shape.split_at_mut(padded);
+            for ((x, y), back) in x.iter_mut().zip(y).zip(taken_back(vertex)) {
+                (*x, *y) = (*x - nx * back, *y - ny * back);
+            }
+        }
 
         let direction = |[x, y]: [f64; 2]| [x / x.hypot(y), y / x.hypot(y)];
         // By reciprocity: a unit force at a sensor moves the raceway as one there moves the sensor.

@@ -45,6 +45,8 @@ pub struct Seat {
     pub stiffness: Vec<f64>,
     /// Force on the ring by a unit tension of each spring.
     pub on_ring: Vec<[f64; 2]>,
+    /// What of each mode's displacement of the raceway to the outside the tensions along the seat take back [1/√kg], vertex by vertex.
+    pub taken_back: Vec<f64>,
     /// Displacement of each sensor beyond the modes by a unit tension of each spring [m/N]; across the seat, of tension that is missing.
     pub heard: Vec<Vec<[f64; 2]>>,
 }
@@ -166,11 +168,11 @@ impl Seat {
         let inverse =
             Mat::from_fn(p, p, |i, j| holds(i) * holds(j) * 0.5 * (inverse[(i, j)] + inverse[(j, i)]));
         let slides = Mat::from_fn(p, modes, |i, mode| by_modes[(along(i), mode)]);
-        let across = Mat::from_fn(p, p, |i, _| stiffness[i]);
-        let coupling = Mat::from_fn(p, p, |i, j| across[(i, j)] * flexibility[(i, along(j))]);
+        let coupling = Mat::from_fn(p, p, |i, j| stiffness[i] * flexibility[(i, along(j))]);
         let held = product(inverse.as_ref(), slides.as_ref());
         let held_by_rollers = product(inverse.as_ref(), by_rollers.get(p.., ..));
         let lifted_by_rollers = product(coupling.as_ref(), held_by_rollers.as_ref());
+        let taken_back = product(held_by_rollers.transpose(), slides.as_ref());
         let by_rollers = Mat::from_fn(2 * p, vertices, |i, vertex| {
             if i < p {
                 stiffness[i] * by_rollers[(i, vertex)] - lifted_by_rollers[(i, vertex)]
@@ -205,6 +207,7 @@ impl Seat {
             if i < p { stiffness[i] * by_modes[(i, mode)] - lifted[(i, mode)] } else { held[(i - p, mode)] }
         });
         let tension = product(tension.as_ref(), eigen.U());
+        let taken_back = product(eigen.U().transpose(), taken_back.transpose());
         let listed = |of: &Mat<f64>| -> Vec<f64> {
             (0..of.ncols()).flat_map(|j| (0..of.nrows()).map(move |i| of[(i, j)])).collect()
         };
@@ -218,6 +221,7 @@ impl Seat {
             at_preload: listed(&at_preload),
             stiffness: listed(&loss),
             on_ring,
+            taken_back: listed(&taken_back),
             heard,
         }))
     }

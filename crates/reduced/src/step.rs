@@ -50,6 +50,14 @@ pub struct Heard {
     pub(crate) growth: f64,
 }
 
+impl Heard {
+    /// The force of the step that begins, if it goes on as it did; none pulls.
+    #[inline(always)]
+    pub(crate) fn next(&self) -> f64 {
+        (self.force + self.growth).max(0.0)
+    }
+}
+
 impl Scratch {
     pub(crate) fn new(bearing: &Bearing) -> Self {
         let n = bearing.rollers;

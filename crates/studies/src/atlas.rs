@@ -54,7 +54,7 @@ const DEFECTS: [(&str, &str, &[&str]); 8] = [
 /// Time step of the paper's bearing [µs], whose rollers are ten times as heavy and strike the cage: half of that of the others.
 const PAPER_STEP_US: f64 = 0.25;
 
-/// Seconds of bearing time for a spot on one rolling element, which is under the load a part of every turn of the cage only.
+/// Bearing time for a spot on one rolling element, which is under the load a part of every turn of the cage only [ms].
 const ROLLER_MS: f64 = 2400.0;
 
 /// Passages of rollers over the outer raceway in a run of the full model.
@@ -213,7 +213,7 @@ fn introduce(sheet: &mut Sheet) {
          1500 rpm by the reduced model, 2.4 s with a spot on one rolling element, which is loaded a part of every turn of the cage only, and one and a half passages of a roller by the full one. The record of the first sensor is then judged as \
          one from a machine would be, without the scene (`stribeck analyse`, THEORY §7.9): it is right when it claims every family of the scene's defects \
          and no other, each within one resolution of the recorded motion and, for BPFI and BSF, with three of the six sidebands at the shaft\u{2019}s and \
-         the cage\u{2019}s distance, and when both models end with less than 1 % of the energy missing. *waves* have no defect: two raceways with \
+         the cage\u{2019}s distance, and when each model that has run it ends with less than 1 % of the energy missing. *waves* have no defect: two raceways with \
          waviness and a roller that is too small.",
     );
 }

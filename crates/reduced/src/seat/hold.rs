@@ -96,6 +96,7 @@ impl Springs {
         [&hold.open, &hold.before, &hold.lost].iter().all(|v| v.len() == 2 * self.padded)
             && hold.push.len() == modes
             && hold.pressed.len() == rollers
+            && hold.pressed.iter().all(|roller| (roller.facet as usize) < self.by_rollers.len() / self.rows())
     }
 
     /// Lets the seat open and slip where it does at rest, the modes being at `q`.
@@ -134,7 +135,7 @@ impl Springs {
         // What rollers press is part of the tensions, and its work part of their own energy.
         let by_rollers = rollers.iter().filter(|roller| roller.force != 0.0).map(|roller| {
             let [first, second] = self.under(simd, hold, roller.facet as usize);
-            (roller.force + roller.growth) * (first + roller.share * (second - first))
+            roller.next() * (first + roller.share * (second - first))
         });
         [heat, self.stored(hold, tension) + by_rollers.sum::<f64>()]
     }
@@ -169,8 +170,7 @@ impl Springs {
             *tension = Row(at_preload.0.map(|value| -value));
         }
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
-            // Rollers have not been moved yet: what they will press in this step, if they go on as they did.
-            let force = roller.force + roller.growth;
+            let force = roller.next();
             let first = roller.facet as usize;
             let second = if first + 1 == vertices { 0 } else { first + 1 };
             for (vertex, force) in [(first, (1.0 - roller.share) * force), (second, roller.share * force)] {
@@ -291,18 +291,9 @@ mod tests {
     fn one_panel(friction: f64) -> (Springs, Hold) {
         let padded = LANES;
         let n = 2 * padded;
-        let unit = |mode: usize, spring: usize, value: f64| {
-            let mut all = vec![0.0; n * if mode == usize::MAX { n } else { LANES }];
-            if mode == usize::MAX {
-                all[0] = value;
-                all[padded * n + padded] = value;
-            } else {
-                all[mode * n + spring] = value;
-            }
-            all
-        };
-        let tension =
-            unit(0, 0, 1e6).iter().zip(unit(1, padded, 1e6)).map(|(across, along)| across + along).collect();
+        let (mut tension, mut stiffness) = (vec![0.0; n * LANES], vec![0.0; n * n]);
+        (tension[0], tension[n + padded]) = (1e6, 1e6);
+        (stiffness[0], stiffness[padded * n + padded]) = (1e6, 1e6);
         let mut pressed = vec![0.0; padded];
         pressed[0] = 100.0;
         let seat = Seat {
@@ -313,7 +304,7 @@ mod tests {
             tension,
             by_rollers: vec![0.0; n],
             at_preload: vec![0.0; n],
-            stiffness: unit(usize::MAX, 0, 1e6),
+            stiffness,
             on_ring: vec![[0.0; 2]; n],
             heard: Vec::new(),
         };

@@ -12,6 +12,9 @@ use crate::error::Error;
 /// One thread: the bits of a factorisation then do not depend on how many there are.
 const PAR: Par = Par::Seq;
 
+/// Right-hand sides that are solved at once, at most.
+const COLUMNS: usize = 8;
+
 /// A factor L of L Lᵀ, and the memory in which the next one is computed.
 pub(super) struct Factor {
     symbolic: SymbolicCholesky<usize>,
@@ -30,7 +33,7 @@ impl Factor {
             .map_err(failed)?;
         let scratch = StackReq::any_of(&[
             symbolic.factorize_numeric_llt_scratch::<f64>(PAR, Spec::default()),
-            symbolic.solve_in_place_scratch::<f64>(1, PAR),
+            symbolic.solve_in_place_scratch::<f64>(COLUMNS, PAR),
         ]);
         let scratch = MemBuffer::try_new(scratch).map_err(failed)?;
         Ok(Self { symbolic, values: memory, scratch })
@@ -66,16 +69,14 @@ impl Factor {
         Ok(())
     }
 
-    /// Solves in place for right-hand sides of `n` numbers that follow one another: the factor is read once for all of them.
+    /// Solves in place for right-hand sides of `n` numbers that follow one another: the factor is read once for several of them.
     pub(super) fn solve(&mut self, rhs: &mut [f64], n: usize) {
-        let columns = rhs.len() / n.max(1);
-        let needed = self.symbolic.solve_in_place_scratch::<f64>(columns, PAR);
-        if needed.unaligned_bytes_required() > self.scratch.len() {
-            self.scratch = MemBuffer::new(needed);
+        for some in rhs.chunks_mut((COLUMNS * n).max(1)) {
+            let columns = some.len() / n;
+            let some = MatMut::from_column_major_slice_mut(some, n, columns);
+            let stack = MemStack::new(&mut self.scratch);
+            LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, some, PAR, stack);
         }
-        let rhs = MatMut::from_column_major_slice_mut(rhs, n, columns);
-        let stack = MemStack::new(&mut self.scratch);
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(Conj::No, rhs, PAR, stack);
     }
 }
 
