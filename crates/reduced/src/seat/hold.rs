@@ -306,6 +306,7 @@ mod tests {
             at_preload: vec![0.0; n],
             stiffness,
             on_ring: vec![[0.0; 2]; n],
+            taken_back: Vec::new(),
             heard: Vec::new(),
         };
         let springs = Springs::new(&seat, LANES, friction);
