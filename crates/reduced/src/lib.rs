@@ -33,6 +33,7 @@ pub mod state;
 pub mod window;
 
 mod block;
+pub mod heard;
 mod lift;
 mod modes;
 pub mod oil;

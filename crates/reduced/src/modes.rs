@@ -7,10 +7,10 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
     bearing::Bearing,
+    heard::Heard,
     row::Row,
     seat::Springs,
     state::{Spent, State, Stored},
-    step::Heard,
 };
 
 /// A place on the outer raceway: a facet, the share of its second vertex, and the shapes at both of them.

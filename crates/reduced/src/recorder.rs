@@ -5,10 +5,11 @@ use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
+    heard::Heard,
     row::Row,
     seat::{Hold, Seat},
     state::State,
-    step::{Heard, Scratch},
+    step::Scratch,
 };
 
 /// What the recorder carries from sample to sample.

@@ -4,13 +4,13 @@
 //! roller after the other.
 
 use pulp::{Arch, Simd, WithSimd};
-use serde::{Deserialize, Serialize};
 use stribeck_scene::scene::DampingFrame;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
     bearing::Bearing,
     block::Block,
+    heard::Heard,
     modes::{Modes, Moved},
     oil::Now,
     pocket::PlacedCage,
@@ -38,24 +38,6 @@ pub struct Scratch {
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
     pub(crate) deepest: f64,
-}
-
-/// A force that sensors hear beyond the modes: its facet, the share of the facet's second vertex, and how large it is.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Heard {
-    pub(crate) facet: u32,
-    pub(crate) share: f64,
-    pub(crate) force: f64,
-    /// By how much it has grown in the last step.
-    pub(crate) growth: f64,
-}
-
-impl Heard {
-    /// The force of the step that begins, if it goes on as it did; none pulls.
-    #[inline(always)]
-    pub(crate) fn next(&self) -> f64 {
-        (self.force + self.growth).max(0.0)
-    }
 }
 
 impl Scratch {
@@ -146,7 +128,8 @@ impl Bearing {
                 scratch.seated.clear();
                 scratch.seated.extend(self.heard_from_the_seat(hold, &scratch.modes.tension));
             }
-            let [heat, stored] = seat.hold(simd, hold, &state.q, &scratch.heard, &mut scratch.modes, last);
+            let Modes { push, tension, .. } = &mut scratch.modes;
+            let [heat, stored] = seat.hold(simd, hold, &state.q, &scratch.heard, [push, tension], last);
             spent.heat[0] += 2.0 * heat / dt;
             energy.strain += stored;
         }

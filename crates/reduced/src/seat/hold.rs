@@ -4,7 +4,7 @@ use pulp::{Scalar, Simd};
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-use crate::{modes::Modes, row::Row, seat::Seat, step::Heard};
+use crate::{heard::Heard, row::Row, seat::Seat};
 
 /// Passes over the panels in a step at most, and before the first step.
 const PASSES: usize = 4;
@@ -109,7 +109,7 @@ impl Springs {
         self.settle(simd, hold, &mut tension, PASSES_AT_REST);
     }
 
-    /// Finds out what opens and slips where the modes are now, and pushes the modes. Returns the heat of this step [J] and, when it is
+    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`. Returns the heat of this step [J] and, when it is
     /// the `last` of a sample, the energy that is stored by it [J].
     #[inline(always)]
     pub(crate) fn hold<S: Simd>(
@@ -118,10 +118,9 @@ impl Springs {
         hold: &mut Hold,
         q: &[f64],
         rollers: &[Heard],
-        modes: &mut Modes,
+        [push, tension]: [&mut [Row]; 2],
         last: bool,
     ) -> [f64; 2] {
-        let Modes { push, tension, .. } = modes;
         self.pull(simd, hold, q, rollers, tension);
         let heat = self.settle(simd, hold, tension, PASSES);
         for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
