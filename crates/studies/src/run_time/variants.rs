@@ -104,16 +104,16 @@ pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
         all.push(choice(curve, &name, shows, LEAN, mesh.into_iter().chain([model]).collect(), starts));
     };
     for (step_us, shows) in [(2.0, "the reduced model"), (1.0, "half its step"), (0.5, "a quarter of it")] {
-        reduced("reduced, step", [30.0, step_us], shows, "", graded(BASE_MM));
+        reduced("reduced", [30.0, step_us], shows, "", graded(BASE_MM));
     }
     for (khz, shows) in [(5.0, "fewer modes"), (15.0, "fewer modes"), (60.0, "more modes")] {
-        reduced("reduced, modes", [khz, 1.0], shows, "", graded(BASE_MM));
+        reduced("its modes", [khz, 1.0], shows, "", graded(BASE_MM));
     }
     for size in [2.0, 1.0] {
-        reduced("reduced, facets", [30.0, 1.0], "fewer facets", &format!(", {size} mm"), graded(size));
+        reduced("its facets", [30.0, 1.0], "fewer facets", &format!(", {size} mm"), graded(size));
     }
     let arcs = graded(BASE_MM).into_iter().chain(owned(&ARCS)).collect();
-    reduced("reduced, arcs", [30.0, 1.0], "without facets", ", arcs", arcs);
+    reduced("on arcs", [30.0, 1.0], "without facets", ", arcs", arcs);
     all
 }
 
