@@ -95,7 +95,8 @@ fn conserves_energy_and_carries_the_load() {
 /// What the seat slips by in time, the ring's creep in its housing, costs no energy that the ledger does not know of.
 #[test]
 fn conserves_energy_while_the_ring_creeps_in_its_seat() {
-    // Of the heat: what rollers that strike walls lose or win by a raceway displaced by the creep would grow with the square of time.
+    // Of the heat. Rollers that found the raceway displaced only after they had come into contact won 1 % in half a second. Walls with
+    // another displacement at each end win too little in this time to be seen here: a second of the paper's mesh shows them (notes).
     const OF_HEAT: f64 = 5e-4;
     let folder = Scratch::create("reduced-creep");
     let mut scene = coarse(200.0);
