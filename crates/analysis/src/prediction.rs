@@ -78,8 +78,8 @@ impl Prediction {
         let kinematics = Kinematics::at_mean_speed(scene);
         let counts = FacetCounts {
             roller: mesh.roller_facets,
-            outer: facets_around(scene, DefectRing::Outer, mesh.outer_facets),
-            inner: facets_around(scene, DefectRing::Inner, mesh.inner_facets),
+            outer: Geometry::of(scene).facets_around(DefectRing::Outer, mesh.outer_facets),
+            inner: Geometry::of(scene).facets_around(DefectRing::Inner, mesh.inner_facets),
         };
         let facet_lines = kinematics.facet_tones(counts).map(|tone| (tone.name.to_owned(), tone.hz)).to_vec();
         let edges = |defect: &DefectScene| {
@@ -165,8 +165,8 @@ impl Prediction {
                 RollerCopies::Rotated => Source::RotatedVertices(vertices),
                 RollerCopies::Translated => Source::TranslatedVertices(vertices),
             },
-            Source::OuterNodes(facets_around(scene, DefectRing::Outer, mesh.outer_facets)),
-            Source::InnerNodes(facets_around(scene, DefectRing::Inner, mesh.inner_facets)),
+            Source::OuterNodes(Geometry::of(scene).facets_around(DefectRing::Outer, mesh.outer_facets)),
+            Source::InnerNodes(Geometry::of(scene).facets_around(DefectRing::Inner, mesh.inner_facets)),
         ];
         let named = |((name, _), source): (&(String, f64), Source)| Candidate { name: name.clone(), source };
         self.facet_lines.iter().zip(sources).map(named).collect()
@@ -249,16 +249,6 @@ fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
         true
     });
     crossings
-}
-
-/// Facets that a whole turn of the raceway of `ring` would have at the spacing outside the defect; `facets` counts them all.
-fn facets_around(scene: &Scene, ring: DefectRing, facets: usize) -> f64 {
-    let g = Geometry::of(scene);
-    let radius = match ring {
-        DefectRing::Outer => g.outer_race_radius,
-        DefectRing::Inner => g.inner_race_radius,
-    };
-    g.defect_of(ring).map_or(facets as f64, |defect| defect.facets_around(facets, radius))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ use crate::{error::Error, grading, housing::housing, suspension::suspend};
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
-    geometry::{CageGeometry, Geometry},
+    geometry::{CageGeometry, DefectGeometry, Geometry},
     housing::HousingScene,
     kinematics::{FacetCounts, Kinematics},
     lubrication,
@@ -179,7 +179,7 @@ impl Assembly {
             facets: outer_facets,
             layers: grading::layers(&scene.mesh, b.outer_ring_thickness_mm),
             start_angle: 0.0,
-            groove: groove_in(&g, DefectRing::Outer),
+            grooves: grooves_in(&g, DefectRing::Outer),
         };
         let outer = formed(made(&outer, &outer_grading)?, "inner", Circle::Inner, g.outer_relief.as_ref())?;
         let (outer_area, outer) = (outer.area(), mesh.add("outer ring", &outer));
@@ -192,7 +192,7 @@ impl Assembly {
             facets: inner_facets,
             layers: grading::layers(&scene.mesh, b.inner_ring_thickness_mm),
             start_angle: 0.0,
-            groove: groove_in(&g, DefectRing::Inner),
+            grooves: grooves_in(&g, DefectRing::Inner),
         };
         let inner = formed(made(&inner, &inner_grading)?, "outer", Circle::Outer, g.inner_relief.as_ref())?;
         let inner = mesh.add("inner ring", &inner);
@@ -279,8 +279,8 @@ impl Assembly {
         }
         let facets = FacetCounts {
             roller: scene.mesh.roller_facets,
-            outer: effective_facets(&g, DefectRing::Outer, outer_facets, outer_radius),
-            inner: effective_facets(&g, DefectRing::Inner, inner_facets, inner_radius),
+            outer: g.facets_around(DefectRing::Outer, outer_facets),
+            inner: g.facets_around(DefectRing::Inner, inner_facets),
         };
         Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
@@ -537,24 +537,20 @@ fn surface<'a>(placed: &'a Placed, name: &str) -> &'a Surface {
     placed.surface(name).expect("the generator of this body names this surface")
 }
 
-/// Facets that a whole turn of the raceway of `ring` would have at the spacing outside a defect.
-fn effective_facets(g: &Geometry, ring: DefectRing, facets: usize, radius: f64) -> f64 {
-    g.defect_of(ring).map_or(facets as f64, |defect| defect.facets_around(facets, radius))
-}
-
-/// The defect as a groove in the raceway of `ring`, if it lies there.
-fn groove_in(g: &Geometry, ring: DefectRing) -> Option<Groove> {
+/// The grooves in the raceway of `ring`.
+fn grooves_in(g: &Geometry, ring: DefectRing) -> Vec<Groove> {
     let circle = match ring {
         DefectRing::Outer => Circle::Inner,
         DefectRing::Inner => Circle::Outer,
     };
-    g.defect_of(ring).map(|d| Groove {
+    let cut = |d: &DefectGeometry| Groove {
         centre_angle: d.angle,
         length: d.length,
         depth: d.depth,
         slope: d.edge_slope,
         circle,
-    })
+    };
+    g.grooves_of(ring).map(cut).collect()
 }
 
 /// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the rollers: piece i

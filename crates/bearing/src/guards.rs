@@ -65,7 +65,7 @@ struct Softness {
     radial_clearance: f64,
     /// Approach of one contact of the most loaded roller between rigid rings, by Hertz.
     hertz: f64,
-    /// Depth of the defect; infinite without one.
+    /// Depth of the shallowest spall; infinite without one.
     depth: f64,
 }
 
@@ -75,7 +75,7 @@ impl Softness {
         let [_, most] = Duty::of(scene).load_range_n(g.duration);
         let load = RigidRings::new(g).distribute(most, &angles_to_load_deg(scene));
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
-        let depth = scene.leading_spall().map_or(f64::INFINITY, |d| 1e-3 * d.depth_mm);
+        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
         Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
     }
 
@@ -105,7 +105,7 @@ impl Guards {
     pub(crate) fn new(scene: &Scene, assembly: &Assembly, machine: &Machine) -> Self {
         let g = Geometry::of(scene);
         let radius = g.roller_radius;
-        let depth = scene.leading_spall().map_or(0.0, |d| 1e-3 * d.depth_mm);
+        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(0.0, f64::max);
         let slack = OUT_OF_PLACE * radius;
         let mesh = &assembly.model.mesh;
         let height = |body: usize| mean(mesh.y[mesh.bodies[body].nodes.clone()].iter().copied());

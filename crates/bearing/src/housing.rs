@@ -116,7 +116,7 @@ fn frame(springs: &SpringHousingScene, g: &Geometry, back: &Surface) -> Result<H
         facets: back.nodes.len(),
         layers: 1,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let part = ring.part()?;
     let density = springs.mass_kg / (part.area() * g.thickness * g.material.density);

@@ -104,11 +104,36 @@ fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
         "(on: inner, form: waviness(order: 80, amplitude_um: 400.0))",
         "(on: outer, form: roughness(rq_um: 60.0, longest_mm: 8.0, shortest_mm: 4.0))",
         "(on: roller(5), form: diameter(larger_um: -100.0))",
+        "(on: outer, form: spall(length_mm: 6.0, depth_mm: 0.2, edge: rectangular)), \
+         (on: outer, angle_deg: 110.0, form: spall(length_mm: 4.0, depth_mm: 0.4, edge: rectangular))",
         ALL,
     ] {
         let share = step(&scene(defects, 1.0)) / sound;
         assert!(share > 0.9, "{defects}: {share}");
     }
+}
+
+/// A spall with steep walls is the same mesh as `defect`, whatever else is on other surfaces.
+#[test]
+fn example_rectangular_spalls_are_cut_as_the_defect_is() {
+    let nodes = |scene: &Scene| {
+        let mesh = Assembly::new(scene).expect("it meshes").model.mesh;
+        (mesh.x, mesh.y)
+    };
+    let spall = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 5.0, depth_mm: 0.2, edge: rectangular))";
+    let listed = scene(spall, 1.0);
+    let mut single = scene("", 1.0);
+    single.defect = listed.spalls().pop();
+    assert_eq!(nodes(&listed), nodes(&single));
+    // Three of them carry their load.
+    let others = "(on: outer, angle_deg: 80.0, form: spall(length_mm: 5.0, depth_mm: 0.1, edge: rectangular)), \
+        (on: inner, angle_deg: 90.0, form: spall(length_mm: 6.0, depth_mm: 0.2, edge: rectangular))";
+    let scene = scene(&format!("{spall}, {others}"), 1.0);
+    let folder = Scratch::new("defects-grooves");
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    let info = simulate(&scene, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("it runs");
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    assert!(info.energy.max_relative_error < 0.01, "{}", info.energy.max_relative_error);
 }
 
 #[test]

@@ -31,7 +31,7 @@ const SPEED: f64 = 5.0;
 
 fn ring(inner_radius: f64, outer_radius: f64, at: f64) -> Annulus {
     let facets = (TAU * at / SIZE).round() as usize;
-    Annulus { inner_radius, outer_radius, facets, layers: 4, start_angle: 0.0, groove: None }
+    Annulus { inner_radius, outer_radius, facets, layers: 4, start_angle: 0.0, grooves: Vec::new() }
 }
 
 /// Mean of the nodes.

@@ -54,7 +54,8 @@ fn ground(kind: Ground, shift: f64) -> (Part, &'static str, [f64; 2]) {
             let facets = 1257;
             let start_angle = std::f64::consts::TAU * (-0.25 + shift / facets as f64);
             let (inner_radius, outer_radius) = (RACEWAY, RACEWAY + 6e-3);
-            let ring = Annulus { inner_radius, outer_radius, facets, layers: 12, start_angle, groove: None };
+            let ring =
+                Annulus { inner_radius, outer_radius, facets, layers: 12, start_angle, grooves: Vec::new() };
             (ring.part().expect("a ring"), "inner", [0.0, RADIUS - RACEWAY - APPROACH])
         }
     }

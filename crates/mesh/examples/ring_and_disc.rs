@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         facets: 500,
         layers: 12,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let disc = Disc { radius: 8e-3, facets: 100, size: 0.5e-3, rotation: 0.0 };
 

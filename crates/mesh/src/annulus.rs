@@ -1,4 +1,4 @@
-//! Rings, with or without a groove in one of their surfaces.
+//! Rings, with or without grooves in one of their surfaces.
 
 use crate::error::{count, elements, finite, positive};
 use crate::groove::{self, Groove};
@@ -9,10 +9,10 @@ use crate::{Error, Part};
 
 /// An annulus about the origin, made of quadrilaterals in circumferential rows.
 ///
-/// Row 0 of the nodes is the inner surface, the last row the outer one, or the other way round where a groove is cut into the
+/// Row 0 of the nodes is the inner surface, the last row the outer one, or the other way round where grooves are cut into the
 /// outer one; each row runs counter-clockwise and node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
-/// (counter-clockwise, its first node at `start_angle`, or two facets or so beside it where there is a groove).
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// (counter-clockwise, its first node at `start_angle`, or two facets or so beside it where there are grooves).
+#[derive(Clone, Debug, PartialEq)]
 pub struct Annulus {
     /// Radius of the inner circle [m].
     pub inner_radius: f64,
@@ -20,12 +20,12 @@ pub struct Annulus {
     pub outer_radius: f64,
     /// Facets of each of the two surfaces.
     pub facets: usize,
-    /// Elements through the thickness, equally thick where there is no groove.
+    /// Elements through the thickness, equally thick where there are no grooves.
     pub layers: usize,
-    /// Angle of the first node of every row [rad]; a groove moves nodes along the circumference.
+    /// Angle of the first node of every row [rad]; grooves move nodes along the circumference.
     pub start_angle: f64,
-    /// Groove in one of the surfaces.
-    pub groove: Option<Groove>,
+    /// Grooves in one of the surfaces, in any order.
+    pub grooves: Vec<Groove>,
 }
 
 impl Annulus {
@@ -37,7 +37,7 @@ impl Annulus {
     pub fn part(&self) -> Result<Part, Error> {
         self.check()?;
         let (grid, n, layers) = (self.grid(), self.facets, self.layers);
-        let from = self.groove.map_or(Circle::Inner, |groove| groove.circle);
+        let from = groove::circle_of(&self.grooves)?.unwrap_or(Circle::Inner);
         let mut part = Part::default();
         let mut places = Vec::with_capacity(n * (layers + 1));
         for i in 0..=layers {
@@ -62,15 +62,13 @@ impl Annulus {
         part.quads = rows::quads(0, layers, n, true, next);
         part.push_surface("inner", inner, true);
         part.push_surface("outer", outer, true);
-        if let Some(groove) = &self.groove {
-            groove::cut(&grid, groove, &places, f64::INFINITY, &mut part)?;
-        }
+        groove::cut(&grid, &self.grooves, &places, f64::INFINITY, &mut part)?;
         sound("annulus", part)
     }
 
-    /// Its columns and rows, without the groove.
+    /// Its columns and rows, without grooves.
     pub(crate) fn grid(&self) -> PolarGrid {
-        let Self { inner_radius, outer_radius, facets, layers, start_angle, .. } = *self;
+        let &Self { inner_radius, outer_radius, facets, layers, start_angle, .. } = self;
         PolarGrid { inner_radius, outer_radius, facets, layers, start_angle }
     }
 

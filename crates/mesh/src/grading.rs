@@ -91,8 +91,8 @@ impl Grading {
         count(SHAPE, "facets", annulus.facets, 8 * self.ratio(), advice)?;
         let advice = "use fewer `fine_layers` or `transitions`, or finer layers";
         count(SHAPE, "layers", annulus.layers, self.layers_needed(), advice)?;
-        if annulus.groove.is_some_and(|groove| groove.circle != self.fine) {
-            let (field, other) = ("groove", "fine");
+        if annulus.grooves.iter().any(|groove| groove.circle != self.fine) {
+            let (field, other) = ("grooves", "fine");
             let advice = "a groove lies in the fine circle";
             return Err(Error::Conflict { shape: SHAPE, field, other, advice });
         }
@@ -129,14 +129,12 @@ impl Annulus {
         inner.reverse();
         part.push_surface("inner", inner, true);
         part.push_surface("outer", outer, true);
-        if let Some(groove) = &self.groove {
-            let facet = match groove.circle {
-                Circle::Inner => grid.inner_facet(),
-                Circle::Outer => grid.seen_from_outside().inner_facet(),
-            };
-            let finest = facet.min(grid.layer());
-            groove::cut(&grid, groove, &lattice.places, enough(finest), &mut part)?;
-        }
+        let facet = match grading.fine {
+            Circle::Inner => grid.inner_facet(),
+            Circle::Outer => grid.seen_from_outside().inner_facet(),
+        };
+        let finest = facet.min(grid.layer());
+        groove::cut(&grid, &self.grooves, &lattice.places, enough(finest), &mut part)?;
         sound("annulus", part)
     }
 }

@@ -1,4 +1,4 @@
-//! A groove in the inner or the outer surface of an annulus.
+//! Grooves in the inner or the outer surface of an annulus.
 
 use std::f64::consts::TAU;
 
@@ -19,9 +19,13 @@ use crate::{Error, Part};
 /// elements keep nine tenths of the critical time step of squares, short grooves four fifths and deep ones two thirds
 /// (THEORY §2.4).
 ///
-/// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
-/// leaves less than a quarter of the surface or more floor than facets, walls that leave no floor or are wider than
-/// [`Groove::WIDEST_WALL`] facets, and a groove so deep or a layer so thick that some element stays inside out.
+/// Several grooves of a surface lie [`Groove::APART`] facets apart, and those of an annulus all in one surface. Between two of them
+/// facets are equally long.
+///
+/// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, lengths that
+/// leave less than a quarter of the surface or more floor than facets, walls that leave no floor or are wider than
+/// [`Groove::WIDEST_WALL`] facets, grooves too near to each other or in both surfaces, and a groove so deep or a layer so thick that
+/// some element stays inside out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groove {
     /// Angle of the middle of the groove [rad].
@@ -40,6 +44,9 @@ impl Groove {
     /// Widest wall, in facets: each is one facet.
     pub const WIDEST_WALL: f64 = 2.0;
 
+    /// Facets between two grooves of a surface, at least.
+    pub const APART: usize = 10;
+
     /// With radial walls, in the inner surface.
     pub const fn rectangular(centre_angle: f64, length: f64, depth: f64) -> Self {
         Self { centre_angle, length, depth, slope: 0.25 * TAU, circle: Circle::Inner }
@@ -51,6 +58,8 @@ impl Groove {
         if self.slope == 0.25 * TAU { 0.0 } else { self.depth / (self.slope.tan() * radius) }
     }
 }
+
+const SHAPE: &str = "groove";
 
 /// Poisson's ratio for which the cells under a groove are shaped; the best shape hardly depends on it.
 const POISSON: f64 = 0.3;
@@ -74,18 +83,32 @@ const FADES: usize = 2;
 /// Fewer radial columns are not worth moving the outer surface for.
 const LEAST_RADIAL: usize = 32;
 
-/// Cuts the groove into an annulus by moving its nodes. The first of them are those of the groove's surface,
+/// The circle that grooves are cut into; `None` without any.
+///
+/// # Errors
+/// When they are not all in the same.
+pub(crate) fn circle_of(grooves: &[Groove]) -> Result<Option<Circle>, Error> {
+    let Some(first) = grooves.first() else { return Ok(None) };
+    if grooves.iter().any(|groove| groove.circle != first.circle) {
+        let advice = "cut all of them into one surface";
+        return Err(Error::Conflict { shape: SHAPE, field: "circle", other: "circle of the first", advice });
+    }
+    Ok(Some(first.circle))
+}
+
+/// Cuts grooves into an annulus by moving its nodes. The first of them are those of the grooves' surface,
 /// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
 /// become larger.
 pub(crate) fn cut(
     grid: &PolarGrid,
-    groove: &Groove,
+    grooves: &[Groove],
     places: &[Place],
     enough: f64,
     part: &mut Part,
 ) -> Result<(), Error> {
+    let Some(circle) = circle_of(grooves)? else { return Ok(()) };
     let layers = grid.layers;
-    let (grid, places) = match groove.circle {
+    let (grid, places) = match circle {
         Circle::Inner => (grid, places.to_vec()),
         Circle::Outer => {
             let from_outside = |p: &Place| Place { row: layers as f64 - p.row, ..*p };
@@ -93,7 +116,7 @@ pub(crate) fn cut(
         }
     };
     let places = &places[..];
-    let plan = Plan::new(grid, groove)?;
+    let plan = Plan::new(grid, grooves)?;
     let n = grid.facets;
     let plain = part.clone();
     let (angle, radius) = spread(&plan, n, layers);
@@ -102,8 +125,8 @@ pub(crate) fn cut(
         let r = grid.row_radius(place.row) + between_rows(&radius, n, *place);
         (part.x[at], part.y[at]) = (r * cos, r * sin);
     }
-    plan.place_walls(grid, groove, part);
-    let movable = plan.movable(grid, groove, places);
+    plan.place_walls(grid, part);
+    let movable = plan.movable(grid, places);
     let layer = grid.layer();
     let length = LENGTH * layer.min(grid.inner_facet());
     let mut ordered = part.clone();
@@ -114,7 +137,8 @@ pub(crate) fn cut(
         // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
         // another search, whichever comes out better.
         let turned_back = optimise(part, harsh);
-        let deep = (groove.depth / layer) as usize;
+        let deepest = grooves.iter().map(|groove| groove.depth).fold(0.0, f64::max);
+        let deep = (deepest / layer) as usize;
         raise_critical_step_to(enough, &mut ordered, &movable, POISSON, SWEEPS * (1 + deep));
         let searched = ordered.clone();
         let again = optimise(&mut ordered, gentle);
@@ -133,107 +157,160 @@ pub(crate) fn cut(
 
 /// Where the nodes of the inner row go.
 struct Plan {
-    /// Column of the upper node of the first (clockwise) wall.
-    first: usize,
-    /// Facets of the floor.
-    floor: usize,
+    /// The grooves, counter-clockwise.
+    cuts: Vec<Cut>,
     /// Angular displacement of each inner node [rad], and its rise onto the floor [m].
     angle: Vec<f64>,
     rise: Vec<f64>,
     /// Angular displacement of each outer node [rad].
     back: Vec<f64>,
-    /// Columns on each side of a wall whose nodes the search may move.
-    columns: usize,
     /// Columns from which on they are not radial, in order.
     bent: Vec<usize>,
 }
 
-impl Plan {
-    fn new(grid: &PolarGrid, groove: &Groove) -> Result<Plan, Error> {
+/// A groove with the columns that it takes.
+struct Cut {
+    groove: Groove,
+    /// Angle between the walls [rad].
+    sector: f64,
+    /// Columns before the upper node of the first (clockwise) wall from the start of the grid, which may lie before it.
+    from: f64,
+    /// The same column within the grid.
+    first: usize,
+    /// Facets of the floor.
+    floor: usize,
+    /// Columns on each side of a wall whose nodes the search may move.
+    columns: usize,
+}
+
+impl Cut {
+    fn new(grid: &PolarGrid, groove: &Groove) -> Result<Self, Error> {
         let n = grid.facets;
         let sector = check(grid, groove)?;
-        let wall = groove.wall(grid.inner_radius);
-        let flat = sector - 2.0 * wall;
+        let flat = sector - 2.0 * groove.wall(grid.inner_radius);
         let floor = ((n as f64 * flat / TAU).round() as usize).max(2);
+        // The columns are chosen so that the middle of the groove moves by less than half a facet.
+        let from = (Self::middle(grid, groove) - 0.5 * (floor + 2) as f64).round();
+        let first = from.rem_euclid(n as f64) as usize % n;
+        // A groove of several layers disturbs as many columns as it is deep.
+        let columns = REACH + (groove.depth / grid.inner_facet()).ceil() as usize;
+        Ok(Self { groove: *groove, sector, from, first, floor, columns })
+    }
+
+    /// Place of the middle in columns.
+    fn middle(grid: &PolarGrid, groove: &Groove) -> f64 {
+        (groove.centre_angle - grid.start_angle) * grid.facets as f64 / TAU
+    }
+
+    /// Columns of the upper node of the first wall, its lower node, and those of the second wall.
+    fn walls(&self) -> [usize; 4] {
+        [self.first, self.first + 1, self.first + 1 + self.floor, self.first + 2 + self.floor]
+    }
+
+    /// Facets and angle [rad] between its end and the next one of the `n` facets around.
+    fn gap(&self, next: &Self, n: usize) -> (usize, f64) {
+        let facets = (next.first + 2 * n - self.walls()[3]) % n;
+        let apart = (next.groove.centre_angle - self.groove.centre_angle).rem_euclid(TAU);
+        // A single groove is its own neighbour.
+        let apart = if apart == 0.0 { TAU } else { apart };
+        (facets, apart - 0.5 * (self.sector + next.sector))
+    }
+}
+
+impl Plan {
+    fn new(grid: &PolarGrid, grooves: &[Groove]) -> Result<Plan, Error> {
+        let n = grid.facets;
+        let mut cuts = grooves.iter().map(|groove| Cut::new(grid, groove)).collect::<Result<Vec<_>, _>>()?;
+        cuts.sort_by_key(|cut| cut.first);
         let inwards = if grid.inner_radius < grid.outer_radius { 1.0 } else { -1.0 };
-        // Two walls, the floor and at least a few facets elsewhere share the inner surface.
-        if floor + 2 + 4 > n {
+        // Walls, floors and at least a few facets elsewhere share the inner surface.
+        let taken: usize = cuts.iter().map(|cut| cut.floor + 2).sum();
+        if taken + 4 > n {
             let advice = "use more facets or a shorter groove";
             let (shape, field) = ("annulus with a groove", "facets");
-            return Err(Error::Count { shape, field, value: n, least: floor + 6, most: MOST, advice });
+            return Err(Error::Count { shape, field, value: n, least: taken + 4, most: MOST, advice });
         }
-        let rest = n - 2 - floor;
-        // The columns are chosen so that the middle of the groove moves by less than half a facet.
-        let middle = (groove.centre_angle - grid.start_angle) * n as f64 / TAU;
-        let from = (middle - 0.5 * (floor + 2) as f64).round();
-        let first = from.rem_euclid(n as f64) as usize % n;
         let (mut angle, mut rise) = (vec![0.0; n], vec![0.0; n]);
-        for m in 0..n {
-            let target = if m == 0 {
-                -0.5 * sector
-            } else if m <= floor + 1 {
-                -0.5 * flat + flat * (m - 1) as f64 / floor as f64
-            } else {
-                0.5 * sector + (TAU - sector) * (m - 2 - floor) as f64 / rest as f64
-            };
-            let uniform = TAU * (from + m as f64 - middle) / n as f64;
-            angle[(first + m) % n] = target - uniform;
-            rise[(first + m) % n] = if (1..=floor + 1).contains(&m) { inwards * groove.depth } else { 0.0 };
+        let nexts = cuts.iter().cycle().skip(1);
+        let gaps: Vec<(usize, f64)> = cuts.iter().zip(nexts).map(|(cut, next)| cut.gap(next, n)).collect();
+        let around = taken + gaps.iter().map(|(rest, _)| rest).sum::<usize>();
+        if cuts.len() > 1 && (around != n || gaps.iter().any(|(rest, _)| *rest < Groove::APART)) {
+            let (field, other) = ("centre_angle", "centre_angle of another one");
+            let advice = "ten facets lie between two grooves";
+            return Err(Error::Conflict { shape: SHAPE, field, other, advice });
         }
-        let cell = grid.inner_facet();
-        // A groove of several layers disturbs as many columns as it is deep.
-        let columns = REACH + (groove.depth / cell).ceil() as usize;
-        let thickness = ((grid.outer_radius - grid.inner_radius).abs() / cell).ceil() as usize;
-        let beside = (FADES * thickness).max(columns + 3);
-        let (back, bent) = if floor + 2 * beside + 4 + LEAST_RADIAL < n {
-            let (from, bent) = (first + n - beside, floor + 2 + 2 * beside);
-            let column = |m: usize| (from + m) % n;
-            let mut back = angle.clone();
-            let (a, b) = (angle[column(0)], angle[column(bent)]);
-            for m in 1..bent {
-                back[column(m)] = a + (b - a) * m as f64 / bent as f64;
+        for (cut, &(rest, free)) in cuts.iter().zip(&gaps) {
+            let (sector, floor) = (cut.sector, cut.floor);
+            let flat = sector - 2.0 * cut.groove.wall(grid.inner_radius);
+            let middle = Cut::middle(grid, &cut.groove);
+            for m in 0..floor + 2 + rest {
+                let target = if m == 0 {
+                    -0.5 * sector
+                } else if m <= floor + 1 {
+                    -0.5 * flat + flat * (m - 1) as f64 / floor as f64
+                } else {
+                    0.5 * sector + free * (m - 2 - floor) as f64 / rest as f64
+                };
+                let uniform = TAU * (cut.from + m as f64 - middle) / n as f64;
+                angle[(cut.first + m) % n] = target - uniform;
+                let deep = (1..=floor + 1).contains(&m);
+                rise[(cut.first + m) % n] = if deep { inwards * cut.groove.depth } else { 0.0 };
             }
-            (back, (1..bent).map(column).collect())
+        }
+        let thickness = ((grid.outer_radius - grid.inner_radius).abs() / grid.inner_facet()).ceil() as usize;
+        let beside = |cut: &Cut| (FADES * thickness).max(cut.columns + 3);
+        let most = cuts.iter().map(beside).max().unwrap_or(0);
+        let (back, bent) = if gaps.iter().all(|(rest, _)| *rest > 2 * most + 2 + LEAST_RADIAL) {
+            let (mut back, mut columns) = (angle.clone(), Vec::new());
+            for cut in &cuts {
+                let beside = beside(cut);
+                let (from, bent) = (cut.first + n - beside, cut.floor + 2 + 2 * beside);
+                let column = |m: usize| (from + m) % n;
+                let (a, b) = (angle[column(0)], angle[column(bent)]);
+                for m in 1..bent {
+                    back[column(m)] = a + (b - a) * m as f64 / bent as f64;
+                }
+                columns.extend((1..bent).map(column));
+            }
+            (back, columns)
         } else {
             (vec![0.0; n], (0..n).collect())
         };
-        Ok(Plan { first, floor, angle, rise, back, columns, bent })
+        Ok(Plan { cuts, angle, rise, back, bent })
     }
 
-    /// Writes the four wall nodes out, so that no rounding tilts a wall.
-    fn place_walls(&self, grid: &PolarGrid, groove: &Groove, part: &mut Part) {
-        let half = 0.5 * groove.length / grid.inner_radius;
+    /// Writes the wall nodes out, so that no rounding tilts a wall.
+    fn place_walls(&self, grid: &PolarGrid, part: &mut Part) {
         let inwards = if grid.inner_radius < grid.outer_radius { 1.0 } else { -1.0 };
-        let (top, bottom) = (grid.inner_radius, grid.inner_radius + inwards * groove.depth);
-        let (a, b) = (groove.centre_angle - half, groove.centre_angle + half);
-        let wall = groove.wall(grid.inner_radius);
-        for (column, angle, radius) in [
-            (self.first, a, top),
-            (self.first + 1, a + wall, bottom),
-            (self.first + 1 + self.floor, b - wall, bottom),
-            (self.first + 2 + self.floor, b, top),
-        ] {
-            let (sin, cos) = angle.sin_cos();
-            let at = column % grid.facets;
-            (part.x[at], part.y[at]) = (radius * cos, radius * sin);
+        for cut in &self.cuts {
+            let groove = &cut.groove;
+            let half = 0.5 * groove.length / grid.inner_radius;
+            let (top, bottom) = (grid.inner_radius, grid.inner_radius + inwards * groove.depth);
+            let (a, b) = (groove.centre_angle - half, groove.centre_angle + half);
+            let wall = groove.wall(grid.inner_radius);
+            let places = [(a, top), (a + wall, bottom), (b - wall, bottom), (b, top)];
+            for (column, (angle, radius)) in cut.walls().into_iter().zip(places) {
+                let (sin, cos) = angle.sin_cos();
+                let at = column % grid.facets;
+                (part.x[at], part.y[at]) = (radius * cos, radius * sin);
+            }
         }
     }
 
     /// Interior nodes near the walls.
-    fn movable(&self, grid: &PolarGrid, groove: &Groove, places: &[Place]) -> Vec<bool> {
-        let (n, layers, columns) = (grid.facets, grid.layers, self.columns);
-        let layer = grid.layer();
-        let rows = REACH + (groove.depth / layer).ceil() as usize;
-        let near_wall = |column: usize, wall: usize| {
+    fn movable(&self, grid: &PolarGrid, places: &[Place]) -> Vec<bool> {
+        let (n, layers) = (grid.facets, grid.layers);
+        let near_wall = |column: usize, wall: usize, columns: usize| {
             let right = (column + 2 * n - wall % n) % n;
             right < columns + 2 || n - right <= columns
         };
-        let walls = [self.first, self.first + 1 + self.floor];
-        let movable = |p: &Place| {
-            let inside = p.row > 0.0 && p.row < layers as f64 && p.row <= rows as f64;
-            inside && walls.iter().any(|wall| near_wall(p.column, *wall))
+        let near = |p: &Place, cut: &Cut| {
+            let rows = REACH + (cut.groove.depth / grid.layer()).ceil() as usize;
+            let [first, _, second, _] = cut.walls();
+            p.row <= rows as f64 && [first, second].iter().any(|wall| near_wall(p.column, *wall, cut.columns))
         };
-        places.iter().map(movable).collect()
+        let inside = |p: &Place| p.row > 0.0 && p.row < layers as f64;
+        places.iter().map(|p| inside(p) && self.cuts.iter().any(|cut| near(p, cut))).collect()
     }
 }
 
@@ -271,7 +348,6 @@ fn spread(plan: &Plan, n: usize, layers: usize) -> (Vec<f64>, Vec<f64>) {
 
 /// Refuses what cannot be cut; gives the angle between the walls [rad].
 fn check(grid: &PolarGrid, groove: &Groove) -> Result<f64, Error> {
-    const SHAPE: &str = "groove";
     finite(SHAPE, "centre_angle", groove.centre_angle)?;
     positive(SHAPE, "length", groove.length)?;
     positive(SHAPE, "depth", groove.depth)?;

@@ -24,7 +24,7 @@
 //!     facets: 180,
 //!     layers: 5,
 //!     start_angle: 0.0,
-//!     groove: None,
+//!     grooves: Vec::new(),
 //! };
 //! let support = Rectangle { x0: -0.02, y0: -0.4, width: 0.04, height: 0.1, columns: 4, rows: 10 };
 //!

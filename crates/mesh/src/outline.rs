@@ -52,8 +52,14 @@ mod tests {
     #[test]
     fn example_the_boundary_of_a_ring_and_of_a_block() {
         let (facets, layers) = (24, 3);
-        let ring =
-            Annulus { inner_radius: 1.0, outer_radius: 1.5, facets, layers, start_angle: 0.0, groove: None };
+        let ring = Annulus {
+            inner_radius: 1.0,
+            outer_radius: 1.5,
+            facets,
+            layers,
+            start_angle: 0.0,
+            grooves: Vec::new(),
+        };
         let ring = ring.part().expect("a ring");
         let all: Vec<u32> = (0..ring.x.len() as u32).collect();
         let both = ring.boundary_along(&all);

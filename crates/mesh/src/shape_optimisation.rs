@@ -282,9 +282,8 @@ mod tests {
             ] {
                 let groove = Groove::rectangular(0.25 * TAU, length, depth);
                 let (inner_radius, outer_radius) = (0.1, 0.11);
-                let cut = Some(groove);
-                let ring =
-                    Annulus { inner_radius, outer_radius, facets, layers, start_angle: 0.0, groove: cut };
+                let grooves = vec![groove];
+                let ring = Annulus { inner_radius, outer_radius, facets, layers, start_angle: 0.0, grooves };
                 for part in [ring.part(), ring.graded_part(&graded)] {
                     let part = part.expect("a groove that can be cut");
                     let kept = assembled_length(&part, &groove, 0.01 / layers as f64);

@@ -15,13 +15,13 @@ const RING: Annulus = Annulus {
     facets: 1257,
     layers: 20,
     start_angle: 0.3,
-    groove: None,
+    grooves: Vec::new(),
 };
 
 const GROOVE: Groove = Groove::rectangular(0.5 * PI, 0.01, 0.2e-3);
 
 fn ring(groove: Option<Groove>) -> Part {
-    Annulus { groove, ..RING }.part().expect("a ring that can be made")
+    Annulus { grooves: groove.into_iter().collect(), ..RING }.part().expect("a ring that can be made")
 }
 
 /// Area of a regular polygon of n corners on a circle [m²].
@@ -188,8 +188,9 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
             (7.0, 0.01, 1e-3),
             (3.0, 0.02, 3e-3),
         ] {
-            let groove = Some(Groove::rectangular(centre_angle, length, depth));
-            let part = Annulus { facets, layers, groove, ..RING }.part().expect("a groove that can be cut");
+            let groove = Groove::rectangular(centre_angle, length, depth);
+            let ring = Annulus { facets, layers, grooves: vec![groove], ..RING };
+            let part = ring.part().expect("a groove that can be cut");
             assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");
             // An element alone; what the assembled ones keep is tested in `shape_optimisation.rs`.
             let kept = relative_length(&part, 0.01 / layers as f64);
@@ -202,24 +203,76 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
 /// A ring of one layer has no node that could move.
 #[test]
 fn issue_groove_in_a_single_layer() {
-    let groove = Some(GROOVE);
-    let part = Annulus { facets: 63, layers: 1, groove, ..RING }.part().expect("a groove that can be cut");
+    let ring = Annulus { facets: 63, layers: 1, grooves: vec![GROOVE], ..RING };
+    let part = ring.part().expect("a groove that can be cut");
     assert!(smallest_jacobian(&part) > 0.0);
 }
 
 /// The deepest groove that is promised, through six layers of ten.
 #[test]
 fn example_deepest_groove_stays_in_order() {
-    let groove = Some(Groove { depth: 6e-3, ..GROOVE });
-    let part = Annulus { facets: 628, layers: 10, groove, ..RING }.part().expect("60 % of the thickness");
+    let grooves = vec![Groove { depth: 6e-3, ..GROOVE }];
+    let part = Annulus { facets: 628, layers: 10, grooves, ..RING }.part().expect("60 % of the thickness");
     assert!(smallest_jacobian(&part) > 0.0);
     assert!(relative_length(&part, 1e-3) > 0.35);
+}
+
+/// Each groove as it would be alone, in whatever order they are given; facets between two of them are equally long.
+#[test]
+fn example_several_grooves_of_one_surface() {
+    let n = RING.facets;
+    let short = Groove::rectangular(1.9, 0.004, 0.5e-3);
+    let sloped = Groove { slope: PI / 4.0, ..Groove::rectangular(-0.2, 0.02, 0.1e-3) };
+    // About the first node of a row, and so near to the first one that no column between them stays radial.
+    let part = |grooves: &[Groove]| {
+        Annulus { grooves: grooves.to_vec(), start_angle: -0.2, ..RING }
+            .part()
+            .expect("grooves that can be cut")
+    };
+    let (all, turned) = (part(&[GROOVE, short, sloped]), part(&[sloped, short, GROOVE]));
+    assert_eq!((&all.x, &all.y), (&turned.x, &turned.y));
+    assert!(smallest_jacobian(&all) > 0.0);
+    assert!(relative_length(&all, 0.5e-3) > 0.7, "{}", relative_length(&all, 0.5e-3));
+    assert_boundary_is(&all, &["inner", "outer"]);
+
+    let mut corners = Vec::new();
+    for groove in [sloped, GROOVE, short] {
+        let half = 0.5 * groove.length / RING.inner_radius;
+        let wall = if groove == sloped { groove.depth / RING.inner_radius } else { 0.0 };
+        let [low, high] = [groove.centre_angle - half, groove.centre_angle + half];
+        let floor = RING.inner_radius + groove.depth;
+        for (angle, radius) in
+            [(low, RING.inner_radius), (low + wall, floor), (high - wall, floor), (high, RING.inner_radius)]
+        {
+            let at = [radius * angle.cos(), radius * angle.sin()];
+            let is = |c: &usize| {
+                let [x, y] = point(&all, *c as u32);
+                (x - at[0]).hypot(y - at[1]) < 1e-12
+            };
+            corners.push((0..n).find(is).expect("a node at every corner"));
+        }
+    }
+    // From the second upper corner of each to the first of the next.
+    for k in 0..3 {
+        let (from, to) = (corners[4 * k + 3], corners[(4 * k + 4) % 12]);
+        let facets = (to + n - from) % n;
+        let length = |m: usize| {
+            let ([x1, y1], [x2, y2]) =
+                (point(&all, ((from + m) % n) as u32), point(&all, ((from + m + 1) % n) as u32));
+            assert!((x1.hypot(y1) - RING.inner_radius).abs() < 1e-12);
+            (x2 - x1).hypot(y2 - y1)
+        };
+        for m in 1..facets {
+            assert_close(length(m), length(0), 1e-9, "facets between two grooves");
+        }
+        assert!((length(0) / 0.5e-3 - 1.0).abs() < 0.05, "{} m", length(0));
+    }
 }
 
 #[test]
 fn refuses_with_field_and_limit() {
     let refused = |annulus: Annulus| annulus.part().expect_err("a ring that cannot be made").to_string();
-    let with = |groove: Groove| Annulus { groove: Some(groove), ..RING };
+    let with = |groove: Groove| Annulus { grooves: vec![groove], ..RING };
     for (message, parts) in [
         (refused(Annulus { inner_radius: -0.1, ..RING }), ["inner_radius", "-0.1"]),
         (refused(Annulus { inner_radius: f64::NAN, ..RING }), ["inner_radius", "NaN"]),
@@ -233,6 +286,16 @@ fn refuses_with_field_and_limit() {
     ] {
         assert!(parts.iter().all(|p| message.contains(p)), "{message}");
     }
+    // They overlap, are too near, one lies in the other, and they are in both surfaces.
+    let other = |groove: Groove| Annulus { grooves: vec![GROOVE, groove], ..RING };
+    for centre_angle in [0.5 * PI + 0.05, 0.5 * PI - 0.14] {
+        let near = other(Groove { centre_angle, ..GROOVE });
+        assert!(matches!(near.part(), Err(Error::Conflict { field: "centre_angle", .. })), "{centre_angle}");
+    }
+    let within = other(Groove { length: 0.08, ..GROOVE });
+    assert!(matches!(within.part(), Err(Error::Conflict { field: "centre_angle", .. })));
+    let opposite = other(Groove { centre_angle: -1.0, circle: Circle::Outer, ..GROOVE });
+    assert!(matches!(opposite.part(), Err(Error::Conflict { field: "circle", .. })));
     let few = Annulus { facets: 8, ..with(Groove { length: 0.2, ..GROOVE }) };
     assert!(matches!(few.part(), Err(Error::Count { field: "facets", value: 8, .. })));
 }
@@ -246,10 +309,10 @@ fn example_a_groove_in_the_outer_surface_is_that_in_the_inner_one_seen_from_outs
         facets: 1024,
         layers: 20,
         start_angle: 0.0,
-        groove: Some(groove),
+        grooves: vec![groove],
     };
     let graded = Grading { fine: Circle::Outer, fine_layers: 2, transitions: 1 };
-    let sound = Annulus { groove: None, ..ring };
+    let sound = Annulus { grooves: Vec::new(), ..ring.clone() };
     for (part, sound) in
         [(ring.part(), sound.part()), (ring.graded_part(&graded), sound.graded_part(&graded))]
     {
@@ -278,7 +341,7 @@ fn example_sloped_walls_are_as_wide_as_their_slope_asks() {
             facets: 1200,
             layers: 20,
             start_angle: 0.0,
-            groove: Some(groove),
+            grooves: vec![groove],
         };
         let part = ring.part().expect("a groove that can be cut");
         let (name, on) = if circle == Circle::Inner { ("inner", 0.1) } else { ("outer", 0.11) };
@@ -301,7 +364,7 @@ fn example_sloped_walls_are_as_wide_as_their_slope_asks() {
         facets: 1200,
         layers: 20,
         start_angle: 0.0,
-        groove: Some(flat),
+        grooves: vec![flat],
     };
     assert!(matches!(ring.part(), Err(Error::OutOfRange { field: "slope", .. })));
 }

@@ -16,7 +16,7 @@ fn mesh() -> Mesh {
         facets: 120,
         layers: 4,
         start_angle: 0.1,
-        groove: Some(Groove::rectangular(1.5, 4e-3, 0.5e-3)),
+        grooves: vec![Groove::rectangular(1.5, 4e-3, 0.5e-3)],
     };
     let mut mesh = Mesh::new();
     mesh.add("outer ring", &ring.part().expect("a ring"));

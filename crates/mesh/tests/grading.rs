@@ -15,7 +15,7 @@ const RING: Annulus = Annulus {
     facets: 1257,
     layers: 20,
     start_angle: 0.3,
-    groove: None,
+    grooves: Vec::new(),
 };
 
 const GROOVE: Groove = Groove::rectangular(0.5 * PI, 0.01, 0.2e-3);
@@ -108,10 +108,10 @@ fn example_grading_keeps_the_critical_step() {
 /// The groove has the same walls and floor as in the uniform ring.
 #[test]
 fn example_groove_in_the_fine_circle() {
-    let ring = Annulus { start_angle: 0.0, groove: Some(GROOVE), ..RING };
+    let ring = Annulus { start_angle: 0.0, grooves: vec![GROOVE], ..RING };
     let uniform = ring.part().expect("a ring with a groove");
     for fine_layers in [1, 2, 3] {
-        let part = made(ring, Grading { fine_layers, ..INWARDS });
+        let part = made(ring.clone(), Grading { fine_layers, ..INWARDS });
         assert_eq!(part.x[..1257], uniform.x[..1257], "the inner surface does not know of the grading");
         assert_eq!(part.y[..1257], uniform.y[..1257]);
         assert!(smallest_jacobian(&part) > 0.0);
@@ -131,8 +131,8 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
         for (centre_angle, length, depth) in
             [(0.0, 0.01, 0.05e-3), (-2.0, 0.04, 0.5e-3), (7.0, 0.01, 1e-3), (3.0, 0.02, 3e-3)]
         {
-            let groove = Some(Groove::rectangular(centre_angle, length, depth));
-            let ring = Annulus { facets, layers, groove, ..RING };
+            let groove = Groove::rectangular(centre_angle, length, depth);
+            let ring = Annulus { facets, layers, grooves: vec![groove], ..RING };
             let part = made(ring, Grading { fine_layers: 1, ..INWARDS });
             assert!(smallest_jacobian(&part) > 0.0, "{facets} facets, {groove:?}");
             assert_boundary_is(&part, &["inner", "outer"]);
@@ -143,13 +143,14 @@ fn invariant_grooves_of_any_place_and_depth_stay_in_order() {
 /// Without a transition a graded ring is the uniform one.
 #[test]
 fn invariant_no_transition_is_the_uniform_ring() {
-    for groove in [None, Some(GROOVE)] {
-        let ring = Annulus { groove, ..RING };
+    for grooves in [vec![], vec![GROOVE]] {
+        let sound = grooves.is_empty();
+        let ring = Annulus { grooves, ..RING };
         let none = Grading { transitions: 0, ..INWARDS };
-        let (part, uniform) = (made(ring, none), ring.part().expect("a ring"));
+        let (part, uniform) = (made(ring.clone(), none), ring.part().expect("a ring"));
         assert_eq!(part.quads, uniform.quads);
         assert_eq!(part.surfaces, uniform.surfaces);
-        if groove.is_none() {
+        if sound {
             assert_eq!((part.x, part.y), (uniform.x, uniform.y));
         }
     }
@@ -170,8 +171,8 @@ fn refuses_with_field_and_limit() {
         assert!(parts.iter().all(|p| message.contains(p)), "{message}");
     }
     let outer = Grading { fine: Circle::Outer, ..INWARDS };
-    let cut = Annulus { groove: Some(GROOVE), ..RING };
-    assert!(matches!(cut.graded_part(&outer), Err(Error::Conflict { field: "groove", .. })));
+    let cut = Annulus { grooves: vec![GROOVE], ..RING };
+    assert!(matches!(cut.graded_part(&outer), Err(Error::Conflict { field: "grooves", .. })));
     let least = Annulus { layers: INWARDS.layers_needed(), ..RING };
     assert!(least.graded_part(&INWARDS).is_ok(), "the fewest layers are enough");
 }

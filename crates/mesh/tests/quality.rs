@@ -108,7 +108,7 @@ fn example_report_of_two_bodies() {
         facets: 628,
         layers: 10,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     mesh.add("ring", &ring.part().expect("a ring"));
     let quality = Quality::of(&mesh, POISSON, 5857.0);

@@ -21,7 +21,7 @@ use crate::{
     overlap::Sides,
     reduction::Reduction,
     row::{Row, Rows},
-    seat::{STICKING, Springs},
+    seat::{STICKING, Seat, Springs},
     state::State,
 };
 
@@ -316,6 +316,13 @@ impl Bearing {
         let r = self.reduction.padded;
         let d: f64 = self.reduction.dampers.iter().step_by(r + 1).sum();
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
+    }
+
+    /// What a roller's force loses because it lets the seat slip under it, over the force, at most: the gain of a loop whose lag is a
+    /// step (THEORY §9.1).
+    pub fn seat_loop_gain(&self) -> f64 {
+        let give = self.reduction.springs.as_ref().map_or(0.0, Seat::give);
+        give * self.outer.compliance.stiffest(self.penalty, self.outer.relative)
     }
 
     /// The rim of a roller, from 0.

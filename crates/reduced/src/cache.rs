@@ -22,7 +22,7 @@ const FOLDER: &str = ".reduced";
 const MAGIC: &[u8; 20] = b"stribeck reduced v5\n";
 
 /// The scene that a reduction of `scene` is made from: what matters neither to mesh nor to preload has its default. Rollers
-/// stand in the middle between their places, so that none is in the defect.
+/// stand in the middle between their places, so that none is in the first groove.
 pub fn reference(scene: &Scene) -> Scene {
     let ContactScene {
         method,
@@ -35,7 +35,7 @@ pub fn reference(scene: &Scene) -> Scene {
         onset_um,
         ..
     } = scene.contact.clone();
-    let middle = scene.defect.as_ref().map_or(scene.load_zone_deg(), |defect| defect.angle_deg);
+    let middle = scene.grooves().first().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
     let mut bearing = scene.bearing.clone();
     bearing.first_roller_deg = middle + 180.0 / bearing.rollers as f64;
     let mut mesh = scene.mesh.clone();
@@ -51,8 +51,8 @@ pub fn reference(scene: &Scene) -> Scene {
         adapter: scene.adapter.clone(),
         housing: scene.housing.clone(),
         defect: scene.defect.clone(),
-        // They change places, hardly the rings' stiffness: outlines get them later.
-        defects: Vec::new(),
+        // All others change places, hardly the rings' stiffness: outlines get them later.
+        defects: scene.defects.iter().filter(|deviation| deviation.groove().is_some()).cloned().collect(),
         material: scene.material.clone(),
         mesh,
         operation: between(scene),

@@ -7,7 +7,7 @@ use stribeck_scene::{
 };
 use stribeck_system::Ledger;
 
-use crate::state::State;
+use crate::{bearing::Bearing, state::State};
 
 /// What the ledger of a run is off by.
 #[derive(Debug, Clone, Copy, Default)]
@@ -32,6 +32,9 @@ impl LedgerError {
 /// exceeds any share of what the rings store. That is no divergence, which exceeds this share of the heat at once.
 const GATHERED: f64 = 0.01;
 
+/// Gain of a loop whose force is extrapolated by a step, from which on it may diverge: z² + g (2z − 1) = 0 at z = −1.
+const SEAT_LOOP_GAIN: f64 = 1.0 / 3.0;
+
 /// Rollers may leave their annulus by this share of a roller's radius.
 const OUT_OF_PLACE: f64 = 0.5;
 
@@ -53,7 +56,7 @@ impl Guards {
     pub(crate) fn new(scene: &Scene) -> Self {
         let g = Geometry::of(scene);
         let slack = OUT_OF_PLACE * g.roller_radius;
-        let depth = scene.leading_spall().map_or(0.0, |d| 1e-3 * d.depth_mm);
+        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(0.0, f64::max);
         Self {
             limits: scene.guards.clone(),
             element_size: g.element_size,
@@ -66,7 +69,7 @@ impl Guards {
     }
 
     /// What is worth a word before the first step.
-    pub(crate) fn before(scene: &Scene, info: &RunInfo) -> Vec<String> {
+    pub(crate) fn before(scene: &Scene, info: &RunInfo, bearing: &Bearing) -> Vec<String> {
         let mut warnings = Vec::new();
         if info.time_step_s > info.critical_time_step_s {
             warnings.push(format!(
@@ -74,6 +77,15 @@ impl Guards {
                  `model.modes_khz`",
                 1e6 * info.time_step_s,
                 info.time_step_s / info.critical_time_step_s
+            ));
+        }
+        let gain = bearing.seat_loop_gain();
+        if gain > SEAT_LOOP_GAIN {
+            warnings.push(format!(
+                "the seat may answer rollers with {:.0} % of their force, a step late: above {:.0} % the run may diverge. Take a larger \
+                 `model.modes_khz` or a smaller `contact.penalty_scale`",
+                100.0 * gain,
+                100.0 * SEAT_LOOP_GAIN
             ));
         }
         if scene.output.frames.is_some() {

@@ -1,6 +1,9 @@
 //! From the finite elements of a preloaded bearing to what a reduced run needs of them (THEORY §9.1–9.3).
 
-use std::{collections::BTreeSet, f64::consts::TAU};
+use std::{
+    collections::BTreeSet,
+    f64::consts::{PI, TAU},
+};
 
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::{
@@ -10,7 +13,11 @@ use stribeck_bearing::{
 };
 use stribeck_mesh::Mesh;
 use stribeck_scene::{
-    geometry::Geometry, housing::HousingScene, run_info::MeshInfo, scene::Scene, static_load,
+    geometry::{DefectGeometry, Geometry},
+    housing::HousingScene,
+    run_info::MeshInfo,
+    scene::Scene,
+    static_load,
 };
 use stribeck_simd::lanes::LANES;
 use stribeck_solver::{
@@ -324,14 +331,21 @@ impl Reduction {
         let penalty = g.penalty_stiffness * g.thickness;
         let half_count = |radius: f64, spacing: f64| {
             let q = most / g.thickness;
-            let hertz = 4.0 * q * radius / (std::f64::consts::PI * e_star);
+            let hertz = 4.0 * q * radius / (PI * e_star);
             let winkler = (1.5 * q * radius / g.penalty_stiffness).powf(2.0 / 3.0);
             (1.3 * (hertz + winkler).sqrt() / spacing).ceil() as usize + 2
         };
-        // Beside the defect, or where it would be.
-        let beside = g.defect.map_or(scene.load_zone_deg().to_radians(), |d| {
+        // Beside the groove that has no other one near there, or where the load is.
+        let beside_of = |d: &DefectGeometry| {
             d.angle + (0.5 * d.length + 2.0 * g.outer_ring_thickness) / g.outer_race_radius
-        });
+        };
+        let room = |at: f64| {
+            let apart = |d: &DefectGeometry| (at - d.angle + PI).rem_euclid(TAU) - PI;
+            g.grooves.iter().map(|d| apart(d).abs() - 0.5 * d.length / g.outer_race_radius).fold(PI, f64::min)
+        };
+        let places = g.grooves.iter().map(beside_of);
+        let beside = places.max_by(|a, b| room(*a).total_cmp(&room(*b)));
+        let beside = beside.unwrap_or(scene.load_zone_deg().to_radians());
         let node_at = |outline: &[[f64; 2]], angle: f64| {
             let (s, c) = angle.sin_cos();
             let along = |p: &[f64; 2]| direction(*p)[0] * c + direction(*p)[1] * s;

@@ -227,6 +227,23 @@ impl Seat {
     }
 }
 
+impl Seat {
+    /// Largest displacement of the raceway under a unit force on it [m/N], beyond the modes, when that lets the whole seat slip. It opens
+    /// nothing where it presses.
+    pub(crate) fn give(&self) -> f64 {
+        let n = 2 * self.padded;
+        let slips: Vec<usize> = (self.padded..n).filter(|at| self.stiffness[at * n + at] > 0.0).collect();
+        let of = |i: usize, j: usize| self.stiffness[slips[i] * n + slips[j]];
+        let stiffness = Mat::from_fn(slips.len(), slips.len(), of);
+        let vertices = self.by_rollers.len() / n;
+        let pulled = Mat::from_fn(slips.len(), vertices, |i, vertex| self.by_rollers[vertex * n + slips[i]]);
+        let slipped = stiffness.partial_piv_lu().solve(&pulled);
+        let under =
+            |vertex: usize| (0..slips.len()).map(|i| pulled[(i, vertex)] * slipped[(i, vertex)]).sum();
+        (0..vertices).map(under).fold(0.0, f64::max)
+    }
+}
+
 impl Panels {
     fn of(parts: &Parts<'_>) -> Option<Self> {
         let place = |slot: u32| [parts.x[slot as usize], parts.y[slot as usize]];

@@ -65,7 +65,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     let mut info = setup.info(scene, host);
     info.reduced = Some(summary);
     info.warnings.extend(bearing.reduction.warning.clone());
-    info.warnings.extend(Guards::before(scene, &info));
+    info.warnings.extend(Guards::before(scene, &info, &bearing));
     dir.start(scene, &info)?;
     write_atomic(&dir.mesh(), &picture)?;
     let saved = Saved::first(&bearing, state);

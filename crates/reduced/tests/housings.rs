@@ -55,7 +55,8 @@ fn analytic_a_ring_on_springs_bounces_in_its_frame() {
 }
 
 /// From one start both models have the same forces in arrangements of which each is something else's limit: springs and dampers under
-/// a load that turns, a rigid housing under one, an outer ring that turns with a spall, and a roller that is missing.
+/// a load that turns, a rigid housing under one, an outer ring that turns with a spall, a roller that is missing, and steep walls on
+/// both rings.
 #[test]
 fn example_arrangements_are_felt_as_by_the_full_model() {
     // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes the stiffness of
@@ -63,6 +64,7 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
     const FORCES: f64 = 0.03;
     const SHAFT: &str = "operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500";
     let spall = "defects: [(on: outer, angle_deg: 20, form: spall(length_mm: 3, depth_mm: 0.05))]";
+    let steep = "form: spall(length_mm: 3, depth_mm: 0.05, edge: rectangular)";
     for (name, more) in [
         (
             "springs",
@@ -76,6 +78,12 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
         ),
         ("turning", format!("housing: rigid(mass_kg: 1), {spall}, {SHAFT}, outer_speed_rpm: -1000)")),
         ("missing", "defects: [(on: roller(4), form: missing)], operation: (load_n: 3000)".to_owned()),
+        (
+            "grooves",
+            format!(
+                "defects: [(on: outer, angle_deg: 45, {steep}), (on: outer, angle_deg: 95, {steep}), (on: inner, angle_deg: 84, {steep})]"
+            ),
+        ),
     ] {
         let scene = small(&more);
         let folder = Scratch::create("reduced-arrangement");

@@ -92,6 +92,19 @@ fn conserves_energy_and_carries_the_load() {
     assert!((-sum / info.expected_support_n - 1.0).abs() < LOAD, "{sum} N");
 }
 
+/// With few modes the panels of the seat answer for most of what a roller presses, and rollers are felt a step late.
+#[test]
+fn example_a_seat_that_answers_too_much_is_warned_of() {
+    let folder = Scratch::create("reduced-answer");
+    let warned = |modes_khz: f64| {
+        let mut scene = coarse(0.02);
+        scene.model = ModelScene::Reduced(ReducedScene { modes_khz, step_us: 1.0 });
+        let info = run(&scene, &folder, &format!("{modes_khz}"), 1);
+        info.warnings.iter().any(|warning| warning.contains("the seat may answer rollers"))
+    };
+    assert!(warned(3.0) && !warned(30.0));
+}
+
 /// What the seat slips by in time, the ring's creep in its housing, costs no energy that the ledger does not know of.
 #[test]
 fn conserves_energy_while_the_ring_creeps_in_its_seat() {

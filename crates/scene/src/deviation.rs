@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
+use crate::scene::{DefectRing, DefectScene};
 
 /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -59,9 +60,9 @@ pub struct SpallScene {
     pub length_mm: f64,
     /// Depth [mm].
     pub depth_mm: f64,
-    /// Length of each edge [mm]; 0 for one facet.
+    /// Length of each edge [mm]; 0 for one facet, and for rectangular ones.
     pub edge_mm: f64,
-    /// Whether edges are rounded.
+    /// Form of its edges.
     pub edge: Edge,
 }
 
@@ -73,6 +74,8 @@ pub enum Edge {
     Sloped,
     /// Half a cosine wave.
     Rounded,
+    /// Walls at right angles to the surface, as those of `defect`; in raceways alone.
+    Rectangular,
 }
 
 /// A dent with a raised rim.
@@ -205,6 +208,15 @@ impl FormScene {
 }
 
 impl RollingSurface {
+    /// The ring whose raceway it is.
+    pub fn ring(self) -> Option<DefectRing> {
+        match self {
+            Self::Outer => Some(DefectRing::Outer),
+            Self::Inner => Some(DefectRing::Inner),
+            Self::Roller(_) => None,
+        }
+    }
+
     /// In words.
     pub fn spoken(self) -> String {
         match self {
@@ -229,6 +241,16 @@ impl DeviationScene {
             FormScene::Missing,
         ];
         forms.into_iter().map(|form| Self { form, ..Self::default() }).collect()
+    }
+
+    /// The groove that a mesh is cut with where edges are rectangular; nodes move for all others.
+    pub fn groove(&self) -> Option<DefectScene> {
+        let FormScene::Spall(spall) = &self.form else { return None };
+        if spall.edge != Edge::Rectangular {
+            return None;
+        }
+        let (length_mm, depth_mm, angle_deg) = (spall.length_mm, spall.depth_mm, self.angle_deg);
+        Some(DefectScene { ring: self.on.ring()?, length_mm, depth_mm, angle_deg, edge_slope_deg: 90.0 })
     }
 
     /// In words: `a spall of 4 × 0.1 mm on roller 1`.
@@ -283,11 +305,11 @@ struct Piece {
 
 impl Relief {
     /// What the deviations make of a surface of the radius `radius` [m] whose facets are `facet_mm` long; `None` when none of
-    /// them is `on` it.
+    /// them is `on` it. Grooves are no part of it.
     pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
         let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
         let mut any = false;
-        for deviation in deviations.iter().filter(|deviation| deviation.on == on) {
+        for deviation in deviations.iter().filter(|d| d.on == on && d.groove().is_none()) {
             any = true;
             let at = deviation.angle_deg.to_radians();
             match &deviation.form {
@@ -347,6 +369,7 @@ impl Piece {
                     * match spall.edge {
                         Edge::Sloped => down,
                         Edge::Rounded => 0.5 - 0.5 * (PI * down).cos(),
+                        Edge::Rectangular => down.ceil(),
                     }
             }
             FormScene::Dent(dent) => {

@@ -17,15 +17,19 @@ impl Scene {
         (1..=self.bearing.rollers).filter(move |number| !missing(*number))
     }
 
+    /// Spalls with steep walls, which meshes of raceways are cut with: `defect`, then those of `defects` in their order.
+    pub fn grooves(&self) -> Vec<DefectScene> {
+        self.defect.iter().cloned().chain(self.defects.iter().filter_map(DeviationScene::groove)).collect()
+    }
+
     /// Spalls of raceways, whose entries and exits a report looks for: `defect`, then those of `defects` in their order.
     pub fn spalls(&self) -> Vec<DefectScene> {
         let of_defects = self.defects.iter().filter_map(|deviation| {
             let FormScene::Spall(spall) = &deviation.form else { return None };
-            let ring = match deviation.on {
-                RollingSurface::Outer => DefectRing::Outer,
-                RollingSurface::Inner => DefectRing::Inner,
-                RollingSurface::Roller(_) => return None,
-            };
+            if let Some(groove) = deviation.groove() {
+                return Some(groove);
+            }
+            let ring = deviation.on.ring()?;
             let [_, facet] = rolling_circle(self, deviation.on);
             let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { facet };
             Some(DefectScene {

@@ -47,8 +47,8 @@ pub struct Geometry {
     pub adapter_width: f64,
     /// Height of the adapter above the crown of its seat [m].
     pub adapter_height: f64,
-    /// The spall, if there is one.
-    pub defect: Option<DefectGeometry>,
+    /// Spalls with steep walls, which meshes of raceways are cut with.
+    pub grooves: Vec<DefectGeometry>,
     /// What deviates from round on the outer raceway.
     pub outer_relief: Option<Relief>,
     /// The same of the inner raceway, at the start.
@@ -140,9 +140,25 @@ pub struct FilmGeometry {
 }
 
 impl Geometry {
-    /// The spall, if it lies on this ring.
-    pub fn defect_of(&self, ring: DefectRing) -> Option<DefectGeometry> {
-        self.defect.filter(|defect| defect.ring == ring)
+    /// The grooves in the raceway of this ring.
+    pub fn grooves_of(&self, ring: DefectRing) -> impl Iterator<Item = &DefectGeometry> {
+        self.grooves.iter().filter(move |groove| groove.ring == ring)
+    }
+
+    /// Facets that a whole turn of the raceway of `ring` would have at the spacing outside its grooves, of
+    /// all its `facets`: floors are meshed as finely as the raceway, in two facets at least, and upright walls take no angle.
+    pub fn facets_around(&self, ring: DefectRing, facets: usize) -> f64 {
+        let radius = match ring {
+            DefectRing::Outer => self.outer_race_radius,
+            DefectRing::Inner => self.inner_race_radius,
+        };
+        let (mut rest, mut free) = (facets as f64, 1.0);
+        for groove in self.grooves_of(ring) {
+            let part = groove.length / (TAU * radius);
+            rest -= (part * facets as f64).round().max(2.0) + 2.0;
+            free -= part;
+        }
+        (rest / free).max(0.0)
     }
 
     /// The scene in SI.
@@ -178,7 +194,7 @@ impl Geometry {
             cage: scene.cage.as_ref().map(CageGeometry::of),
             adapter_width: 1e-3 * scene.adapter.width_mm,
             adapter_height: 1e-3 * scene.adapter.height_mm,
-            defect: scene.defect.as_ref().map(DefectGeometry::of),
+            grooves: scene.grooves().iter().map(DefectGeometry::of).collect(),
             outer_relief: relief(RollingSurface::Outer),
             inner_relief: relief(RollingSurface::Inner),
             roller_reliefs: (0..b.rollers).filter_map(of_roller).collect(),
@@ -270,14 +286,6 @@ impl DefectGeometry {
             edge_slope: if upright { 0.25 * TAU } else { defect.edge_slope_deg.to_radians() },
         }
     }
-
-    /// Facets that a whole turn of a raceway of the radius `radius` [m] would have at the spacing outside the spall, of all its
-    /// `facets`: the floor is meshed as finely as the raceway, in two facets at least, and upright walls take no angle.
-    pub fn facets_around(&self, facets: usize, radius: f64) -> f64 {
-        let part = self.length / (TAU * radius);
-        let floor = (part * facets as f64).round().max(2.0);
-        ((facets as f64 - floor - 2.0) / (1.0 - part)).max(0.0)
-    }
 }
 
 impl DampedBand {
@@ -307,7 +315,7 @@ mod tests {
     fn analytic_the_papers_bearing_in_si() {
         let scene = Scene::default();
         let g = Geometry::of(&scene);
-        let defect = g.defect.expect("the default has one");
+        let defect = g.grooves[0];
         for (ours, theirs) in [
             (g.outer_race_radius, 0.1),
             (g.inner_race_radius, 0.08198),
@@ -338,6 +346,6 @@ mod tests {
         assert!((m.roller_angle(5) - g.roller_angle(5) - 1e-3).abs() < 1e-12);
         assert_eq!((m.pocket_angle(5), m.roller_phase), (g.pocket_angle(5), 0.25 * TAU));
         let bare = Scene { cage: None, defect: None, ..scene };
-        assert!(Geometry::of(&bare).cage.is_none() && Geometry::of(&bare).defect.is_none());
+        assert!(Geometry::of(&bare).cage.is_none() && Geometry::of(&bare).grooves.is_empty());
     }
 }

@@ -67,8 +67,14 @@ fn analytic_bending_modes_of_a_free_ring() {
     // V2.03.109. Shear and rotary inertia, left out, lower it by about n² (h/R)²/3.
     // Square cells: their hourglass stiffness is exact in bending.
     let (inner, outer, facets, layers) = (0.098, 0.102, 314, 2);
-    let ring =
-        Annulus { inner_radius: inner, outer_radius: outer, facets, layers, start_angle: 0.0, groove: None };
+    let ring = Annulus {
+        inner_radius: inner,
+        outer_radius: outer,
+        facets,
+        layers,
+        start_angle: 0.0,
+        grooves: Vec::new(),
+    };
     let model = body(&ring.part().expect("a ring"));
     for n in [2, 3] {
         let mut d = ready(&model, 0.95);
@@ -233,8 +239,14 @@ fn converges_time_step_second_order() {
 fn analytic_driven_ring_turns_as_one() {
     // A ring launched at the speed of its driven bore stays in rigid rotation: kinetic energy ½ I ω², no drive work.
     let (facets, layers, rate) = (60, 4, -80.0);
-    let ring =
-        Annulus { inner_radius: 0.05, outer_radius: 0.07, facets, layers, start_angle: 0.0, groove: None };
+    let ring = Annulus {
+        inner_radius: 0.05,
+        outer_radius: 0.07,
+        facets,
+        layers,
+        start_angle: 0.0,
+        grooves: Vec::new(),
+    };
     let centre = [0.02, -0.01];
     let mut model = body(&ring.part().expect("a ring").translated(centre[0], centre[1]));
     for n in 0..facets {

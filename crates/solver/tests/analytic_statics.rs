@@ -14,8 +14,14 @@ const OUTER: f64 = 0.1;
 const ROUNDING: f64 = 2e-7;
 
 fn ring(facets: usize, layers: usize) -> Model {
-    let ring =
-        Annulus { inner_radius: INNER, outer_radius: OUTER, facets, layers, start_angle: 0.0, groove: None };
+    let ring = Annulus {
+        inner_radius: INNER,
+        outer_radius: OUTER,
+        facets,
+        layers,
+        start_angle: 0.0,
+        grooves: Vec::new(),
+    };
     body(&ring.part().expect("a ring that can be made"))
 }
 

@@ -159,7 +159,7 @@ fn conserves_the_ledger_of_a_driven_ring() {
         facets: 48,
         layers: 4,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let mut model = body(&part.part().expect("a ring"));
     for n in 0..48 {
@@ -198,7 +198,7 @@ fn conserves_the_ledger_of_a_ring_whose_speed_changes() {
         facets: 48,
         layers: 4,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let mut model = body(&part.part().expect("a ring"));
     for n in 0..48 {

@@ -212,7 +212,7 @@ fn example_a_ring_has_the_step_of_its_shortest_cells() {
             facets,
             layers,
             start_angle: 0.0,
-            groove: None,
+            grooves: Vec::new(),
         };
         lay_out(&body(&ring.part().expect("a ring"))).critical_time_step(&[], 0.0).time_step
     };

@@ -22,11 +22,11 @@ fn everything() -> Model {
         facets: 60,
         layers: 3,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     // Wide enough for several tiles, cut across its rows.
-    let groove = Some(Groove::rectangular(0.3, 0.02, 1e-3));
-    let wide = Annulus { inner_radius: 0.2, outer_radius: 0.21, facets: 700, layers: 12, groove, ..ring };
+    let grooves = vec![Groove::rectangular(0.3, 0.02, 1e-3)];
+    let wide = Annulus { inner_radius: 0.2, outer_radius: 0.21, facets: 700, layers: 12, grooves, ..ring };
     mesh.add("wide ring", &wide.part().expect("a ring").translated(0.8, 0.0));
     let ring = mesh.add("ring", &ring.part().expect("a ring").translated(0.3, 0.3));
     let block = mesh.add("block", &rectangle(0.01, 0.02, 4, 8).translated(-0.1, 0.0));

@@ -14,8 +14,14 @@ use stribeck_testing::ledger::compare;
 const SHIFT: f64 = 1.6e6;
 
 fn ring(facets: usize, layers: usize, inner: f64, outer: f64) -> (Dynamics, Elastic) {
-    let ring =
-        Annulus { inner_radius: inner, outer_radius: outer, facets, layers, start_angle: 0.0, groove: None };
+    let ring = Annulus {
+        inner_radius: inner,
+        outer_radius: outer,
+        facets,
+        layers,
+        start_angle: 0.0,
+        grooves: Vec::new(),
+    };
     let mut mesh = Mesh::new();
     mesh.add("ring", &ring.part().expect("a ring"));
     let steel = Elastic::new(208e9, 0.3, 7800.0).expect("steel");

@@ -231,7 +231,7 @@ fn patch_tiles_of_one_body_agree_with_the_plain_sum() {
         facets: 600,
         layers: 20,
         start_angle: 0.1,
-        groove: Some(Groove::rectangular(1.0, 0.02, 1e-3)),
+        grooves: vec![Groove::rectangular(1.0, 0.02, 1e-3)],
     };
     // Rows of squares with others among them, at either end and in the middle.
     let squares = rectangle(0.12, 0.1, 120, 100);

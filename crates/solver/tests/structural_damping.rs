@@ -144,7 +144,7 @@ fn analytic_structural_damping_of_a_rings_bending_modes() {
         facets: 360,
         layers: 6,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let model = body(&ring.part().expect("a ring"));
     let fit = StructuralDamping::over_band(0.02, [5e2, 1e4], 3, vec![0]).expect("a possible band");

@@ -334,21 +334,22 @@ fn shape(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
         2 => {
             let inner_radius = length(dice);
             let outer_radius = if dice.one_in(4) { length(dice) } else { inner_radius + 0.05 * dice.share() };
-            let groove = dice.one_in(2).then(|| Groove {
+            let groove = |dice: &mut Dice| Groove {
                 centre_angle: 7.0 * dice.share(),
                 length: length(dice),
                 depth: 0.02 * dice.share(),
                 slope: 1.6 * dice.share(),
                 circle: if dice.one_in(2) { Circle::Inner } else { Circle::Outer },
-            });
+            };
+            let grooves: Vec<Groove> = (0..dice.below(4)).map(|_| groove(dice)).collect();
             let ring = Annulus {
                 inner_radius,
                 outer_radius,
                 facets: count(dice),
                 // Relaxing the cells around a deep groove takes seconds for a hundred layers.
-                layers: if groove.is_some() { count(dice) % 30 } else { count(dice) },
+                layers: if grooves.is_empty() { count(dice) } else { count(dice) % 30 },
                 start_angle: dice.share(),
-                groove,
+                grooves,
             };
             asked += &format!("{ring:?}");
             if dice.one_in(3) {

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
+use super::geometry::MAX_DEFECT_DEPTH_RATIO;
 use super::wording::{number, round_down, round_up};
-use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface};
+use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface, SpallScene};
 use crate::faults::rolling_circle;
-use crate::scene::{DefectRing, Scene};
+use crate::scene::Scene;
 
 /// Steepest slope of a surface: cells under it lean as much, and keep nine tenths of their time step.
 const STEEPEST: f64 = 0.4;
@@ -21,6 +22,11 @@ const WAVE_FACETS: f64 = 6.0;
 /// Longest part of a surface that one of them takes: half a raceway, a quarter of a roller.
 const OF_RACEWAY: f64 = 0.5;
 const OF_ROLLER: f64 = 0.25;
+
+/// Facets between two spalls, between a groove and any defect, and between two grooves, whose walls take facets too.
+const BESIDE_SPALL: f64 = 2.0;
+const BESIDE_GROOVE: f64 = 10.0;
+const BETWEEN_GROOVES: f64 = 20.0;
 
 /// Deepest, over the thickness of a ring or the radius of a roller.
 const OF_THICKNESS: f64 = 0.3;
@@ -83,12 +89,17 @@ impl<'a> Checked<'a> {
         let found = match &self.deviation.form {
             FormScene::Spall(spall) => {
                 let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { self.facet };
-                let steeper = if spall.edge == Edge::Rounded { 0.5 * PI } else { 1.0 };
+                let slope = match spall.edge {
+                    Edge::Sloped => spall.depth_mm / edge,
+                    Edge::Rounded => 0.5 * PI * spall.depth_mm / edge,
+                    Edge::Rectangular => 0.0,
+                };
                 vec![
                     self.short(spall.length_mm),
                     self.long(spall.length_mm),
+                    self.upright(spall),
                     self.edge(spall.edge_mm, spall.length_mm),
-                    self.steep(steeper * spall.depth_mm / edge, "form.depth_mm", spall.depth_mm, "mm"),
+                    self.steep(slope, "form.depth_mm", spall.depth_mm, "mm"),
                     self.deep(),
                 ]
             }
@@ -192,6 +203,29 @@ impl<'a> Checked<'a> {
         Some(Finding::new(message, remedies))
     }
 
+    /// Walls at right angles are cut into the mesh of a ring, and take no length.
+    fn upright(&self, spall: &SpallScene) -> Option<Finding> {
+        if spall.edge != Edge::Rectangular {
+            return None;
+        }
+        if self.on_roller() {
+            let path = self.path("form.edge");
+            let message = format!(
+                "`{path}` is `rectangular` on {}: meshes of rings are cut, those of rollers are not",
+                self.surface()
+            );
+            let sloped = Remedy::new(path, "`sloped` or `rounded`").value("sloped", "");
+            return Some(Finding::new(message, vec![sloped]));
+        }
+        let path = self.path("form.edge_mm");
+        (spall.edge_mm != 0.0).then(|| {
+            let message =
+                format!("`{path}` is {}, and rectangular edges take no length", number(spall.edge_mm));
+            let sloped = Remedy::new(self.path("form.edge"), "`sloped` or `rounded`").value("sloped", "");
+            Finding::new(message, vec![Remedy::new(path, "0").value("0.0", ""), sloped])
+        })
+    }
+
     /// `field` in proportion makes the slope.
     fn steep(&self, slope: f64, field: &str, value: f64, unit: &str) -> Option<Finding> {
         if slope <= STEEPEST {
@@ -200,7 +234,7 @@ impl<'a> Checked<'a> {
         let path = self.path(field);
         let message = format!(
             "`{path}` is {}: the surface would slope by {:.0}°, and cells of a mesh lean by {:.0}° at most. Steep walls have \
-             `defect`, on either ring",
+             spalls of either ring with `edge: rectangular`",
             number(value),
             slope.atan().to_degrees(),
             STEEPEST.atan().to_degrees()
@@ -215,15 +249,20 @@ impl<'a> Checked<'a> {
                 Remedy::new(self.path("form.edge_mm"), format!("at least {} mm", number(longer)))
                     .number(longer, ""),
             );
+            if !self.on_roller() {
+                let upright = Remedy::new(self.path("form.edge"), "`rectangular`, with `edge_mm: 0`");
+                remedies.push(upright.value("rectangular", "walls that stand upright"));
+            }
         }
         Some(Finding::new(message, remedies))
     }
 
     fn deep(&self) -> Option<Finding> {
         let b = &self.scene.bearing;
+        let part = if self.deviation.groove().is_some() { MAX_DEFECT_DEPTH_RATIO } else { OF_THICKNESS };
         let (most, of) = match self.deviation.on {
-            RollingSurface::Outer => (OF_THICKNESS * b.outer_ring_thickness_mm, "ring"),
-            RollingSurface::Inner => (OF_THICKNESS * b.inner_ring_thickness_mm, "ring"),
+            RollingSurface::Outer => (part * b.outer_ring_thickness_mm, "ring"),
+            RollingSurface::Inner => (part * b.inner_ring_thickness_mm, "ring"),
             RollingSurface::Roller(_) => (OF_RADIUS * 0.5 * b.roller_diameter_mm, "roller"),
         };
         let depth = self.deviation.form.depth_mm();
@@ -385,23 +424,31 @@ impl<'a> Checked<'a> {
         Some(Finding::new(message, vec![Remedy::new(format!("defects[{other}].on"), "another roller")]))
     }
 
-    /// Corners of two spalls would want the same nodes.
+    /// Corners of two spalls would want the same nodes, and about a groove the mesh is cut.
     fn meets_spall(&self) -> Option<Finding> {
-        let FormScene::Spall(own) = &self.deviation.form else { return None };
+        let own = self.deviation.form.length_mm()?;
+        let is_spall = |deviation: &DeviationScene| matches!(deviation.form, FormScene::Spall(_));
         let earlier = self.scene.defects[..self.index].iter().enumerate();
         for (other, deviation) in earlier.filter(|(_, deviation)| deviation.on == self.deviation.on) {
-            let FormScene::Spall(spall) = &deviation.form else { continue };
+            let Some(length) = deviation.form.length_mm() else { continue };
+            let facets = match [self.deviation, deviation].map(|d| d.groove().is_some()) {
+                [true, true] => BETWEEN_GROOVES,
+                [false, false] if !(is_spall(self.deviation) && is_spall(deviation)) => continue,
+                [false, false] => BESIDE_SPALL,
+                _ => BESIDE_GROOVE,
+            };
             let apart = (self.deviation.angle_deg - deviation.angle_deg + 180.0).rem_euclid(360.0) - 180.0;
             let apart = apart.abs() / 360.0 * self.around;
-            let needed = 0.5 * (own.length_mm + spall.length_mm) + 2.0 * self.facet;
+            let needed = 0.5 * (own + length) + facets * self.facet;
             if apart >= needed {
                 continue;
             }
             let path = self.path("angle_deg");
             let message = format!(
-                "`defects[{}]` lies {apart:.2} mm from `defects[{other}]`, middle to middle: two spalls of one surface stand {needed:.2} mm \
-                 apart at least, their lengths and two facets",
-                self.index
+                "`defects[{}]` lies {apart:.2} mm from `defects[{other}]`, middle to middle, and needs {needed:.2} mm: lengths and \
+                 {} facets",
+                self.index,
+                number(facets)
             );
             let away = round_up(deviation.angle_deg + 1.01 * 360.0 * needed / self.around, 4);
             let remedy = Remedy::new(path, format!("{needed:.2} mm or more away")).number(away % 360.0, "");
@@ -414,7 +461,8 @@ impl<'a> Checked<'a> {
     fn in_oil(&self) -> Option<Finding> {
         let gentle = match &self.deviation.form {
             FormScene::Spall(spall) => {
-                spall.edge == Edge::Rounded && 0.5 * PI * spall.depth_mm <= GENTLE * spall.edge_mm
+                spall.edge == Edge::Rectangular
+                    || spall.edge == Edge::Rounded && 0.5 * PI * spall.depth_mm <= GENTLE * spall.edge_mm
             }
             FormScene::Dent(dent) => {
                 HOLLOW_SLOPE * dent.depth_mm.max(2e-3 * dent.rim_um) <= 0.5 * GENTLE * dent.length_mm
@@ -427,7 +475,7 @@ impl<'a> Checked<'a> {
         }
         let message = format!(
             "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope by {:.0}° at most \
-             without kinks, but for the walls of `defect`",
+             without kinks, but for walls at right angles",
             self.index,
             self.surface(),
             GENTLE.atan().to_degrees()
@@ -440,22 +488,22 @@ impl<'a> Checked<'a> {
     /// Walls of a groove and nodes that move do not go together.
     fn meets_defect(&self) -> Option<Finding> {
         let defect = self.scene.defect.as_ref()?;
-        let ring = match self.deviation.on {
-            RollingSurface::Outer => DefectRing::Outer,
-            RollingSurface::Inner => DefectRing::Inner,
-            RollingSurface::Roller(_) => return None,
-        };
+        let ring = self.deviation.on.ring()?;
         let length = self.deviation.form.length_mm()?;
         let apart = (self.deviation.angle_deg - defect.angle_deg + 180.0).rem_euclid(360.0) - 180.0;
         let apart = apart.abs() / 360.0 * self.around;
-        let needed = 0.5 * (length + defect.length_mm) + 10.0 * self.facet;
+        let facets = if self.deviation.groove().is_some() { BETWEEN_GROOVES } else { BESIDE_GROOVE };
+        let needed = 0.5 * (length + defect.length_mm) + facets * self.facet;
         if ring != defect.ring || apart >= needed {
             return None;
         }
         let path = self.path("angle_deg");
         let message = format!(
-            "`defects[{}]` lies {:.2} mm from `defect`, middle to middle, and needs {:.2} mm: lengths and ten facets",
-            self.index, apart, needed
+            "`defects[{}]` lies {:.2} mm from `defect`, middle to middle, and needs {:.2} mm: lengths and {} facets",
+            self.index,
+            apart,
+            needed,
+            number(facets)
         );
         let away = round_up(defect.angle_deg + 1.01 * 360.0 * needed / self.around, 4);
         Some(Finding::new(

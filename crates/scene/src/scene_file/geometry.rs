@@ -23,7 +23,7 @@ const MAX_PRELOAD_RATIO: f64 = 0.005;
 /// The clearance that is proposed, as a part of a roller: about that of the paper's bearing.
 const USUAL_CLEARANCE_RATIO: f64 = 0.002;
 /// Below the floor of a defect this part of the ring must be left to carry the load.
-const MAX_DEFECT_DEPTH_RATIO: f64 = 0.6;
+pub(super) const MAX_DEFECT_DEPTH_RATIO: f64 = 0.6;
 /// Widest edge of a defect in facets, each edge being one, and as a part of the defect's length (`stribeck_mesh::Groove`).
 const WIDEST_WALL: f64 = 2.0;
 const WALL_OF_LENGTH: f64 = 0.4;

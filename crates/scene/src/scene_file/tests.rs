@@ -620,7 +620,7 @@ fn refuses_a_bearing_that_nobody_knows() {
 #[test]
 fn example_defects_on_either_ring_with_sloped_edges() {
     let scene = parse("(defect: (ring: inner, edge_slope_deg: 30))").unwrap();
-    let defect = crate::geometry::Geometry::of(&scene).defect.unwrap();
+    let defect = crate::geometry::Geometry::of(&scene).grooves[0];
     assert_eq!(defect.ring, crate::scene::DefectRing::Inner);
     assert!((defect.edge_slope.to_degrees() - 30.0).abs() < 1e-12);
     for (text, field) in [

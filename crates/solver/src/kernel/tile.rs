@@ -345,14 +345,14 @@ mod tests {
 
     #[test]
     fn example_strips_of_a_grooved_ring_are_mostly_alike() {
-        let groove = Some(Groove::rectangular(0.5 * PI, 0.01, 0.2e-3));
+        let grooves = vec![Groove::rectangular(0.5 * PI, 0.01, 0.2e-3)];
         let ring = Annulus {
             inner_radius: 0.1,
             outer_radius: 0.11,
             facets: 1257,
             layers: 20,
             start_angle: 0.0,
-            groove,
+            grooves,
         };
         let mut mesh = Mesh::new();
         mesh.add("ring", &ring.part().expect("a ring that can be made"));

@@ -160,7 +160,7 @@ pub(crate) fn workshop() -> Model {
         facets: 1200,
         layers: 10,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let ring = mesh.add("ring", &ring.part().expect("a ring"));
     for i in 0..3 {

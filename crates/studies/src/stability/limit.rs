@@ -116,7 +116,7 @@ pub(super) fn chapter() -> Result<Chapter> {
         facets: 60,
         layers: 4,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let bodies: [(&str, Part); 5] = [
         ("squares", rectangle([0.0; 2], [8e-3, 6e-3], [8, 6])?),

@@ -19,7 +19,7 @@ const PRESSURE: f64 = 10e6;
 /// (Timoshenko and Goodier, *Theory of Elasticity*, 3rd ed. 1970, §28, plane strain).
 pub(crate) fn cylinder(material: Elastic, facets: usize, layers: usize) -> Result<f64> {
     let [inner_radius, outer_radius] = CYLINDER;
-    let ring = Annulus { inner_radius, outer_radius, facets, layers, start_angle: 0.0, groove: None };
+    let ring = Annulus { inner_radius, outer_radius, facets, layers, start_angle: 0.0, grooves: Vec::new() };
     cylinder_of(&ring.part()?, material, facets)
 }
 

@@ -27,7 +27,7 @@ fn bending(way: &Way, layers: usize, factor: f64) -> Result<(f64, f64)> {
         facets,
         layers,
         start_angle: 0.0,
-        groove: None,
+        grooves: Vec::new(),
     };
     let part = ring.part()?;
     let model = model(&if way.1 { split(part) } else { part })?;
@@ -164,5 +164,5 @@ pub(super) fn cylinder(host: &dyn Host) -> Result<Problem> {
 }
 
 fn ring_of(facets: usize, layers: usize) -> Annulus {
-    Annulus { inner_radius: 0.05, outer_radius: 0.1, facets, layers, start_angle: 0.0, groove: None }
+    Annulus { inner_radius: 0.05, outer_radius: 0.1, facets, layers, start_angle: 0.0, grooves: Vec::new() }
 }

@@ -52,6 +52,17 @@ fn refuses_what_no_mesh_can_follow() {
             "defects[0].form.edge_mm",
             "an edge takes a facet of 0.500 mm at least",
         ),
+        (
+            "on: roller(1), form: spall(edge: rectangular)",
+            "defects[0].form.edge",
+            "meshes of rings are cut, those of rollers are not",
+        ),
+        (
+            "form: spall(edge: rectangular, edge_mm: 1)",
+            "defects[0].form.edge_mm",
+            "rectangular edges take no length",
+        ),
+        ("form: spall(depth_mm: 6.1, edge: rectangular)", "defects[0].form", "make room for 6 mm"),
         ("form: dent(depth_mm: 0.5)", "defects[0].form.depth_mm", "would slope"),
         ("form: waviness(order: 300)", "defects[0].form.order", "a wave would have 4.2 facets"),
         ("form: roughness(shortest_mm: 1)", "defects[0].form.shortest_mm", "less than 4 facets"),
@@ -130,10 +141,33 @@ fn refuses_spalls_of_one_surface_that_meet() {
     // 5 mm and two facets of 0.5 mm are 3.44° of a raceway of 100 mm.
     for apart in [0.0, 0.1, -3.4] {
         let problem = only(parse(&spalls(apart)));
-        assert!(problem.message.contains("two spalls of one surface stand 6.00 mm apart"), "{problem}");
+        assert!(problem.message.contains("needs 6.00 mm: lengths and 2 facets"), "{problem}");
     }
     assert!(parse(&spalls(3.5)).is_ok());
     assert!(parse(&dry("(on: outer, form: spall()), (on: inner, form: spall())")).is_ok());
+}
+
+#[test]
+fn example_several_spalls_with_steep_walls() {
+    let grooves = |apart: f64| {
+        let spall = "form: spall(length_mm: 4, depth_mm: 0.2, edge: rectangular)";
+        dry(&format!(
+            "(angle_deg: 80, {spall}), (angle_deg: {}, {spall}), (on: inner, {spall})",
+            80.0 + apart
+        ))
+    };
+    let scene = parse(&grooves(10.0)).expect("three grooves");
+    assert_eq!(parse(&scene.to_ron()).expect("its own text"), scene);
+    let (cut, all) = (scene.grooves(), scene.spalls());
+    assert_eq!(cut, all);
+    assert_eq!(cut.iter().map(|groove| groove.angle_deg).collect::<Vec<_>>(), [80.0, 90.0, 90.0]);
+    assert!(cut.iter().all(|groove| groove.edge_slope_deg == 90.0));
+    // 4 mm and twenty facets of 0.5 mm are 8.02° of a raceway of 100 mm.
+    assert!(parse(&grooves(8.1)).is_ok());
+    let near = only(parse(&grooves(8.0)));
+    assert!(near.message.contains("needs 14.00 mm: lengths and 20 facets"), "{near}");
+    let in_oil = parse(&grooves(10.0).replace("film: None, ", ""));
+    assert!(in_oil.is_ok(), "{in_oil:?}");
 }
 
 #[test]
