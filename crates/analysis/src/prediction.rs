@@ -139,6 +139,12 @@ impl Prediction {
         self.spalls.first().filter(standing).map(|course| course.edges)
     }
 
+    /// Edges of all spalls that stand still on the outer raceway.
+    pub fn standing_spalls(&self) -> impl Iterator<Item = DefectEdges> {
+        let standing = |course: &&SpallCourse| course.spall.ring == DefectRing::Outer && !course.turns;
+        self.spalls.iter().filter(standing).map(|course| course.edges)
+    }
+
     /// Passages over the first spall.
     pub fn passages(&self) -> &[Crossing] {
         self.spalls.first().map_or(&[], |spall| &spall.passages)
@@ -224,7 +230,7 @@ impl Prediction {
     }
 
     fn over_defect(&self, angle_deg: f64) -> bool {
-        self.standing().is_some_and(|d| {
+        self.standing_spalls().any(|d| {
             let from_middle = (angle_deg - d.middle_deg + 180.0).rem_euclid(360.0) - 180.0;
             from_middle.abs() < (d.leading_deg - d.middle_deg).abs()
         })

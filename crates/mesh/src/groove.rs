@@ -22,8 +22,8 @@ use crate::{Error, Part};
 /// Several grooves of a surface lie [`Groove::APART`] facets apart, and those of an annulus all in one surface. Between two of them
 /// facets are equally long.
 ///
-/// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, lengths that
-/// leave less than a quarter of the surface or more floor than facets, walls that leave no floor or are wider than
+/// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
+/// leaves less than a quarter of the surface or more floor than facets, walls that leave no floor or are wider than
 /// [`Groove::WIDEST_WALL`] facets, grooves too near to each other or in both surfaces, and a groove so deep or a layer so thick that
 /// some element stays inside out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,31 +126,37 @@ pub(crate) fn cut(
         (part.x[at], part.y[at]) = (r * cos, r * sin);
     }
     plan.place_walls(grid, part);
-    let movable = plan.movable(grid, places);
-    let layer = grid.layer();
-    let length = LENGTH * layer.min(grid.inner_facet());
-    let mut ordered = part.clone();
-    let optimise =
-        |part: &mut Part, sharpness| raise_assembled_step(part, &plain, &movable, POISSON, length, sharpness);
-    let (gentle, harsh) = SHARPNESS.split_at(1);
-    if optimise(part, gentle).is_none() {
-        // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
-        // another search, whichever comes out better.
-        let turned_back = optimise(part, harsh);
-        let deepest = grooves.iter().map(|groove| groove.depth).fold(0.0, f64::max);
-        let deep = (deepest / layer) as usize;
-        raise_critical_step_to(enough, &mut ordered, &movable, POISSON, SWEEPS * (1 + deep));
-        let searched = ordered.clone();
-        let again = optimise(&mut ordered, gentle);
-        if turned_back.is_none() || again.is_some_and(|cost| turned_back.is_none_or(|other| cost < other)) {
-            *part = if again.is_some() { ordered } else { searched };
-        }
+    for cut in &plan.cuts {
+        shape(grid, cut, places, enough, &plain, part);
     }
     match inside_out(part) {
         None => Ok(()),
         Some((element, area)) => {
             let advice = "make the groove shallower, or use more `facets` or other `layers`";
             Err(Error::Tangled { shape: "groove", element, area, advice })
+        }
+    }
+}
+
+/// Moves nodes near the walls of a groove for the critical step of the assembled cells there.
+fn shape(grid: &PolarGrid, cut: &Cut, places: &[Place], enough: f64, plain: &Part, part: &mut Part) {
+    let movable = cut.movable(grid, places);
+    let layer = grid.layer();
+    let length = LENGTH * layer.min(grid.inner_facet());
+    let mut ordered = part.clone();
+    let optimise =
+        |part: &mut Part, sharpness| raise_assembled_step(part, plain, &movable, POISSON, length, sharpness);
+    let (gentle, harsh) = SHARPNESS.split_at(1);
+    if optimise(part, gentle).is_none() {
+        // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
+        // another search, whichever comes out better.
+        let turned_back = optimise(part, harsh);
+        let deep = (cut.groove.depth / layer) as usize;
+        raise_critical_step_to(enough, &mut ordered, &movable, POISSON, SWEEPS * (1 + deep));
+        let searched = ordered.clone();
+        let again = optimise(&mut ordered, gentle);
+        if turned_back.is_none() || again.is_some_and(|cost| turned_back.is_none_or(|other| cost < other)) {
+            *part = if again.is_some() { ordered } else { searched };
         }
     }
 }
@@ -164,7 +170,7 @@ struct Plan {
     rise: Vec<f64>,
     /// Angular displacement of each outer node [rad].
     back: Vec<f64>,
-    /// Columns from which on they are not radial, in order.
+    /// Columns that are not radial.
     bent: Vec<usize>,
 }
 
@@ -215,6 +221,22 @@ impl Cut {
         let apart = if apart == 0.0 { TAU } else { apart };
         (facets, apart - 0.5 * (self.sector + next.sector))
     }
+
+    /// Interior nodes near the walls.
+    fn movable(&self, grid: &PolarGrid, places: &[Place]) -> Vec<bool> {
+        let (n, layers) = (grid.facets, grid.layers);
+        let rows = REACH + (self.groove.depth / grid.layer()).ceil() as usize;
+        let [first, _, second, _] = self.walls();
+        let near_wall = |column: usize, wall: usize| {
+            let right = (column + 2 * n - wall % n) % n;
+            right < self.columns + 2 || n - right <= self.columns
+        };
+        let movable = |p: &Place| {
+            let inside = p.row > 0.0 && p.row < layers as f64 && p.row <= rows as f64;
+            inside && [first, second].iter().any(|wall| near_wall(p.column, *wall))
+        };
+        places.iter().map(movable).collect()
+    }
 }
 
 impl Plan {
@@ -259,23 +281,34 @@ impl Plan {
         }
         let thickness = ((grid.outer_radius - grid.inner_radius).abs() / grid.inner_facet()).ceil() as usize;
         let beside = |cut: &Cut| (FADES * thickness).max(cut.columns + 3);
-        let most = cuts.iter().map(beside).max().unwrap_or(0);
-        let (back, bent) = if gaps.iter().all(|(rest, _)| *rest > 2 * most + 2 + LEAST_RADIAL) {
-            let (mut back, mut columns) = (angle.clone(), Vec::new());
-            for cut in &cuts {
-                let beside = beside(cut);
-                let (from, bent) = (cut.first + n - beside, cut.floor + 2 + 2 * beside);
-                let column = |m: usize| (from + m) % n;
-                let (a, b) = (angle[column(0)], angle[column(bent)]);
-                for m in 1..bent {
-                    back[column(m)] = a + (b - a) * m as f64 / bent as f64;
-                }
-                columns.extend((1..bent).map(column));
-            }
-            (back, columns)
-        } else {
-            (vec![0.0; n], (0..n).collect())
+        // Where two grooves leave enough room for radial columns between them.
+        let room: Vec<bool> = (0..cuts.len())
+            .map(|k| gaps[k].0 > beside(&cuts[k]) + beside(&cuts[(k + 1) % cuts.len()]) + 2 + LEAST_RADIAL)
+            .collect();
+        let Some(last) = room.iter().position(|room| *room) else {
+            let (back, bent) = (vec![0.0; n], (0..n).collect());
+            return Ok(Plan { cuts, angle, rise, back, bent });
         };
+        let (mut back, mut bent) = (angle.clone(), Vec::new());
+        // Bent columns of the grooves since the last room: where they begin, and how many.
+        let mut begun = None;
+        for k in (1..=cuts.len()).map(|k| (last + k) % cuts.len()) {
+            let cut = &cuts[k];
+            let (from, count) = begun.unwrap_or((cut.first + n - beside(cut), beside(cut)));
+            let count = count + cut.floor + 2;
+            if !room[k] {
+                begun = Some((from, count + gaps[k].0));
+                continue;
+            }
+            begun = None;
+            let count = count + beside(cut);
+            let column = |m: usize| (from + m) % n;
+            let (a, b) = (angle[column(0)], angle[column(count)]);
+            for m in 1..count {
+                back[column(m)] = a + (b - a) * m as f64 / count as f64;
+            }
+            bent.extend((1..count).map(column));
+        }
         Ok(Plan { cuts, angle, rise, back, bent })
     }
 
@@ -295,22 +328,6 @@ impl Plan {
                 (part.x[at], part.y[at]) = (radius * cos, radius * sin);
             }
         }
-    }
-
-    /// Interior nodes near the walls.
-    fn movable(&self, grid: &PolarGrid, places: &[Place]) -> Vec<bool> {
-        let (n, layers) = (grid.facets, grid.layers);
-        let near_wall = |column: usize, wall: usize, columns: usize| {
-            let right = (column + 2 * n - wall % n) % n;
-            right < columns + 2 || n - right <= columns
-        };
-        let near = |p: &Place, cut: &Cut| {
-            let rows = REACH + (cut.groove.depth / grid.layer()).ceil() as usize;
-            let [first, _, second, _] = cut.walls();
-            p.row <= rows as f64 && [first, second].iter().any(|wall| near_wall(p.column, *wall, cut.columns))
-        };
-        let inside = |p: &Place| p.row > 0.0 && p.row < layers as f64;
-        places.iter().map(|p| inside(p) && self.cuts.iter().any(|cut| near(p, cut))).collect()
     }
 }
 

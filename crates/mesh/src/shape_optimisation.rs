@@ -4,7 +4,6 @@ use std::collections::BTreeSet;
 
 use crate::Part;
 use crate::part::signed_area;
-use crate::smoothing::inside_out;
 use crate::submesh::{Submesh, add, dot};
 
 /// ω² of endless squares with sides of the unit of length, see [`Submesh`].
@@ -54,7 +53,7 @@ pub(crate) fn raise_assembled_step(
 ) -> Option<f64> {
     let submesh = Submesh::new(part, movable, poisson, length);
     if submesh.movable == 0 {
-        return inside_out(part).is_none().then_some(0.0);
+        return Some(0.0);
     }
     let in_units = |part: &Part, n: u32| [part.x[n as usize] / length, part.y[n as usize] / length];
     let mut at: Vec<[f64; 2]> = submesh.nodes.iter().map(|n| in_units(part, *n)).collect();
@@ -66,7 +65,7 @@ pub(crate) fn raise_assembled_step(
         for (n, [x, y]) in objective.submesh.nodes.iter().zip(&at).take(objective.submesh.movable) {
             (part.x[*n as usize], part.y[*n as usize]) = (length * x, length * y);
         }
-        if inside_out(part).is_none() {
+        if !objective.submesh.is_tangled(part) {
             objective.sharpness = SHARPNESS[0];
             return objective.cost(at).map(|found| found.cost);
         }
@@ -264,6 +263,30 @@ mod tests {
         let at: Vec<[f64; 2]> =
             submesh.nodes.iter().map(|n| [part.x[*n as usize] / side, part.y[*n as usize] / side]).collect();
         2.0 / submesh.modes_above(0.0, &at)[0].square.sqrt()
+    }
+
+    /// Of several grooves each is shaped by itself: equal ones around a ring, and deep ones as near to each other as a scene allows.
+    #[test]
+    fn example_several_grooves_keep_the_time_step() {
+        let eight: Vec<Groove> =
+            (0..8).map(|k| Groove::rectangular(0.1 + k as f64 * TAU / 8.0, 0.01, 0.2e-3)).collect();
+        let near = |depth, angle| Groove::rectangular(angle, 0.01, depth);
+        let two = vec![near(6e-3, 0.5), near(6e-3, 0.7)];
+        for (grooves, least) in [(eight, 0.87), (two, 0.6)] {
+            let ring = Annulus {
+                inner_radius: 0.1,
+                outer_radius: 0.11,
+                facets: 628,
+                layers: 10,
+                start_angle: 0.0,
+                grooves: grooves.clone(),
+            };
+            let part = ring.part().expect("grooves that can be cut");
+            for groove in &grooves {
+                let kept = assembled_length(&part, groove, 1e-3);
+                assert!(kept > least, "{groove:?}: {kept:.3} of the length of squares");
+            }
+        }
     }
 
     /// A wall of 0.2 mm among cells of 0.5 mm costs a tenth of the time step of squares, among cells of 1 mm an eighth, where columns that follow it

@@ -2,6 +2,7 @@
 
 use crate::Part;
 use crate::part::signed_area;
+use crate::smoothing::smallest_corner_area;
 use crate::tridiagonal;
 
 /// Dimension of the Krylov space: cells that are worse than all others stand out of it soon.
@@ -98,6 +99,19 @@ impl Submesh {
             }
         }
         Self { nodes, movable: free, elements, moving, outside, moduli: Moduli::new(poisson) }
+    }
+
+    /// Whether an element at a movable node is inside out.
+    pub(crate) fn is_tangled(&self, part: &Part) -> bool {
+        self.elements[..self.moving].iter().any(|corners| {
+            let [a, b, c, d] = corners.map(|n| self.nodes[n]);
+            let area = if c == d {
+                smallest_corner_area(&part.corners(&[a, b, c]))
+            } else {
+                smallest_corner_area(&part.corners(&[a, b, c, d]))
+            };
+            !(area.is_finite() && area > 0.0)
+        })
     }
 
     /// Vibrations with ω² above a bound, nodes at `at`, the highest first. Those near the bound are estimates.

@@ -269,6 +269,22 @@ fn example_several_grooves_of_one_surface() {
     }
 }
 
+/// Columns on the far side of two grooves that are near to each other stay radial, and facets of either surface alike.
+#[test]
+fn example_cells_away_from_two_near_grooves_are_alike() {
+    let n = RING.facets;
+    let other = Groove { centre_angle: GROOVE.centre_angle + 0.21, ..GROOVE };
+    let part = Annulus { grooves: vec![GROOVE, other], ..RING }.part().expect("grooves that can be cut");
+    let mut radial = 0;
+    for column in 0..n {
+        let ([x1, y1], [x2, y2]) =
+            (point(&part, column as u32), point(&part, (RING.layers * n + column) as u32));
+        radial += usize::from((x1 * y2 - x2 * y1).abs() < 1e-15);
+    }
+    // Both grooves, what lies between them and two thicknesses on either side.
+    assert!(radial > 5 * n / 6, "{radial} of {n} columns are radial");
+}
+
 #[test]
 fn refuses_with_field_and_limit() {
     let refused = |annulus: Annulus| annulus.part().expect_err("a ring that cannot be made").to_string();

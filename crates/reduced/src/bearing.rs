@@ -318,8 +318,8 @@ impl Bearing {
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
     }
 
-    /// What a roller's force loses because it lets the seat slip under it, over the force, at most: the gain of a loop whose lag is a
-    /// step (THEORY §9.1).
+    /// What a single roller's force loses if it lets the whole seat slip, over the force: the gain of a loop whose lag is a step
+    /// (THEORY §9.1).
     pub fn seat_loop_gain(&self) -> f64 {
         let give = self.reduction.springs.as_ref().map_or(0.0, Seat::give);
         give * self.outer.compliance.stiffest(self.penalty, self.outer.relative)

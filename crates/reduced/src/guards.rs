@@ -82,7 +82,7 @@ impl Guards {
         let gain = bearing.seat_loop_gain();
         if gain > SEAT_LOOP_GAIN {
             warnings.push(format!(
-                "the seat may answer rollers with {:.0} % of their force, a step late: above {:.0} % the run may diverge. Take a larger \
+                "the seat may answer a roller with {:.0} % of its force, a step late: above {:.0} % the run may diverge. Take a larger \
                  `model.modes_khz` or a smaller `contact.penalty_scale`",
                 100.0 * gain,
                 100.0 * SEAT_LOOP_GAIN

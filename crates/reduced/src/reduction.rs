@@ -335,7 +335,7 @@ impl Reduction {
             let winkler = (1.5 * q * radius / g.penalty_stiffness).powf(2.0 / 3.0);
             (1.3 * (hertz + winkler).sqrt() / spacing).ceil() as usize + 2
         };
-        // Beside the groove that has no other one near there, or where the load is.
+        // Beside a groove, or between two, where none is near; without any where the load is.
         let beside_of = |d: &DefectGeometry| {
             d.angle + (0.5 * d.length + 2.0 * g.outer_ring_thickness) / g.outer_race_radius
         };
@@ -343,7 +343,8 @@ impl Reduction {
             let apart = |d: &DefectGeometry| (at - d.angle + PI).rem_euclid(TAU) - PI;
             g.grooves.iter().map(|d| apart(d).abs() - 0.5 * d.length / g.outer_race_radius).fold(PI, f64::min)
         };
-        let places = g.grooves.iter().map(beside_of);
+        let between = g.grooves.windows(2).map(|d| 0.5 * (d[0].angle + d[1].angle));
+        let places = g.grooves.iter().map(beside_of).chain(between);
         let beside = places.max_by(|a, b| room(*a).total_cmp(&room(*b)));
         let beside = beside.unwrap_or(scene.load_zone_deg().to_radians());
         let node_at = |outline: &[[f64; 2]], angle: f64| {

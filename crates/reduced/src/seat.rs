@@ -72,6 +72,20 @@ pub(crate) struct Parts<'a> {
     pub(crate) thickness: f64,
 }
 
+/// What bodies do whose seat slides: stretches of its springs, across, then along.
+struct Responses {
+    /// By a unit of each mode [1/√kg].
+    by_modes: Mat<f64>,
+    /// By a unit tension of each spring, beyond the modes [m/N].
+    flexibility: Mat<f64>,
+    /// By a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
+    by_rollers: Mat<f64>,
+    /// Force on the ring by a unit tension of each spring.
+    on_ring: Vec<[f64; 2]>,
+    /// Displacement of each sensor by the same, beyond the modes [m/N].
+    heard: Vec<Vec<[f64; 2]>>,
+}
+
 /// Springs of the panels and what they do, before friction holds any.
 struct Panels {
     count: usize,
@@ -90,68 +104,10 @@ impl Seat {
     /// When the modes of the held seat are not found.
     pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<Self>, Error> {
         let Some(panels) = Panels::of(parts) else { return Ok(None) };
-        let Panels { padded: p, members, stiffness, .. } = &panels;
-        let p = *p;
-        let modes = structure.squares().len();
-        let mut slots: Vec<u32> = parts.springs.iter().flat_map(|s| s.slots.iter().copied()).collect();
-        slots.sort_unstable();
-        slots.dedup();
-        let at_sensors = slots.len();
-        let at_raceway = at_sensors + parts.sensors.len();
-        let mut index = vec![usize::MAX; parts.x.len()];
-        slots.iter().enumerate().for_each(|(i, slot)| index[*slot as usize] = i);
-        slots.extend(parts.sensors);
-        slots.extend(parts.raceway.iter().map(|(slot, ..)| slot));
-
-        // Stretches by modes, and by unit tensions beyond them.
-        let mut by_modes = Mat::<f64>::zeros(2 * p, modes);
-        let mut flexibility = Mat::<f64>::zeros(2 * p, 2 * p);
-        let vertices = parts.raceway.len();
-        let mut by_rollers = Mat::<f64>::zeros(2 * p, vertices);
-        let mut on_ring = vec![[0.0; 2]; 2 * p];
-        let mut heard = vec![vec![[0.0; 2]; 2 * p]; parts.sensors.len()];
-        let shares = |at: usize| {
-            members[at].iter().flat_map(move |spring| {
-                let share = spring.stiffness / stiffness[at];
-                let along = spring.direction.chunks_exact(2);
-                spring.slots.iter().zip(along).map(move |(slot, d)| (*slot, [share * d[0], share * d[1]]))
-            })
-        };
-        let there: Vec<usize> = (0..2 * p).filter(|at| !members[*at].is_empty()).collect();
-        let mut units = Vec::with_capacity(there.len());
-        for &at in &there {
-            let mut opening = NodeForces::zeros(parts.x.len());
-            for (slot, [fx, fy]) in shares(at) {
-                opening.fx[slot as usize] += fx;
-                opening.fy[slot as usize] += fy;
-                if (parts.of_ring)(slot) {
-                    on_ring[at] = [on_ring[at][0] - fx, on_ring[at][1] - fy];
-                }
-            }
-            units.push(opening);
-        }
-        let responses = structure.residuals(&units, &slots);
-        for ((&at, opening), moved) in there.iter().zip(&units).zip(&responses) {
-            for (mode, stretch) in structure.generalised(opening, modes).into_iter().enumerate() {
-                by_modes[(at, mode)] = stretch;
-            }
-            for (heard, [x, y]) in heard.iter_mut().zip(&moved[at_sensors..]) {
-                heard[at] = [-x, -y];
-            }
-            for (vertex, ((_, [nx, ny], _), [x, y])) in
-                parts.raceway.iter().zip(&moved[at_raceway..]).enumerate()
-            {
-                by_rollers[(at, vertex)] = nx * x + ny * y;
-            }
-            for other in 0..2 * p {
-                flexibility[(other, at)] = shares(other)
-                    .map(|(slot, [dx, dy])| {
-                        let [x, y] = moved[index[slot as usize]];
-                        dx * x + dy * y
-                    })
-                    .sum();
-            }
-        }
+        let (p, stiffness) = (panels.padded, &panels.stiffness);
+        let Responses { by_modes, flexibility, by_rollers, on_ring, heard } =
+            Responses::of(structure, parts, &panels);
+        let (modes, vertices) = (by_modes.ncols(), parts.raceway.len());
 
         // Tensions along the seat hold it: A τ = stretch − slip, A their own flexibility and that of the bodies (9.1b).
         let along = |i: usize| p + i;
@@ -228,19 +184,89 @@ impl Seat {
 }
 
 impl Seat {
-    /// Largest displacement of the raceway under a unit force on it [m/N], beyond the modes, when that lets the whole seat slip. It opens
+    /// Largest displacement of the raceway under a unit force on it [m/N], beyond the modes, if the whole seat slips. The force opens
     /// nothing where it presses.
     pub(crate) fn give(&self) -> f64 {
         let n = 2 * self.padded;
         let slips: Vec<usize> = (self.padded..n).filter(|at| self.stiffness[at * n + at] > 0.0).collect();
         let of = |i: usize, j: usize| self.stiffness[slips[i] * n + slips[j]];
+        if slips.is_empty() {
+            return 0.0;
+        }
         let stiffness = Mat::from_fn(slips.len(), slips.len(), of);
         let vertices = self.by_rollers.len() / n;
         let pulled = Mat::from_fn(slips.len(), vertices, |i, vertex| self.by_rollers[vertex * n + slips[i]]);
         let slipped = stiffness.partial_piv_lu().solve(&pulled);
-        let under =
-            |vertex: usize| (0..slips.len()).map(|i| pulled[(i, vertex)] * slipped[(i, vertex)]).sum();
+        let under = |at: usize| (0..slips.len()).map(|i| pulled[(i, at)] * slipped[(i, at)]).sum();
         (0..vertices).map(under).fold(0.0, f64::max)
+    }
+}
+
+impl Responses {
+    fn of(structure: &mut Structure, parts: &Parts<'_>, panels: &Panels) -> Self {
+        let Panels { padded: p, members, stiffness, .. } = panels;
+        let p = *p;
+        let modes = structure.squares().len();
+        let mut slots: Vec<u32> = parts.springs.iter().flat_map(|s| s.slots.iter().copied()).collect();
+        slots.sort_unstable();
+        slots.dedup();
+        let at_sensors = slots.len();
+        let at_raceway = at_sensors + parts.sensors.len();
+        let mut index = vec![usize::MAX; parts.x.len()];
+        slots.iter().enumerate().for_each(|(i, slot)| index[*slot as usize] = i);
+        slots.extend(parts.sensors);
+        slots.extend(parts.raceway.iter().map(|(slot, ..)| slot));
+
+        // Stretches by modes, and by unit tensions beyond them.
+        let mut by_modes = Mat::<f64>::zeros(2 * p, modes);
+        let mut flexibility = Mat::<f64>::zeros(2 * p, 2 * p);
+        let vertices = parts.raceway.len();
+        let mut by_rollers = Mat::<f64>::zeros(2 * p, vertices);
+        let mut on_ring = vec![[0.0; 2]; 2 * p];
+        let mut heard = vec![vec![[0.0; 2]; 2 * p]; parts.sensors.len()];
+        let shares = |at: usize| {
+            members[at].iter().flat_map(move |spring| {
+                let share = spring.stiffness / stiffness[at];
+                let along = spring.direction.chunks_exact(2);
+                spring.slots.iter().zip(along).map(move |(slot, d)| (*slot, [share * d[0], share * d[1]]))
+            })
+        };
+        let there: Vec<usize> = (0..2 * p).filter(|at| !members[*at].is_empty()).collect();
+        let mut units = Vec::with_capacity(there.len());
+        for &at in &there {
+            let mut opening = NodeForces::zeros(parts.x.len());
+            for (slot, [fx, fy]) in shares(at) {
+                opening.fx[slot as usize] += fx;
+                opening.fy[slot as usize] += fy;
+                if (parts.of_ring)(slot) {
+                    on_ring[at] = [on_ring[at][0] - fx, on_ring[at][1] - fy];
+                }
+            }
+            units.push(opening);
+        }
+        let responses = structure.residuals(&units, &slots);
+        for ((&at, opening), moved) in there.iter().zip(&units).zip(&responses) {
+            for (mode, stretch) in structure.generalised(opening, modes).into_iter().enumerate() {
+                by_modes[(at, mode)] = stretch;
+            }
+            for (heard, [x, y]) in heard.iter_mut().zip(&moved[at_sensors..]) {
+                heard[at] = [-x, -y];
+            }
+            for (vertex, ((_, [nx, ny], _), [x, y])) in
+                parts.raceway.iter().zip(&moved[at_raceway..]).enumerate()
+            {
+                by_rollers[(at, vertex)] = nx * x + ny * y;
+            }
+            for other in 0..2 * p {
+                flexibility[(other, at)] = shares(other)
+                    .map(|(slot, [dx, dy])| {
+                        let [x, y] = moved[index[slot as usize]];
+                        dx * x + dy * y
+                    })
+                    .sum();
+            }
+        }
+        Self { by_modes, flexibility, by_rollers, on_ring, heard }
     }
 }
 

@@ -145,7 +145,7 @@ impl Geometry {
         self.grooves.iter().filter(move |groove| groove.ring == ring)
     }
 
-    /// Facets that a whole turn of the raceway of `ring` would have at the spacing outside its grooves, of
+    /// Facets that a whole turn of the raceway of `ring` would have at the mean spacing outside its grooves, of
     /// all its `facets`: floors are meshed as finely as the raceway, in two facets at least, and upright walls take no angle.
     pub fn facets_around(&self, ring: DefectRing, facets: usize) -> f64 {
         let radius = match ring {

@@ -147,7 +147,7 @@ fn load(findings: &Findings) -> Vec<Figure> {
         let (angle_deg, force_n) = (curve.angle_deg.clone(), curve.force_n.clone());
         figure = figure.with(Series::listed("static, rigid rings", Colour::Orange, angle_deg, force_n));
     }
-    if let Some(edges) = findings.prediction.standing() {
+    for edges in findings.prediction.standing_spalls() {
         let label = "defect".into();
         let (one, other) = (edges.trailing_deg, edges.leading_deg);
         figure.bands.push(Band { from: one.min(other), to: one.max(other), label });

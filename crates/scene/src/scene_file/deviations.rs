@@ -94,11 +94,13 @@ impl<'a> Checked<'a> {
                     Edge::Rounded => 0.5 * PI * spall.depth_mm / edge,
                     Edge::Rectangular => 0.0,
                 };
+                // The floor of a groove has two facets, however short it is.
+                let sloped = spall.edge != Edge::Rectangular;
                 vec![
-                    self.short(spall.length_mm),
+                    sloped.then(|| self.short(spall.length_mm)).flatten(),
                     self.long(spall.length_mm),
                     self.upright(spall),
-                    self.edge(spall.edge_mm, spall.length_mm),
+                    sloped.then(|| self.edge(spall.edge_mm, spall.length_mm)).flatten(),
                     self.steep(slope, "form.depth_mm", spall.depth_mm, "mm"),
                     self.deep(),
                 ]
@@ -232,13 +234,15 @@ impl<'a> Checked<'a> {
             return None;
         }
         let path = self.path(field);
-        let message = format!(
-            "`{path}` is {}: the surface would slope by {:.0}°, and cells of a mesh lean by {:.0}° at most. Steep walls have \
-             spalls of either ring with `edge: rectangular`",
+        let mut message = format!(
+            "`{path}` is {}: the surface would slope by {:.0}°, and cells of a mesh lean by {:.0}° at most",
             number(value),
             slope.atan().to_degrees(),
             STEEPEST.atan().to_degrees()
         );
+        if !self.on_roller() {
+            message += ". Steep walls have spalls with `edge: rectangular`";
+        }
         let most = round_down(value * STEEPEST / slope, 3);
         let mut remedies =
             vec![Remedy::new(path, format!("at most {} {unit}", number(most))).number(most, "")];

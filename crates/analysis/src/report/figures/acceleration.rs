@@ -45,11 +45,14 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
     let mut figure = over_time("acceleration-notched", "The same with the tone filtered out")
         .with(sampled(findings, "raw", Colour::Grey, &leading.raw_g))
         .with(sampled(findings, "notched", Colour::Orange, &leading.filtered_g))
-        .caption(format!(
-            "In the gaps the peak falls from {} to {}; the impulses stay.",
-            gravities(levels.between_g),
-            gravities(levels.between_filtered_g),
-        ))
+        .caption(match levels.between_g {
+            None => "No gap between passages is long enough for a level.".to_owned(),
+            raw => format!(
+                "In the gaps the peak falls from {} to {}; the impulses stay.",
+                gravities(raw),
+                gravities(levels.between_filtered_g),
+            ),
+        })
         .note(transient_note(findings));
     figure.marks = passages(&findings.summary.events);
     figure.bands = transient(findings);

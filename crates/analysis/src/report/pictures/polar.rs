@@ -44,7 +44,7 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
         let end = at(deg, 1.09 * largest);
         sheet.text([end[0], end[1] + 4.0], 12.0, Anchor::Middle, "#5c6670", &format!("{deg:.0} °"));
     }
-    if let Some(edges) = findings.prediction.standing() {
+    for edges in findings.prediction.standing_spalls() {
         let span = |n: usize| edges.trailing_deg + (edges.leading_deg - edges.trailing_deg) * n as f64 / 12.0;
         let mut sector: Vec<[f64; 2]> = (0..=12).map(|n| at(span(n), largest)).collect();
         sector.extend((0..=12).rev().map(|n| at(span(n), 0.0)));

@@ -58,7 +58,7 @@ fn refuses_what_no_mesh_can_follow() {
             "meshes of rings are cut, those of rollers are not",
         ),
         (
-            "form: spall(edge: rectangular, edge_mm: 1)",
+            "form: spall(edge: rectangular, edge_mm: 0.3)",
             "defects[0].form.edge_mm",
             "rectangular edges take no length",
         ),
