@@ -6,7 +6,6 @@ use std::f64::consts::{PI, TAU};
 use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
-use crate::scene::{DefectRing, DefectScene};
 
 /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -208,15 +207,6 @@ impl FormScene {
 }
 
 impl RollingSurface {
-    /// The ring whose raceway it is.
-    pub fn ring(self) -> Option<DefectRing> {
-        match self {
-            Self::Outer => Some(DefectRing::Outer),
-            Self::Inner => Some(DefectRing::Inner),
-            Self::Roller(_) => None,
-        }
-    }
-
     /// In words.
     pub fn spoken(self) -> String {
         match self {
@@ -243,14 +233,9 @@ impl DeviationScene {
         forms.into_iter().map(|form| Self { form, ..Self::default() }).collect()
     }
 
-    /// The groove that a mesh is cut with where edges are rectangular; nodes move for all others.
-    pub fn groove(&self) -> Option<DefectScene> {
-        let FormScene::Spall(spall) = &self.form else { return None };
-        if spall.edge != Edge::Rectangular {
-            return None;
-        }
-        let (length_mm, depth_mm, angle_deg) = (spall.length_mm, spall.depth_mm, self.angle_deg);
-        Some(DefectScene { ring: self.on.ring()?, length_mm, depth_mm, angle_deg, edge_slope_deg: 90.0 })
+    /// Whether a mesh is cut for it; nodes move for all others.
+    pub fn is_cut(&self) -> bool {
+        matches!(&self.form, FormScene::Spall(spall) if spall.edge == Edge::Rectangular)
     }
 
     /// In words: `a spall of 4 × 0.1 mm on roller 1`.
@@ -309,7 +294,7 @@ impl Relief {
     pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
         let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
         let mut any = false;
-        for deviation in deviations.iter().filter(|d| d.on == on && d.groove().is_none()) {
+        for deviation in deviations.iter().filter(|d| d.on == on && !d.is_cut()) {
             any = true;
             let at = deviation.angle_deg.to_radians();
             match &deviation.form {

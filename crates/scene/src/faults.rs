@@ -63,6 +63,27 @@ impl Scene {
     }
 }
 
+impl RollingSurface {
+    /// The ring whose raceway it is.
+    pub fn ring(self) -> Option<DefectRing> {
+        match self {
+            Self::Outer => Some(DefectRing::Outer),
+            Self::Inner => Some(DefectRing::Inner),
+            Self::Roller(_) => None,
+        }
+    }
+}
+
+impl DeviationScene {
+    /// The groove that a mesh is cut with, where it is one.
+    pub fn groove(&self) -> Option<DefectScene> {
+        let FormScene::Spall(spall) = &self.form else { return None };
+        let (length_mm, depth_mm, angle_deg) = (spall.length_mm, spall.depth_mm, self.angle_deg);
+        let ring = self.on.ring().filter(|_| self.is_cut())?;
+        Some(DefectScene { ring, length_mm, depth_mm, angle_deg, edge_slope_deg: 90.0 })
+    }
+}
+
 /// Diameter of a rolling surface and length of its facets [mm].
 pub(crate) fn rolling_circle(scene: &Scene, on: RollingSurface) -> [f64; 2] {
     let (b, mesh) = (&scene.bearing, &scene.mesh);
