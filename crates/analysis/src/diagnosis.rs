@@ -40,6 +40,9 @@ pub struct DiagnosedFamily {
     pub measured_hz: Option<f64>,
     /// Height of its first harmonic above the background [dB].
     pub level_db: Option<f64>,
+    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines.
+    #[serde(default)]
+    pub in_passages: bool,
     /// Whether the record is said to show such a defect.
     pub claimed: bool,
     /// Whether the scene has such a defect.
@@ -96,7 +99,7 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
         let sides = match family.name {
             "BPFO" if motion.outer_ring_hz > 0.0 => Some(("outer ring", motion.outer_ring_hz)),
             "BPFI" if motion.shaft_hz > 0.0 => Some(("shaft", motion.shaft_hz)),
-            "BSF" => Some(("cage", motion.cage_hz.unwrap_or(motion.expected_cage_hz))),
+            "BSF" if !family.in_passages => Some(("cage", motion.cage_hz.unwrap_or(motion.expected_cage_hz))),
             _ => None,
         };
         let sidebands = sides.and_then(|(of, hz)| sidebands(family, analysis.band_of(family)?, of, hz));
@@ -106,6 +109,7 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
             from_motion_hz: from_motion(family.name, motion),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
+            in_passages: family.in_passages,
             claimed: family.claimed,
             present: present.iter().any(|on| family_of(*on) == family.name),
             reason: family.reason.clone(),

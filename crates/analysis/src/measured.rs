@@ -34,6 +34,7 @@ mod angular;
 mod course;
 mod enhanced;
 mod length;
+mod passage;
 pub mod ridge;
 mod screening;
 pub mod tacho;

@@ -97,6 +97,41 @@ fn example_each_defect_is_told_from_the_others_with_slip() {
     }
 }
 
+/// Knocks about the middle of each turn of a cage, at times [s] from it that `spread` draws from a number from −1 to 1 for each of
+/// them, five in a turn.
+fn passages(cage_hz: f64, spread: impl Fn(usize, [f64; 2]) -> f64) -> Vec<f64> {
+    let mut noise = Noise::new(17);
+    let mut signal = coloured(6, SAMPLES);
+    for turn in 0..(cage_hz * SAMPLES as f64 / RATE_HZ) as usize {
+        let of_the_turn = noise.uniform();
+        for knock in 0..5 {
+            let at = (turn as f64 + 0.5) / cage_hz + spread(knock, [of_the_turn, noise.uniform()]);
+            let first = (at * RATE_HZ).ceil() as usize;
+            for (n, x) in signal.iter_mut().enumerate().skip(first).take(150) {
+                let since = n as f64 / RATE_HZ - at;
+                *x += 40.0 * (-since / 1e-3).exp() * (TAU * 3_000.0 * since).sin();
+            }
+        }
+    }
+    signal
+}
+
+#[test]
+fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage() {
+    let shaft_hz = 20.0;
+    let (cage_hz, knocks_hz) = (0.398 * shaft_hz, 2.0 * 2.357 * shaft_hz);
+    // Half a spin apart, from a phase that every turn draws anew.
+    let element = passages(cage_hz, |knock, [turn, _]| (knock as f64 - 2.0 + 0.5 * turn) / knocks_hz);
+    let findings = analysed(element, 60.0 * shaft_hz);
+    assert_eq!(claimed(&findings), ["BSF"], "{findings:#?}");
+    let family = findings.families.iter().find(|f| f.name == "BSF").unwrap();
+    assert!(family.in_passages && (family.measured_hz.unwrap() / (0.5 * knocks_hz) - 1.0).abs() < 0.01);
+    assert!(findings.verdict.contains("a defect of a rolling element"), "{}", findings.verdict);
+    // As many as close together, without a rhythm.
+    let cage = passages(cage_hz, |_, [_, knock]| 2.0 * knock / knocks_hz);
+    assert_eq!(claimed(&analysed(cage, 60.0 * shaft_hz)), ["FTF"]);
+}
+
 /// Short bursts over a wide band, as an element makes them that passes an edge: `hz` times a second, each followed by a second
 /// one `apart_s` later, if that is not 0, both dying away with `decay_s`; at 51.2 kHz.
 fn edges(hz: f64, apart_s: f64, decay_s: f64) -> Vec<f64> {

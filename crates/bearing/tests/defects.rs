@@ -126,7 +126,7 @@ fn example_rectangular_spalls_are_cut_as_the_defect_is() {
     single.defect = listed.spalls().pop();
     assert_eq!(nodes(&listed), nodes(&single));
     // Three of them carry their load.
-    let others = "(on: outer, angle_deg: 80.0, form: spall(length_mm: 5.0, depth_mm: 0.1, edge: rectangular)), \
+    let others = "(on: outer, angle_deg: 78.0, form: spall(length_mm: 5.0, depth_mm: 0.1, edge: rectangular)), \
         (on: inner, angle_deg: 90.0, form: spall(length_mm: 6.0, depth_mm: 0.2, edge: rectangular))";
     let scene = scene(&format!("{spall}, {others}"), 1.0);
     let folder = Scratch::new("defects-grooves");

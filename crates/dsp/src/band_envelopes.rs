@@ -249,6 +249,55 @@ impl BandEnvelope {
     }
 }
 
+/// How like itself something is after a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Autocorrelation {
+    /// Distance of the values [s].
+    step_s: f64,
+    /// 1 at first.
+    values: Vec<f64>,
+}
+
+impl BandEnvelope {
+    /// How like itself the power of the band is after a time, less its mean: the transform of the spectrum, which knows events that
+    /// keep their distance for a while and no longer. Values lie half a period of the spectrum's end apart; a lag must be short
+    /// beside a segment.
+    ///
+    /// # Errors
+    /// [`Error::TooShort`] for a spectrum of fewer than four lines, [`Error::Undefined`] for power that does not change.
+    pub fn autocorrelation(&self) -> Result<Autocorrelation> {
+        /// Lines of a Hann window about zero, which are those of the mean.
+        const MEAN: usize = 2;
+        const LEAST: usize = 4;
+        let lines = self.values.len();
+        if lines < LEAST {
+            let purpose = "an autocorrelation";
+            return Err(Error::TooShort { field: "values", len: lines, least: LEAST, purpose });
+        }
+        let len = 2 * (lines - 1);
+        let inverse = RealFftPlanner::<f64>::new().plan_fft_inverse(len);
+        let mut power: Vec<Complex<f64>> = self.values.iter().map(|v| Complex::new(*v, 0.0)).collect();
+        power[..MEAN].fill(Complex::default());
+        let mut values = inverse.make_output_vec();
+        inverse.process(&mut power, &mut values).expect("both buffers have the plan's lengths");
+        let all = values[0];
+        if !all.is_finite() || all <= 0.0 {
+            let why = "the power of the band does not change";
+            return Err(Error::Undefined { quantity: "autocorrelation", why });
+        }
+        values.truncate(len / 2);
+        values.iter_mut().for_each(|v| *v /= all);
+        Ok(Autocorrelation { step_s: 1.0 / (len as f64 * self.grid_hz), values })
+    }
+}
+
+impl Autocorrelation {
+    /// The value nearest to a lag [s]; `None` beyond half a segment.
+    pub fn at(&self, lag_s: f64) -> Option<f64> {
+        self.values.get((lag_s / self.step_s).round() as usize).copied()
+    }
+}
+
 /// The smallest even 2ᵃ·3ᵇ·5ᶜ that is not below `least`.
 fn smooth(least: usize) -> usize {
     let smooth = |mut n: usize| {
@@ -290,6 +339,26 @@ mod tests {
         assert!((band.rms - 0.5_f64.sqrt()).abs() < 1e-3, "{}", band.rms);
         // ⟨(1 + d cos)²⟩ − 2 = d²/2 − 1.
         assert!((band.kurtosis - (0.18 - 1.0)).abs() < 2e-3, "{}", band.kurtosis);
+    }
+
+    /// Source: the autocorrelation of 1 + d cos(2πft) less its mean is cos(2πfτ).
+    #[test]
+    fn analytic_the_power_of_a_modulation_is_like_itself_after_its_period() {
+        const HZ: f64 = 37.3;
+        let mut plan = BandEnvelopes::new(RATE_HZ, 8_000, &[(1_250.0, 3_750.0)], 500.0).unwrap();
+        plan.add(&modulated(0.6, 8_000)).unwrap();
+        let correlation = plan.bands()[0].autocorrelation().unwrap();
+        // Values lie 1 ms apart; the window of 0.8 s has lost 2 % of itself at 30 ms.
+        for (periods, like) in [(0.0, 1.0), (0.5, -1.0), (1.0, 1.0)] {
+            let lag_s: f64 = (periods / HZ * 1e3_f64).round() * 1e-3;
+            let expected = (TAU * HZ * lag_s).cos();
+            let found = correlation.at(lag_s).unwrap();
+            assert!(
+                (found - expected).abs() < 0.02 && found * like > 0.9,
+                "{periods}: {found} for {expected}"
+            );
+        }
+        assert_eq!(correlation.at(0.5), None);
     }
 
     #[test]

@@ -116,7 +116,7 @@ mod sensor;
 pub mod statistics;
 
 pub use angle::{OverAngle, means_over_angle, order_track};
-pub use band_envelopes::{BandEnvelope, BandEnvelopes};
+pub use band_envelopes::{Autocorrelation, BandEnvelope, BandEnvelopes};
 pub use cepstrum::cepstral_prewhitening;
 pub use comb::{Comb, CombTest, Whitened};
 pub use cyclic::{Cyclic, SpectralCorrelation, spectral_correlation};

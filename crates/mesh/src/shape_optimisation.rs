@@ -271,7 +271,7 @@ mod tests {
         let eight: Vec<Groove> =
             (0..8).map(|k| Groove::rectangular(0.1 + k as f64 * TAU / 8.0, 0.01, 0.2e-3)).collect();
         let near = |depth, angle| Groove::rectangular(angle, 0.01, depth);
-        let two = vec![near(6e-3, 0.5), near(6e-3, 0.7)];
+        let two = vec![near(6e-3, 0.5), near(6e-3, 0.72)];
         for (grooves, least) in [(eight, 0.87), (two, 0.6)] {
             let ring = Annulus {
                 inner_radius: 0.1,

@@ -193,12 +193,16 @@ const LEDGER: f64 = 0.01;
 /// Sidebands of six that make the right ones.
 const SIDEBANDS: usize = 3;
 
+/// What the rhythm within a passage resolves of its frequency: knocks last about 1 ms, and three follow the first one.
+const RHYTHM: f64 = 0.04;
+
 /// A family that is claimed at another place than the motion has it, or without its sidebands.
 fn misplaced(family: &DiagnosedFamily, diagnosis: &DiagnosisFinding) -> Option<String> {
     let (measured, motion) = family.measured_hz.zip(family.from_motion_hz)?;
     // A spot on a rolling element strikes twice a turn.
     let times = if family.name == "BSF" { 2.0 } else { 1.0 };
-    let off = times * (measured - motion) / diagnosis.resolution_hz;
+    let resolution_hz = if family.in_passages { RHYTHM * times * measured } else { diagnosis.resolution_hz };
+    let off = times * (measured - motion) / resolution_hz;
     if off.abs() > 1.0 {
         return Some(format!("{} {} resolutions from the motion", family.name, number(off, 1)));
     }
@@ -213,7 +217,8 @@ fn introduce(sheet: &mut Sheet) {
          1500 rpm by the reduced model, 2.4 s with a spot on one rolling element, which is loaded a part of every turn of the cage only, and one and a half passages of a roller by the full one. The record of the first sensor is then judged as \
          one from a machine would be, without the scene (`stribeck analyse`, THEORY §7.9): it is right when it claims every family of the scene's defects \
          and no other, each within one resolution of the recorded motion and, for BPFI and BSF, with three of the six sidebands at the shaft\u{2019}s and \
-         the cage\u{2019}s distance, and when each model that has run it ends with less than 1 % of the energy missing. *waves* have no defect: two raceways with \
+         the cage\u{2019}s distance (a BSF that is told by the rhythm of its knocks within a passage has no lines, and its frequency is to be within \
+         4 % of the motion\u{2019}s), and when each model that has run it ends with less than 1 % of the energy missing. *waves* have no defect: two raceways with \
          waviness and a roller that is too small.",
     );
 }
@@ -327,6 +332,12 @@ fn values(sheet: &mut Sheet, cells: &[Cell<'_>]) {
             sheet.value("families", name, &what("measured Hz"), family.measured_hz);
             sheet.value("families", name, &what("height dB"), family.level_db);
             sheet.value("families", name, &what("claimed"), Some(f64::from(u8::from(family.claimed))));
+            sheet.value(
+                "families",
+                name,
+                &what("in passages"),
+                Some(f64::from(u8::from(family.in_passages))),
+            );
             let seen = family.sidebands.as_ref().map(|sides| sides.seen as f64);
             sheet.value("families", name, &what("sidebands of six"), seen);
         }

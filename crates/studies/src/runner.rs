@@ -125,27 +125,44 @@ impl<'a> Runner<'a> {
         let planned: Vec<Planned> =
             variants.iter().map(|variant| self.plan(flags, variant)).collect::<Result<_>>()?;
         let due: Vec<(usize, &Planned)> = planned.iter().enumerate().filter(|(_, p)| p.due).collect();
+        self.each(flags, &due, |(number, planned)| {
+            self.host.say(&format!("{} of {}: {}", number + 1, variants.len(), planned.variant.name));
+            if let Err(error) = self.run_one(planned) {
+                self.host.say(&format!("{}: {error:#}", planned.variant.name));
+                let _ = planned.failed.set(format!("{error:#}"));
+            }
+        })?;
+        let shown: Vec<(&Planned, OnceLock<Finished>)> = planned
+            .iter()
+            .filter(|p| p.due || p.state == State::Done)
+            .map(|planned| (planned, OnceLock::new()))
+            .collect();
+        self.each(flags, &shown, |(planned, slot)| _ = slot.set(finished(planned)))?;
+        Ok(shown.into_iter().filter_map(|(_, slot)| slot.into_inner()).collect())
+    }
+
+    /// Does `work` for every item, as many at a time as the flags say.
+    ///
+    /// # Errors
+    /// At Ctrl-C.
+    fn each<T: Sync>(&self, flags: &Flags, items: &[T], work: impl Fn(&T) + Sync) -> Result<()> {
         let next = AtomicUsize::new(0);
-        let work = || {
-            while let Some(&(number, planned)) = due.get(next.fetch_add(1, Ordering::Relaxed)) {
+        let worker = || {
+            while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
                 if self.host.is_interrupted() {
                     return;
                 }
-                self.host.say(&format!("{} of {}: {}", number + 1, variants.len(), planned.variant.name));
-                if let Err(error) = self.run_one(planned) {
-                    self.host.say(&format!("{}: {error:#}", planned.variant.name));
-                    let _ = planned.failed.set(format!("{error:#}"));
-                }
+                work(item);
             }
         };
         std::thread::scope(|scope| {
-            (1..flags.jobs).for_each(|_| drop(scope.spawn(work)));
-            work();
+            (1..flags.jobs).for_each(|_| drop(scope.spawn(worker)));
+            worker();
         });
         if self.host.is_interrupted() {
             bail!("interrupted; the same command goes on from here");
         }
-        Ok(planned.into_iter().filter(|p| p.due || p.state == State::Done).map(finished).collect())
+        Ok(())
     }
 
     /// What is to be done for a variant.
@@ -221,11 +238,11 @@ fn state_of(folder: &Path, scene: &Scene) -> State {
 }
 
 /// Reads a run again and draws its conclusions anew, so that a table is never older than the analysis.
-fn finished(planned: Planned) -> Finished {
+fn finished(planned: &Planned) -> Finished {
     let Planned { variant, folder, scene, failed, .. } = planned;
-    let run = match failed.into_inner() {
-        Some(why) => Err(why),
-        None => Run::read(&folder).map_err(|error| error.to_string()),
+    let run = match failed.get() {
+        Some(why) => Err(why.clone()),
+        None => Run::read(folder).map_err(|error| error.to_string()),
     };
     let info = run.as_ref().ok().map(|run| run.info.clone());
     let summary = run.and_then(|run| match run.info.status {
@@ -235,5 +252,5 @@ fn finished(planned: Planned) -> Finished {
         }
         _ => Err(run.info.stop_reason.unwrap_or_else(|| "did not complete".to_owned())),
     });
-    Finished { variant, folder, scene, summary, info }
+    Finished { variant: variant.clone(), folder: folder.clone(), scene: scene.clone(), summary, info }
 }

@@ -8,9 +8,8 @@ use stribeck_system::Plan;
 
 /// Relative error of the frequency [-].
 pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
-    let (inner_radius, outer_radius, thickness) = (0.098, 0.102, 0.004);
-    let ring =
-        Annulus { inner_radius, outer_radius, facets: 314, layers: 2, start_angle: 0.0, grooves: Vec::new() };
+    let (inner_radius, outer_radius, thickness, grooves) = (0.098, 0.102, 0.004, Vec::new());
+    let ring = Annulus { inner_radius, outer_radius, facets: 314, layers: 2, start_angle: 0.0, grooves };
     let steel = Elastic::new(208e9, 0.3, 7800.0)?;
     let mut plan = Plan::new(0.02);
     plan.add("ring", &ring.part()?, steel)?;

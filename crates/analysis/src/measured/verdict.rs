@@ -12,7 +12,7 @@
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
-use super::Machine;
+use super::{Machine, passage};
 use crate::Error;
 
 /// One defect family.
@@ -36,6 +36,9 @@ pub struct Family {
     pub depth: Option<f64>,
     /// Band in which it stands highest [Hz].
     pub band_hz: Option<(f64, f64)>,
+    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines
+    /// ([`BandEnvelope::autocorrelation`]).
+    pub in_passages: bool,
     /// Whether this is called a defect.
     pub claimed: bool,
     /// Why, or why not.
@@ -53,7 +56,7 @@ pub(super) struct Judged {
 }
 
 /// Slip that moves a family from its place, either way.
-const SLIP: f64 = 0.02;
+pub(super) const SLIP: f64 = 0.02;
 /// Largest probability of a false alarm at which a family is there.
 const ALPHA: f64 = 1e-3;
 /// Largest part of unrelated combs that may stand as high.
@@ -110,16 +113,41 @@ pub(super) fn judge(
         .iter()
         .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
         .collect();
-    let mut families = Vec::new();
-    for ((name, _, times), order) in
-        FAMILIES.into_iter().zip([orders.bpfo, orders.bpfi, orders.bsf, orders.ftf])
-    {
-        families.push(look(name, order * shaft_hz, times, &whitened, record_s, segment_s));
-    }
+    let looked: Vec<(Family, Option<Standing>)> = FAMILIES
+        .into_iter()
+        .zip([orders.bpfo, orders.bpfi, orders.bsf, orders.ftf])
+        .map(|((name, _, times), order)| look(name, order * shaft_hz, times, &whitened, record_s, segment_s))
+        .collect();
+    let first = first(looked.iter().map(|(family, _)| family));
+    let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
+    let mut families: Vec<Family> = looked
+        .into_iter()
+        .map(|(mut family, standing)| {
+            if let Some(Standing { band, comb, comb_hz, times }) = standing {
+                family.rank = rank(&comb, comb_hz, &whitened[band].1, first_hz);
+                if family.is_there() {
+                    family.measured_hz = Some(comb.fundamental_hz / times);
+                }
+            }
+            family
+        })
+        .collect();
     share_out(&mut families, 1.0 / segment_s);
     decide(&mut families);
+    passage::tell_the_element(&mut families, bands);
     let verdict = conclude(&families);
     Ok(Judged { families, verdict, notes })
+}
+
+/// Where a family stands highest.
+struct Standing {
+    /// Number of the band.
+    band: usize,
+    comb: Comb,
+    /// Fundamental without slip [Hz].
+    comb_hz: f64,
+    /// The same over the frequency of the name.
+    times: f64,
 }
 
 /// Looks for one family in all bands.
@@ -130,7 +158,7 @@ fn look(
     bands: &[(&BandEnvelope, Whitened)],
     record_s: f64,
     segment_s: f64,
-) -> Family {
+) -> (Family, Option<Standing>) {
     let comb_hz = times * expected_hz;
     let mut family = Family {
         name,
@@ -142,6 +170,7 @@ fn look(
         rank: None,
         depth: None,
         band_hz: None,
+        in_passages: false,
         claimed: false,
         reason: String::new(),
         height_db: f64::NEG_INFINITY,
@@ -152,7 +181,7 @@ fn look(
             record_s * comb_hz,
             PERIODS / comb_hz
         );
-        return family;
+        return (family, None);
     }
     let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
     let found: Vec<(usize, Comb)> = bands
@@ -160,36 +189,41 @@ fn look(
         .enumerate()
         .filter_map(|(n, (_, spectrum))| Some((n, CombTest::FOUR_OF_FIVE.search(spectrum, low, high).ok()?)))
         .collect();
-    let Some((n, comb)) = found.iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
+    let searched = found.len() as f64;
+    let Some((n, comb)) = found.into_iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
         family.reason =
             format!("no band is wide enough for four harmonics of {comb_hz:.1} Hz: sample faster");
-        return family;
+        return (family, None);
     };
-    let (band, spectrum) = &bands[*n];
-    family.p_value = (comb.p_value * found.len() as f64).min(1.0);
+    let (band, spectrum) = &bands[n];
+    family.p_value = (comb.p_value * searched).min(1.0);
     family.band_hz = Some((band.low_hz, band.high_hz));
     family.height_db = decibel(comb.height);
     family.level_db = Some(decibel(comb.ratios[0]));
     family.harmonics = comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count();
     family.depth = Some(band.depth(comb.fundamental_hz));
-    family.rank = rank(comb, comb_hz, spectrum);
-    if family.is_there() {
-        family.measured_hz = Some(comb.fundamental_hz / times);
-    }
-    family
+    (family, Some(Standing { band: n, comb, comb_hz, times }))
 }
 
-/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried.
-fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened) -> Option<f64> {
-    let related = |ratio: f64| {
-        let fractions = (1..=5).flat_map(|p| (1..=5).map(move |q| f64::from(p) / f64::from(q)));
-        fractions.into_iter().any(|fraction| (ratio / fraction - 1.0).abs() < 2.25 * SLIP)
-    };
+/// Fundamentals [Hz] that have nothing to do with `comb_hz`: those that could share lines with it, with slip, are left out.
+pub(super) fn unrelated_hz(comb_hz: f64) -> impl Iterator<Item = f64> {
     let ratios = (0..CONTROLS).map(|n| 0.4 * 6.25_f64.powf(n as f64 / (CONTROLS - 1) as f64));
-    let heights: Vec<f64> = ratios
-        .filter(|ratio| !related(*ratio))
-        .filter_map(|ratio| {
-            let hz = ratio * comb_hz;
+    ratios.map(move |ratio| ratio * comb_hz).filter(move |hz| !are_related(*hz, comb_hz))
+}
+
+/// Whether two combs share lines, with slip.
+fn are_related(a_hz: f64, b_hz: f64) -> bool {
+    let fractions = (1..=5).flat_map(|p| (1..=5).map(move |q| f64::from(p) / f64::from(q)));
+    fractions.into_iter().any(|fraction| (a_hz / b_hz / fraction - 1.0).abs() < 2.25 * SLIP)
+}
+
+/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried. The comb of
+/// the `first` family [Hz] is none of them.
+fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -> Option<f64> {
+    let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| (hz / first_hz - 1.0).abs() < 2.25 * SLIP);
+    let heights: Vec<f64> = unrelated_hz(comb_hz)
+        .filter(|hz| !of_the_first(*hz))
+        .filter_map(|hz| {
             let control =
                 CombTest::FOUR_OF_FIVE.search(spectrum, (1.0 - SLIP) * hz, (1.0 + SLIP) * hz).ok()?;
             Some(control.height)
@@ -219,15 +253,17 @@ fn share_out(families: &mut [Family], resolution_hz: f64) {
     }
 }
 
+/// The family that knocks and stands highest, but for the cage's.
+fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
+    let knocking = families.enumerate().filter(|(_, f)| f.name != "FTF" && f.knocks());
+    knocking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
+}
+
 /// Which of the families that are there are defects.
 fn decide(families: &mut [Family]) {
     // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that stands lower
     // than another is not the first, even if the other one is not believed.
-    let first_db = families
-        .iter()
-        .filter(|f| f.name != "FTF" && f.knocks())
-        .map(|f| f.height_db)
-        .fold(f64::NEG_INFINITY, f64::max);
+    let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
     for family in families.iter_mut().filter(|f| f.reason.is_empty()) {
         let (p, depth, rank) = (family.p_value, family.depth.unwrap_or(0.0), family.rank.unwrap_or(1.0));
         family.reason = if p >= ALPHA {
@@ -335,6 +371,7 @@ mod tests {
             rank: Some(0.0),
             depth: Some(1.5),
             band_hz: None,
+            in_passages: false,
             claimed: false,
             reason: String::new(),
             height_db: 25.0,
