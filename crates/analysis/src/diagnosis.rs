@@ -2,7 +2,7 @@
 //! record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
-use stribeck_dsp::{BandEnvelope, Whitened};
+use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
 use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::deviation::RollingSurface;
@@ -82,6 +82,36 @@ pub fn analysis(
     name: &str,
 ) -> Result<Option<Analysis>, Error> {
     let Some(samples) = record.part(0..record.len(), |n| n == name)?.take(name) else { return Ok(None) };
+    judged(scene, record, expected, name, samples)
+}
+
+/// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always has some. Its seed is
+/// fixed.
+///
+/// # Errors
+/// As [`analysis`].
+pub fn analysis_in_noise(
+    scene: &Scene,
+    record: &Record<'_>,
+    expected: &Kinematics,
+    name: &str,
+    noise: f64,
+) -> Result<Option<Analysis>, Error> {
+    let Some(samples) = record.part(0..record.len(), |n| n == name)?.take(name) else { return Ok(None) };
+    let rate_hz = record.sample_rate_hz();
+    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
+    let power = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / samples.len() as f64;
+    let sensor = Sensor { noise_density: noise * (power / (0.5 * rate_hz)).sqrt(), ..Sensor::ideal(rate_hz) };
+    judged(scene, record, expected, name, sensor.record(&samples, rate_hz).map_err(Error::Signal)?)
+}
+
+fn judged(
+    scene: &Scene,
+    record: &Record<'_>,
+    expected: &Kinematics,
+    name: &str,
+    samples: Vec<f64>,
+) -> Result<Option<Analysis>, Error> {
     let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * relative_hz(expected));
     let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing) };
     let channel = Channel::held(name.to_owned(), samples).in_unit(Some("m/s²".to_owned()));

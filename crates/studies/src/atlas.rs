@@ -3,8 +3,10 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding};
+use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding, analysis_in_noise};
+use stribeck_analysis::record::Record;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
 use crate::table::number;
@@ -99,6 +101,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     introduce(&mut sheet);
     matrix(&mut sheet, &cells);
     failures(&mut sheet, &cells);
+    noise(&mut sheet, &cells);
     balance(&mut sheet, &cells);
     values(&mut sheet, &cells);
     Ok(Answer::on(sheet.write()?))
@@ -225,19 +228,7 @@ fn introduce(sheet: &mut Sheet) {
 
 fn matrix(sheet: &mut Sheet, cells: &[Cell<'_>]) {
     sheet.heading("The matrix");
-    let names: Vec<&str> = std::iter::once("bearing").chain(DEFECTS.iter().map(|d| d.0)).collect();
-    let rows: Vec<Vec<String>> = BEARINGS
-        .iter()
-        .map(|bearing| {
-            let mut row = vec![spoken(bearing).to_owned()];
-            row.extend(DEFECTS.map(|(defect, ..)| {
-                let cell = cells.iter().find(|c| c.bearing == *bearing && c.defect == defect);
-                cell.map_or("–".to_owned(), short)
-            }));
-            row
-        })
-        .collect();
-    sheet.table(&names, &rows);
+    fields(sheet, cells, short);
     let right = cells.iter().filter(|cell| faults(cell).is_empty()).count();
     let claims = cells.iter().filter(|cell| claimed_rightly(cell)).count();
     let full = cells.iter().filter(|cell| cell.full.is_some()).count();
@@ -252,15 +243,79 @@ fn matrix(sheet: &mut Sheet, cells: &[Cell<'_>]) {
     ));
 }
 
+/// A table of all fields.
+fn fields(sheet: &mut Sheet, cells: &[Cell<'_>], say: impl Fn(&Cell<'_>) -> String) {
+    let names: Vec<&str> = std::iter::once("bearing").chain(DEFECTS.iter().map(|d| d.0)).collect();
+    let rows: Vec<Vec<String>> = BEARINGS
+        .iter()
+        .map(|bearing| {
+            let mut row = vec![spoken(bearing).to_owned()];
+            row.extend(DEFECTS.map(|(defect, ..)| {
+                let cell = cells.iter().find(|c| c.bearing == *bearing && c.defect == defect);
+                cell.map_or("–".to_owned(), &say)
+            }));
+            row
+        })
+        .collect();
+    sheet.table(&names, &rows);
+}
+
 /// What a record was said to show.
 fn short(cell: &Cell<'_>) -> String {
     let claimed = |d: &DiagnosisFinding| {
         let names: Vec<&str> = d.families.iter().filter(|f| f.claimed).map(|f| f.name.as_str()).collect();
-        if names.is_empty() { "none".to_owned() } else { names.join(" + ") }
+        listed(&names)
     };
     let diagnosis = cell.reduced.numbers().and_then(|summary| summary.diagnosis.as_ref());
     let said = diagnosis.map_or("no run".to_owned(), claimed);
     if faults(cell).is_empty() { said } else { format!("**{said}**") }
+}
+
+fn listed(names: &[&str]) -> String {
+    if names.is_empty() { "none".to_owned() } else { names.join(" + ") }
+}
+
+/// White noise that is laid over records, its rms over that of the record.
+const NOISE: f64 = 0.5;
+
+/// The claims in the noise that a machine would have.
+fn noise(sheet: &mut Sheet, cells: &[Cell<'_>]) {
+    sheet.heading("In noise");
+    let said: Vec<(&Cell<'_>, Option<Vec<&'static str>>)> =
+        cells.iter().map(|cell| (cell, claimed_in_noise(cell))).collect();
+    let right = |cell: &Cell<'_>, names: &Vec<&str>| names.as_slice() == cell.wanted;
+    let all = said.iter().filter(|(cell, names)| names.as_ref().is_some_and(|n| right(cell, n))).count();
+    let false_ones = said.iter().filter(|(cell, names)| {
+        names.as_ref().is_some_and(|names| names.iter().any(|name| !cell.wanted.contains(name)))
+    });
+    sheet.value("noise", "all", "claimed rightly", Some(all as f64));
+    let false_ones = false_ones.count();
+    sheet.value("noise", "all", "claimed falsely", Some(false_ones as f64));
+    sheet.say(&format!(
+        "A run has no noise but its bearing's, and what elements rattle as they come under the load is then all there is: it swings the power of \
+         a sound bearing's record as knocks do. A machine has more. With white noise over the record, its rms {} % of the record's own, the claims are \
+         those below: {all} of {} fields claim what is there and nothing else, and {false_ones} claim something that is not there.",
+        number(100.0 * NOISE, 0),
+        cells.len()
+    ));
+    fields(sheet, cells, |cell| {
+        let found = said.iter().find(|(c, _)| c.bearing == cell.bearing && c.defect == cell.defect);
+        match found.and_then(|(_, names)| names.as_ref()) {
+            None => "no run".to_owned(),
+            Some(names) if right(cell, names) => listed(names),
+            Some(names) => format!("**{}**", listed(names)),
+        }
+    });
+}
+
+fn claimed_in_noise(cell: &Cell<'_>) -> Option<Vec<&'static str>> {
+    let run = cell.reduced;
+    let channel = &run.numbers()?.diagnosis.as_ref()?.channel;
+    let read = Run::read(&run.folder).ok()?;
+    let record = Record::new(&read).ok()?;
+    let expected = Kinematics::of(&run.scene);
+    let judged = analysis_in_noise(&run.scene, &record, &expected, channel, NOISE).ok()??;
+    Some(judged.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect())
 }
 
 fn claimed_rightly(cell: &Cell<'_>) -> bool {
