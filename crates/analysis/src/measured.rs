@@ -38,6 +38,7 @@ mod passage;
 pub mod ridge;
 mod screening;
 pub mod tacho;
+mod unrelated;
 mod velocity;
 mod verdict;
 

@@ -12,6 +12,7 @@
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
+use super::unrelated::{SLIP, is_the_same, unrelated_hz};
 use super::{Machine, passage};
 use crate::Error;
 
@@ -55,8 +56,6 @@ pub(super) struct Judged {
     pub(super) notes: Vec<String>,
 }
 
-/// Slip that moves a family from its place, either way.
-pub(super) const SLIP: f64 = 0.02;
 /// Largest probability of a false alarm at which a family is there.
 const ALPHA: f64 = 1e-3;
 /// Largest part of unrelated combs that may stand as high.
@@ -67,9 +66,6 @@ const KNOCK: f64 = 0.5;
 const SECOND_DB: f64 = 6.0;
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
-/// Unrelated fundamentals tried, from 0.4 to 2.5 times that of the family.
-const CONTROLS: usize = 160;
-
 /// What is looked for: the name, and the order of the comb over that of the name.
 const FAMILIES: [(&str, &str, f64); 4] = [
     ("BPFO", "the outer raceway", 1.0),
@@ -134,7 +130,7 @@ pub(super) fn judge(
         .collect();
     share_out(&mut families, 1.0 / segment_s);
     decide(&mut families);
-    passage::tell_the_element(&mut families, bands);
+    tell_the_element(&mut families, bands);
     let verdict = conclude(&families);
     Ok(Judged { families, verdict, notes })
 }
@@ -205,22 +201,10 @@ fn look(
     (family, Some(Standing { band: n, comb, comb_hz, times }))
 }
 
-/// Fundamentals [Hz] that have nothing to do with `comb_hz`: those that could share lines with it, with slip, are left out.
-pub(super) fn unrelated_hz(comb_hz: f64) -> impl Iterator<Item = f64> {
-    let ratios = (0..CONTROLS).map(|n| 0.4 * 6.25_f64.powf(n as f64 / (CONTROLS - 1) as f64));
-    ratios.map(move |ratio| ratio * comb_hz).filter(move |hz| !are_related(*hz, comb_hz))
-}
-
-/// Whether two combs share lines, with slip.
-fn are_related(a_hz: f64, b_hz: f64) -> bool {
-    let fractions = (1..=5).flat_map(|p| (1..=5).map(move |q| f64::from(p) / f64::from(q)));
-    fractions.into_iter().any(|fraction| (a_hz / b_hz / fraction - 1.0).abs() < 2.25 * SLIP)
-}
-
 /// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried. The comb of
 /// the `first` family [Hz] is none of them.
 fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -> Option<f64> {
-    let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| (hz / first_hz - 1.0).abs() < 2.25 * SLIP);
+    let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| is_the_same(hz, first_hz));
     let heights: Vec<f64> = unrelated_hz(comb_hz)
         .filter(|hz| !of_the_first(*hz))
         .filter_map(|hz| {
@@ -284,6 +268,39 @@ fn decide(families: &mut [Family]) {
             format!("{} harmonics stand, the power swings by {:.0} %", family.harmonics, 100.0 * depth)
         };
     }
+}
+
+/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a rolling element that knocks
+/// twice a spin, by the whole range or by the band in which the cage stands highest.
+fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
+    let place = |name: &str| families.iter().position(|family| family.name == name);
+    let (Some(element), Some(cage)) = (place("BSF"), place("FTF")) else { return };
+    // A spot on a rolling element meets both raceways in a turn.
+    let knocks_hz = 2.0 * families[element].expected_hz;
+    let is_taken = families.iter().any(|f| f.is_there() && is_the_same(f.expected_hz, knocks_hz));
+    if !families[cage].claimed || is_taken {
+        return;
+    }
+    let loudest = |band: &&BandEnvelope| families[cage].band_hz == Some((band.low_hz, band.high_hz));
+    let asked = [bands.first(), bands.iter().find(loudest)];
+    let told = asked.into_iter().flatten().find_map(|band| {
+        let hz = passage::rhythm(band, knocks_hz)?;
+        Some(((band.low_hz, band.high_hz), hz))
+    });
+    let Some((band_hz, hz)) = told else { return };
+    let family = &mut families[element];
+    family.measured_hz = Some(0.5 * hz);
+    family.band_hz = Some(band_hz);
+    family.in_passages = true;
+    family.claimed = true;
+    family.reason = format!(
+        "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an element, which no unrelated rhythm \
+         does as much; from turn to turn it loses its phase, so that it has no lines"
+    );
+    let cage = &mut families[cage];
+    cage.claimed = false;
+    "it is there, as the rhythm in which one rolling element passes under the load"
+        .clone_into(&mut cage.reason);
 }
 
 fn conclude(families: &[Family]) -> String {
