@@ -26,6 +26,9 @@ pub const MEAN_S: f64 = 0.25e-3;
 const THIRDS: std::ops::RangeInclusive<i32> = -3..=10;
 /// Bins that a third octave must hold.
 const LEAST_BINS: f64 = 3.0;
+/// Waveforms are compared below these frequencies [Hz], over so many samples at most.
+const BELOW_HZ: [f64; 2] = [500.0, 2000.0];
+const WAVEFORM: usize = 50_000;
 /// Lines of BPFO that are compared, and the periods of it that a record must hold for them.
 const LINES: usize = 5;
 const PERIODS: f64 = 10.0;
@@ -49,6 +52,9 @@ pub struct Agreement {
     pub rows: Vec<Row>,
     /// Third octaves of every sensor.
     pub sensors: Vec<Octaves>,
+    /// How alike the waveforms of the first sensor are.
+    #[serde(default)]
+    pub correlations: Vec<Correlation>,
     /// What could not be compared, and why.
     pub notes: Vec<String>,
 }
@@ -68,9 +74,43 @@ pub struct Row {
     pub limit: f64,
     /// Whether it is kept: by the mean of the starts, or by every band.
     pub within: bool,
+    /// Whether so many starts can tell: their interval, or the error of each band, leaves no other answer.
+    #[serde(default)]
+    pub told: bool,
+}
+
+/// How alike the vertical accelerations of both models are below a frequency, from equal starts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Correlation {
+    /// Sensor.
+    pub sensor: String,
+    /// Only what is below this frequency counts [Hz].
+    pub below_hz: f64,
+    /// Correlation of full and reduced model over the starts [-].
+    pub value: Statistic,
 }
 
 impl Row {
+    /// Of the differences over the starts.
+    fn over_starts(name: String, quantity: String, unit: &str, difference: Statistic, limit: f64) -> Self {
+        let told = difference
+            .low
+            .zip(difference.high)
+            .is_some_and(|(low, high)| low.abs().max(high.abs()) <= limit || low > limit || high < -limit);
+        let within = difference.mean.abs() <= limit;
+        Self { name, quantity, unit: unit.to_owned(), within, told, difference, limit }
+    }
+
+    /// The verdict in words.
+    pub fn verdict(&self, starts: usize) -> String {
+        match (self.told, self.within) {
+            (true, true) => "yes".to_owned(),
+            (true, false) => "no".to_owned(),
+            (false, _) if starts == 1 => "one start cannot tell".to_owned(),
+            (false, _) => format!("{starts} starts cannot tell"),
+        }
+    }
+
     /// Where the difference lies: the 95 % interval of the mean of the starts, or from the least to the most of the bands; `None`
     /// of a single value.
     pub fn range(&self) -> Option<[f64; 2]> {
@@ -80,7 +120,7 @@ impl Row {
     }
 
     /// Whether values are those of bands, not of starts.
-    fn over_bands(&self) -> bool {
+    pub fn over_bands(&self) -> bool {
         self.unit == "dB"
     }
 }
@@ -110,6 +150,8 @@ struct Side {
     support_n: f64,
     /// Amplitudes of the first lines of BPFO at the first sensor [g].
     lines_g: Option<Vec<f64>>,
+    /// Vertical acceleration of the first sensor [g], and its rate [Hz].
+    waveform: Option<(String, Vec<f64>, f64)>,
     /// Middles of the bands [Hz], and of each sensor the power in each band [g²].
     centres_hz: Vec<f64>,
     powers: Vec<(String, Vec<f64>)>,
@@ -160,13 +202,19 @@ impl Agreement {
             cpu_s_per_ms: [cost(0), cost(1)],
             rows,
             sensors,
+            correlations: BELOW_HZ.into_iter().filter_map(|hz| alike(hz, &sides)).collect(),
             notes,
         })
     }
 
     /// Rows that do not keep their limit.
     pub fn failures(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(|row| !row.within)
+        self.rows.iter().filter(|row| row.told && !row.within)
+    }
+
+    /// Rows of which the starts do not tell whether they keep it.
+    pub fn open(&self) -> impl Iterator<Item = &Row> {
+        self.rows.iter().filter(|row| !row.told)
     }
 }
 
@@ -191,6 +239,7 @@ impl Side {
         let support: Vec<f64> = crate::load::support(&record, run.scene.load_direction())[from..].to_vec();
         let mut powers = Vec::new();
         let mut lines_g = None;
+        let mut waveform = None;
         for sensor in &run.scene.output.sensors {
             let component =
                 |name: &str| record.acceleration_g(&sensor.name, name).map(|a| a[from..].to_vec());
@@ -202,7 +251,11 @@ impl Side {
                     (1..=LINES).map(|n| amplitude(&y, n as f64 * bpfo_hz * record.interval_s())).collect()
                 });
             }
-            let [x, y] = [bands(&x, record.sample_rate_hz())?, bands(&y, record.sample_rate_hz())?];
+            let [x, y] = {
+                let powers = [bands(&x, record.sample_rate_hz())?, bands(&y, record.sample_rate_hz())?];
+                waveform.get_or_insert((sensor.name.clone(), y, record.sample_rate_hz()));
+                powers
+            };
             powers.push((sensor.name.clone(), x.iter().zip(&y).map(|(x, y)| x + y).collect()));
         }
         Ok(Self {
@@ -212,6 +265,7 @@ impl Side {
             centres_hz: centres(record.len() - from, record.sample_rate_hz()),
             forces,
             lines_g,
+            waveform,
             powers,
             summary,
         })
@@ -220,6 +274,12 @@ impl Side {
 
 /// Amplitude of a line at `turns` a sample, through a Hann window.
 fn amplitude(values: &[f64], turns: f64) -> f64 {
+    let [re, im] = phasor(values, turns);
+    re.hypot(im)
+}
+
+/// Its cosine and minus its sine.
+fn phasor(values: &[f64], turns: f64) -> [f64; 2] {
     let n = values.len() as f64;
     let (mut re, mut im, mut weight) = (0.0, 0.0, 0.0);
     for (k, value) in values.iter().enumerate() {
@@ -227,7 +287,19 @@ fn amplitude(values: &[f64], turns: f64) -> f64 {
         let (sin, cos) = (TAU * (turns * k as f64).fract()).sin_cos();
         (re, im, weight) = (re + hann * value * cos, im - hann * value * sin, weight + hann);
     }
-    2.0 * re.hypot(im) / weight
+    [2.0 * re / weight, 2.0 * im / weight]
+}
+
+/// Correlation of two signals below a frequency: of their lines there, through a Hann window.
+fn correlation(a: &[f64], b: &[f64], below_hz: f64, rate_hz: f64) -> Option<f64> {
+    let lines = (below_hz * a.len() as f64 / rate_hz) as usize;
+    let [mut both, mut first, mut second] = [0.0; 3];
+    for line in 1..=lines {
+        let turns = line as f64 / a.len() as f64;
+        let ([x, y], [u, v]) = (phasor(a, turns), phasor(b, turns));
+        (both, first, second) = (both + x * u + y * v, first + x * x + y * y, second + u * u + v * v);
+    }
+    (first * second > 0.0).then(|| both / (first * second).sqrt())
 }
 
 /// Middles of the third octaves [Hz] that a record of this length and rate holds.
@@ -266,14 +338,8 @@ fn forces(sides: &[[Side; 2]]) -> Option<Row> {
         Some(100.0 * (sum / f64::max(count, 1.0)).sqrt() / full.largest_n)
     };
     let difference = statistic(sides.iter().map(off), sides.len())?;
-    Some(Row {
-        name: "forces_percent".to_owned(),
-        quantity: format!("forces on the rollers, rms, means over {:.2} ms", 1e3 * MEAN_S),
-        unit: "% of the largest".to_owned(),
-        within: difference.mean <= 1.0,
-        difference,
-        limit: 1.0,
-    })
+    let quantity = format!("forces on the rollers, rms, means over {:.2} ms", 1e3 * MEAN_S);
+    Some(Row::over_starts("forces_percent".to_owned(), quantity, "% of the largest", difference, 1.0))
 }
 
 /// A relative difference [%].
@@ -286,14 +352,7 @@ fn share(
 ) -> Option<Row> {
     let off = |[full, reduced]: &[Side; 2]| Some(100.0 * (of(reduced)? / of(full)? - 1.0));
     let difference = statistic(sides.iter().map(off), sides.len())?;
-    Some(Row {
-        name: format!("{name}_percent"),
-        quantity: quantity.to_owned(),
-        unit: "%".to_owned(),
-        within: difference.mean.abs() <= limit,
-        difference,
-        limit,
-    })
+    Some(Row::over_starts(format!("{name}_percent"), quantity.to_owned(), "%", difference, limit))
 }
 
 /// When rollers unload and reload.
@@ -314,14 +373,9 @@ fn events(sides: &[[Side; 2]]) -> Vec<Row> {
                 Some(at(reduced)? - at(full)?)
             };
             let Some(difference) = statistic(sides.iter().map(off), sides.len()) else { continue };
-            rows.push(Row {
-                name: format!("roller_{}{suffix}_{what}_ms", event.roller),
-                quantity: format!("roller {} {what}{again}", event.roller),
-                unit: "ms".to_owned(),
-                within: difference.mean.abs() <= LIMIT_MS,
-                difference,
-                limit: LIMIT_MS,
-            });
+            let name = format!("roller_{}{suffix}_{what}_ms", event.roller);
+            let quantity = format!("roller {} {what}{again}", event.roller);
+            rows.push(Row::over_starts(name, quantity, "ms", difference, LIMIT_MS));
         }
     }
     rows
@@ -332,6 +386,18 @@ fn line(number: usize, sides: &[[Side; 2]]) -> Option<Row> {
     let of = |s: &Side| s.lines_g.as_ref()?.get(number).copied();
     let order = number + 1;
     share(&format!("bpfo_{order}"), &format!("line at {order} × BPFO, first sensor, y"), 10.0, sides, of)
+}
+
+/// How alike the waveforms of the first sensor are below a frequency.
+fn alike(below_hz: f64, sides: &[[Side; 2]]) -> Option<Correlation> {
+    let of = |[full, reduced]: &[Side; 2]| {
+        let ((_, a, rate_hz), (_, b, _)) = (full.waveform.as_ref()?, reduced.waveform.as_ref()?);
+        let len = a.len().min(b.len()).min(WAVEFORM);
+        correlation(&a[..len], &b[..len], below_hz, *rate_hz)
+    };
+    let value = statistic(sides.iter().map(of), sides.len())?;
+    let (sensor, ..) = sides.first()?[0].waveform.as_ref()?;
+    Some(Correlation { sensor: sensor.clone(), below_hz, value })
 }
 
 fn octaves(sides: &[[Side; 2]]) -> Vec<Octaves> {
@@ -369,11 +435,18 @@ impl Octaves {
         const LIMIT_DB: f64 = 1.5;
         let off: Vec<f64> = self.reduced_db.iter().zip(&self.full_db).map(|(r, f)| r - f).collect();
         let difference = Statistic::of(&off, off.len())?;
+        // Twice the standard error of a band may be on either side.
+        let sure = |sign: f64| {
+            off.iter().zip(&self.error_db).map(move |(off, error)| off.abs() + sign * 2.0 * error)
+        };
+        let told = !self.error_db.is_empty()
+            && (sure(1.0).all(|most| most <= LIMIT_DB) || sure(-1.0).any(|least| least > LIMIT_DB));
         Some(Row {
             name: format!("octaves_{}_db", self.sensor),
             quantity: format!("third octaves at the sensor {}, 0.5 to 10 kHz", self.sensor),
             unit: "dB".to_owned(),
             within: difference.most.max(-difference.least) <= LIMIT_DB,
+            told,
             difference,
             limit: LIMIT_DB,
         })

@@ -66,7 +66,7 @@ impl FilmFinding {
             lambda: [0, 1].map(|side: usize| loaded[side].lambda),
             floating_um: floating.map(median),
             largest_n: largest,
-            heat_j: run.energy.channel("film_j")?.and_then(|heat| heat.last().copied()),
+            heat_j: run.energy.last("film_j")?,
         }))
     }
 }

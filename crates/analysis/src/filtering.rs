@@ -19,8 +19,8 @@ const SETTLED_DB: f64 = 60.0;
 pub struct NotchFinding {
     /// Centre [Hz]: the measured dominant facet tone, or the predicted one when none is measured anywhere.
     pub centre_hz: f64,
-    /// Centre of the paper's notch [Hz].
-    pub paper_centre_hz: f64,
+    /// Centre of the paper's notch [Hz]; this and what is said of 4545 Hz belong to the paper's scene alone.
+    pub paper_centre_hz: Option<f64>,
     /// Quality factor.
     pub q: f64,
     /// Full width at −3 dB [Hz].
@@ -88,8 +88,8 @@ impl Filter {
         self.notch.filter_from_first(signal).map_err(Error::Signal)
     }
 
-    /// What the notch did to `raw`, whose filtered form is `filtered`.
-    pub fn finding(&self, raw: &[f64], filtered: &[f64]) -> NotchFinding {
+    /// What the notch did to `raw`, whose filtered form is `filtered`; whether it is a record of the paper's scene.
+    pub fn finding(&self, raw: &[f64], filtered: &[f64], of_paper: bool) -> NotchFinding {
         let rate = self.notch.sample_rate_hz();
         let drop = |window, from: usize| {
             let (a, b) = (raw.get(from..)?, filtered.get(from..)?);
@@ -97,11 +97,13 @@ impl Filter {
                 at_centre(rate, self.centre_hz(), window, a)? - at_centre(rate, self.centre_hz(), window, b)?,
             )
         };
-        let taken =
-            |notch: &Notch| notch.magnitude_db(PAPER_BEAT_HZ).ok().map(|db| -db).filter(|db| db.is_finite());
+        let taken = |notch: &Notch| {
+            let db = notch.magnitude_db(PAPER_BEAT_HZ).ok().filter(|_| of_paper)?;
+            Some(-db).filter(|db| db.is_finite())
+        };
         NotchFinding {
             centre_hz: self.centre_hz(),
-            paper_centre_hz: PAPER_CENTRE_HZ,
+            paper_centre_hz: of_paper.then_some(PAPER_CENTRE_HZ),
             q: self.notch.quality(),
             width_hz: self.notch.width_hz(),
             time_constant_s: self.notch.time_constant_s(),
@@ -141,7 +143,7 @@ mod tests {
         let tone: Vec<f64> =
             (0..3000).map(|n| (std::f64::consts::TAU * 4671.0 * n as f64 * 1e-5).sin()).collect();
         let filter = Filter::new(1e5, PAPER_CENTRE_HZ).unwrap();
-        let found = filter.finding(&tone, &filter.acceleration(&tone).unwrap());
+        let found = filter.finding(&tone, &filter.acceleration(&tone).unwrap(), true);
         assert!((found.width_hz - 311.4).abs() < 0.05);
         assert!((found.attenuation_4545_db.unwrap() - 3.96).abs() < 0.01, "{:?}", found.attenuation_4545_db);
         assert!((found.paper_4545_db.unwrap() - 3.96).abs() < 0.005, "{:?}", found.paper_4545_db);
@@ -160,7 +162,7 @@ mod tests {
     #[test]
     fn refuses_an_attenuation_of_a_short_record() {
         let filter = Filter::new(1e5, PAPER_CENTRE_HZ).unwrap();
-        let found = filter.finding(&[1.0; 50], &[1.0; 50]);
+        let found = filter.finding(&[1.0; 50], &[1.0; 50], true);
         assert_eq!((found.attenuation_db, found.attenuation_settled_db), (None, None));
         assert!(Filter::new(8e3, PAPER_CENTRE_HZ).is_err());
     }

@@ -194,7 +194,9 @@ impl Findings {
 
         let mut events = passages.events(record, &mut notes)?;
         let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
-        let notch = filter.as_ref().zip(sensors.first()).map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g));
+        let of_paper = paper::is_scene_of(&run.scene) && !run.scene.operation.varies();
+        let notch = filter.as_ref().zip(sensors.first());
+        let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, of_paper));
         let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
         let mut load = carried.finding(record, run.info.expected_support_n);
         let static_curve = match prediction.static_curve(&run.scene, run.info.expected_support_n) {
@@ -239,7 +241,9 @@ impl Findings {
             orders = order_spectrum(run, record, &motion, &sensors, duty.as_mut(), &mut notes)?;
         }
         let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
-        let cursor = CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair);
+        let cursor = of_paper
+            .then(|| CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair))
+            .flatten();
 
         let mut summary = Summary {
             scene: run.scene.name.clone(),
@@ -267,7 +271,6 @@ impl Findings {
             paper: Vec::new(),
             notes,
         };
-        let of_paper = paper::is_scene_of(&run.scene) && !run.scene.operation.varies();
         if of_paper {
             summary.paper = paper::rows(&run.scene, &run.info.mesh, &prediction, &summary);
         }
@@ -326,6 +329,13 @@ fn notes_on(run: &Run, record: &Record<'_>) -> Vec<String> {
     }
     if record.is_empty() {
         notes.push("the trace holds no usable sample".into());
+    } else if record.is_part() {
+        let time = record.time_s();
+        let [from_s, to_s] = [time.first(), time.last()].map(|t| t.copied().unwrap_or(0.0));
+        notes.push(format!(
+            "only {from_s:.3} to {to_s:.3} s of the record of {:.3} s are looked at: `stribeck report --from-s --to-s` chooses others",
+            run.info.simulated_s
+        ));
     }
     notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.bearing));
     notes
@@ -388,8 +398,7 @@ fn heard(
     // Families are told of a shaft that turns clockwise; one that turns the other way is seen in a mirror.
     let sense = prediction.kinematics.sense();
     let numbers = record.roller_numbers();
-    let (start, late) =
-        (record.with_rollers(&numbers, 0..1)?, record.with_rollers(&numbers, early..record.len())?);
+    let (start, late) = (record.at_start(&numbers)?, record.with_rollers(&numbers, early..record.len())?);
     let track = |(first, late): (Roller<'_>, Roller<'_>)| {
         let place = first.orbit().first().map_or(0.0, |angle| sense * angle);
         let orbit = late.orbit().into_iter().map(|angle| sense * angle).collect();

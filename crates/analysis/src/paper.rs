@@ -25,7 +25,7 @@ pub const BETWEEN_G: f64 = 50.0;
 /// The same behind the notch, Fig. 6 [g].
 pub const FILTERED_G: f64 = 20.0;
 
-/// Whether a scene has the paper's bearing and defect, so that its numbers can be set beside the paper's at all.
+/// Whether a scene has the paper's bearing, housing, defect, load and speed, so that its numbers can be set beside the paper's at all.
 pub fn is_scene_of(scene: &Scene) -> bool {
     let (b, paper) = (&scene.bearing, Scene::default());
     let p = &paper.bearing;
@@ -43,6 +43,9 @@ pub fn is_scene_of(scene: &Scene) -> bool {
         && b.rollers == p.rollers
         && defect(scene) == defect(&paper)
         && scene.defects.is_empty()
+        && scene.housing == paper.housing
+        && [scene.operation.load_n, scene.operation.speed_rpm]
+            == [paper.operation.load_n, paper.operation.speed_rpm]
 }
 
 /// What the rows are made of.

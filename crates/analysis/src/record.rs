@@ -12,12 +12,14 @@ use crate::levels::STANDARD_GRAVITY;
 /// Channels of rollers that are in memory at once, at most [bytes]; one roller always is.
 const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;
 
+/// Samples that are looked at, at most: of a longer record the last ones, so that memory does not grow with it.
+const LONGEST: usize = 1 << 21;
+
 /// What is read of a roller.
 const OF_ROLLER: [&str; 7] =
     ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"];
 
-/// A run's samples, from the first to the last one before any channel stops being finite. Some channels are in memory, the others
-/// on disk.
+/// A run's samples, up to the last one before any channel stops being finite. Some channels are in memory, the others on disk.
 #[derive(Debug)]
 pub struct Record<'a> {
     run: &'a Run,
@@ -52,13 +54,36 @@ pub struct Roller<'a> {
     pub inner_fy: &'a [f64],
 }
 
+/// Whether a channel is one of these rollers'.
+fn of_rollers(numbers: &[usize]) -> impl Fn(&str) -> bool {
+    let name = |number| OF_ROLLER.map(|what| format!("roller.{number}.{what}"));
+    let names: Vec<String> = numbers.iter().flat_map(name).collect();
+    move |name| names.iter().any(|wanted| wanted == name)
+}
+
 impl<'a> Record<'a> {
-    /// All samples up to the first that is not finite in any channel. Channels of rollers and sensors, which are most, stay on disk.
+    /// All samples up to the first that is not finite in any channel; of a record of more than two million the last ones. Channels of
+    /// rollers and sensors, which are most, stay on disk.
     ///
     /// # Errors
     /// [`Error::Run`] when the trace cannot be read.
     pub fn new(run: &'a Run) -> Result<Self, Error> {
-        Self::with(run, |name| !name.starts_with("roller.") && !name.starts_with("sensor."))
+        Self::between(run, f64::NEG_INFINITY..f64::INFINITY)
+    }
+
+    /// The same of a stretch of time [s].
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn between(run: &'a Run, time_s: Range<f64>) -> Result<Self, Error> {
+        let start_s = run.trace.read(0..1, |name| name == "time_s")?;
+        let start_s = start_s.get("time_s").and_then(|time| time.first().copied()).unwrap_or(0.0);
+        // The sample at or behind a time; what is infinite or beyond the record is its end.
+        let row = |at_s: f64| ((at_s - start_s) / run.info.interval_s - 1e-6).ceil().max(0.0) as usize;
+        let end = row(time_s.end).min(run.trace.len());
+        let first = row(time_s.start).max(end.saturating_sub(LONGEST));
+        let held = |name: &str| !name.starts_with("roller.") && !name.starts_with("sensor.");
+        Self::with(run, first.min(end)..end, held)
     }
 
     /// The same with all channels in memory, which a long record may not fit into.
@@ -66,13 +91,13 @@ impl<'a> Record<'a> {
     /// # Errors
     /// As [`Record::new`].
     pub fn whole(run: &'a Run) -> Result<Self, Error> {
-        Self::with(run, |_| true)
+        Self::with(run, 0..run.trace.len(), |_| true)
     }
 
-    fn with(run: &'a Run, held: impl Fn(&str) -> bool) -> Result<Self, Error> {
-        let held = run.trace.read_finite(|name| name == "time_s" || held(name))?;
+    fn with(run: &'a Run, rows: Range<usize>, held: impl Fn(&str) -> bool) -> Result<Self, Error> {
+        let held = run.trace.read_finite(rows.clone(), |name| name == "time_s" || held(name))?;
         let len = held.len();
-        Ok(Self { run, held, first: 0, len, discarded: run.trace.len().saturating_sub(len) })
+        Ok(Self { run, held, first: rows.start, len, discarded: rows.len().saturating_sub(len) })
     }
 
     /// Some of the samples, with those channels in memory whose name is `wanted`: one pass over the file.
@@ -91,11 +116,15 @@ impl<'a> Record<'a> {
     /// # Errors
     /// As [`Record::new`].
     pub fn with_rollers(&self, numbers: &[usize], samples: Range<usize>) -> Result<Self, Error> {
-        let names: Vec<String> = numbers
-            .iter()
-            .flat_map(|number| OF_ROLLER.map(|what| format!("roller.{number}.{what}")))
-            .collect();
-        self.part(samples, |name| names.iter().any(|wanted| wanted == name))
+        self.part(samples, of_rollers(numbers))
+    }
+
+    /// The first sample of the run, which may lie before this record, with these rollers in memory.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn at_start(&self, numbers: &[usize]) -> Result<Self, Error> {
+        Self::with(self.run, 0..1, of_rollers(numbers))
     }
 
     /// Hands every roller whose channels are there to `visit`, in the order of their numbers. A few are in memory at a time.
@@ -133,6 +162,11 @@ impl<'a> Record<'a> {
     /// True when there is no usable sample.
     pub fn is_empty(&self) -> bool {
         self.len == 0
+    }
+
+    /// True when samples before or behind these are left out.
+    pub fn is_part(&self) -> bool {
+        self.len + self.discarded < self.run.trace.len()
     }
 
     /// Samples that were written but are not numbers, or follow one that is not.

@@ -13,6 +13,7 @@ mod tables;
 mod trend;
 
 use std::fs;
+use std::ops::Range;
 use std::panic::resume_unwind;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -52,9 +53,17 @@ use crate::{
 /// [`Error::Run`] when the directory is not a run, its scene was changed, a file cannot be understood or the report cannot be written,
 /// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
+    write_between(run_dir, f64::NEG_INFINITY..f64::INFINITY)
+}
+
+/// The same of a stretch of time [s].
+///
+/// # Errors
+/// As [`write`].
+pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Error> {
     let run = Run::read(run_dir)?;
     run.check_scene(run_dir)?;
-    let record = Record::new(&run)?;
+    let record = Record::between(&run, time_s)?;
     let mut findings = Findings::of(&record)?.with_crossings(&record, figures::CROSSINGS)?;
     findings.summary.notes.splice(0..0, run.damage());
     let pictures = Pictures::of(&record, &findings, run_dir)?;

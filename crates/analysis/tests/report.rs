@@ -399,6 +399,24 @@ fn invariant_the_same_directory_gives_the_same_bytes() {
 }
 
 #[test]
+fn invariant_a_stretch_of_a_record_shows_what_the_whole_shows_there() {
+    /// A median is cut off where the record is, and a path has no crossing before.
+    const BY_ENDS_MS: f64 = 0.01;
+    let (folder, all) = whole("stretch");
+    let from_ms = all.events[0].exit_ms.expect("it leaves the defect") + 1.0;
+    let part = report::write_between(&folder.0, 1e-3 * from_ms..f64::INFINITY).expect("a report");
+    assert_eq!(part.run.samples, SAMPLES - (1e-3 * from_ms / INTERVAL_S).ceil() as usize);
+    assert_eq!(part.events.iter().map(|e| e.roller).collect::<Vec<_>>(), [2, 3]);
+    for (found, wanted) in part.events.iter().zip(&all.events[1..]) {
+        close(found.entry_ms, wanted.entry_ms.expect("an entry"), BY_ENDS_MS, "entry");
+        close(found.exit_ms, wanted.exit_ms.expect("an exit"), BY_ENDS_MS, "exit");
+    }
+    close(part.kinematics.cage_hz, all.kinematics.cage_hz.expect("a cage"), 1e-6, "cage");
+    assert!(part.notes[..].iter().any(|n| n.contains("--from-s")), "{:?}", part.notes);
+    assert!(all.notes.iter().all(|n| !n.contains("--from-s")), "{:?}", all.notes);
+}
+
+#[test]
 fn example_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
     let folder = Scratch::new("diverged");
     // 4 ms: roller 1 has entered the defect and not left it.

@@ -229,11 +229,9 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
     }
     let is_time = |c: &Channel| c.name.to_lowercase().starts_with("time");
     let signals: Vec<&Channel> = recording.channels.iter().filter(|c| !is_time(c)).collect();
-    let found = if of_run {
-        signals.iter().find(|c| c.name.starts_with("sensor.") && c.name.ends_with("_m_s2"))
-    } else {
-        None
-    };
+    // Of a run the one that its report judges.
+    let found =
+        signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
     let longest = signals.iter().map(|c| c.len).max().unwrap_or(0);
     let Some(channel) = found.or_else(|| signals.iter().find(|c| c.len == longest)) else {
         bail!("`{}` holds no channel", recording.path.display());

@@ -4,8 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
+use stribeck_analysis::paper;
 use stribeck_analysis::plan::{MeshFacts, Plan};
-use stribeck_bearing::assembly::Assembly;
+use stribeck_bearing::{assembly::Assembly, recorder};
+use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::scene::ModelScene;
 
 use crate::place::Place;
 
@@ -20,7 +23,13 @@ pub struct Options {
     /// Processor time for one element and one step [ns], for the estimate of cost
     #[arg(long, default_value_t = 3.5)]
     ns_per_element_step: f64,
+    /// Processor time for one roller and one step of the reduced model, dry [ns], for the estimate of cost
+    #[arg(long, default_value_t = 330.0)]
+    ns_per_roller_step: f64,
 }
+
+/// A step with oil takes so many times as long in the reduced model (docs/PERFORMANCE.md, section 7).
+const OIL: f64 = 3.6;
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(options.scene.as_deref(), &options.overrides)?;
@@ -47,9 +56,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         1e3 * plan.facet_m
     );
     println!(
-        "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the rollers {:.2}); \
-         docs/results/noise.md has two to five times as much in the paper's scene",
-        plan.lumped.level_g, plan.lumped.frequency_hz, plan.lumped.smoothing, plan.lumped.phases
+        "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the rollers {:.2}){}",
+        plan.lumped.level_g,
+        plan.lumped.frequency_hz,
+        plan.lumped.smoothing,
+        plan.lumped.phases,
+        if paper::is_scene_of(&scene) { "; docs/results/noise.md has two to five times as much" } else { "" }
     );
     if let Some([outer, inner]) = plan.films {
         println!(
@@ -60,14 +72,39 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             inner.lambda
         );
     }
-    let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
+    let k = &Kinematics::of(&scene);
     println!(
-        "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s of processor time at {} ns per element-step",
-        plan.elements,
-        1e9 * plan.time_step_s,
-        plan.steps,
-        options.ns_per_element_step
+        "  families, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF {:.2}, shaft {:.2}",
+        k.bpfo_hz, k.bpfi_hz, k.bsf_hz, k.cage_hz, k.shaft_hz
     );
+    match &scene.model {
+        ModelScene::Full => {
+            let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
+            println!(
+                "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s of processor time at {} ns per element-step",
+                plan.elements,
+                1e9 * plan.time_step_s,
+                plan.steps,
+                options.ns_per_element_step
+            );
+        }
+        ModelScene::Reduced(reduced) => {
+            let per_sample = (scene.output.interval_us / reduced.step_us).ceil().max(1.0);
+            let steps = per_sample * (1e3 * scene.solver.duration_ms / scene.output.interval_us).round();
+            let oil = if scene.film.is_some() { OIL } else { 1.0 };
+            let cost =
+                1e-9 * options.ns_per_roller_step * oil * steps * scene.rollers_in_place().count() as f64;
+            println!(
+                "  reduced model: {steps:.0} steps of {} µs: about {cost:.1} s of processor time at {} ns per roller-step{}, beside the modes of {} elements",
+                scene.output.interval_us / per_sample,
+                options.ns_per_roller_step,
+                if scene.film.is_some() { " and 3.6 times as much with oil" } else { "" },
+                plan.elements
+            );
+        }
+    }
+    let samples = 1e3 * scene.solver.duration_ms / scene.output.interval_us;
+    println!("  the trace takes {:.3} GB", 8e-9 * samples * recorder::names(&scene).len() as f64);
     println!("  {:.1} elements in a Rayleigh wave at half the sampling rate", plan.elements_per_wavelength);
     println!("  the record resolves {:.1} Hz", plan.resolution_hz);
     if let Some(needed) = plan.separating_s {

@@ -13,6 +13,12 @@ use crate::place::{Place, shown};
 pub struct Options {
     /// Folder of the run, or its name below runs/ [default: the newest run]
     run: Option<PathBuf>,
+    /// Look at the record from this time on [s] [default: the last two million samples]
+    #[arg(long, value_name = "S")]
+    from_s: Option<f64>,
+    /// Look at the record up to this time [s] [default: its end]
+    #[arg(long, value_name = "S")]
+    to_s: Option<f64>,
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -20,7 +26,20 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Some(run) => place.locate_run(run),
         None => place.newest_run()?,
     };
+    let time_s = options.from_s.unwrap_or(f64::NEG_INFINITY)..options.to_s.unwrap_or(f64::INFINITY);
+    // Not a number is refused, too.
+    anyhow::ensure!(
+        time_s.start < time_s.end,
+        "--from-s {} and --to-s {} leave nothing of the record; the first must be the smaller one",
+        time_s.start,
+        time_s.end
+    );
     if RunDir::is_ensemble(&folder) {
+        anyhow::ensure!(
+            time_s == (f64::NEG_INFINITY..f64::INFINITY),
+            "`{}` is an ensemble: --from-s and --to-s choose from the record of one run; name one of its starts",
+            shown(&folder)
+        );
         for note in stribeck_analysis::report::write_ensemble(&folder)?.notes {
             eprintln!("warning: {note}");
         }
@@ -31,7 +50,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     for missing in Run::read(dir.path())?.damage() {
         eprintln!("warning: {missing}");
     }
-    stribeck_analysis::report::write(dir.path())?;
+    stribeck_analysis::report::write_between(dir.path(), time_s)?;
     println!("report: {}", shown(&dir.report()));
     Ok(ExitCode::SUCCESS)
 }

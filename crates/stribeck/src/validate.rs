@@ -126,12 +126,22 @@ fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Re
 fn print(agreement: &Agreement) {
     let [full, reduced] = agreement.cpu_s_per_ms;
     println!(
-        "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval",
+        "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval (dB: mean, least and most of the bands)",
         agreement.scene, agreement.starts, agreement.simulated_ms
     );
     for row in &agreement.rows {
-        let verdict = if row.within { "" } else { "  NOT KEPT" };
-        println!("  {:<58} {}{verdict}", row.quantity, words(row));
+        let verdict = match row.verdict(agreement.starts) {
+            _ if row.told && row.within => "kept".to_owned(),
+            _ if row.told => "NOT KEPT".to_owned(),
+            open => open,
+        };
+        println!("  {:<58} {}; {verdict}", row.quantity, words(row));
+    }
+    for c in &agreement.correlations {
+        let interval = c.value.low.zip(c.value.high);
+        let interval = interval.map_or(String::new(), |(low, high)| format!(" ({low:.3} to {high:.3})"));
+        let what = format!("correlation at {}, y, below {:.1} kHz", c.sensor, 1e-3 * c.below_hz);
+        println!("  {what:<58} {:.3}{interval}", c.value.mean);
     }
     for note in &agreement.notes {
         println!("  note: {note}");

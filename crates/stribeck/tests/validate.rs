@@ -63,6 +63,11 @@ fn example_both_models_from_the_same_starts() {
     assert!(near.status.success(), "{}", said(&near));
     let page = fs::read_to_string(desk.join("runs/near/report.html")).unwrap();
     assert!(page.contains("differs in operation.load_n (45000.0 here, 50000.0 there)"), "{page}");
+    // From the folder that holds both, too, where its name has no folder before it.
+    let mut report = Command::new(env!("CARGO_BIN_EXE_stribeck"));
+    let report = report.current_dir(desk.join("runs")).args(["report", "near"]).output().expect("it starts");
+    assert!(report.status.success(), "{}", said(&report));
+    assert_eq!(fs::read_to_string(desk.join("runs/near/report.html")).unwrap(), page);
     let alone = run(&desk, &["simulate", "scene.ron", "--out=alone/run", "--threads=2"]);
     assert!(alone.status.success(), "{}", said(&alone));
     let page = fs::read_to_string(desk.join("alone/run/report.html")).unwrap();
@@ -74,6 +79,13 @@ fn example_both_models_from_the_same_starts() {
     let own = || Run::read(&path).unwrap();
     let same = Agreement::of(&scene, &[[own(), own()]]).unwrap();
     assert!(same.failures().next().is_none() && same.rows.iter().all(|row| row.difference.most.abs() < 1e-9));
+    assert!(
+        same.correlations.len() == 2 && same.correlations.iter().all(|c| (c.value.mean - 1.0).abs() < 1e-9)
+    );
+    // One start has no scatter, and tells nothing.
+    assert!(same.rows.iter().all(|row| !row.told));
+    let twice = Agreement::of(&scene, &[[own(), own()], [own(), own()]]).unwrap();
+    assert!(twice.rows.iter().all(|row| row.told && row.within), "{twice:?}");
     let louder = desk.join("louder");
     fs::create_dir(&louder).unwrap();
     for name in ["scene.ron", "run.json", "energy.npy"] {

@@ -152,7 +152,7 @@ fn passages_of(
     let passages: Vec<(usize, &Crossing)> =
         course.passages.iter().enumerate().filter(|(_, passage)| passage.roller == roller.number).collect();
     let [(_, first), ..] = &passages[..] else { return Vec::new() };
-    let last = time_s.last().copied().unwrap_or(f64::NEG_INFINITY);
+    let [begin, last] = [time_s.first(), time_s.last()].map(|t| t.copied().unwrap_or(f64::NEG_INFINITY));
     let ring = course.spall.ring;
     let edge = Edge::of(scene, ring);
     let duty = Duty::of(scene);
@@ -171,7 +171,7 @@ fn passages_of(
         [event.path_entry_ms, event.path_exit_ms] = found.map(|t| t.map(|t| 1e3 * t));
         // The path says better than rolling without slip when to look.
         let late = path.late_s;
-        let beyond = late != 0.0 && found == [None; 2];
+        let beyond = found == [None; 2] && (late != 0.0 || passage.exit_s < begin);
         if beyond || passage.entry_s + late >= last {
             continue;
         }

@@ -22,6 +22,18 @@ pub struct Course {
     pub values: Vec<f64>,
 }
 
+impl Course {
+    /// Of a record that is in memory.
+    ///
+    /// # Errors
+    /// [`Error::Signal`] for a record of a few samples.
+    pub fn of(values: &[f64], rate_hz: f64) -> Result<Self, Error> {
+        let mut tracing = Tracing::new(rate_hz, values.len())?;
+        tracing.add(values).map_err(Error::Signal)?;
+        Ok(tracing.finish())
+    }
+}
+
 /// A course in the making.
 pub(super) struct Tracing {
     plan: Spectrograph,

@@ -61,13 +61,15 @@ fn starts(count: usize) -> String {
 
 fn verdict(agreement: &Agreement) -> String {
     let failures: Vec<&str> = agreement.failures().map(|row| row.quantity.as_str()).collect();
+    let (all, open) = (agreement.rows.len(), agreement.open().count());
+    let cannot = match open {
+        0 => String::new(),
+        _ => format!(" Of {open} so many starts cannot tell: there chance may be larger than the limit."),
+    };
     match failures.len() {
-        0 => format!("All {} quantities are within their limits.", agreement.rows.len()),
-        n => format!(
-            "{n} of {} quantities are not within their limits: {}.",
-            agreement.rows.len(),
-            failures.join("; ")
-        ),
+        0 if open == 0 => format!("All {all} quantities are within their limits."),
+        0 => format!("{} of {all} quantities are within their limits, none is outside.{cannot}", all - open),
+        n => format!("{n} of {all} quantities are not within their limits: {}.{cannot}", failures.join("; ")),
     }
 }
 
@@ -78,18 +80,34 @@ fn table(agreement: &Agreement) -> Markup {
             @for row in &agreement.rows {
                 tr {
                     td { (row.quantity) }
-                    td { (format!("{:+.3} {}", row.difference.mean, row.unit)) }
+                    td { (format!("{:+.3} {}", row.difference.mean, row.unit)) @if row.over_bands() { ", mean of the bands" } }
                     td { (interval(row)) }
                     td { (format!("{} {}", row.limit, row.unit)) }
-                    td { @if row.within { "yes" } @else { strong { "no" } } }
+                    td { @if row.told && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
                 }
             }
         }
         p class="hint" {
             "Pairs of runs have the same start. Third octaves are levels of the mean power over the starts, both components together, and \
-             their range is that of the bands. The waveform of a single impact is chaotic and is not compared."
+             their range is that of the bands. A limit is kept or not where the interval, or twice the standard error of each band, \
+             leaves no other answer."
+        }
+        @if !agreement.correlations.is_empty() {
+            p class="hint" { (alike(agreement)) }
         }
     }
+}
+
+/// How alike waveforms are.
+fn alike(agreement: &Agreement) -> String {
+    let each = agreement
+        .correlations
+        .iter()
+        .map(|c| format!("{:.2} below {:.1} kHz", c.value.mean, 1e-3 * c.below_hz));
+    format!(
+        "Waveforms of the first sensor, a_y, correlate by {}; above a few kilohertz the waveform of one impact is chaotic in both models.",
+        each.collect::<Vec<_>>().join(" and ")
+    )
 }
 
 fn interval(row: &Row) -> String {
@@ -123,7 +141,9 @@ pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
     if scene.model == ModelScene::Full {
         return html! {};
     }
-    let found = run_dir.parent().into_iter().flat_map(fs::read_dir).flatten().flatten().filter_map(|entry| {
+    // The folder of a name alone is the present one.
+    let beside = run_dir.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+    let found = beside.into_iter().flat_map(fs::read_dir).flatten().flatten().filter_map(|entry| {
         let agreement: Agreement = serde_json::from_slice(&fs::read(entry.path().join(FILE)).ok()?).ok()?;
         let other = Scene::read(entry.path().join("reduced/start-001/scene.ron")).ok()?;
         Some((differences(scene, &other), agreement))

@@ -1,15 +1,18 @@
 //! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to trust it.
 
 use maud::{Markup, html};
-use stribeck_scene::deviation::RollingSurface;
+use stribeck_scene::deviation::{DeviationScene, RollingSurface};
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::DefectRing;
 
-use crate::artefacts::Family;
+use crate::artefacts::{Artefact, Family};
 use crate::duty::DutyFinding;
 use crate::families::FamilyFinding;
 use crate::rolling;
 use crate::summary::Summary;
+
+/// Rollers that are named one by one, at most.
+const NAMED: usize = 6;
 
 /// The first paragraphs of the page.
 pub(super) fn paragraphs(run: &Run, summary: &Summary) -> Markup {
@@ -41,7 +44,11 @@ fn defect(run: &Run, summary: &Summary) -> String {
         let gap = gravities(summary.levels.phases.gap_g);
         let level =
             gap.map_or(String::new(), |g| format!(" The acceleration reaches {g} after the start-up."));
-        return format!("Raceways and rollers are sound, so there is none to see.{level}");
+        let deviations: Vec<String> = run.scene.defects.iter().map(DeviationScene::spoken).collect();
+        return match deviations.len() {
+            0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
+            _ => format!("There is no spall or dent to see, but {}.{level}", deviations.join(", ")),
+        };
     }
     let events = &summary.events;
     let spalls = run.scene.spalls();
@@ -93,6 +100,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
     let floor = match floors.len() {
         0 => "none touches the floor".to_owned(),
         1 => format!("roller {} touches the floor", floors[0]),
+        many if many > NAMED => format!("{many} times one touches the floor"),
         _ => format!("rollers {} touch the floor", floors.join(", ")),
     };
     let levels = &summary.levels.phases;
@@ -193,25 +201,23 @@ fn physics(summary: &Summary) -> String {
             orders(duty)
         );
     }
-    let seen: Vec<String> = summary
-        .artefacts
-        .iter()
-        .filter(|a| a.family == Family::Defect && a.measured_hz.is_some())
-        .map(|a| format!("×{}", a.harmonic))
-        .collect();
-    let bpfo = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
-    let lines = if seen.is_empty() {
-        let periods = 1e-3 * summary.run.simulated_ms * bpfo;
-        format!(
-            "BPFO ({bpfo:.1} Hz) shows in the times of the events, not as a line: the record holds {periods:.1} of its periods."
-        )
-    } else {
-        format!("BPFO ({bpfo:.1} Hz) stands in the spectrum with its multiples {}.", seen.join(", "))
-    };
-    let lines = if summary.events.is_empty() { String::new() } else { lines };
+    let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Family::Defect).collect();
+    let seen: Vec<String> =
+        of_defect.iter().filter(|a| a.measured_hz.is_some()).map(|a| format!("×{}", a.harmonic)).collect();
+    let lines = of_defect.iter().find(|a| a.harmonic == 1).map(|first| {
+        let (name, hz) = (&first.name, first.from_motion_hz.unwrap_or(first.predicted_hz));
+        if seen.is_empty() {
+            let periods = 1e-3 * summary.run.simulated_ms * hz;
+            format!(" {name} ({hz:.1} Hz) does not stand as a line of the spectrum: the record holds {periods:.1} of its periods.")
+        } else {
+            format!(" {name} ({hz:.1} Hz) stands in the spectrum with its multiples {}.", seen.join(", "))
+        }
+    });
+    let bursts = if summary.events.is_empty() { "The" } else { "Bursts at entries and exits and the" };
     format!(
-        "Bursts at entries and exits and the forces of the rollers follow from load and geometry. {lines} No line is booked as a \
-         natural frequency of the ring, because a place near one proves nothing."
+        "{bursts} forces of the rollers follow from load and geometry.{} No line is booked as a natural frequency of the ring, because a place near \
+         one proves nothing.",
+        lines.unwrap_or_default()
     )
 }
 

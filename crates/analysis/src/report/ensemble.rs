@@ -10,7 +10,7 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, html};
 use stribeck_scene::run_dir::{RunDir, write_atomic};
 
-use super::{figures::Item, head, json, lead, section, sentence, write_figures};
+use super::{agreement, figures::Item, head, json, lead, section, sentence, write_figures};
 use crate::Error;
 use crate::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 use figures::Figures;
@@ -30,12 +30,12 @@ pub fn write_ensemble(folder: &Path) -> Result<EnsembleSummary, Error> {
     write_figures(&all, &dir.figures())?;
     // The scene as written, comments and all; an ensemble without it was refused above.
     let scene = std::fs::read_to_string(dir.scene()).unwrap_or_default();
-    let page = page(&findings, &figures, &scene)?.into_string();
+    let page = page(&findings, &figures, &scene, dir.path())?.into_string();
     write_atomic(&dir.report(), page.as_bytes())?;
     Ok(findings.summary)
 }
 
-fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str) -> Result<Markup, Error> {
+fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Path) -> Result<Markup, Error> {
     let summary = &findings.summary;
     let (complete, asked) = (summary.count(Ended::Complete), summary.starts.len());
     let simulated_ms = findings.scene.solver.duration_ms;
@@ -58,6 +58,7 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str) -> Result<M
                     h2 #numbers { "Appendix: the paper beside these starts" }
                     (tables::paper(summary))
                 }
+                (agreement::of_run(&findings.scene, folder))
                 h2 #starts { "Starts" }
                 (tables::starts(summary))
                 h2 #notes { "Notes" }

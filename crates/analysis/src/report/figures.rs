@@ -11,11 +11,19 @@ use maud::Markup;
 use stribeck_scene::run_dir::Run;
 
 pub(super) use self::forces::DRAWN as CROSSINGS;
+use super::course;
 use super::pictures::Pictures;
 use crate::Error;
 use crate::findings::Findings;
+use crate::measured::Course;
 use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
 use crate::record::Record;
+
+/// Shortest record with a spectrogram [s].
+const SPECTROGRAM_S: f64 = 0.1;
+
+/// Rows of the ledger that are drawn, at most: of a longer one every second, or third …
+const LEDGER_ROWS: usize = 1 << 21;
 
 /// A chart or a picture.
 #[derive(Debug)]
@@ -81,6 +89,7 @@ impl Figures {
             spectra: charts(spectra::raw(findings))
                 .chain(charts(spectra::notched(findings)))
                 .chain(charts(spectra::others(findings)))
+                .chain(drawn(spectrogram(findings)?))
                 .collect(),
             forces: charts(forces::crossings(findings)).collect(),
             bearing: drawn(pictures.load)
@@ -108,6 +117,21 @@ impl Figures {
         .into_iter()
         .flatten()
     }
+}
+
+/// Spectra of the leading sensor over time, of a record that is long enough to have a course.
+fn spectrogram(findings: &Findings) -> Result<Vec<Picture>, Error> {
+    let Some(leading) = findings.sensors.first() else { return Ok(Vec::new()) };
+    if findings.interval_s * (leading.raw_g.len() as f64) < SPECTROGRAM_S {
+        return Ok(Vec::new());
+    }
+    let mut picture = course::picture(&Course::of(&leading.raw_g, 1.0 / findings.interval_s)?, "g");
+    picture.title = format!("Spectrogram of a_y at sensor “{}”", leading.name);
+    // The picture begins at zero, where a stretch of a record does not.
+    if findings.start_s > findings.interval_s {
+        picture.note += &format!(" Time counts from {:.3} s of the run.", findings.start_s);
+    }
+    Ok(vec![picture])
 }
 
 fn charts(figures: impl IntoIterator<Item = Figure>) -> impl Iterator<Item = Item> {
@@ -156,7 +180,7 @@ fn load(findings: &Findings) -> Vec<Figure> {
 }
 
 fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
-    let energy = run.energy.read_all()?;
+    let energy = run.energy.read_thinned(LEDGER_ROWS)?;
     let Some(time) = energy.get("time_s").filter(|t| !t.is_empty()) else { return Ok(Vec::new()) };
     let parts = [
         ("kinetic_j", "kinetic", Colour::Blue),

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use stribeck_scene::run_dir::Run;
 
 use super::figures::spoken;
-use super::tables::cell;
+use super::tables::{cell, folded};
 use crate::artefacts::Family;
 use crate::summary::{Event, Summary};
 
@@ -333,8 +333,7 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
     let truth = |event: &Event| Some(spalls.get(event.spall.checked_sub(1)?)?.length_mm);
     let several = spalls.len() > 1;
     let off = |found: Option<f64>, truth: f64| found.map(|t| format!("{:+.3}", t - truth).replace('-', "−"));
-    html! {
-        h3 { "Length of the defect, from the events" }
+    let table = html! {
         div class="scroll" {
             table {
                 thead {
@@ -359,6 +358,10 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
                 }
             }
         }
+    };
+    html! {
+        h3 { "Length of the defect, from the events" }
+        (folded(table, summary.events.len(), "lengths, passage by passage"))
         p class="hint" {
             "Off: event against the roller's centre over the edge without slip. The estimate allows for the load that a roller still carries \
              behind an edge (THEORY §7.5)."

@@ -14,7 +14,7 @@ pub(super) fn events(summary: &Summary) -> Markup {
     let ms = |t: Option<f64>| t.map(|t| format!("{t:.2}"));
     let kilo = |n: Option<f64>| n.map(|n| format!("{:.2}", 1e-3 * n));
     let several = summary.events.iter().any(|event| event.spall > 1);
-    html! {
+    let table = html! {
         div class="scroll" {
             table {
                 thead {
@@ -46,7 +46,17 @@ pub(super) fn events(summary: &Summary) -> Markup {
                 }
             }
         }
+    };
+    folded(table, summary.events.len(), "passages over the defect, one by one")
+}
+
+/// A table of so many rows, folded up when it would fill the page.
+pub(super) fn folded(table: Markup, rows: usize, what: &str) -> Markup {
+    const OPEN: usize = 24;
+    if rows <= OPEN {
+        return table;
     }
+    html! { details { summary { (rows) " " (what) } (table) } }
 }
 
 /// The notch in numbers.

@@ -14,8 +14,8 @@ use crate::scene::{DefectRing, ModelScene, ProfileScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
-/// Rows of a trace: 10 million of 150 channels are 12 GB.
-const MAX_SAMPLES: f64 = 1e7;
+/// Rows of a trace: an hour at 100 kHz, and some more. With 24 rollers ten million are 19 GB; `stribeck plan` says it before.
+const MAX_SAMPLES: f64 = 4e8;
 
 /// Upper over lower end of the narrowest band of structural damping.
 const NARROWEST_BAND: f64 = 2.0;

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// An hour [ms].
+const LONGEST_MS: f64 = 3_600_000.0;
+
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
 use crate::deviation::{DeviationScene, FormScene, RollingSurface};
@@ -121,8 +124,8 @@ fn in_profile(
 ) {
     match profile {
         ProfileScene::Ramp(ramp) => {
-            add(&format!("{path}.from_ms"), ramp.from_ms, within(0.0, 60_000.0), "ms");
-            add(&format!("{path}.to_ms"), ramp.to_ms, within(0.0, 60_000.0), "ms");
+            add(&format!("{path}.from_ms"), ramp.from_ms, within(0.0, LONGEST_MS), "ms");
+            add(&format!("{path}.to_ms"), ramp.to_ms, within(0.0, LONGEST_MS), "ms");
             add(&format!("{path}.to"), ramp.to, range, unit);
         }
         ProfileScene::Harmonic(sine) => {
@@ -309,7 +312,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("film.pressure_viscosity_per_gpa", film.pressure_viscosity_per_gpa, within(1.0, 100.0), "1/GPa");
         add("film.roughness_um", film.roughness_um, within(0.01, 10.0), "µm");
     }
-    add("solver.duration_ms", solver.duration_ms, positive(60_000.0), "ms");
+    add("solver.duration_ms", solver.duration_ms, positive(LONGEST_MS), "ms");
     // Above 1 a run diverges and says so: wanted by studies of stability.
     add("solver.time_step_factor", solver.time_step_factor, positive(1.5), "");
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
@@ -328,13 +331,13 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("guards.penetration_warning_percent", guards.penetration_warning_percent, positive(200.0), "%");
     add("guards.penetration_stop_percent", guards.penetration_stop_percent, positive(200.0), "%");
     add("guards.area_stop_percent", guards.area_stop_percent, within(0.0, 99.0), "%");
-    add("guards.unsupported_warning_ms", guards.unsupported_warning_ms, positive(60_000.0), "ms");
+    add("guards.unsupported_warning_ms", guards.unsupported_warning_ms, positive(LONGEST_MS), "ms");
     for (i, sensor) in output.sensors.iter().enumerate() {
         add(&format!("output.sensors[{i}].angle_deg"), sensor.angle_deg, within(-360.0, 360.0), "°");
     }
     if let Some(frames) = &output.frames {
-        add("output.frames.from_ms", frames.from_ms, within(0.0, 60_000.0), "ms");
-        add("output.frames.to_ms", frames.to_ms, within(0.0, 60_000.0), "ms");
+        add("output.frames.from_ms", frames.from_ms, within(0.0, LONGEST_MS), "ms");
+        add("output.frames.to_ms", frames.to_ms, within(0.0, LONGEST_MS), "ms");
         add("output.frames.every_us", frames.every_us, positive(1e6), "µs");
         add("output.frames.half_width_mm", frames.half_width_mm, positive(20_000.0), "mm");
     }

@@ -86,6 +86,10 @@ impl<'a> Origin<'a> {
             Some(Candidate { field, proposal: Some(Proposal { value, note }), .. }) => {
                 problem.propose(field, value, note);
             }
+            // What is in a list cannot be tried beforehand.
+            _ if blamed.field.contains('[') => {
+                problem.suggestion = "take a value that is allowed there".to_owned();
+            }
             _ => {
                 problem.suggestion =
                     "no single value repairs this; change several of the fields together".to_owned()

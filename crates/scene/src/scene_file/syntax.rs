@@ -8,6 +8,7 @@ use super::problem::{Place, Problem, SceneError, offset, place_in_file};
 use super::schema::{Kind, Schema};
 use super::wording::{list, number, shown};
 use super::{foreign, limits, suggest};
+use crate::catalogue::CatalogueBearing;
 use crate::scene::Scene;
 
 /// Reads the types of a scene; its meaning is checked later.
@@ -130,7 +131,16 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
         }
         E::ExpectedNamedStructLike(_) | E::ExpectedStructLike => {
             value_fault(text, path, &outline, &schema, &mut fault);
-            if fault.allowed.is_empty() {
+            if let Some(entry) = outline.get("bearing").filter(|_| path == "bearing") {
+                let word = text[entry.value.clone()].trim();
+                fault.range = entry.value.clone();
+                fault.message = format!(
+                    "`bearing` is `{}`, which is neither a group `( … )` nor the name of a bearing in quotes",
+                    shown(word)
+                );
+                let known = CatalogueBearing::parse(word).ok();
+                fault.proposal = known.map(|known| (format!("\"{}\"", known.name), "in quotes"));
+            } else if fault.allowed.is_empty() {
                 fault.message = "a group `( … )` is expected here".to_owned();
             }
         }
@@ -173,8 +183,15 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
     fault.allowed = allowed(schema, &entry.path);
     let word = value.trim_matches('"');
     let is_word = kind == Kind::Word && words_of(schema, &entry.path).is_some_and(|all| all.contains(&word));
+    let reads = |value: &str| {
+        let text = schema.text_with(&entry.path, value);
+        text.is_some_and(|text| dialect().from_str::<Scene>(&text).is_ok())
+    };
     fault.proposal = is_word
-        .then(|| (word.to_owned(), "without quotes"))
+        .then(|| match format!("{word}()") {
+            with_brackets if reads(&with_brackets) => (with_brackets, "with brackets for its fields"),
+            _ => (word.to_owned(), "without quotes"),
+        })
         .or_else(|| proposal(value, kind))
         .or_else(|| schema.plain_default(&entry.path).map(|default| (default.to_owned(), "the default")));
 }

@@ -100,6 +100,16 @@ impl TraceFile {
         Ok(self.read(0..self.rows, |n| n == name)?.columns.pop())
     }
 
+    /// The last value of the channel called `name`; `None` when it was not sampled.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read.
+    pub fn last(&self, name: &str) -> Result<Option<f64>, Error> {
+        let last = self.read(self.rows.saturating_sub(1)..self.rows, |n| n == name)?;
+        Ok(last.get(name).and_then(|column| column.first().copied()))
+    }
+
     /// The channels that are `wanted`, in file order, over the samples `rows` as far as they are there. One pass over these rows,
     /// however many channels.
     ///
@@ -115,21 +125,41 @@ impl TraceFile {
         Ok(part.trace)
     }
 
-    /// As [`TraceFile::read`], from the first sample to the last before any channel, wanted or not, stops being a number.
+    /// As [`TraceFile::read`], up to the last sample before any channel, wanted or not, stops being a number.
     ///
     /// # Errors
     ///
     /// [`Error::Io`] when the file cannot be read.
-    pub fn read_finite(&self, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
-        let mut part = Part::of(self, self.rows, wanted);
+    pub fn read_finite(&self, rows: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
+        let mut part = Part::of(self, rows.len().min(self.rows), wanted);
         let finite = |value: &[u8; 8]| f64::from_le_bytes(*value).is_finite();
-        self.each_block(0..self.rows, |block| {
+        self.each_block(rows, |block| {
             // Without a branch a value: nearly every block is whole.
             let whole = block.iter().fold(true, |whole, value| whole & finite(value));
             let end = if whole { None } else { block.iter().position(|value| !finite(value)) };
             part.take(&block[..end.map_or(block.len(), |at| at - at % self.names.len())]);
             whole
         })?;
+        Ok(part.trace)
+    }
+
+    /// Every channel, over so many samples at most: all of them, or every second one, or every third …
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read.
+    pub fn read_thinned(&self, most: usize) -> Result<Trace, Error> {
+        let every = self.rows.div_ceil(most.max(1)).max(1);
+        if every == 1 {
+            return self.read_all();
+        }
+        let mut part = Part::of(self, self.rows / every + 1, |_| true);
+        for row in (0..self.rows).step_by(every) {
+            self.each_block(row..row + 1, |block| {
+                part.take(block);
+                true
+            })?;
+        }
         Ok(part.trace)
     }
 

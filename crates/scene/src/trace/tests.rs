@@ -79,7 +79,7 @@ fn invariant_parts_are_those_of_the_whole() {
     }
     assert!(
         trace.channel("x").expect("readable") == Some(column(1))
-            && trace.read_finite(|_| true).unwrap() == whole
+            && trace.read_finite(0..usize::MAX, |_| true).unwrap() == whole
     );
     assert_eq!(trace.channel("y").expect("readable"), None);
     // Up to the first that is no number, in whichever channel.
@@ -87,7 +87,7 @@ fn invariant_parts_are_those_of_the_whole() {
         all[at][1] = value;
         file.write(&["time_s", "x"], &all);
         let trace = TraceFile::open(file.path()).expect("readable");
-        let finite = trace.read_finite(|name| name == "time_s").expect("readable");
+        let finite = trace.read_finite(0..usize::MAX, |name| name == "time_s").expect("readable");
         assert_eq!(finite.columns, [&whole.columns[0][..at]]);
     }
 }

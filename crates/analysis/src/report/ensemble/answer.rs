@@ -1,7 +1,7 @@
 //! What an engineer reads first: what was chosen, what follows from it, and how much starts scatter.
 
 use maud::{Markup, html};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{ModelScene, Scene};
 
 use super::tables::{mean, shown};
 use crate::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
@@ -29,6 +29,9 @@ fn calibrated(scene: &Scene, of_paper: bool) -> String {
         format!("a contact stiffness of {} E over the element size", contact.penalty_scale),
         format!("a contact damping of {} % of critical", 100.0 * contact.damping_ratio),
     ];
+    if let ModelScene::Reduced(reduced) = &scene.model {
+        chosen.push(format!("modes up to {} kHz in steps of {} µs", reduced.modes_khz, reduced.step_us));
+    }
     if solver.mass_damping_per_s > 0.0 {
         chosen.push(format!("a mass damping of {} per second", solver.mass_damping_per_s));
     }

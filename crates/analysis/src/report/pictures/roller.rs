@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{ContactSurface, Scene};
 
 use super::{View, mesh, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
@@ -23,7 +23,12 @@ pub(super) fn picture(scene: &Scene, mesh: &RunMesh) -> Picture {
     magnified(&mut sheet, radius, facets, sag_um);
     let mut picture = Picture::new("roller", "A polygonised roller", sheet);
     picture.caption = format!(
-        "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle in its middle: that is what the contacts hear."
+        "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle in its middle: {}.",
+        if scene.contact.surface == ContactSurface::Facet {
+            "that is what the contacts hear"
+        } else {
+            "contact on arcs takes that away"
+        }
     );
     picture.note = format!(
         "Left: the mesh to scale. Right: {FACETS} facets, heights magnified {:.0} times.",
