@@ -8,6 +8,7 @@ pub mod place;
 pub mod progress;
 
 mod analyse;
+mod bearings;
 mod board;
 mod campaign;
 mod export;
@@ -36,6 +37,8 @@ pub enum Command {
     Validate(validate::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
+    /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are from
+    Bearings(bearings::Options),
     /// Says what a measured record shows: which defects, how sure, and what it cannot say
     Analyse(analyse::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs
@@ -54,6 +57,7 @@ impl Command {
             Self::Campaign(options) => campaign::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
+            Self::Bearings(options) => bearings::run(options),
             Self::Analyse(options) => analyse::run(options, place),
             Self::Export(options) => export::run(options, place),
         }

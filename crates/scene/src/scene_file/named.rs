@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use super::outline::Outline;
-use crate::catalogue::{Boundary, CatalogueBearing, Element};
+use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
 use crate::duty::Duty;
 use crate::geometry::Geometry;
 use crate::line_contact::LineContacts;
@@ -68,8 +68,18 @@ const FRICTION: f64 = 0.05;
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
     let given = |path: &str| given.iter().any(|written| written == path);
     let known = CatalogueBearing::parse(name)?;
-    let bearing = of(&known)?;
     let paper = Scene::default();
+    // Scenes are the paper's where nothing is said.
+    if known.name == catalogue::PAPER {
+        let own = CatalogueBearing::of_scene(&paper);
+        let off = [known.diameter_mm - own.diameter_mm, known.pitch_mm - own.pitch_mm, known.angle_deg];
+        if off.iter().any(|off| off.abs() > 1e-6) {
+            return Err("the paper's bearing takes `elements` beside its name; give other diameters as fields of `bearing`".into());
+        }
+        scene.bearing.rollers = known.elements.map_or(paper.bearing.rollers, |n| n as usize);
+        return Ok(());
+    }
+    let bearing = of(&known)?;
     let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
     let size = bearing.roller_diameter_mm / paper.bearing.roller_diameter_mm;
     let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;

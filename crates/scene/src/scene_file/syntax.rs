@@ -131,16 +131,7 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
         }
         E::ExpectedNamedStructLike(_) | E::ExpectedStructLike => {
             value_fault(text, path, &outline, &schema, &mut fault);
-            if let Some(entry) = outline.get("bearing").filter(|_| path == "bearing") {
-                let word = text[entry.value.clone()].trim();
-                fault.range = entry.value.clone();
-                fault.message = format!(
-                    "`bearing` is `{}`, which is neither a group `( … )` nor the name of a bearing in quotes",
-                    shown(word)
-                );
-                let known = CatalogueBearing::parse(word).ok();
-                fault.proposal = known.map(|known| (format!("\"{}\"", known.name), "in quotes"));
-            } else if fault.allowed.is_empty() {
+            if fault.allowed.is_empty() {
                 fault.message = "a group `( … )` is expected here".to_owned();
             }
         }
@@ -192,8 +183,15 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
             with_brackets if reads(&with_brackets) => (with_brackets, "with brackets for its fields"),
             _ => (word.to_owned(), "without quotes"),
         })
+        .or_else(|| of_bearing(&entry.path, word))
         .or_else(|| proposal(value, kind))
         .or_else(|| schema.plain_default(&entry.path).map(|default| (default.to_owned(), "the default")));
+}
+
+/// A bearing of the catalogue by its name, which is written in quotes.
+fn of_bearing(path: &str, word: &str) -> Option<(String, &'static str)> {
+    let known = CatalogueBearing::parse(word).ok().filter(|_| path == "bearing")?;
+    Some((format!("\"{}\"", known.name), "the name of a bearing of the catalogue, in quotes"))
 }
 
 /// What belongs into `path`, with its range or its words.

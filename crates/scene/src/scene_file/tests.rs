@@ -10,8 +10,8 @@ use stribeck_testing::Scratch;
 use super::{Place, Problem, SceneError};
 use crate::housing::{HousingScene, RigidHousingScene};
 use crate::scene::{
-    ContactMethod, DampingFrame, HarmonicScene, PocketWalls, ProfileScene, RampScene, RollerCopies, Scene,
-    Start,
+    BearingScene, ContactMethod, DampingFrame, HarmonicScene, PocketWalls, ProfileScene, RampScene,
+    RollerCopies, Scene, Start,
 };
 
 /// The only problem of `result`.
@@ -202,6 +202,16 @@ fn refuses_a_wrong_word_and_corrects_it() {
     assert_eq!(problem.field, "contact.method");
     assert_eq!(problem.suggestion, "did you mean `collocated`?");
     assert_eq!(problem.allowed, "`collocated`, `integrated`");
+    // What has fields wants brackets, and a bearing's name quotes.
+    for (text, tried) in [
+        ("(model: reduced)", "`model: reduced()`"),
+        ("(model: \"reduced\")", "`model: reduced()`"),
+        ("(model: \"full\")", "`model: full`"),
+        ("(bearing: NU205)", "`bearing: \"NU 205\"`"),
+    ] {
+        let problem = only(parse(text));
+        assert!(problem.to_string().contains(&format!("try: {tried}")), "{problem}");
+    }
 }
 
 #[test]
@@ -584,6 +594,7 @@ fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
     for bearing in crate::catalogue::all() {
         let text = format!("(bearing: \"{}\")", bearing.name);
         match Scene::parse(&text, "mine") {
+            Ok(scene) if bearing.name == crate::catalogue::PAPER => assert_eq!(scene, Scene::default()),
             Ok(scene) => assert_eq!(scene.bearing.designation, bearing.name),
             Err(why) => {
                 assert!(why.to_string().contains("contact angle"), "{text}: {why}");
@@ -592,6 +603,10 @@ fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
         }
     }
     assert_eq!(refused, ["ZA-2115"]);
+    let fewer = Scene::parse("(bearing: \"paper, elements=20\")", "mine").unwrap();
+    assert_eq!(fewer.bearing, BearingScene { rollers: 20, ..BearingScene::default() });
+    let other = Scene::parse("(bearing: \"paper, diameter_mm=17\")", "mine").unwrap_err();
+    assert!(other.to_string().contains("as fields of `bearing`"), "{other}");
 }
 
 #[test]

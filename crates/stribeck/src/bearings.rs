@@ -1,0 +1,63 @@
+//! `stribeck bearings`: the bearings that a scene or a measured record can name.
+
+use std::process::ExitCode;
+
+use anyhow::{Result, anyhow};
+use stribeck_scene::catalogue::{self, CatalogueBearing};
+
+/// Flags of `bearings`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// A bearing by name, or by name and numbers as in "NU 205, elements=13" [default: all that have a name]
+    name: Option<String>,
+}
+
+pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+    match &options.name {
+        Some(name) => one(&CatalogueBearing::parse(name).map_err(|why| anyhow!(why))?),
+        None => {
+            println!(
+                "{:<9} {:>5} {:>9} {:>9} {:>6} {:>14} {:>7} {:>7} {:>7} {:>7}",
+                "name", "count", "element", "pitch", "angle", "bore out width", "BPFO", "BPFI", "BSF", "FTF"
+            );
+            for bearing in catalogue::all() {
+                println!("{}", row(&bearing));
+            }
+            println!(
+                "Lengths in mm; frequencies in multiples of the shaft\u{2019}s, outer ring at rest. `?`: makers fit different numbers; \
+                 a scene assumes one and says so. `stribeck bearings NAME` says where the numbers are from."
+            );
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn row(bearing: &CatalogueBearing) -> String {
+    let count = bearing.elements.map_or("?".to_owned(), |n| n.to_string());
+    let boundary = bearing
+        .boundary
+        .map_or("?".to_owned(), |b| format!("{} × {} × {}", b.bore_mm, b.outside_mm, b.width_mm));
+    let orders = bearing.orders().map_or_else(
+        |_| String::new(),
+        |o| format!(" {:>7.4} {:>7.4} {:>7.4} {:>7.4}", o.bpfo, o.bpfi, o.bsf, o.ftf),
+    );
+    format!(
+        "{:<9} {count:>5} {:>9} {:>9} {:>5}° {boundary:>14}{orders}",
+        bearing.name, bearing.diameter_mm, bearing.pitch_mm, bearing.angle_deg
+    )
+}
+
+fn one(bearing: &CatalogueBearing) {
+    println!("{}: {bearing}", bearing.name);
+    if let Some(b) = bearing.boundary {
+        println!("  bore {} mm, outside {} mm, width {} mm", b.bore_mm, b.outside_mm, b.width_mm);
+    }
+    match bearing.orders() {
+        Ok(o) => println!(
+            "  BPFO {:.4}, BPFI {:.4}, BSF {:.4} (a spot strikes twice as often), FTF {:.4} times the shaft\u{2019}s frequency",
+            o.bpfo, o.bpfi, o.bsf, o.ftf
+        ),
+        Err(why) => println!("  {why}"),
+    }
+    println!("  source: {}", bearing.source);
+}
