@@ -38,6 +38,8 @@ pub struct Bearing {
     pub reduction: Reduction,
     /// Their shapes at the vertices of the outer raceway again, in rows.
     pub(crate) shapes: Vec<Row>,
+    /// The largest displacement of any of these vertices by a unit of each mode.
+    pub(crate) widest: Vec<Row>,
     /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
     pub(crate) dampers: Vec<Row>,
     /// Contact with the outer raceway.
@@ -98,6 +100,8 @@ pub(crate) struct Track {
     /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
     /// one around.
     pub(crate) bound: f64,
+    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the inner one.
+    pub(crate) bounds: Vec<f64>,
     /// Largest relative radius [m].
     pub(crate) relative: f64,
 }
@@ -204,8 +208,8 @@ impl Bearing {
         let radii = |outline: &Outline| {
             outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
         };
-        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min)
-            - sag(g.outer_race_radius, outer.len() as f64);
+        let sag_of_outer = sag(g.outer_race_radius, outer.len() as f64);
+        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min) - sag_of_outer;
         let farthest = radii(&inner).into_iter().fold(0.0, f64::max);
         let track =
             |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
@@ -215,6 +219,7 @@ impl Bearing {
                 curve: compliance.curve(),
                 compliance: compliance.clone(),
                 bound,
+                bounds: Vec::new(),
                 relative: 1.0 / relative,
             };
         let pockets: Vec<usize> = scene.rollers_in_place().map(|number| number - 1).collect();
@@ -252,8 +257,18 @@ impl Bearing {
         level_walls(&mut reduction.shapes, &angles);
         reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
         let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
+        let shapes: Vec<Row> = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
+        let groups = reduction.padded / LANES;
+        let mut widest = vec![Row::default(); groups];
+        for vertex in shapes.chunks_exact((2 * groups).max(1)) {
+            for ((widest, x), y) in widest.iter_mut().zip(vertex).zip(&vertex[groups..]) {
+                *widest = Row(std::array::from_fn(|mode| widest[mode].max(x[mode].hypot(y[mode]))));
+            }
+        }
+        let bounds =
+            nearest_about(&outer, BESIDE * radius).into_iter().map(|near| near - sag_of_outer).collect();
+        let mut outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
+        outer.bounds = bounds;
         let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
         let penalty = law.stiffness * g.thickness;
         let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
@@ -288,6 +303,7 @@ impl Bearing {
             rims,
             rim_of,
             shapes,
+            widest,
             dampers,
             reduction,
         })
@@ -480,6 +496,31 @@ fn level_walls(of_vertices: &mut [f64], per_angle: &[f64]) {
 
 /// A facet that takes less than this share of the mean angle is a wall.
 const WALL: f64 = 0.05;
+
+/// No contact reaches farther to either side than this share of the roller's radius: it would be a fortieth of it deep.
+const BESIDE: f64 = 0.25;
+
+/// For every facet, how near to the origin an outline comes within a distance along it [m].
+fn nearest_about(outline: &Outline, beside: f64) -> Vec<f64> {
+    let place = |i: usize| [outline.x[i], outline.y[i]];
+    let apart = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| (bx - ax).hypot(by - ay);
+    let about = |facet: usize| {
+        let mut nearest = f64::INFINITY;
+        let ends = [facet, outline.next(facet)];
+        for (end, ahead) in ends.into_iter().zip([false, true]) {
+            let mut vertex = end;
+            for _ in 0..outline.len() {
+                nearest = nearest.min(apart([0.0; 2], place(vertex)));
+                if apart(place(end), place(vertex)) > beside {
+                    break;
+                }
+                vertex = if ahead { outline.next(vertex) } else { outline.before(vertex) };
+            }
+        }
+        nearest
+    };
+    (0..outline.len()).map(about).collect()
+}
 
 /// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls.
 fn per_angle(outline: &Outline) -> Vec<f64> {

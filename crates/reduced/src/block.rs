@@ -4,10 +4,10 @@ use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
-    overlap::{Lists, Overlap},
+    overlap::Overlap,
     row::{Row, Rows},
+    seam::Seam,
     state::State,
-    window::Window,
 };
 
 /// Eight rollers; where there are fewer, those that are missing rest beside the bearing.
@@ -32,6 +32,10 @@ pub(crate) struct Block {
     /// From the bearing's centre [m], and the direction there.
     pub(crate) distance: Row,
     pub(crate) radial: Rows,
+    /// The direction in the frame of the outer raceway, both ends of the facet that it goes through there, and for whom these are known.
+    pub(crate) along: Rows,
+    pub(crate) ends: [Rows; 2],
+    pub(crate) placed: u64,
     /// The place on the outer raceway: facet and share of its second vertex; how that moves, as [`crate::modes::Moved`] says.
     pub(crate) facet: [u32; LANES],
     pub(crate) share: Row,
@@ -66,12 +70,12 @@ pub(crate) struct Contacts {
     pub(crate) distance: Row,
     pub(crate) d: Rows,
     pub(crate) spin: Rows,
-    /// Depth between the circles around both [m].
+    /// Circle that nothing of the raceway stands out from there [m], and the depth between the circles around both.
+    pub(crate) bound: Row,
     pub(crate) most: Row,
     /// Those that may touch.
     pub(crate) near: u64,
-    pub(crate) lists: Lists,
-    pub(crate) windows: [Window; 2],
+    pub(crate) seams: [Seam; LANES],
     /// What the search for the force begins with: a force [N] and its root, what the bodies give way by at it [m], the derivative of that
     /// [m/N], and how far from its middle the contact may reach [m].
     pub(crate) start: Row,
@@ -103,6 +107,9 @@ impl Block {
         let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
         // Those that are missing keep clear of both raceways.
         block.centre[0] = Row([bearing.outer.bound; LANES]);
+        for (contacts, track) in block.contacts.iter_mut().zip([&bearing.outer, &bearing.inner]) {
+            contacts.bound = Row([track.bound; LANES]);
+        }
         for lane in 0..count {
             block.present[lane] = 1.0;
             block.top[lane] = bearing.rim(first + lane).top;
@@ -112,6 +119,7 @@ impl Block {
 
     /// Takes the rollers' motion from a state. Directions are taken from the angles, because turning them step by step rounds.
     pub(crate) fn load(&mut self, bearing: &Bearing, state: &State) {
+        self.placed = 0;
         for lane in 0..self.count {
             let i = self.first + lane;
             let of = |column: &mut Row, value: f64| column[lane] = value;
@@ -133,6 +141,7 @@ impl Block {
                 }
                 contacts.hints[lane] = state.hints[k][i];
             }
+            self.facet[lane] = state.hints[0][i][1];
             for (side, walls) in self.walls.iter_mut().enumerate() {
                 of(&mut walls.slip, state.wall_slip[i][side]);
                 for (column, value) in walls.passive.iter_mut().zip(state.wall_passive[i][side]) {
@@ -155,6 +164,10 @@ impl Block {
                 state.slip[k][i] = contacts.slip[lane];
                 state.passive[k][i] = contacts.passive.map(|column| column[lane]);
                 state.hints[k][i] = contacts.hints[lane];
+            }
+            // A roller that is clear of the outer raceway goes along it nevertheless.
+            if (self.contacts[0].near >> lane) & 1 == 0 {
+                state.hints[0][i][1] = self.facet[lane];
             }
             for (side, walls) in self.walls.iter().enumerate() {
                 state.wall_slip[i][side] = walls.slip[lane];

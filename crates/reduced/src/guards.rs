@@ -1,5 +1,7 @@
 //! What is watched of a reduced run: energy, penetration, support and places, with the limits of the scene.
 
+use std::fmt::{self, Display, Formatter};
+
 use stribeck_scene::{
     geometry::Geometry,
     run_info::RunInfo,
@@ -40,6 +42,19 @@ const OUT_OF_PLACE: f64 = 0.5;
 
 /// A roller carries something above this share of the load.
 const CARRIES: f64 = 1e-3;
+
+/// When something was seen. It is written for few of the samples that are looked at.
+struct When {
+    step: u64,
+    /// [s]
+    time: f64,
+}
+
+impl Display for When {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "at step {}, t = {:.5} ms", self.step, 1e3 * self.time)
+    }
+}
 
 /// The limits of one run.
 #[derive(Debug, Clone)]
@@ -104,8 +119,7 @@ impl Guards {
         off: LedgerError,
         deepest: f64,
     ) -> Option<String> {
-        let when =
-            format!("at step {}, t = {:.5} ms", info.steps, 1e3 * info.steps as f64 * info.time_step_s);
+        let when = When { step: info.steps, time: info.steps as f64 * info.time_step_s };
         let limits = &self.limits;
         let percent = 100.0 * off.of_strain;
         let apart = percent > limits.energy_stop_percent && (off.of_heat.is_nan() || off.of_heat > GATHERED);
@@ -128,7 +142,7 @@ impl Guards {
         })
     }
 
-    fn penetration(&self, info: &mut RunInfo, deepest: f64, when: &str) -> Option<String> {
+    fn penetration(&self, info: &mut RunInfo, deepest: f64, when: &When) -> Option<String> {
         let share = deepest / self.element_size;
         let before = info.guards.penetration_share;
         info.guards.penetration_share = before.max(share);
@@ -148,7 +162,7 @@ impl Guards {
         })
     }
 
-    fn support(&self, info: &mut RunInfo, state: &State, when: &str) {
+    fn support(&self, info: &mut RunInfo, state: &State, when: &When) {
         let enough = CARRIES * info.expected_support_n;
         let by_oil = state.films.as_ref().is_some_and(|films| films.carry(enough));
         let carried = by_oil || state.force[0].iter().any(|&force| force > enough);
@@ -167,7 +181,7 @@ impl Guards {
         }
     }
 
-    fn places(&self, state: &State, when: &str) -> Option<String> {
+    fn places(&self, state: &State, when: &When) -> Option<String> {
         for (number, (x, y)) in self.numbers.iter().zip(state.x.iter().zip(&state.y)) {
             let radius = x.hypot(*y);
             if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {

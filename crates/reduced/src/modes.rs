@@ -9,7 +9,7 @@ use crate::{
     bearing::Bearing,
     heard::Heard,
     row::Row,
-    seat::Springs,
+    seat::{Hold, Springs},
     state::{Spent, State, Stored},
 };
 
@@ -66,18 +66,11 @@ impl Modes {
 }
 
 impl Bearing {
-    /// The place on the outer raceway that a ray from the origin meets, near the facet `hint`.
-    #[inline(always)]
-    pub(crate) fn place_along(&self, radial: [f64; 2], hint: u32) -> Place<'_> {
-        let outline = &self.outer.outline;
-        let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
-        self.place(facet, outline.share(facet, radial))
-    }
-
     /// What a roller in this direction presses with `force`, near the facet `hint`.
     pub(crate) fn heard_at(&self, hint: u32, radial: [f64; 2], force: f64) -> Heard {
-        let Place { facet, share, .. } = self.place_along(radial, hint);
-        Heard { facet: facet as u32, share, force, growth: 0.0 }
+        let outline = &self.outer.outline;
+        let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
+        Heard { facet: facet as u32, share: outline.share(facet, radial), force, growth: 0.0 }
     }
 
     /// The place on a facet with this share of its second vertex.
@@ -90,6 +83,31 @@ impl Bearing {
             [&both[..groups], &both[groups..2 * groups]]
         };
         Place { facet, share, shapes: [shapes(facet), shapes(second)] }
+    }
+
+    /// No place of the raceway is displaced by more than that [m].
+    #[inline(always)]
+    pub(crate) fn most_displaced<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&Hold>) -> f64 {
+        let mut sum = Vector::all(simd, 0.0);
+        let opened = hold.map_or(&[][..], |hold| hold.open.as_chunks::<LANES>().0);
+        let by_seat = self.seat.iter().flat_map(|seat| &seat.widest).zip(opened);
+        for (widest, open) in by_seat {
+            let mut at = 0;
+            while at < LANES {
+                let open = Vector::load(simd, open, at);
+                sum = Vector::load(simd, widest, at).times_plus(open.max(-open), sum);
+                at += Vector::<S>::LEN;
+            }
+        }
+        for (widest, q) in self.widest.iter().zip(&modes.q) {
+            let mut at = 0;
+            while at < LANES {
+                let q = Vector::load(simd, q, at);
+                sum = Vector::load(simd, widest, at).times_plus(q.max(-q), sum);
+                at += Vector::<S>::LEN;
+            }
+        }
+        sum.sum()
     }
 
     /// How the raceway moves at a place. Both vertices are summed over all modes, and what lies between follows from the sums.

@@ -16,7 +16,12 @@ pub struct Outline {
     /// Both again, with vertices repeated: counter-clockwise and clockwise.
     ahead: [Vec<f64>; 2],
     back: [Vec<f64>; 2],
+    /// Whether neither a facet nor its neighbours are walls.
+    plain: Vec<bool>,
 }
+
+/// Facets whose cosine to the circle through them is smaller are walls.
+const WALL: f64 = 0.5;
 
 impl Outline {
     /// Of vertices in counter-clockwise order.
@@ -28,11 +33,17 @@ impl Outline {
             (0..count).map(|i| vertices[(i + n * PAD - PAD) % n][c]).collect()
         };
         let reversed = |c: usize| repeated(c).into_iter().rev().collect();
+        let is_wall = |i: usize| {
+            let [[ax, ay], [bx, by]] = [vertices[i % n], vertices[(i + 1) % n]];
+            let (length, radius) = ((bx - ax).hypot(by - ay), (ax + bx).hypot(ay + by));
+            (by - ay) * (ax + bx) - (bx - ax) * (ay + by) <= WALL * length * radius
+        };
         Self {
             x: vertices.iter().map(|v| v[0]).collect(),
             y: vertices.iter().map(|v| v[1]).collect(),
             ahead: [0, 1].map(repeated),
             back: [0, 1].map(reversed),
+            plain: (0..n).map(|i| ![n - 1, n, n + 1].iter().any(|&beside| is_wall(i + beside))).collect(),
         }
     }
 
@@ -58,13 +69,19 @@ impl Outline {
         self.x.is_empty()
     }
 
+    /// Whether neither a facet nor its neighbours are walls: seen from a roller that it is near to, it goes by with growing u.
     #[inline(always)]
-    fn next(&self, i: usize) -> usize {
+    pub(crate) fn is_plain(&self, facet: usize) -> bool {
+        self.plain[facet]
+    }
+
+    #[inline(always)]
+    pub(crate) fn next(&self, i: usize) -> usize {
         if i + 1 == self.x.len() { 0 } else { i + 1 }
     }
 
     #[inline(always)]
-    fn before(&self, i: usize) -> usize {
+    pub(crate) fn before(&self, i: usize) -> usize {
         if i == 0 { self.x.len() - 1 } else { i - 1 }
     }
 
@@ -139,6 +156,12 @@ pub(crate) struct Facet<N = f64> {
 }
 
 impl<N: Number> Facet<N> {
+    /// How far u is from both ends, one times the other [m²].
+    #[inline(always)]
+    pub(crate) fn inside(&self, u: N) -> N {
+        (u - self.from) * (self.to - u)
+    }
+
     /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its slope, as a series.
     #[inline(always)]
     pub(crate) fn stretch(&self) -> N {

@@ -3,7 +3,7 @@
 //! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{Number, Vector};
 
 use crate::{
     outline::{Facet, Parts, View, Walk},
@@ -154,6 +154,25 @@ impl Overlap<Row> {
 }
 
 impl<S: Simd> Overlap<Vector<S>> {
+    /// Of all parts together.
+    #[inline(always)]
+    pub(crate) fn total(self) -> Overlap {
+        Overlap {
+            area: self.area.sum(),
+            across: self.across.sum(),
+            moment: self.moment.sum(),
+            square: self.square.sum(),
+            length: self.length.sum(),
+            first: self.first.sum(),
+            second: self.second.sum(),
+            slope: self.slope.sum(),
+            arm: self.arm.sum(),
+            skew: self.skew.sum(),
+            ends: self.ends.sum(),
+            deepest: self.deepest.largest(),
+        }
+    }
+
     /// Writes them to the lanes from `at` on.
     #[inline(always)]
     pub(crate) fn store(self, to: &mut Overlap<Row>, at: usize) {
@@ -273,103 +292,27 @@ impl Parts for Arcs {
     }
 }
 
-/// Columns of a part: its ends, and slope and height of the roller and of the raceway …
-const COLUMNS: usize = 10;
-/// … where both are straight; where they are round, from where to where both facets reach, too.
-const STRAIGHT: usize = 6;
-
-/// Parts of eight overlaps, side by side: part k of each in row k.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Lists {
-    rows: Vec<[Row; COLUMNS]>,
-    /// Parts of each.
-    count: Row,
-    /// Of the longest list.
-    longest: usize,
-}
-
-impl Lists {
-    /// Forgets all parts.
-    #[inline(always)]
-    pub(crate) fn clear(&mut self) {
-        (self.count, self.longest) = (Row::default(), 0);
-    }
-
-    /// Fills the list of one overlap, looked for up to `reach` [m] to either side.
-    #[inline(always)]
-    pub(crate) fn fill<S: Simd>(&mut self, lane: usize, pair: &Pair<'_, S>, reach: f64) {
-        let taken = pair.taken(reach, List { of: self, lane, count: 0, round: pair.sides.are_round() });
-        let count = taken.count;
-        self.count[lane] = count as f64;
-        self.longest = self.longest.max(count);
-    }
-
-    /// The overlaps of the lanes from `at` on that are pressed back by `shift` [m].
-    #[inline(always)]
-    pub(crate) fn overlaps<S: Simd>(
-        &self,
-        simd: S,
-        at: usize,
-        sides: Sides,
-        shift: Vector<S>,
-    ) -> Overlap<Vector<S>> {
-        let all = |value: f64| Vector::all(simd, value);
-        let (count, outside) = (Vector::load(simd, &self.count, at), all(-1.0));
-        let mut sum = Overlap::none(all(0.0));
-        let round_ones = sides.are_round();
-        for (k, row) in self.rows[..self.longest].iter().enumerate() {
-            let [u1, u2, slope, base, under, low, a, b, c, d] = row;
-            let ends = [Vector::load(simd, u1, at), Vector::load(simd, u2, at)];
-            let (slope, base) = (Vector::load(simd, slope, at), Vector::load(simd, base, at));
-            let (under, low) = (Vector::load(simd, under, at), Vector::load(simd, low, at));
-            let zero = all(0.0);
-            let mut roller = Facet { from: zero, to: zero, slope, base };
-            let mut raceway = Facet { from: zero, to: zero, slope: under, base: low };
-            // Beyond the end of a list nothing sinks in.
-            let number = all(k as f64);
-            if round_ones {
-                (roller.from, roller.to) = (Vector::load(simd, a, at), Vector::load(simd, b, at));
-                (raceway.from, raceway.to) = (Vector::load(simd, c, at), Vector::load(simd, d, at));
-                let mut seen = round(ends, roller, raceway, sides, shift);
-                let [p1, p2] = seen.p;
-                seen.p = [number.choose_below(count, p1, outside), number.choose_below(count, p2, outside)];
-                arcs(&mut sum, ends, seen, roller);
-            } else {
-                let [p1, p2] = straight(ends, roller, raceway, shift);
-                let p = [number.choose_below(count, p1, outside), number.choose_below(count, p2, outside)];
-                chords(&mut sum, ends, p, roller, raceway);
-            }
-        }
-        sum
-    }
-}
-
-/// The list of one overlap among eight.
-struct List<'a> {
-    of: &'a mut Lists,
-    lane: usize,
-    count: usize,
-    round: bool,
-}
-
-impl Parts for List<'_> {
-    #[inline(always)]
-    fn add(&mut self, [u1, u2]: [f64; 2], roller: Facet, raceway: Facet) {
-        if self.count == self.of.rows.len() {
-            self.of.rows.push(Default::default());
-        }
-        let (row, lane) = (&mut self.of.rows[self.count], self.lane % LANES);
-        let straight = [u1, u2, roller.slope, roller.base, raceway.slope, raceway.base];
-        for (column, number) in row.iter_mut().zip(straight) {
-            column[lane] = number;
-        }
-        if self.round {
-            let reach = [roller.from, roller.to, raceway.from, raceway.to];
-            for (column, number) in row[STRAIGHT..].iter_mut().zip(reach) {
-                column[lane] = number;
-            }
-        }
-        self.count += 1;
+/// Adds what lies in a part, where `present` is one; nothing sinks in elsewhere.
+#[inline(always)]
+pub(crate) fn add_between<N: Number>(
+    sum: &mut Overlap<N>,
+    ends: [N; 2],
+    roller: Facet<N>,
+    raceway: Facet<N>,
+    sides: Sides,
+    shift: N,
+    present: N,
+) {
+    let (half, outside) = (shift.constant(0.5), shift.constant(-1.0));
+    let choose =
+        |[p1, p2]: [N; 2]| [half.choose_below(present, p1, outside), half.choose_below(present, p2, outside)];
+    if sides.are_round() {
+        let mut seen = round(ends, roller, raceway, sides, shift);
+        seen.p = choose(seen.p);
+        arcs(sum, ends, seen, roller);
+    } else {
+        let p = choose(straight(ends, roller, raceway, shift));
+        chords(sum, ends, p, roller, raceway);
     }
 }
 
@@ -429,14 +372,12 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
     let half = shift.constant(0.5);
     let curvature = shift.constant(sides.curvature) * r.stretch();
     let of_raceway = shift.constant(sides.bulge - 0.5 * sides.curvature) * w.stretch();
-    let height = |u: N| {
-        let chords = (r.slope - w.slope).times_plus(u, (r.base - w.base) - shift);
-        // What the arcs stand out from their chords.
-        let of = |facet: Facet<N>| (u - facet.from) * (facet.to - u);
-        chords + half * curvature * of(r) + of_raceway * of(w)
-    };
-    let [u1, u2] = ends;
-    Round { p: [height(u1), height(u2)], curvature, bulge: half.times_plus(curvature, of_raceway) }
+    let ([u1, u2], [p1, p2]) = (ends, straight(ends, r, w, shift));
+    // What the arcs stand out from their chords.
+    let (of_r, of_w) = (half * curvature, of_raceway);
+    let p1 = p1 + of_r * r.inside(u1) + of_w * w.inside(u1);
+    let p2 = p2 + of_r * r.inside(u2) + of_w * w.inside(u2);
+    Round { p: [p1, p2], curvature, bulge: half.times_plus(curvature, of_raceway) }
 }
 
 /// Adds what lies between two parabolas on chords.

@@ -41,7 +41,7 @@ impl Bearing {
     /// Velocities of the sensors with the modes alone.
     fn modal_velocity(&self, state: &State) -> Vec<[f64; 2]> {
         let r = self.reduction.padded;
-        let of = |shape: &[f64]| shape.iter().zip(&state.v).map(|(u, v)| u * v).sum::<f64>();
+        let of = |shape: &[f64]| product(shape, &state.v);
         self.reduction.sensors.iter().map(|s| [of(&s.shape[..r]), of(&s.shape[r..])]).collect()
     }
 
@@ -49,7 +49,7 @@ impl Bearing {
     fn residual(&self, sensor: usize, heard: &[Heard]) -> [f64; 2] {
         let residual = &self.reduction.sensors[sensor].residual;
         let mut sum = [0.0; 2];
-        for h in heard {
+        for h in heard.iter().filter(|h| h.force != 0.0) {
             let a = h.facet as usize;
             let b = if a + 1 == residual.len() { 0 } else { a + 1 };
             for (c, sum) in sum.iter_mut().enumerate() {
@@ -67,12 +67,13 @@ impl Bearing {
     ) -> impl Iterator<Item = [f64; 2]> + 'a {
         let of_sensor = move |seat: &'a Seat, heard: &'a Vec<[f64; 2]>| {
             // Across the seat by what is missing where it is open, along it by what holds.
-            let missing = seat.across.iter().zip(&hold.open).map(|(stiffness, open)| -stiffness * open);
-            let holding = tension.iter().flat_map(|row| row.iter().copied()).skip(seat.padded);
-            heard
-                .iter()
-                .zip(missing.chain(holding))
-                .fold([0.0; 2], |[x, y], ([hx, hy], force)| [hx * force + x, hy * force + y])
+            let (across, along) = heard.split_at(seat.padded);
+            let [mut x, mut y] = weighed(&tension[seat.padded / LANES..], along);
+            let open = seat.across.iter().zip(&hold.open).zip(across);
+            for ((stiffness, open), [hx, hy]) in open.filter(|((_, open), _)| **open != 0.0) {
+                [x, y] = [x - stiffness * open * hx, y - stiffness * open * hy];
+            }
+            [x, y]
         };
         let seat = self.reduction.springs.iter();
         seat.flat_map(move |seat| seat.heard.iter().map(move |heard| of_sensor(seat, heard)))
@@ -134,8 +135,30 @@ impl Bearing {
     /// Force of the housing on the outer ring that sits in it [N].
     fn seat_force(&self, tension: &[Row]) -> Option<[f64; 2]> {
         let at_rest = self.reduction.seat?;
-        let more = self.reduction.springs.iter().flat_map(|seat| &seat.on_ring);
-        let more = more.zip(tension.iter().flat_map(|row| row.iter()));
-        Some(more.fold(at_rest, |[x, y], ([fx, fy], tension)| [x + fx * tension, y + fy * tension]))
+        let more = self.reduction.springs.as_ref().map_or([0.0; 2], |seat| weighed(tension, &seat.on_ring));
+        Some([at_rest[0] + more[0], at_rest[1] + more[1]])
     }
+}
+
+/// Sum of all products of two numbers, in eight sums that need not wait for each other.
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum()
+}
+
+/// Sum of vectors, each times its number.
+fn weighed(rows: &[Row], vectors: &[[f64; 2]]) -> [f64; 2] {
+    let mut sums = [[0.0; 2]; LANES];
+    for (row, vectors) in rows.iter().zip(vectors.as_chunks::<LANES>().0) {
+        for lane in 0..LANES {
+            sums[lane][0] += vectors[lane][0] * row[lane];
+            sums[lane][1] += vectors[lane][1] * row[lane];
+        }
+    }
+    sums.iter().fold([0.0; 2], |[x, y], [sx, sy]| [x + sx, y + sy])
 }

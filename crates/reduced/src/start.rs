@@ -193,12 +193,13 @@ impl Bearing {
         for _ in 0..40 {
             let [before, other] = forces;
             let rim = self.rim(i);
-            let near = Near { track: &self.outer, rim, centre: seen, spin: [c, s], before };
+            let near =
+                Near { track: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
             let outer = self.touch(simd, near, &mut hints[0]);
             let (centre, spin) = (back(centre), back([c, s]));
             let inner = self.touch(
                 simd,
-                Near { track: &self.inner, rim, centre, spin, before: other },
+                Near { track: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },
                 &mut hints[1],
             );
             let next = [outer.normal, inner.normal];

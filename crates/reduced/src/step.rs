@@ -11,12 +11,11 @@ use crate::{
     bearing::Bearing,
     block::Block,
     heard::Heard,
-    modes::{Modes, Moved},
+    modes::Modes,
     oil::Now,
     pocket::PlacedCage,
     raceway::Rolling,
     row::{load, of_one, store},
-    seat::Hold,
     state::{Spent, State, Stored, count},
 };
 
@@ -142,9 +141,10 @@ impl Bearing {
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
         let mut on_cage = [0.0; 3];
         let mut sums = Sums::<S>::new(simd);
+        let most = self.most_displaced(simd, &scratch.modes, state.seat.as_ref());
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
-            self.place_rollers(simd, &scratch.modes, state.seat.as_ref(), block, outer, inner);
+            self.place_rollers(simd, &scratch.modes, state.seat.as_ref(), most, block, [outer, Some(inner)]);
             let Block { first, top, bits, contacts: [on_outer, on_inner], .. } = block;
             self.press_together(simd, &self.outer, *first, top, *bits, on_outer);
             self.press_together(simd, &self.inner, *first, top, *bits, on_inner);
@@ -228,70 +228,6 @@ impl Bearing {
         state.steps += 1;
         if last {
             scratch.energy = energy;
-        }
-    }
-
-    /// Where rollers are by both raceways, the outer one moved with the modes.
-    #[inline(always)]
-    fn place_rollers<S: Simd>(
-        &self,
-        simd: S,
-        modes: &Modes,
-        hold: Option<&Hold>,
-        block: &mut Block,
-        outer: Option<Turning>,
-        inner: Turning,
-    ) {
-        let mut at = 0;
-        while at < LANES {
-            let [x, y] = load(simd, &block.centre, at);
-            let distance = x.times_plus(x, y * y).sqrt();
-            distance.store(&mut block.distance, at);
-            (x / distance).store(&mut block.radial[0], at);
-            (y / distance).store(&mut block.radial[1], at);
-            at += Vector::<S>::LEN;
-        }
-        for lane in 0..block.count {
-            let mut radial = of_one(&block.radial, lane);
-            if let Some(Turning { turned: [c, s], .. }) = outer {
-                radial = [c * radial[0] + s * radial[1], c * radial[1] - s * radial[0]];
-            }
-            let hint = &mut block.contacts[0].hints[lane][1];
-            let place = self.place_along(radial, *hint);
-            *hint = place.facet as u32;
-            (block.facet[lane], block.share[lane]) = (place.facet as u32, place.share);
-            let Moved { mut by, velocity, mut tilt } = self.moved(simd, &place, modes);
-            if let (Some(seat), Some(hold)) = (&self.seat, hold) {
-                let [first, second] = seat.under(simd, hold, place.facet);
-                let outwards = first + place.share * (second - first);
-                let slope = (second - first) * self.outer.angle[place.facet];
-                // It points outwards at every place, so that it turns along the raceway.
-                let [x, y] = radial;
-                by = [by[0] + x * outwards, by[1] + y * outwards];
-                tilt = [tilt[0] + x * slope - y * outwards, tilt[1] + y * slope + x * outwards];
-            }
-            for c in 0..2 {
-                block.by[c][lane] = by[c];
-                block.moving[c][lane] = velocity[c];
-                block.tilt[c][lane] = tilt[c];
-            }
-        }
-        // Where a raceway turns, everything is turned back.
-        let [on_outer, on_inner] = &mut block.contacts;
-        let mut at = 0;
-        while at < LANES {
-            let (centre, spin) = (load(simd, &block.centre, at), load(simd, &block.turned, at));
-            let by = load(simd, &block.by, at);
-            store([centre[0] - by[0], centre[1] - by[1]], &mut on_outer.centre, at);
-            store(spin, &mut on_outer.spin, at);
-            store(inner.back(simd, centre), &mut on_inner.centre, at);
-            store(inner.back(simd, spin), &mut on_inner.spin, at);
-            if let Some(outer) = outer {
-                let from_its_centre = load(simd, &on_outer.centre, at);
-                store(outer.back(simd, from_its_centre), &mut on_outer.centre, at);
-                store(outer.back(simd, spin), &mut on_outer.spin, at);
-            }
-            at += Vector::<S>::LEN;
         }
     }
 
@@ -444,7 +380,7 @@ impl Turning {
 
     /// A vector in the frame of the ring.
     #[inline(always)]
-    fn back<S: Simd>(self, simd: S, [x, y]: [Vector<S>; 2]) -> [Vector<S>; 2] {
+    pub(crate) fn back<S: Simd>(self, simd: S, [x, y]: [Vector<S>; 2]) -> [Vector<S>; 2] {
         let [c, s] = [Vector::all(simd, self.turned[0]), Vector::all(simd, self.turned[1])];
         [c.times_plus(x, s * y), c.times_plus(y, -(s * x))]
     }

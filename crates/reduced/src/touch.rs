@@ -10,6 +10,7 @@ use crate::{
     outline::View,
     overlap::{Overlap, Pair},
     row::{Row, lanes, load, of_one},
+    seam::Sight,
     window::Window,
 };
 
@@ -43,6 +44,8 @@ pub(crate) struct Near<'a> {
     pub(crate) centre: [f64; 2],
     /// Direction of the roller's vertex 0.
     pub(crate) spin: [f64; 2],
+    /// Circle that nothing of the raceway stands out from there [m].
+    pub(crate) bound: f64,
     /// Force that is expected from the steps before [N].
     pub(crate) before: f64,
 }
@@ -69,7 +72,8 @@ impl Bearing {
             let [x, y] = load(simd, &contacts.centre, at);
             let distance = x.times_plus(x, y * y).sqrt();
             let per = outwards / distance;
-            let most = outwards.times_plus(distance - all(track.bound), Vector::load(simd, top, at));
+            let bound = Vector::load(simd, &contacts.bound, at);
+            let most = outwards.times_plus(distance - bound, Vector::load(simd, top, at));
             distance.store(&mut contacts.distance, at);
             (x * per).store(&mut contacts.d[0], at);
             (y * per).store(&mut contacts.d[1], at);
@@ -89,13 +93,16 @@ impl Bearing {
             return;
         }
         self.expect(simd, track, contacts);
-        self.list(simd, track, first, contacts);
-        let again = self.search(simd, track, contacts);
-        for lane in lanes(again) {
+        let alone = self.integrate(simd, track, first, contacts);
+        let again = self.search(simd, contacts);
+        for lane in lanes(alone) {
+            contacts.normal[lane] = contacts.start[lane];
+        }
+        for lane in lanes(again | alone) {
             let rim = self.rim(first + lane);
             let before = contacts.normal[lane];
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
-            let near = Near { track, rim, centre, spin, before };
+            let near = Near { track, rim, centre, spin, bound: contacts.bound[lane], before };
             let found = self.touch(simd, near, &mut contacts.hints[lane]);
             contacts.normal[lane] = found.normal;
             contacts.give[lane] = found.give;
@@ -159,25 +166,47 @@ impl Bearing {
         }
     }
 
-    /// Lists the parts of all overlaps as far as they may reach at the forces that are expected.
+    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then. Returns those that have to be looked at
+    /// by themselves, because a wall is near.
     #[inline(always)]
-    fn list<S: Simd>(&self, simd: S, track: &Track, first: usize, contacts: &mut Contacts) {
-        contacts.lists.clear();
+    fn integrate<S: Simd>(&self, simd: S, track: &Track, first: usize, contacts: &mut Contacts) -> u64 {
+        let mut alone = 0;
         for lane in lanes(contacts.near) {
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
             let d = of_one(&contacts.d, lane);
-            let near =
-                Near { track, rim: self.rim(first + lane), centre, spin, before: contacts.start[lane] };
-            let [roller, raceway] = Self::views(&near, d, &mut contacts.hints[lane]);
-            let pair = Pair::new(simd, roller, raceway, track.sides, &mut contacts.windows);
-            contacts.lists.fill(lane, &pair, contacts.reach[lane]);
+            let (shift, reach) = (contacts.shift[lane], contacts.reach[lane]);
+            let seam = &mut contacts.seams[lane];
+            let sight = Sight { own: turned_back(spin, d), d, from: centre };
+            let mut found = Overlap::default();
+            for look in 0..2 {
+                if let Some(overlap) = seam.overlap(simd, track.sides, &sight, shift, reach) {
+                    found = overlap;
+                    break;
+                }
+                if look == 0 {
+                    let near = Near {
+                        track,
+                        rim: self.rim(first + lane),
+                        centre,
+                        spin,
+                        bound: track.bound,
+                        before: 0.0,
+                    };
+                    let views = Self::views(&near, d, &mut contacts.hints[lane]);
+                    seam.list(&views, track.sides.along, reach);
+                } else {
+                    alone |= 1 << lane;
+                }
+            }
+            contacts.overlap.set(lane, &found);
         }
+        alone
     }
 
-    /// Integrates over the overlaps and takes steps of Newton's method for the forces, with what each overlap becomes by a further shift.
+    /// Takes steps of Newton's method for the forces, with what each overlap becomes by a further shift.
     /// Returns those that have to be searched for further; their `normal` is what to begin with.
     #[inline(always)]
-    fn search<S: Simd>(&self, simd: S, track: &Track, contacts: &mut Contacts) -> u64 {
+    fn search<S: Simd>(&self, simd: S, contacts: &mut Contacts) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
         let mut again = 0;
@@ -186,7 +215,7 @@ impl Bearing {
             let near = Vector::ones(simd, contacts.near >> at);
             let shift = Vector::load(simd, &contacts.shift, at);
             let start = Vector::load(simd, &contacts.start, at);
-            let found = contacts.lists.overlaps(simd, at, track.sides, shift);
+            let found = contacts.overlap.load(simd, at);
             let (knot, next) =
                 (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
             let (first, slope) =
@@ -226,11 +255,11 @@ impl Bearing {
     /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
     #[inline(always)]
     pub(crate) fn touch<S: Simd>(&self, simd: S, near: Near<'_>, hints: &mut [u32; 2]) -> Touch {
-        let Near { track, rim, centre, before, .. } = near;
+        let Near { track, rim, centre, bound, before, .. } = near;
         let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
         let outwards = track.outwards();
         let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
-        let most = outwards * (distance - track.bound) + rim.top;
+        let most = outwards * (distance - bound) + rim.top;
         if most <= 0.0 {
             return Touch::default();
         }
@@ -272,9 +301,8 @@ impl Bearing {
     /// Roller and raceway near their contact, in the direction `d`, with the facets that it goes through.
     #[inline(always)]
     fn views<'a>(near: &Near<'a>, d: [f64; 2], hints: &mut [u32; 2]) -> [View<'a>; 2] {
-        let Near { track, rim, centre, spin: [c, s], .. } = *near;
-        // The roller's own frame: turned back by its spin.
-        let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
+        let Near { track, rim, centre, spin, .. } = *near;
+        let own = turned_back(spin, d);
         let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
         let under = track.outline.facet_along(centre, d, hints[1] as usize, track.outwards());
         *hints = [facet as u32, under as u32];
@@ -282,4 +310,10 @@ impl Bearing {
         let raceway = View { outline: &track.outline, from: centre, d, facet: under };
         [roller, raceway]
     }
+}
+
+/// A direction in the roller's own frame: turned back by its spin.
+#[inline(always)]
+fn turned_back([c, s]: [f64; 2], d: [f64; 2]) -> [f64; 2] {
+    [c * d[0] + s * d[1], c * d[1] - s * d[0]]
 }

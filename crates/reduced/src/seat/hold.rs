@@ -23,11 +23,15 @@ pub(crate) struct Springs {
     by_spring: Vec<Row>,
     /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of the preload.
     by_rollers: Vec<Row>,
+    /// The largest of these at any vertex.
+    pub(crate) widest: Vec<Row>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
     stiffness: Vec<Row>,
     /// The same of each by its own [N/m].
     own: Vec<f64>,
+    /// One over it.
+    per_own: Vec<f64>,
     /// Force that presses each panel at the preload [N].
     pressed: Vec<f64>,
     friction: f64,
@@ -49,6 +53,12 @@ pub struct Hold {
     pub(crate) pressed: Vec<Heard>,
 }
 
+/// A spring that opens or slips further [m].
+struct Change {
+    spring: usize,
+    more: f64,
+}
+
 impl Springs {
     pub(crate) fn new(seat: &Seat, modes: usize, friction: f64) -> Self {
         let n = 2 * seat.padded;
@@ -59,14 +69,24 @@ impl Springs {
             |spring: usize, mode: usize| if mode < found { seat.tension[mode * n + spring] } else { 0.0 };
         let by_spring: Vec<f64> =
             (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
+        let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
+        let by_rollers = rows(&seat.by_rollers);
+        let mut widest = vec![Row::default(); n / LANES];
+        for vertex in by_rollers.chunks_exact(n / LANES) {
+            for (widest, row) in widest.iter_mut().zip(vertex) {
+                *widest = Row(std::array::from_fn(|spring| widest[spring].max(row[spring].abs())));
+            }
+        }
         Self {
             panels: seat.panels,
             padded: seat.padded,
             by_mode: rows(&seat.tension),
             by_spring: rows(&by_spring),
-            by_rollers: rows(&seat.by_rollers),
+            by_rollers,
+            widest,
             at_preload: rows(&seat.at_preload),
-            own: seat.stiffness.iter().step_by(n + 1).copied().collect(),
+            per_own: own.iter().map(|stiffness| 1.0 / stiffness).collect(),
+            own,
             stiffness: rows(&seat.stiffness),
             pressed: seat.pressed.clone(),
             friction,
@@ -165,35 +185,40 @@ impl Springs {
     fn pull<S: Simd>(&self, simd: S, hold: &Hold, q: &[f64], rollers: &[Heard], tension: &mut [Row]) {
         let groups = tension.len();
         let vertices = self.by_rollers.len() / groups;
-        for (tension, at_preload) in tension.iter_mut().zip(&self.at_preload) {
-            *tension = Row(at_preload.0.map(|value| -value));
-        }
-        for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
-            let force = roller.next();
-            let first = roller.facet as usize;
-            let second = if first + 1 == vertices { 0 } else { first + 1 };
-            for (vertex, force) in [(first, (1.0 - roller.share) * force), (second, roller.share * force)] {
-                let force = Vector::all(simd, force);
-                let rows = &self.by_rollers[groups * vertex..groups * (vertex + 1)];
-                for (tension, row) in tension.iter_mut().zip(rows) {
-                    let mut at = 0;
-                    while at < LANES {
-                        let sum =
-                            Vector::load(simd, row, at).times_plus(force, Vector::load(simd, tension, at));
-                        sum.store(tension, at);
-                        at += Vector::<S>::LEN;
-                    }
-                }
-            }
-        }
-        for (group, (tension, lost)) in tension.iter_mut().zip(hold.lost.as_chunks::<LANES>().0).enumerate() {
+        let lost = hold.lost.as_chunks::<LANES>().0;
+        // Two rows at a time, whose sums need not wait for each other.
+        for first in (0..groups).step_by(2) {
             let mut at = 0;
             while at < LANES {
-                let mut sum = Vector::load(simd, tension, at) - Vector::load(simd, lost, at);
-                for (row, q) in self.by_mode[group..].iter().step_by(groups).zip(q) {
-                    sum = Vector::load(simd, row, at).times_plus(Vector::all(simd, *q), sum);
+                let mut one = Vector::load(simd, &self.at_preload[first], at);
+                let mut two = Vector::load(simd, &self.at_preload[first + 1], at);
+                one = -(one + Vector::load(simd, &lost[first], at));
+                two = -(two + Vector::load(simd, &lost[first + 1], at));
+                for (rows, q) in self.by_mode.chunks_exact(groups).zip(q) {
+                    let q = Vector::all(simd, *q);
+                    one = Vector::load(simd, &rows[first], at).times_plus(q, one);
+                    two = Vector::load(simd, &rows[first + 1], at).times_plus(q, two);
                 }
-                sum.store(tension, at);
+                let [mut more, mut also] = [Vector::all(simd, 0.0); 2];
+                for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
+                    let force = roller.next();
+                    let (a, b) = (
+                        Vector::all(simd, (1.0 - roller.share) * force),
+                        Vector::all(simd, roller.share * force),
+                    );
+                    let facet = roller.facet as usize;
+                    let second = if facet + 1 == vertices { 0 } else { facet + 1 };
+                    let (ahead, behind) = (
+                        &self.by_rollers[groups * facet..][..groups],
+                        &self.by_rollers[groups * second..][..groups],
+                    );
+                    one = Vector::load(simd, &ahead[first], at).times_plus(a, one);
+                    two = Vector::load(simd, &ahead[first + 1], at).times_plus(a, two);
+                    more = Vector::load(simd, &behind[first], at).times_plus(b, more);
+                    also = Vector::load(simd, &behind[first + 1], at).times_plus(b, also);
+                }
+                (one + more).store(&mut tension[first], at);
+                (two + also).store(&mut tension[first + 1], at);
                 at += Vector::<S>::LEN;
             }
         }
@@ -203,72 +228,110 @@ impl Springs {
     #[inline(always)]
     fn settle<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], passes: usize) -> f64 {
         hold.before.copy_from_slice(&hold.open);
-
+        let mut last = Change { spring: 0, more: 0.0 };
         for _ in 0..passes {
             let mut most: f64 = 0.0;
             for panel in 0..self.panels {
                 if self.own[panel] <= 0.0 {
                     continue;
                 }
-                let pulls = tension[panel / LANES][panel % LANES] - self.pressed[panel];
                 let had = hold.open[panel];
+                let mut pulls = self.tension(tension, &last, panel) - self.pressed[panel];
                 // It pulls and opens, or was open and closes.
                 if pulls > 0.0 || had > 0.0 {
-                    let has = (had + pulls / self.own[panel]).max(0.0);
-                    most = most.max(self.own[panel] * (has - had).abs());
-                    self.change(simd, hold, tension, panel, has);
+                    let has = (had + pulls * self.per_own[panel]).max(0.0);
+                    most = most.max(self.change(simd, hold, tension, &mut last, panel, has));
+                    pulls -= self.own[panel] * (has - had);
                 }
                 let at = self.padded + panel;
                 if self.own[at] <= 0.0 {
                     continue;
                 }
-                let pulls = tension[at / LANES][at % LANES];
-                let pressing = self.pressed[panel] - tension[panel / LANES][panel % LANES];
-                let limit = self.friction * pressing.max(0.0);
+                let limit = self.friction * (-pulls).max(0.0);
                 // Held where it was before, and let go by what friction cannot hold: what slips first must not slip too far.
                 let [had, before] = [hold.open[at], hold.before[at]];
-                let holding = pulls + self.own[at] * (had - before);
+                let holding = self.tension(tension, &last, at) + self.own[at] * (had - before);
                 let excess = (holding.abs() - limit).max(0.0).copysign(holding);
-                let has = before + excess / self.own[at];
+                let has = before + excess * self.per_own[at];
                 if has != had {
-                    most = most.max(self.own[at] * (has - had).abs());
-                    self.change(simd, hold, tension, at, has);
+                    most = most.max(self.change(simd, hold, tension, &mut last, at, has));
                 }
             }
             if most <= self.still {
                 break;
             }
         }
+        self.pass_on(simd, tension, &last);
+        self.take_along(simd, hold);
         let along = self.padded..self.padded + self.panels;
         let slipped = hold.open[along.clone()].iter().zip(&hold.before[along.clone()]);
         let held_by = tension.iter().flat_map(|row| row.iter()).skip(along.start);
         slipped.zip(held_by).map(|((open, before), tension)| tension * (open - before)).sum()
     }
 
-    /// Opens or shifts a panel.
+    /// Opens or shifts a panel, and passes the change before on; returns by how much its tension changes [N].
     #[inline(always)]
-    fn change<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], spring: usize, has: f64) {
+    fn change<S: Simd>(
+        &self,
+        simd: S,
+        hold: &mut Hold,
+        tension: &mut [Row],
+        last: &mut Change,
+        spring: usize,
+        has: f64,
+    ) -> f64 {
         let more = has - hold.open[spring];
         hold.open[spring] = has;
+        self.pass_on(simd, tension, last);
+        *last = Change { spring, more };
+        self.own[spring] * more.abs()
+    }
+
+    /// Tension of a spring after the last change, which has not been passed on yet: the next panel need not wait for all tensions.
+    #[inline(always)]
+    fn tension(&self, tension: &[Row], last: &Change, spring: usize) -> f64 {
+        let (group, lane) = (spring / LANES, spring % LANES);
+        (-last.more).mul_add(self.stiffness[tension.len() * last.spring + group][lane], tension[group][lane])
+    }
+
+    /// Changes all tensions.
+    #[inline(always)]
+    fn pass_on<S: Simd>(&self, simd: S, tension: &mut [Row], change: &Change) {
         let groups = tension.len();
-        let by = Vector::all(simd, more);
-        let losses = &self.stiffness[groups * spring..groups * (spring + 1)];
-        for ((row, tension), lost) in losses.iter().zip(tension).zip(hold.lost.as_chunks_mut::<LANES>().0) {
+        let less = Vector::all(simd, -change.more);
+        let losses = &self.stiffness[groups * change.spring..groups * (change.spring + 1)];
+        for (row, tension) in losses.iter().zip(tension) {
             let mut at = 0;
             while at < LANES {
-                let row = Vector::load(simd, row, at);
-                row.times_plus(-by, Vector::load(simd, tension, at)).store(tension, at);
-                row.times_plus(by, Vector::load(simd, lost, at)).store(lost, at);
+                let had = Vector::load(simd, tension, at);
+                Vector::load(simd, row, at).times_plus(less, had).store(tension, at);
                 at += Vector::<S>::LEN;
             }
         }
-        let modes = hold.push.len() / LANES;
-        let shapes = &self.by_spring[modes * spring..modes * (spring + 1)];
-        for (row, push) in shapes.iter().zip(hold.push.as_chunks_mut::<LANES>().0) {
-            let mut at = 0;
-            while at < LANES {
-                Vector::load(simd, row, at).times_plus(by, Vector::load(simd, push, at)).store(push, at);
-                at += Vector::<S>::LEN;
+    }
+
+    /// What all tensions have lost, and what is done to the modes, by what has opened and slipped in this step.
+    #[inline(always)]
+    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold) {
+        let (groups, modes) = (self.rows(), hold.push.len() / LANES);
+        for spring in 0..hold.open.len() {
+            let more = hold.open[spring] - hold.before[spring];
+            if more == 0.0 {
+                continue;
+            }
+            let more = Vector::all(simd, more);
+            let losses = &self.stiffness[groups * spring..groups * (spring + 1)];
+            let shapes = &self.by_spring[modes * spring..modes * (spring + 1)];
+            for (rows, sums) in [(losses, &mut hold.lost), (shapes, &mut hold.push)] {
+                for (row, sum) in rows.iter().zip(sums.as_chunks_mut::<LANES>().0) {
+                    let mut at = 0;
+                    while at < LANES {
+                        Vector::load(simd, row, at)
+                            .times_plus(more, Vector::load(simd, sum, at))
+                            .store(sum, at);
+                        at += Vector::<S>::LEN;
+                    }
+                }
             }
         }
     }

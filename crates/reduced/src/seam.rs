@@ -1,0 +1,182 @@
+//! Parts of one overlap, kept from step to step and seen side by side (THEORY §9.3).
+//!
+//! A part lies between two places where neither roller nor raceway has a vertex. Which facets meet in it changes when vertices pass each
+//! other or the middle of the contact, every fifty steps or so; in between their vertices only have to be seen anew, all in vectors.
+
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Number, Vector};
+
+use crate::{
+    outline::{Facet, View},
+    overlap::{Overlap, Sides, add_between},
+};
+
+/// Most parts of an overlap that are kept.
+const MOST: usize = 2 * LANES;
+
+/// Parts of a roller and a raceway with growing u, all of whose facets are plain. Part k from the middle of the contact is in lane k
+/// modulo eight, so that sums over all of them are the same wherever the list begins.
+#[derive(Debug, Clone, Default)]
+#[repr(align(64))]
+pub(crate) struct Seam {
+    /// x and y of both ends of the roller's facet, then of the raceway's, in the frames of their bodies. Where there is no part the
+    /// first one stands again …
+    columns: [[f64; MOST]; 8],
+    /// … and not one.
+    present: [f64; MOST],
+    /// Groups of eight; none before the first look.
+    groups: usize,
+    /// Where the part in the middle of the contact is.
+    middle: usize,
+}
+
+/// How roller and raceway are seen: d in the frame of each, and the roller's centre in that of the raceway [m].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Sight {
+    pub(crate) own: [f64; 2],
+    pub(crate) d: [f64; 2],
+    pub(crate) from: [f64; 2],
+}
+
+impl Seam {
+    /// The overlap of a roller that is pressed back by `shift` [m]. `None` where the parts are no longer in this order, the middle has
+    /// gone on to other facets, or `reach` [m] goes beyond them.
+    #[inline(always)]
+    pub(crate) fn overlap<S: Simd>(
+        &self,
+        simd: S,
+        sides: Sides,
+        sight: &Sight,
+        shift: f64,
+        reach: f64,
+    ) -> Option<Overlap> {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one) = (all(0.0), all(1.0));
+        let (shift, near, far) = (all(shift), all(-reach), all(reach));
+        let (own, d) = (sight.own.map(all), sight.d.map(all));
+        let [cx, cy] = sight.from.map(all);
+        let mut sum = Overlap::none(zero);
+        let (mut before, mut behind, mut middle, mut wrong) = (0, 0, 0, 0);
+        let mut at = 0;
+        while at < LANES {
+            for group in 0..self.groups {
+                let at = LANES * group + at;
+                let [x0, y0, x1, y1, a0, b0, a1, b1] =
+                    self.columns.each_ref().map(|column| Vector::load(simd, column, at));
+                let roller = seen(own, [x0, y0], [x1, y1]);
+                let raceway = seen(d, [a0 - cx, b0 - cy], [a1 - cx, b1 - cy]);
+                let ends = [roller.from.max(raceway.from), roller.to.min(raceway.to)];
+                let [u1, u2] = ends;
+                wrong |= u2.choose_below(u1, one, zero).bits();
+                before |= near.choose_below(u1, zero, one).bits();
+                behind |= u2.choose_below(far, zero, one).bits();
+                let ahead = zero.choose_below(u2, one, zero);
+                middle |= zero.choose_below(u1, zero, ahead).bits() << at;
+                let present = Vector::load(simd, &self.present, at);
+                add_between(&mut sum, ends, roller, raceway, sides, shift, present);
+            }
+            at += Vector::<S>::LEN;
+        }
+        let holds = wrong == 0 && before != 0 && behind != 0 && (middle >> self.middle) & 1 == 1;
+        // No closure: it would be compiled without the vectors' instruction set.
+        if holds { Some(sum.total()) } else { None }
+    }
+
+    /// Lists the parts anew, as far as to `reach` [m] to either side. None are left where a wall is among them or there are too many.
+    #[inline(always)]
+    pub(crate) fn list(&mut self, [roller, raceway]: &[View<'_>; 2], along: bool, reach: f64) {
+        self.groups = 0;
+        let (mut r, mut w) = (Edge::of(roller, true), Edge::of(raceway, along));
+        let mut middle = 0;
+        for edge in [&mut r, &mut w] {
+            while edge.from > -reach && edge.is_plain() && middle < MOST {
+                edge.step(false);
+                middle += 1;
+            }
+        }
+        let first = (LANES - middle % LANES) % LANES;
+        let place = |part: usize| part / LANES * LANES + (first + part) % LANES;
+        let mut parts = 0;
+        let mut reached = false;
+        self.present = [0.0; MOST];
+        // Further parts cost nothing while there is room in a vector, and make the list last.
+        while parts < MOST && !(reached && parts % LANES == 0) && r.is_plain() && w.is_plain() {
+            let vertices = [r.ends(), w.ends()];
+            let columns = vertices.as_flattened().as_flattened();
+            for (column, &number) in self.columns.iter_mut().zip(columns) {
+                if parts % LANES == 0 {
+                    column[parts..parts + LANES].fill(number);
+                }
+                column[place(parts)] = number;
+            }
+            self.present[place(parts)] = 1.0;
+            parts += 1;
+            reached |= r.to.min(w.to) >= reach;
+            if r.to <= w.to { r.step(true) } else { w.step(true) }
+        }
+        if reached {
+            self.groups = parts.div_ceil(LANES);
+            self.middle = place(middle);
+        }
+    }
+}
+
+/// A facet as it is seen along d, whose ends are given from where it is seen.
+#[inline(always)]
+fn seen<N: Number>(d: [N; 2], [x0, y0]: [N; 2], [x1, y1]: [N; 2]) -> Facet<N> {
+    let minus = -d[1];
+    let (from, to) = (minus.times_plus(x0, d[0] * y0), minus.times_plus(x1, d[0] * y1));
+    let (h0, h1) = (d[0].times_plus(x0, d[1] * y0), d[0].times_plus(x1, d[1] * y1));
+    let slope = (h1 - h0) / (to - from);
+    Facet { from, to, slope, base: (-slope).times_plus(from, h0) }
+}
+
+/// A facet while parts are listed, and where it is seen from and to.
+struct Edge<'a> {
+    view: &'a View<'a>,
+    along: bool,
+    facet: usize,
+    from: f64,
+    to: f64,
+}
+
+impl<'a> Edge<'a> {
+    /// The facet in the middle.
+    #[inline(always)]
+    fn of(view: &'a View<'a>, along: bool) -> Self {
+        let mut edge = Self { view, along, facet: view.facet, from: 0.0, to: 0.0 };
+        edge.look();
+        edge
+    }
+
+    /// Its ends in the frame of its body [m], with growing u.
+    #[inline(always)]
+    fn ends(&self) -> [[f64; 2]; 2] {
+        let outline = self.view.outline;
+        let both =
+            [self.facet, outline.next(self.facet)].map(|vertex| [outline.x[vertex], outline.y[vertex]]);
+        let [a, b] = both;
+        if self.along { [a, b] } else { [b, a] }
+    }
+
+    /// Sees it by the very numbers that [`seen`] finds.
+    #[inline(always)]
+    fn look(&mut self) {
+        let View { d, from, .. } = *self.view;
+        let across = |[x, y]: [f64; 2]| (-d[1]).mul_add(x - from[0], d[0] * (y - from[1]));
+        [self.from, self.to] = self.ends().map(across);
+    }
+
+    #[inline(always)]
+    fn step(&mut self, forward: bool) {
+        let outline = self.view.outline;
+        self.facet =
+            if forward == self.along { outline.next(self.facet) } else { outline.before(self.facet) };
+        self.look();
+    }
+
+    #[inline(always)]
+    fn is_plain(&self) -> bool {
+        self.view.outline.is_plain(self.facet)
+    }
+}
