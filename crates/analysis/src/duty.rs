@@ -3,7 +3,11 @@
 //! Where the speed changes, a family has no frequency: it has an order, so many to a turn of the shaft. The squared envelope of
 //! the leading sensor, whose resonances stay where they are in time, is averaged over equal steps of the shaft's angle, which
 //! the run records as a tachometer would; its spectrum then has the family's lines at their orders.
+//!
+//! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the outer ring turns, too, their
+//! orders count turns of the shaft against it, and the angle is that between the rings.
 
+use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
@@ -38,11 +42,17 @@ const LEAST_STEPS: usize = 256;
 pub struct DutyFinding {
     /// Least and largest speed on record, clockwise positive [1/min].
     pub speed_rpm: (f64, f64),
+    /// The same of the outer ring.
+    #[serde(default)]
+    pub outer_speed_rpm: (f64, f64),
+    /// The same of the shaft against the outer ring.
+    #[serde(default)]
+    pub relative_speed_rpm: (f64, f64),
     /// Least and largest load on record [N].
     pub load_n: (f64, f64),
-    /// Turns of the shaft on record, both ways counted.
+    /// Turns of the shaft against the outer ring on record, both ways counted.
     pub turns: f64,
-    /// Name and order of each family: how often it comes in a turn of the shaft, without slip.
+    /// Name and order of each family: how often it comes in a turn of the shaft against the outer ring, without slip.
     pub orders: Vec<(String, f64)>,
     /// The defect's family over the angle; `None` with the reason in `notes`.
     pub envelope: Option<OrderEnvelope>,
@@ -83,19 +93,47 @@ impl DutyFinding {
     pub fn of(scene: &Scene, record: &Record<'_>) -> Option<Self> {
         let duty = Duty::varying(scene)?;
         let until_s = record.time_s().last().copied().unwrap_or(0.0);
-        let (speed, load) = (duty.speed_range_rpm(until_s), duty.load_range_n(until_s));
         let k = Kinematics::new(&scene.bearing, 60.0);
+        // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference of speeds.
+        let cage = if scene.operation.outer_turns() { "FTF against the outer ring" } else { "FTF" };
         let families =
-            [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), ("FTF", k.cage_hz)];
+            [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), (cage, k.cage_hz)];
         Some(Self {
-            speed_rpm: (speed[0], speed[1]),
-            load_n: (load[0], load[1]),
+            speed_rpm: duty.speed_range_rpm(until_s).into(),
+            outer_speed_rpm: duty.outer_speed_range_rpm(until_s).into(),
+            relative_speed_rpm: duty.relative_range_rpm(until_s).into(),
+            load_n: duty.load_range_n(until_s).into(),
             turns: turns(record)
                 .map_or(0.0, |turns| turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>()),
             orders: families.map(|(name, order)| (name.to_owned(), order)).to_vec(),
             envelope: None,
         })
     }
+
+    /// Whether a speed changes on record, so that nothing has a frequency.
+    pub fn is_unsteady(&self) -> bool {
+        [self.speed_rpm, self.outer_speed_rpm].iter().any(|(least, most)| least != most)
+    }
+
+    /// Whether the outer ring turns.
+    pub fn outer_turns(&self) -> bool {
+        self.outer_speed_rpm != (0.0, 0.0)
+    }
+
+    /// What orders count turns of, in words.
+    pub fn over(&self) -> &'static str {
+        if self.outer_turns() { "shaft against the outer ring" } else { "shaft" }
+    }
+}
+
+/// Why orders are not those of the shaft; `None` where they are.
+pub fn note(scene: &Scene) -> Option<String> {
+    scene.operation.outer_turns().then(|| {
+        "orders count turns of the shaft against the outer ring: BPFO, BPFI and BSF go with the difference of both speeds, and in turns \
+         of the shaft alone they have no order while the ratio of the speeds changes. What turns in space — the shaft, the outer ring, the \
+         cage, and the sidebands that they make — has none over this angle, and is not given"
+            .into()
+    })
 }
 
 /// Name and order of the family that a scene's defect makes.
@@ -108,9 +146,22 @@ pub fn family(scene: &Scene) -> Option<(&'static str, f64)> {
     })
 }
 
-/// Angle of the shaft at each sample [turns], rising for one that turns its main way; `None` when it was not recorded.
+/// Angle of the shaft against the outer ring [rad], of the angles of both.
+pub fn against<'a>(shaft: &'a [f64], outer: Option<&[f64]>) -> Cow<'a, [f64]> {
+    match outer {
+        Some(outer) => shaft.iter().zip(outer).map(|(shaft, outer)| shaft - outer).collect(),
+        None => Cow::Borrowed(shaft),
+    }
+}
+
+/// Angle of the shaft against the outer ring at each sample [rad]; `None` when it was not recorded.
+pub fn angle<'a>(record: &'a Record<'_>) -> Option<Cow<'a, [f64]>> {
+    Some(against(record.channel("shaft.angle_rad")?, record.channel("outer_ring.angle_rad")))
+}
+
+/// The same in turns, rising where it turns its main way.
 pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
-    let angle = record.channel("shaft.angle_rad")?;
+    let angle = angle(record)?;
     let back = angle.last()? < angle.first()?;
     let turn = if back { -1.0 / TAU } else { 1.0 / TAU };
     Some(angle.iter().map(|rad| turn * rad).collect())
@@ -119,17 +170,17 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
 /// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them round, less what they
 /// pass the other.
 pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
-    let outer = motion.bpfo_hz? / motion.shaft_hz;
+    let outer = motion.bpfo_hz? / motion.relative_hz;
     let order = match name {
         "BPFI" => motion.pockets() - outer,
-        "2·BSF" => 2.0 * motion.roller_spin_hz? / motion.shaft_hz,
+        "2·BSF" => 2.0 * motion.roller_spin_hz? / motion.relative_hz,
         _ => outer,
     };
     Some(order).filter(|order| order.is_finite())
 }
 
 /// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the orders of `family`;
-/// the reason when there is none. `turns` is the angle of the shaft at each sample.
+/// the reason when there is none. `turns` is the angle of the shaft against the outer ring at each sample.
 ///
 /// # Errors
 /// [`Error::Signal`] when a finite signal is refused.
@@ -141,11 +192,11 @@ pub fn over_angle(
     moved: Option<f64>,
 ) -> Result<Result<(Spectrum, OrderEnvelope), String>, Error> {
     if turns.windows(2).any(|pair| pair[1] < pair[0]) {
-        return Ok(Err("no order spectrum: the shaft turns back on the way".into()));
+        return Ok(Err("no order spectrum: the angle turns back on the way".into()));
     }
     let made = turns.last().zip(turns.first()).map_or(0.0, |(last, first)| last - first);
     let Ok(count) = PeriodCount::new(made, order) else {
-        return Ok(Err("no order spectrum: the shaft stands still".into()));
+        return Ok(Err("no order spectrum: the rings stand still against each other".into()));
     };
     if count.verdict() == PeriodVerdict::TooFew || made * (STEPS_PER_TURN as f64) < LEAST_STEPS as f64 {
         return Ok(Err(format!(

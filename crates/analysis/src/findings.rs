@@ -238,6 +238,7 @@ impl Findings {
                  the notch among them, are left out. Other frequencies are those at the mean speed"
                     .into(),
             );
+            notes.extend(duty::note(&run.scene));
             orders = order_spectrum(run, record, &motion, &sensors, duty.as_mut(), &mut notes)?;
         }
         let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
@@ -499,7 +500,7 @@ fn filter_sensors(filter: &Filter, record: &Record<'_>, sensors: &mut [SensorSig
     Ok(())
 }
 
-/// The defect's family over the angle of the shaft, put into `duty`, and the spectrum behind it; a note where there is none.
+/// The defect's family over the angle of the shaft against the outer ring, put into `duty`, and the spectrum behind it; a note where there is none.
 fn order_spectrum(
     run: &Run,
     record: &Record<'_>,

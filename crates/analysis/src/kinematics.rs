@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use stribeck_scene::kinematics::Kinematics;
 
+use crate::duty;
 use crate::record::{Record, Roller};
 
 /// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
@@ -77,6 +78,8 @@ impl KinematicsFinding {
 #[derive(Debug)]
 pub struct Turning<'a> {
     time_s: Cow<'a, [f64]>,
+    /// By how much the outer ring is ahead of its mean speed at each time [rad], where its angle was recorded.
+    ahead: Option<Vec<f64>>,
     /// Cage, where its angle was recorded [rad/s].
     guided: Option<f64>,
     rollers: Vec<Turned>,
@@ -100,23 +103,38 @@ impl<'a> Turning<'a> {
     /// Before the first roller of a record.
     pub fn new(record: &'a Record<'_>, expected: &Kinematics) -> Self {
         let time_s = clock(record, expected);
-        let guided = record.channel("cage.angle_rad").and_then(|angle| rate(&time_s, angle));
-        Self { time_s, guided, rollers: Vec::new(), under_load: [0.0; 2] }
+        let ahead = record.channel("outer_ring.angle_rad").map(|angle| {
+            angle.iter().zip(&*time_s).map(|(angle, time)| angle - expected.outer_rad_s * time).collect()
+        });
+        let mut turning = Self { time_s, ahead, guided: None, rollers: Vec::new(), under_load: [0.0; 2] };
+        let cage = record.channel("cage.angle_rad");
+        turning.guided = cage.and_then(|angle| rate(&turning.time_s, &turning.steadied(angle)));
+        turning
+    }
+
+    /// An angle as it would be beside an outer ring that keeps its mean speed: what rollers and cage do, they do on it.
+    fn steadied<'b>(&self, angle: &'b [f64]) -> Cow<'b, [f64]> {
+        match &self.ahead {
+            Some(ahead) => angle.iter().zip(ahead).map(|(angle, ahead)| angle - ahead).collect(),
+            None => Cow::Borrowed(angle),
+        }
     }
 
     /// One roller more, with its orbital angle [rad] and the normal force of the outer raceway [N] at every sample.
     pub fn add(&mut self, roller: &Roller<'_>, orbit: &[f64], outer_normal: &[f64]) {
         let time = &self.time_s[..];
-        self.rollers.push(Turned {
+        let (orbit, spin) = (self.steadied(orbit), self.steadied(roller.spin));
+        let turned = Turned {
             number: roller.number,
-            orbit: rate(time, orbit),
-            spin: rate(time, roller.spin),
+            orbit: rate(time, &orbit),
+            spin: rate(time, &spin),
             load: mean(outer_normal.iter().copied()).unwrap_or(0.0),
-        });
+        };
+        self.rollers.push(turned);
         let [turned, weight] = &mut self.under_load;
         for n in 1..time.len() {
             let load = (outer_normal[n - 1] + outer_normal[n]).max(0.0);
-            *turned += load * (roller.spin[n] - roller.spin[n - 1]);
+            *turned += load * (spin[n] - spin[n - 1]);
             *weight += load * (time[n] - time[n - 1]);
         }
     }
@@ -163,13 +181,12 @@ impl KinematicsFinding {
     }
 }
 
-/// Times [s], or where the angle of the shaft was recorded those at which a shaft of constant speed would have come so far: rates
-/// are then those at that speed, whatever the true one did.
+/// Times [s], or where the angle of the shaft was recorded those at which rings of constant speed would have come so far against
+/// each other: rates are then those at that speed, whatever the true one did.
 fn clock<'a>(record: &'a Record<'_>, expected: &Kinematics) -> Cow<'a, [f64]> {
-    match record.channel("shaft.angle_rad") {
-        Some(angle) if expected.shaft_rad_s != 0.0 => {
-            angle.iter().map(|rad| rad / expected.shaft_rad_s).collect()
-        }
+    let against = expected.shaft_rad_s - expected.outer_rad_s;
+    match duty::angle(record) {
+        Some(angle) if against != 0.0 => angle.iter().map(|rad| rad / against).collect(),
         _ => Cow::Borrowed(record.time_s()),
     }
 }
@@ -234,6 +251,7 @@ mod tests {
         };
         let turning = || Turning {
             time_s: Cow::Borrowed(&time),
+            ahead: None,
             guided: Some(0.0),
             rollers: Vec::new(),
             under_load: [0.0; 2],

@@ -1,8 +1,6 @@
 //! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
 //! defect when, and who carries how much.
 
-use std::f64::consts::TAU;
-
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
@@ -96,8 +94,8 @@ impl Prediction {
             }
         };
         let turns = |defect: &DefectScene| match defect.ring {
-            DefectRing::Outer => scene.operation.outer_speed_rpm != 0.0,
-            DefectRing::Inner => scene.operation.speed_rpm != 0.0 || scene.operation.speed_varies(),
+            DefectRing::Outer => scene.operation.outer_turns(),
+            DefectRing::Inner => scene.operation.inner_turns(),
         };
         let passages = |defect: &DefectScene| {
             if scene.operation.speed_varies() {
@@ -237,15 +235,16 @@ impl Prediction {
     }
 }
 
-/// Passages over a defect where the speed changes: they follow the angle of the shaft. None where it turns back on the way.
+/// Passages over a defect where a speed changes: they follow the angle of the rings against each other. None where these turn back
+/// on the way.
 fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
     let (duty, until_s) = (Duty::of(scene), Geometry::of(scene).duration);
     if !duty.is_one_way(until_s) {
         return Vec::new();
     }
-    let all = duty.shaft_rad(until_s).abs() / TAU;
+    let all = duty.relative_turns(until_s);
     // At a turn a second times are turns.
-    let rpm = 60.0 * duty.mean_speed_rpm(until_s).signum();
+    let (rpm, all) = (60.0_f64.copysign(all), all.abs());
     let mut crossings =
         Kinematics::new(&scene.bearing, rpm).crossings(defect, &roller_angles_deg(scene), all);
     crossings.retain_mut(|c| {

@@ -267,16 +267,18 @@ fn load(scene: &Scene, simulated_ms: f64) -> String {
 
 /// The speed in words, with its range where it changes, and the sense where it is not the usual one.
 fn speed(scene: &Scene, simulated_ms: f64) -> String {
-    let tidy = |rpm: f64| (rpm * 1e3).round() / 1e3;
-    let [least, most] = Duty::of(scene).speed_range_rpm(1e-3 * simulated_ms);
-    let span = |a: f64, b: f64| if a == b { format!("{a} rpm") } else { format!("{a} to {b} rpm") };
-    let (least, most) = (tidy(least), tidy(most));
-    let outer = tidy(scene.operation.outer_speed_rpm);
-    if outer != 0.0 {
-        let sense = |rpm: f64| if rpm < 0.0 { " counter-clockwise" } else { "" };
-        let [of_inner, of_outer] = [least, outer].map(|rpm| format!("{} rpm{}", rpm.abs(), sense(rpm)));
-        return format!("{of_inner} of the inner and {of_outer} of the outer ring");
+    let (duty, until_s) = (Duty::of(scene), 1e-3 * simulated_ms);
+    let inner = of_ring(duty.speed_range_rpm(until_s));
+    if !scene.operation.outer_turns() {
+        return inner;
     }
+    format!("{inner} of the inner and {} of the outer ring", of_ring(duty.outer_speed_range_rpm(until_s)))
+}
+
+/// Least and largest speed of one ring in words.
+fn of_ring(range_rpm: [f64; 2]) -> String {
+    let [least, most] = range_rpm.map(|rpm| (rpm * 1e3).round() / 1e3);
+    let span = |a: f64, b: f64| if a == b { format!("{a} rpm") } else { format!("{a} to {b} rpm") };
     if most <= 0.0 && least < 0.0 {
         format!("{} counter-clockwise", span(-most, -least))
     } else if least < 0.0 {

@@ -30,8 +30,9 @@ pub(crate) struct Full<'a> {
     recorder: Recorder,
     frames: Option<Frames>,
     guards: Guards,
-    /// Speed and load, where they change, and the load that a factor of one stands for [N].
+    /// Speeds and load, where they change, and the load that a factor of one stands for [N].
     duty: Option<(Duty, f64)>,
+    outer_turns: bool,
 }
 
 impl<'a> Full<'a> {
@@ -50,6 +51,7 @@ impl<'a> Full<'a> {
             frames,
             guards: Guards::new(scene, assembly, &machine),
             duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
+            outer_turns: scene.operation.outer_turns(),
             assembly,
             machine,
         }
@@ -82,6 +84,7 @@ impl<'a> Full<'a> {
             frames: dir.and_then(|dir| Frames::of(scene, dir.frames())),
             guards: Guards::new(scene, assembly, &machine),
             duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
+            outer_turns: scene.operation.outer_turns(),
             assembly,
             machine,
         })
@@ -89,12 +92,16 @@ impl<'a> Full<'a> {
 }
 
 impl Full<'_> {
-    /// Speed and load of the next step, where they change.
+    /// Speeds and load of the next step, where they change.
     fn drive(&mut self) -> Result<(), Error> {
         let Some((duty, load_n)) = &self.duty else { return Ok(()) };
         let system = &mut self.machine.system;
         let now = system.time();
-        system.set_rotation_rate(duty.mean_shaft_rad_s(now, now + system.time_step()))?;
+        let next = now + system.time_step();
+        system.set_rotation_rate(duty.mean_shaft_rad_s(now, next))?;
+        if self.outer_turns {
+            system.set_turning_rate(duty.mean_outer_rad_s(now, next))?;
+        }
         load(system, duty, *load_n, now)
     }
 }

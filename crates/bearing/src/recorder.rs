@@ -13,6 +13,9 @@ use stribeck_scene::scene::Scene;
 /// Channel of the shaft's angle.
 const SHAFT: &str = "shaft.angle_rad";
 
+/// Channel of the outer ring's angle.
+const OUTER_RING: &str = "outer_ring.angle_rad";
+
 /// Channel of the load.
 const LOAD: &str = "adapter.load_n";
 
@@ -31,32 +34,36 @@ pub(crate) struct Recorder {
     tacho: Tacho,
 }
 
-/// The channels of a duty that changes: the angle of the shaft, and the load where it changes too.
+/// The channels of a duty that changes: the angle of the shaft, that of an outer ring that turns, and the load where it changes too.
 #[derive(Debug, Clone)]
 pub struct Tacho {
     /// `None` where nothing changes.
     duty: Option<Duty>,
+    outer: bool,
     load: bool,
 }
 
 impl Tacho {
     /// Of a scene.
     pub fn of(scene: &Scene) -> Self {
-        Self { duty: Duty::varying(scene), load: scene.operation.load_varies() }
+        let o = &scene.operation;
+        Self { duty: Duty::varying(scene), outer: o.varies() && o.outer_turns(), load: o.load_varies() }
     }
 
     /// Names of its columns.
     fn names(&self) -> Vec<String> {
-        let channels = [self.duty.as_ref().map(|_| SHAFT), self.load.then_some(LOAD)];
+        let shaft = self.duty.as_ref().map(|_| SHAFT);
+        let channels = [shaft, self.outer.then_some(OUTER_RING), self.load.then_some(LOAD)];
         channels.into_iter().flatten().map(str::to_owned).collect()
     }
 
-    /// Its values at a time [s]: the angle by which the shaft has turned since the start [rad], counter-clockwise positive, and
-    /// the load [N].
+    /// Its values at a time [s]: the angles by which the shaft and the outer ring have turned since the start [rad],
+    /// counter-clockwise positive, and the load [N].
     pub fn sample(&self, time_s: f64) -> impl Iterator<Item = f64> {
         let angle = self.duty.as_ref().map(|duty| duty.shaft_rad(time_s));
+        let outer = self.duty.as_ref().filter(|_| self.outer).map(|duty| duty.outer_rad(time_s));
         let load = self.duty.as_ref().filter(|_| self.load).map(|duty| duty.load_n(time_s));
-        angle.into_iter().chain(load)
+        angle.into_iter().chain(outer).chain(load)
     }
 }
 

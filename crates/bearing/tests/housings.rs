@@ -2,7 +2,7 @@
 
 mod common;
 
-use std::ops::ControlFlow;
+use std::{f64::consts::TAU, ops::ControlFlow};
 
 use common::host;
 use stribeck_bearing::{
@@ -160,6 +160,50 @@ fn analytic_rollers_between_turning_rings() {
             "{inner} {outer}: {rate} and {}",
             k.roller_rad_s
         );
+    }
+}
+
+/// The shaft speeds up, beside an outer ring that turns at one speed or through rest: both follow their angles, and a roller
+/// under load goes by the weighted mean of both.
+/// Source: as above; the angle of a ramp is θ = ω₀t + ½αt², THEORY §6.3.
+#[test]
+fn analytic_rollers_between_rings_whose_speeds_change() {
+    // Of the way of the shaft against the outer ring: creep under the load, and what facets add on so short a way.
+    const ROLLING: f64 = 0.01;
+    for outer in ["outer_speed_rpm=-800", "outer_speed_profile=ramp(to_ms: 2, to: 900)"] {
+        let scene = scene(&[
+            RIGID,
+            "operation.speed_rpm=600",
+            "operation.speed_profile=ramp(to_ms: 2, to: 1800)",
+            &format!("operation.{outer}"),
+            "contact.friction=0.1",
+        ]);
+        let folder = Scratch::new("speeding");
+        let info = run(&scene, &folder);
+        assert_eq!(info.status, Status::Complete, "{:?}", info.warnings);
+        assert!(info.energy.max_relative_error < 2e-3, "{outer}: {}", info.energy.max_relative_error);
+        let trace = Run::read(folder.path()).expect("readable").trace.read_all().expect("readable");
+        let of = |name: &str| trace.get(name).unwrap_or_else(|| panic!("no `{name}`"));
+        let (time, shaft, ring) = (of("time_s"), of("shaft.angle_rad"), of("outer_ring.angle_rad"));
+        let per_rpm = -TAU / 60.0;
+        let share = Kinematics::new(&scene.bearing, 60.0).cage_hz;
+        let last = time.len() - 1;
+        for (n, &t) in time.iter().enumerate() {
+            let inner = per_rpm * (600.0 * t + 0.5 * 600e3 * t * t);
+            let swept = if outer.contains("ramp") { 0.5 * 450e3 * t * t } else { -800.0 * t };
+            assert!((shaft[n] - inner).abs() < 1e-12 && (ring[n] - per_rpm * swept).abs() < 1e-12, "{t} s");
+        }
+        let turned = |angle: &[f64]| angle[last] - angle[0];
+        let against = turned(shaft) - turned(ring);
+        let without_slip = turned(ring) + share * against;
+        // Roller 1 is near the top, in the load zone.
+        let [x, y] = ["x_m", "y_m"].map(|c| of(&format!("roller.1.{c}")));
+        let rolled = turned(&x.iter().zip(y).map(|(x, y)| y.atan2(*x)).collect::<Vec<_>>());
+        println!(
+            "{outer}: {rolled:.5} rad, without slip {without_slip:.5}, ledger off by {:.1e}",
+            info.energy.max_relative_error
+        );
+        assert!(((rolled - without_slip) / against).abs() < ROLLING, "{outer}: {rolled} and {without_slip}");
     }
 }
 

@@ -68,14 +68,14 @@ pub struct Bearing {
     pub(crate) branches: Vec<Branch>,
     pub(crate) gravity: f64,
     pub(crate) kinematics: Kinematics,
-    /// Angular velocity of an outer ring that turns [rad/s].
-    pub(crate) outer_rad_s: Option<f64>,
+    /// Whether the outer ring turns.
+    pub(crate) outer_turns: bool,
     pub(crate) cage: Option<Cage>,
     /// Seat of the outer ring, where it may open and slip.
     pub(crate) seat: Option<Springs>,
     /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
-    /// Speed and load, where they change.
+    /// Speeds and load, where they change.
     pub(crate) duty: Option<Duty>,
     pub(crate) tacho: Tacho,
 }
@@ -295,7 +295,7 @@ impl Bearing {
             beta: g.stiffness_damping,
             branches,
             gravity: g.gravity,
-            outer_rad_s: Some(kinematics.outer_rad_s).filter(|rate| *rate != 0.0),
+            outer_turns: scene.operation.outer_turns(),
             kinematics,
             duty: Duty::varying(scene),
             tacho: Tacho::of(scene),

@@ -83,6 +83,7 @@ fn between(scene: &Scene) -> OperationScene {
         speed_rpm: 0.0,
         outer_speed_rpm: 0.0,
         speed_profile: None,
+        outer_speed_profile: None,
         load_profile: None,
         rotating_load: None,
         ..scene.operation.clone()

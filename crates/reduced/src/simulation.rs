@@ -41,8 +41,6 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     let (reduction, from_cache) = cache::reduction(scene, dir.path().parent())?;
     progress.phase = "preload";
     let _ = watch(&progress);
-    let steps = steps_per_sample(scene, reduced);
-    let step = Geometry::of(scene).interval / steps as f64;
     let summary = ReducedInfo {
         modes: reduction.modes,
         highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / std::f64::consts::TAU,
@@ -52,7 +50,15 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     let [_, up] = scene.load_direction();
     let expected = Duty::of(scene).mean_load_n(Geometry::of(scene).duration)
         - up * scene.operation.gravity_m_s2 * reduction.structure_mass;
-    let bearing = Bearing::new(scene, reduction, step)?;
+    let interval = Geometry::of(scene).interval;
+    let mut steps = steps_per_sample(scene, 1e-6 * reduced.step_us);
+    let mut bearing = Bearing::new(scene, reduction, interval / steps as f64)?;
+    let most = bearing.critical_time_step();
+    if interval / steps as f64 > most {
+        steps = steps_per_sample(scene, most);
+        bearing = Bearing::new(scene, bearing.reduction, interval / steps as f64)?;
+    }
+    let step = interval / steps as f64;
     let state = bearing.at_start(scene)?;
     let setup = Setup {
         time_step: step,
@@ -65,6 +71,15 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     let mut info = setup.info(scene, host);
     info.reduced = Some(summary);
     info.warnings.extend(bearing.reduction.warning.clone());
+    if step < 1e-6 * reduced.step_us && most < 1e-6 * reduced.step_us {
+        info.warnings.push(format!(
+            "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} µs. A smaller `model.modes_khz` or \
+             `contact.penalty_scale` allows longer ones",
+            reduced.step_us,
+            1e6 * step,
+            1e6 * most
+        ));
+    }
     info.warnings.extend(Guards::before(scene, &info, &bearing));
     dir.start(scene, &info)?;
     write_atomic(&dir.mesh(), &picture)?;
@@ -155,11 +170,11 @@ fn on_one_thread<'a>(host: &Host<'a>) -> Host<'a> {
     }
 }
 
-/// A whole number of steps, none longer than the scene allows, and two at least: what a sensor hears beyond the modes is a difference
+/// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor hears beyond the modes is a difference
 /// between two steps of a sample.
-fn steps_per_sample(scene: &Scene, reduced: &ReducedScene) -> usize {
+fn steps_per_sample(scene: &Scene, longest: f64) -> usize {
     // A quotient of 5.000…1 is no sixth step.
-    (scene.output.interval_us / reduced.step_us - 1e-9).ceil().max(2.0) as usize
+    (1e-6 * scene.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize
 }
 
 impl Reduction {

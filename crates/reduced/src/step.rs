@@ -104,11 +104,15 @@ impl Bearing {
         let dt = self.time_step;
         let mut energy = Stored::default();
         scratch.modes.begin(state, &self.reduction.constant);
-        let mut rate = self.kinematics.shaft_rad_s;
+        let (mut rate, mut outer_rate) = (self.kinematics.shaft_rad_s, self.kinematics.outer_rad_s);
+        let mut outer_angle = outer_rate * dt * state.steps as f64;
         let mut further = [0.0; 2];
         if let Some(duty) = &self.duty {
             let now = state.steps as f64 * dt;
             rate = duty.mean_shaft_rad_s(now, now + dt);
+            if self.outer_turns {
+                (outer_rate, outer_angle) = (duty.mean_outer_rad_s(now, now + dt), duty.outer_rad(now));
+            }
             further = self.beside_the_preload(duty, now);
             for (share, load) in self.loads(further) {
                 let push = scratch.modes.push.iter_mut().flat_map(|row| row.iter_mut());
@@ -134,8 +138,7 @@ impl Bearing {
         }
         let (cs, cc) = state.cage[2].sin_cos();
         let inner = Turning { rate, turned: turned(state.shaft) };
-        let outer =
-            self.outer_rad_s.map(|rate| Turning { rate, turned: turned(rate * dt * state.steps as f64) });
+        let outer = self.outer_turns.then(|| Turning { rate: outer_rate, turned: turned(outer_angle) });
         let placed =
             PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);

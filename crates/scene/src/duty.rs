@@ -1,24 +1,29 @@
-//! Duty: speed and load over time, and the angle of the shaft that follows (THEORY §6.3).
+//! Duty: speeds and load over time, and the angles of the rings that follow (THEORY §6.3).
 //!
-//! The inner ring follows the angle of the profile, θ(t) = −∫ω dt with the speed ω clockwise positive. What turns it in steps
+//! A ring follows the angle of its profile, θ(t) = −∫ω dt with the speed ω clockwise positive. What turns it in steps
 //! is given the mean speed of each step, whose sum is that angle: nothing drifts. The mean is formed within the step and
 //! not as a difference of two angles, whose rounding would shake the ring.
+//!
+//! Rollers follow the difference of both speeds: what is said here of the rings *against each other* is, beside an outer ring that
+//! stands still, said of the shaft.
 
 use std::f64::consts::TAU;
 
 use crate::scene::{OperationScene, ProfileScene, Scene};
 
-/// Samples over which the mean magnitude of a speed that changes its sign is taken.
+/// Samples over which the mean magnitude of a speed that changes its sign is taken, and the extremes of a difference of speeds.
 const SAMPLES: u32 = 10_000;
 
 /// Halvings of a bracket: beyond rounding.
 const HALVINGS: usize = 80;
 
-/// Speed and load of a scene over time.
+/// Speeds and load of a scene over time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Duty {
-    /// [rpm], clockwise positive.
+    /// Of the inner ring [rpm], clockwise positive.
     speed: Course,
+    /// Of the outer ring, likewise.
+    outer: Course,
     /// [N], without what rotates.
     load: Course,
     /// Force that turns with the shaft [N] and its angle at the start [rad].
@@ -57,6 +62,7 @@ impl Duty {
         let o = &scene.operation;
         Self {
             speed: Course::of(o.speed_rpm, o.speed_profile.as_ref()),
+            outer: Course::of(o.outer_speed_rpm, o.outer_speed_profile.as_ref()),
             load: Course::of(o.load_n, o.load_profile.as_ref()),
             rotating: o.rotating_load.as_ref().map(|load| (load.force_n, load.angle_deg.to_radians())),
             along: scene.load_direction(),
@@ -74,6 +80,11 @@ impl Duty {
         self.speed.value(time_s)
     }
 
+    /// The same of the outer ring.
+    pub fn outer_speed_rpm(&self, time_s: f64) -> f64 {
+        self.outer.value(time_s)
+    }
+
     /// Angular velocity of the inner ring [rad/s], counter-clockwise positive, mean between two times [s].
     pub fn mean_shaft_rad_s(&self, from_s: f64, to_s: f64) -> f64 {
         -TAU / 60.0 * self.speed.mean(from_s, to_s)
@@ -82,6 +93,16 @@ impl Duty {
     /// By what angle the inner ring has turned at a time [s] since the start [rad], counter-clockwise positive.
     pub fn shaft_rad(&self, time_s: f64) -> f64 {
         -TAU / 60.0 * self.speed.integral(time_s)
+    }
+
+    /// Angular velocity of the outer ring [rad/s], as [`Self::mean_shaft_rad_s`].
+    pub fn mean_outer_rad_s(&self, from_s: f64, to_s: f64) -> f64 {
+        -TAU / 60.0 * self.outer.mean(from_s, to_s)
+    }
+
+    /// By what angle the outer ring has turned at a time [s] since the start [rad], counter-clockwise positive.
+    pub fn outer_rad(&self, time_s: f64) -> f64 {
+        -TAU / 60.0 * self.outer.integral(time_s)
     }
 
     /// Load on the housing at a time [s] in its direction [N]: with the part along it of what turns with the shaft.
@@ -114,6 +135,32 @@ impl Duty {
         self.speed.range(until_s)
     }
 
+    /// The same of the outer ring.
+    pub fn outer_speed_range_rpm(&self, until_s: f64) -> [f64; 2] {
+        self.outer.range(until_s)
+    }
+
+    /// The same of the inner ring against the outer one.
+    pub fn relative_range_rpm(&self, until_s: f64) -> [f64; 2] {
+        let mut at = self.speed.extremes(until_s);
+        at.extend(self.outer.extremes(until_s));
+        if ![&self.speed, &self.outer].iter().any(|course| matches!(course, Course::Constant(_))) {
+            // Where both change, their difference may have its extremes anywhere.
+            at.extend(samples(until_s));
+        }
+        least_and_largest(at.into_iter().map(|t| self.relative_rpm(t)))
+    }
+
+    /// Speed of the inner ring against the outer one [rpm].
+    fn relative_rpm(&self, time_s: f64) -> f64 {
+        self.speed.value(time_s) - self.outer.value(time_s)
+    }
+
+    /// Turns of the inner ring against the outer one until a time [s], clockwise positive.
+    pub fn relative_turns(&self, time_s: f64) -> f64 {
+        (self.speed.integral(time_s) - self.outer.integral(time_s)) / 60.0
+    }
+
     /// Least and largest load until a time [s] [N]; what rotates is taken as if it stood along the load once.
     pub fn load_range_n(&self, until_s: f64) -> [f64; 2] {
         let [least, most] = self.load.range(until_s);
@@ -121,28 +168,27 @@ impl Duty {
         [least - rotating, most + rotating]
     }
 
-    /// Whether the inner ring turns one way all the time until a time [s].
+    /// Whether the rings turn one way against each other all the time until a time [s].
     pub fn is_one_way(&self, until_s: f64) -> bool {
-        let [least, most] = self.speed_range_rpm(until_s);
+        let [least, most] = self.relative_range_rpm(until_s);
         least * most >= 0.0
     }
 
-    /// Mean speed until a time [s] [rpm] of the sign of the way that it turns longer; for a shaft that turns both ways its
-    /// magnitude is that of the mean magnitude.
-    pub fn mean_speed_rpm(&self, until_s: f64) -> f64 {
-        let mean = self.speed.mean(0.0, until_s);
+    /// Mean speeds of the inner and of the outer ring until a time [s] [rpm]. Of rings that turn both ways against each other the
+    /// difference has the sign of the way that they turn longer and the mean magnitude.
+    pub fn mean_speeds_rpm(&self, until_s: f64) -> [f64; 2] {
+        let [inner, outer] = [&self.speed, &self.outer].map(|course| course.mean(0.0, until_s));
         if self.is_one_way(until_s) {
-            return mean;
+            return [inner, outer];
         }
-        let at = |n: u32| until_s * (f64::from(n) + 0.5) / f64::from(SAMPLES);
-        let sum: f64 = (0..SAMPLES).map(|n| self.speed_rpm(at(n)).abs()).sum();
-        (sum / f64::from(SAMPLES)).copysign(mean)
+        let sum: f64 = samples(until_s).map(|t| self.relative_rpm(t).abs()).sum();
+        [outer + (sum / f64::from(SAMPLES)).copysign(inner - outer), outer]
     }
 
-    /// When a shaft that turns one way has made so many turns [s], within `until_s` [s]; a negative number of turns counts
-    /// back from the start at the mean speed. `None` for one that does not come so far.
+    /// When rings that turn one way against each other have made so many turns [s], within `until_s` [s]; a negative number of
+    /// turns counts back from the start at the mean speed. `None` for rings that do not come so far.
     pub fn time_of_turns(&self, turns: f64, until_s: f64) -> Option<f64> {
-        let made = |time_s: f64| self.speed.integral(time_s).abs() / 60.0;
+        let made = |time_s: f64| self.relative_turns(time_s).abs();
         let all = made(until_s);
         if !(turns <= all && all > 0.0) {
             return None;
@@ -158,9 +204,9 @@ impl Duty {
         Some(0.5 * (low + high))
     }
 
-    /// Slowest magnitude of the speed until a time [s] [rpm].
+    /// Slowest magnitude of the speed of the rings against each other until a time [s] [rpm].
     pub fn slowest_rpm(&self, until_s: f64) -> f64 {
-        let [least, most] = self.speed_range_rpm(until_s);
+        let [least, most] = self.relative_range_rpm(until_s);
         if least * most <= 0.0 { 0.0 } else { least.abs().min(most.abs()) }
     }
 }
@@ -192,9 +238,19 @@ fn direction(angle_deg: f64) -> [f64; 2] {
 }
 
 impl OperationScene {
-    /// Whether the speed changes in time.
+    /// Whether a speed changes in time.
     pub fn speed_varies(&self) -> bool {
-        self.speed_profile.is_some()
+        self.speed_profile.is_some() || self.outer_speed_profile.is_some()
+    }
+
+    /// Whether the inner ring turns at some time.
+    pub fn inner_turns(&self) -> bool {
+        self.speed_rpm != 0.0 || self.speed_profile.is_some()
+    }
+
+    /// Whether the outer ring does.
+    pub fn outer_turns(&self) -> bool {
+        self.outer_speed_rpm != 0.0 || self.outer_speed_profile.is_some()
     }
 
     /// Whether the load changes in time.
@@ -305,6 +361,11 @@ impl Course {
 
     /// Least and largest value from 0 to a time.
     fn range(&self, until: f64) -> [f64; 2] {
+        least_and_largest(self.extremes(until).into_iter().map(|t| self.value(t)))
+    }
+
+    /// Times from 0 to another among which it is least and largest.
+    fn extremes(&self, until: f64) -> Vec<f64> {
         let mut at = vec![0.0, until];
         match self {
             Self::Constant(_) => {}
@@ -316,9 +377,17 @@ impl Course {
             }
             Self::Lines { time, .. } => at.extend(time.iter().copied().filter(|t| (0.0..=until).contains(t))),
         }
-        let values = at.into_iter().map(|t| self.value(t));
-        values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], v| [least.min(v), most.max(v)])
+        at
     }
+}
+
+/// Times all over a span from 0 on.
+fn samples(until_s: f64) -> impl Iterator<Item = f64> {
+    (0..SAMPLES).map(move |n| until_s * (f64::from(n) + 0.5) / f64::from(SAMPLES))
+}
+
+fn least_and_largest(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], v| [least.min(v), most.max(v)])
 }
 
 #[cfg(test)]
@@ -379,7 +448,7 @@ mod tests {
         close(duty.load_n(0.06), 48_000.0);
         close(duty.load_n(0.12), 52_000.0);
         assert_eq!(duty.load_range_n(1.0), [48_000.0, 52_000.0]);
-        assert_eq!((duty.mean_load_n(1.0), duty.mean_speed_rpm(1.0)), (50_000.0, 500.0));
+        assert_eq!((duty.mean_load_n(1.0), duty.mean_speeds_rpm(1.0)), (50_000.0, [500.0, 0.0]));
     }
 
     #[test]
@@ -388,11 +457,45 @@ mod tests {
             ["operation.speed_rpm=-500", "operation.speed_profile=ramp(from_ms: 0, to_ms: 100, to: 500)"];
         let duty = with(&set);
         assert!(!duty.is_one_way(0.1) && duty.is_one_way(0.05));
-        close(duty.mean_speed_rpm(0.1), 250.0);
+        close(duty.mean_speeds_rpm(0.1)[0], 250.0);
         assert_eq!(duty.slowest_rpm(0.1), 0.0);
         let constant = Duty::of(&Scene::default());
         assert_eq!(Duty::varying(&Scene::default()), None);
         assert_eq!((constant.speed_rpm(0.3), constant.load_n(0.3)), (500.0, 50_000.0));
         assert_eq!(constant.time_of_turns(5.0, 0.1), None);
+    }
+
+    #[test]
+    fn example_rings_that_both_change_their_speed() {
+        const RIGID: &str = "housing=rigid()";
+        // The shaft from 500 to 1500 rpm in 20 ms, the outer ring at −100 rpm: turns against it are the area between the two.
+        let ramp = "operation.speed_profile=ramp(from_ms: 0, to_ms: 20, to: 1500)";
+        let beside = with(&[RIGID, ramp, "operation.outer_speed_rpm=-100"]);
+        assert_eq!(beside.relative_range_rpm(0.02), [600.0, 1600.0]);
+        assert_eq!(beside.slowest_rpm(0.02), 600.0);
+        let turns = (0.02 * 1100.0 + 0.004 * 1600.0) / 60.0;
+        close(beside.relative_turns(0.024), turns);
+        close(beside.time_of_turns(turns, 0.1).expect("in time"), 0.024);
+        close(beside.outer_rad(0.03), TAU * 0.03 * 100.0 / 60.0);
+        let [inner, outer] = beside.mean_speeds_rpm(0.02);
+        assert_eq!([inner, outer].map(f64::round), [1000.0, -100.0]);
+        // Both change, and their difference turns between the corners of either: 500 + 100 sin(2π 5 t) against a ramp of
+        // 5 rpm/ms. Its derivative, 1000π cos(10πt) − 5000, never vanishes: it falls from 500 to −500 at 200 ms.
+        let both = with(&[
+            RIGID,
+            "operation.speed_profile=harmonic(amplitude: 100, hz: 5)",
+            "operation.outer_speed_profile=ramp(to_ms: 200, to: 1000)",
+        ]);
+        close(both.relative_range_rpm(0.2)[0], -500.0);
+        assert!(!both.is_one_way(0.2) && both.is_one_way(0.05));
+        // At 2000 rpm/s the derivative vanishes where cos(10πt) = 2/π.
+        let both = with(&[
+            RIGID,
+            "operation.speed_profile=harmonic(amplitude: 100, hz: 5)",
+            "operation.outer_speed_profile=ramp(to_ms: 200, to: 400)",
+        ]);
+        let at = (2.0 / std::f64::consts::PI).acos() / (10.0 * std::f64::consts::PI);
+        let largest = 500.0 + 100.0 * (TAU * 5.0 * at).sin() - 2000.0 * at;
+        assert!((both.relative_range_rpm(0.2)[1] - largest).abs() < 1e-4, "{largest}");
     }
 }

@@ -108,15 +108,16 @@ pub struct Crossing {
 impl Kinematics {
     /// Kinematics of a scene's bearing at its speed at the start.
     pub fn of(scene: &Scene) -> Self {
-        Self::between(&scene.bearing, Duty::of(scene).speed_rpm(0.0), scene.operation.outer_speed_rpm)
+        let duty = Duty::of(scene);
+        Self::between(&scene.bearing, duty.speed_rpm(0.0), duty.outer_speed_rpm(0.0))
     }
 
-    /// Kinematics of a scene's bearing at its mean speed over the run: where the speed changes, ratios of its frequencies to the
-    /// shaft's are what holds.
+    /// Kinematics of a scene's bearing at its mean speeds over the run: where a speed changes, ratios of its frequencies to that of
+    /// the rings against each other are what holds.
     pub fn at_mean_speed(scene: &Scene) -> Self {
         let duration_s = 1e-3 * scene.solver.duration_ms;
-        let mean_rpm = Duty::of(scene).mean_speed_rpm(duration_s);
-        Self::between(&scene.bearing, mean_rpm, scene.operation.outer_speed_rpm)
+        let [inner_rpm, outer_rpm] = Duty::of(scene).mean_speeds_rpm(duration_s);
+        Self::between(&scene.bearing, inner_rpm, outer_rpm)
     }
 
     /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive, and the outer one at rest.

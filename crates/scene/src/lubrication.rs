@@ -43,8 +43,9 @@ pub fn loaded_films(scene: &Scene) -> Result<Option<[LoadedFilm; 2]>, Error> {
     let modulus = 2.0 * g.material.contact_modulus();
     // The least film is that of the slowest moment of the profile, however long the run: it can be made longer.
     let slowest = Duty::varying(scene).map_or(1.0, |duty| {
-        let slowest = Kinematics::new(&scene.bearing, duty.slowest_rpm(LONGEST_RUN_S)).shaft_hz;
-        if k.shaft_hz > 0.0 { slowest / k.shaft_hz } else { 0.0 }
+        let slowest = duty.slowest_rpm(LONGEST_RUN_S) / 60.0;
+        let at_start = k.cage_on_outer_hz + k.cage_on_inner_hz;
+        if at_start > 0.0 { slowest / at_start } else { 0.0 }
     });
     let of = |radius: f64, speed: f64| {
         let slow = slowest * speed;

@@ -249,6 +249,9 @@ pub struct OperationScene {
     /// How the speed goes over time, in rpm; absent for `speed_rpm` all the time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_profile: Option<ProfileScene>,
+    /// How the speed of the outer ring goes over time, in rpm; absent for `outer_speed_rpm` all the time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_speed_profile: Option<ProfileScene>,
     /// How the load goes over time, in N; absent for `load_n` all the time.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_profile: Option<ProfileScene>,
@@ -661,6 +664,7 @@ impl Default for OperationScene {
             outer_speed_rpm: 0.0,
             gravity_m_s2: 9.81,
             speed_profile: None,
+            outer_speed_profile: None,
             load_profile: None,
             rotating_load: None,
         }

@@ -271,6 +271,16 @@ impl Dynamics {
         Ok(())
     }
 
+    /// Lets every body that turns at a prescribed rate turn at this one, as [`Self::set_rotation_rate`] does nodes.
+    ///
+    /// # Errors
+    /// As for the rate of a model.
+    pub fn set_turning_rate(&mut self, rate: f64) -> Result<(), Error> {
+        check_rate(rate)?;
+        self.rigid_bodies.iter_mut().for_each(|body| body.set_turning_rate(rate));
+        Ok(())
+    }
+
     fn set_step_over_mass(&mut self) {
         for tile in &mut self.tiles {
             let push = self.time_step * tile.damping.as_ref().map_or(1.0, |d| gain(d.rate, self.time_step));

@@ -59,6 +59,11 @@ impl RigidBody {
         (Self { body, turning, slots, arm, mass: total, inertia }, state)
     }
 
+    /// Another rate [rad/s] for a body that turns at a prescribed one.
+    pub(crate) fn set_turning_rate(&mut self, rate: f64) {
+        self.turning.iter_mut().for_each(|old| *old = rate);
+    }
+
     /// Whether it turns at a prescribed rate.
     pub(crate) fn turns(&self) -> bool {
         self.turning.is_some()
@@ -87,7 +92,11 @@ impl RigidBody {
         at.velocity[0] += dt * (fx / self.mass + gravity[0]);
         at.velocity[1] += dt * (fy / self.mass + gravity[1]);
         let driven = match self.turning {
-            Some(rate) => -dt * torque * rate,
+            Some(rate) => {
+                let before = std::mem::replace(&mut at.spin, rate);
+                // What drives it works against what pushes on it, and speeds it up.
+                0.5 * (before + rate) * (self.inertia * (rate - before) - dt * torque)
+            }
             None => {
                 at.spin += dt * torque / self.inertia;
                 0.0

@@ -200,6 +200,38 @@ fn analytic_block_that_turns_at_a_prescribed_rate() {
     assert_eq!(d.rigid[0].spin, rate);
 }
 
+/// Source: THEORY §6.3 and §6.5: given the mean rate of each step the angle is ½αt² from rest, and what drives the body against a
+/// couple M leaves ½Iω² in it and supplies −∫Mω dt on top.
+#[test]
+fn analytic_a_block_whose_prescribed_rate_changes() {
+    // The couple's lever is taken at the ends of steps of 50 µrad.
+    const STEPS: f64 = 1e-3;
+    let mut model = body(&rectangle(0.04, 0.02, 4, 2));
+    model.behaviour[0] = Behaviour::Turning { rate: 0.0 };
+    let mut d = lay_out(&model);
+    d.set_time_step(1e-6).expect("a positive time step");
+    let (left, right) = (slot(&d, 5) as u32, slot(&d, 9) as u32);
+    let (couple, acceleration) = (3.0, 5e4);
+    let mut load = NodalLoad::new(vec![(left, 0.0, -couple), (right, 0.0, couple)]);
+    for _ in 0..4000 {
+        d.set_turning_rate(acceleration * (d.state.time + 0.5 * d.time_step())).expect("a possible rate");
+        let now = step_and_balance(&mut d, &mut [&mut load]);
+        assert!(now.kinetic >= 0.0);
+    }
+    let angle = 0.5 * acceleration * d.state.time.powi(2);
+    assert_close(d.rigid[0].angle, angle, 1e-12, "angle");
+    let mass = steel().density() * THICKNESS * 0.04 * 0.02;
+    // Lumped to nodes: a quarter of each of the eight elements' masses at its corners.
+    let (cells_x, cells_y) = (4.0_f64, 2.0_f64);
+    let lumped = |length: f64, cells: f64| mass * length * length / 12.0 * (1.0 + 2.0 / (cells * cells));
+    let inertia = lumped(0.04, cells_x) + lumped(0.02, cells_y);
+    let kinetic = 0.5 * inertia * (acceleration * d.state.time).powi(2);
+    let by_couple = couple * 0.04 * angle.sin();
+    assert!(kinetic > 0.1 * by_couple.abs(), "{kinetic} J beside {by_couple} J");
+    assert_close(d.drive.at_last_positions(), kinetic - by_couple, STEPS, "work of the drive");
+    assert!(d.set_turning_rate(f64::NAN).is_err() && d.set_turning_rate(4e6).is_err());
+}
+
 /// Work supplied by a load over kinetic energy, at the same instant.
 fn couple_work(d: &mut Dynamics, load: &mut NodalLoad) -> f64 {
     use stribeck_solver::Force;

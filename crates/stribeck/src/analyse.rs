@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
+use stribeck_analysis::duty;
 use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
 use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
 use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
@@ -288,16 +289,26 @@ fn machine(
         }
         Some(turns.rpm)
     } else if let Some(scene) = scene.filter(|scene| scene.operation.speed_varies()) {
-        let turns = tacho::of_angle(recording.channel("shaft.angle_rad")?, rate_hz)
+        let mut angle = recording.channel("shaft.angle_rad")?;
+        let against;
+        if scene.operation.outer_turns() {
+            // Families go with the difference of both speeds.
+            let outer = recording.channel("outer_ring.angle_rad")?.read()?;
+            let values = duty::against(&angle.read()?, Some(&outer)).into_owned();
+            against = Channel::held(angle.name.clone(), values);
+            angle = &against;
+        }
+        let turns = tacho::of_angle(angle, rate_hz)
             .with_context(|| format!("the speed of `{}` changes", scene.name))?;
         notes.push(format!(
-            "the speed varies by {:.1} % over the record, by the recorded angle of the shaft",
+            "the speed varies by {:.1} % over the record, by the recorded angle of the shaft{}",
+            if scene.operation.outer_turns() { " against the outer ring" } else { "" },
             100.0 * turns.variation
         ));
         pulses = Some(turns.pulses);
         Some(turns.rpm)
     } else if let Some(scene) = scene {
-        Some(scene.operation.speed_rpm.abs())
+        Some((scene.operation.speed_rpm - scene.operation.outer_speed_rpm).abs())
     } else if let Some(channel) = said {
         let rpm = channel.read()?.first().copied();
         notes.extend(

@@ -1,6 +1,6 @@
 //! Runs whose speed changes, from the scene to the report: the defect's family follows the shaft.
 
-use std::path::Path;
+use std::{f64::consts::TAU, path::Path};
 
 use stribeck_analysis::{enveloping, report, summary::Summary, tones};
 use stribeck_bearing::simulation::Host;
@@ -76,6 +76,59 @@ fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
         assert!(page.contains(words), "`{words}` is not in the report");
     }
     assert!(!page.contains("Family of facet lines") && summary.notch.is_none());
+}
+
+/// The shaft speeds up against an outer ring that turns the other way and has a spall: families have orders of the shaft against the
+/// ring, over that angle BPFO stands within a resolution of kinematics, and rollers pass the spall when the rings have come so far.
+/// Source: THEORY §5.1, rolling without slip.
+#[test]
+fn analytic_bpfo_follows_the_difference_of_two_speeds() {
+    /// What a roller may move in its pocket and a cage falls behind [rad of the cage on the ring].
+    const PLAY: f64 = 0.05;
+    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30.0, step_us: 0.5), film: None, defect: None,
+        defects: [(on: outer, angle_deg: 40, form: spall(length_mm: 2, depth_mm: 0.06))], housing: rigid(mass_kg: 1),
+        operation: (load_n: 3000, speed_rpm: 300, speed_profile: ramp(to_ms: 600, to: 1500), outer_speed_rpm: -600),
+        cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: 56),
+        contact: (surface: arc, friction: 0.05), output: (frames: None),
+        solver: (duration_ms: 600, mass_damping_per_s: 5000, structural_damping: None))";
+    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let folder = Scratch::create("two-rings");
+    let summary = run(&scene, &folder.join("run"));
+    let duty = summary.duty.as_ref().expect("a speed that changes");
+    assert_eq!((duty.speed_rpm, duty.outer_speed_rpm), ((300.0, 1500.0), (-600.0, -600.0)));
+    assert_eq!(duty.relative_speed_rpm, (900.0, 2100.0));
+    assert!((duty.turns - 0.6 * 1500.0 / 60.0).abs() < 0.01, "{} turns", duty.turns);
+    let orders = duty.envelope.as_ref().expect("turns enough");
+    let order = Kinematics::new(&scene.bearing, 60.0).bpfo_hz;
+    let line = &orders.lines[0];
+    assert!((line.predicted - order).abs() < 1e-9, "{line:?}");
+    let found = line.measured.expect("a line");
+    assert!((found - order).abs() < orders.resolution, "{found} instead of {order} ± {}", orders.resolution);
+    // The cage on the ring, by the recorded motion, at the mean speeds of 900 and −600 rpm.
+    let k = Kinematics::between(&scene.bearing, 900.0, -600.0);
+    let [cage, expected] = summary.kinematics.cage_on_outer_hz.map(|hz| hz.expect("a cage"));
+    println!("cage on the ring {cage} Hz, without slip {expected}");
+    assert!((expected / k.cage_on_outer_hz - 1.0).abs() < 1e-4, "{expected}");
+    assert!((cage / expected - 1.0).abs() < 0.01, "{cage} Hz of {expected} Hz");
+    let passed: Vec<f64> = summary
+        .events
+        .iter()
+        .filter_map(|event| Some(event.path_entry_ms? - event.expected_entry_ms))
+        .map(|late_ms| 1e-3 * late_ms * TAU * 1.4 * k.cage_on_outer_hz)
+        .collect();
+    println!("{} of {} events, late by {:.4?} rad", passed.len(), summary.events.len(), passed);
+    // The spall comes through the load zone six times.
+    assert!(summary.events.len() > 20 && 10 * passed.len() > 9 * summary.events.len());
+    assert!(passed.iter().all(|late| late.abs() < PLAY), "{passed:?}");
+    let page = std::fs::read_to_string(folder.join("run").join("report.html")).expect("a page");
+    for words in [
+        "300 to 1500 rpm of the inner and 600 rpm counter-clockwise of the outer ring",
+        "Turns of the shaft against the outer ring",
+        "have no order while the ratio of the speeds changes",
+        "FTF against the outer ring",
+    ] {
+        assert!(page.contains(words), "`{words}` is not in the report");
+    }
 }
 
 /// Counter-clockwise the same report comes of the mirror image, but for the words.

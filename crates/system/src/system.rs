@@ -145,6 +145,14 @@ impl System {
         Ok(self.dynamics.set_rotation_rate(rate)?)
     }
 
+    /// Lets all rigid bodies that turn at a prescribed rate turn at this one [rad/s], as [`System::set_rotation_rate`] does nodes.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn set_turning_rate(&mut self, rate: f64) -> Result<(), Error> {
+        Ok(self.dynamics.set_turning_rate(rate)?)
+    }
+
     /// One step: everything pushes, everything moves (THEORY §2.3).
     ///
     /// # Errors

@@ -149,6 +149,7 @@ fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
         "operation",
         "operation.speed_profile",
         "operation.speed_profile.hz",
+        "operation.outer_speed_profile.to_ms",
         "operation.load_profile",
         "operation.rotating_load.force_n",
         "",

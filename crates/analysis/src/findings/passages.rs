@@ -159,7 +159,7 @@ fn passages_of(
     let turned_rad = |t: f64| match ring {
         _ if !course.turns => 0.0,
         DefectRing::Inner => duty.shaft_rad(t),
-        DefectRing::Outer => prediction.kinematics.outer_rad_s * t,
+        DefectRing::Outer => duty.outer_rad(t),
     };
     let period_s = passages.get(1).map(|(_, later)| later.entry_s - first.entry_s);
     let mut path = Path::of(orbit, time_s, course.edges, period_s, turned_rad);

@@ -80,8 +80,10 @@ fn defect(run: &Run, summary: &Summary) -> String {
         none if none.is_empty() => String::new(),
         others => format!(" The scene has others, whose families are in the spectra: {others}."),
     };
-    if events.is_empty() && unsteady(summary).is_some_and(|duty| duty.speed_rpm.0 * duty.speed_rpm.1 < 0.0) {
-        return "The shaft turns back on the way, and passages are foretold of one sense of rotation only."
+    if events.is_empty()
+        && unsteady(summary).is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
+    {
+        return "The rings turn back on the way, and passages are foretold of one sense of rotation only."
             .into();
     }
     if events.is_empty() {
@@ -123,9 +125,10 @@ fn defect(run: &Run, summary: &Summary) -> String {
 
 fn mesh(summary: &Summary) -> String {
     if let Some(duty) = unsteady(summary) {
-        let (least, most) = duty.speed_rpm;
+        let (least, most) = duty.relative_speed_rpm;
         return format!(
-            "The speed goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and are not looked for."
+            "The speed of the {} goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and are not looked for.",
+            duty.over()
         )
         .replace('-', "−");
     }
@@ -169,27 +172,29 @@ fn mesh(summary: &Summary) -> String {
 
 /// The duty of a run whose speed changes.
 fn unsteady(summary: &Summary) -> Option<&DutyFinding> {
-    summary.duty.as_ref().filter(|duty| duty.speed_rpm.0 != duty.speed_rpm.1)
+    summary.duty.as_ref().filter(|duty| duty.is_unsteady())
 }
 
 /// What the envelope shows over the angle of the shaft.
 fn orders(duty: &DutyFinding) -> String {
     let Some(envelope) = &duty.envelope else {
-        return "No family was sought over the angle of the shaft.".into();
+        return format!("No family was sought over the angle of the {}.", duty.over());
     };
     let seen: Vec<String> =
         envelope.lines.iter().filter(|l| l.measured.is_some()).map(|l| format!("×{}", l.harmonic)).collect();
     let order = envelope.lines.first().map_or(0.0, |line| line.predicted);
     if seen.is_empty() {
         return format!(
-            "Over the angle of the shaft nothing stands at {} ({order:.3} a turn) or its multiples.",
+            "Over the angle of the {} nothing stands at {} ({order:.3} a turn) or its multiples.",
+            duty.over(),
             envelope.family
         );
     }
     let (family, at) = (&envelope.family, envelope.lines.first().and_then(|line| line.measured));
     let at = at.map_or(String::new(), |at| format!(" at {at:.3}"));
     format!(
-        "Over the angle of the shaft {family} ({order:.3} a turn) stands{at}, of its multiples {}.",
+        "Over the angle of the {} {family} ({order:.3} a turn) stands{at}, of its multiples {}.",
+        duty.over(),
         seen.join(", ")
     )
 }

@@ -6,6 +6,7 @@ use stribeck_scene::run_dir::Run;
 use super::figures::spoken;
 use super::tables::{cell, folded};
 use crate::artefacts::Family;
+use crate::duty::DutyFinding;
 use crate::summary::{Event, Summary};
 
 /// Quantity, paper, ours, difference, why.
@@ -60,17 +61,20 @@ pub(super) fn duty(summary: &Summary) -> Markup {
             thead { tr { th { "Over the record" } th class="n" { "From" } th class="n" { "To" } } }
             tbody {
                 tr { td { "Speed, clockwise positive, rpm" } td class="n" { (minus(format!("{:.1}", speed.0))) } td class="n" { (minus(format!("{:.1}", speed.1))) } }
+                @if duty.outer_turns() {
+                    tr { td { "Speed of the outer ring, rpm" } td class="n" { (minus(format!("{:.1}", duty.outer_speed_rpm.0))) } td class="n" { (minus(format!("{:.1}", duty.outer_speed_rpm.1))) } }
+                }
                 tr { td { "Load, kN" } td class="n" { (format!("{:.2}", 1e-3 * load.0)) } td class="n" { (format!("{:.2}", 1e-3 * load.1)) } }
-                tr { td { "Turns of the shaft" } td class="n" { "" } td class="n" { (format!("{:.2}", duty.turns)) } }
+                tr { td { "Turns of the " (duty.over()) } td class="n" { "" } td class="n" { (format!("{:.2}", duty.turns)) } }
             }
         }
-        @if speed.0 != speed.1 {
+        @if duty.is_unsteady() {
             p class="hint" {
-                "Families come so often in a turn of the shaft, without slip: "
+                "Families come so often in a turn of the " (duty.over()) ", without slip: "
                 @for (n, (name, order)) in duty.orders.iter().enumerate() { @if n > 0 { ", " } (name) " " (format!("{order:.4}")) }
                 "."
                 @if duty.envelope.is_some() {
-                    " The squared envelope of the leading sensor was averaged over equal steps of the shaft’s angle (THEORY §7.11)."
+                    " The squared envelope of the leading sensor was averaged over equal steps of that angle (THEORY §7.11)."
                 }
             }
         }
@@ -96,7 +100,7 @@ pub(super) fn duty(summary: &Summary) -> Markup {
 
 /// Whether the speed of a run changes, so that nothing has a frequency.
 fn unsteady(summary: &Summary) -> bool {
-    summary.duty.as_ref().is_some_and(|duty| duty.speed_rpm.0 != duty.speed_rpm.1)
+    summary.duty.as_ref().is_some_and(DutyFinding::is_unsteady)
 }
 
 /// What stands in the place of lines at constant frequencies where the speed changes.

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
-use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
+use super::limits::{self, LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, round_up, shown};
 use crate::deviation::RollingSurface;
 use crate::duty::Duty;
@@ -49,8 +49,8 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         reduced_starts,
         load_direction,
         outer_speed,
-        outer_speed_alone,
         speed_profile,
+        outer_speed_profile,
         load_profile,
         rotating_load,
     ];
@@ -265,37 +265,19 @@ fn load_direction(scene: &Scene) -> Option<Finding> {
 
 /// A housing that turns does not deform.
 fn outer_speed(scene: &Scene) -> Option<Finding> {
-    let rpm = scene.operation.outer_speed_rpm;
-    if rpm == 0.0 || scene.housing.is_rigid() {
-        return None;
-    }
-    let message = format!("`{OUTER_SPEED}` is {}, and the housing cannot turn", number(rpm));
-    Some(Finding::new(
-        message,
-        vec![
-            Remedy::new(OUTER_SPEED, "0".to_owned()).number(0.0, "a ring that stands still"),
-            Remedy::new(HOUSING, "`rigid(…)`".to_owned()).value("rigid()", ""),
-        ],
-    ))
-}
-
-/// What turns with two speeds keeps them.
-fn outer_speed_alone(scene: &Scene) -> Option<Finding> {
     let o = &scene.operation;
-    if o.outer_speed_rpm == 0.0 || o.speed_profile.is_none() {
+    if !o.outer_turns() || scene.housing.is_rigid() {
         return None;
     }
-    let message = format!(
-        "`{SPEED_PROFILE}` changes the speed of the inner ring, and `{OUTER_SPEED}` is not zero: one speed may change, \
-                           not against another one"
-    );
-    Some(Finding::new(
-        message,
-        vec![
-            Remedy::new(OUTER_SPEED, "0".to_owned()).number(0.0, "a ring that stands still"),
-            Remedy::new(SPEED_PROFILE, "left out".to_owned()),
-        ],
-    ))
+    let rigid = Remedy::new(HOUSING, "`rigid(…)`".to_owned()).value("rigid()", "");
+    let (message, still) = if o.outer_speed_profile.is_some() {
+        let still = Remedy::new(OUTER_SPEED_PROFILE, "left out".to_owned());
+        (format!("`{OUTER_SPEED_PROFILE}` is there, and the housing cannot turn"), still)
+    } else {
+        let still = Remedy::new(OUTER_SPEED, "0".to_owned()).number(0.0, "a ring that stands still");
+        (format!("`{OUTER_SPEED}` is {}, and the housing cannot turn", number(o.outer_speed_rpm)), still)
+    };
+    Some(Finding::new(message, vec![still, rigid]))
 }
 
 /// The reduced model is made about the preload.
@@ -319,6 +301,12 @@ fn reduced_starts(scene: &Scene) -> Option<Finding> {
 fn speed_profile(scene: &Scene) -> Option<Finding> {
     let o = &scene.operation;
     profile(SPEED_PROFILE, o.speed_profile.as_ref()?, ("operation.speed_rpm", o.speed_rpm))
+}
+
+/// A speed of the outer ring over time that can be followed.
+fn outer_speed_profile(scene: &Scene) -> Option<Finding> {
+    let o = &scene.operation;
+    profile(OUTER_SPEED_PROFILE, o.outer_speed_profile.as_ref()?, (OUTER_SPEED, o.outer_speed_rpm))
 }
 
 /// A load over time that can be followed.

@@ -94,6 +94,7 @@ fn with_everything() -> Scene {
     // Between them they have the numbers of both kinds of profile.
     scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
     scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
+    scene.operation.outer_speed_profile.clone_from(&scene.operation.speed_profile);
     scene.operation.rotating_load = Some(RotatingLoadScene::default());
     // Not written where they are what they are by default.
     (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (90.0, 100.0);
@@ -113,6 +114,7 @@ pub(crate) fn refuses_in_profile(path: &str, value: f64) -> Option<String> {
 
 /// Paths of the profiles.
 pub(crate) const SPEED_PROFILE: &str = "operation.speed_profile";
+pub(crate) const OUTER_SPEED_PROFILE: &str = "operation.outer_speed_profile";
 pub(crate) const LOAD_PROFILE: &str = "operation.load_profile";
 
 /// The numbers of a profile.
@@ -292,6 +294,9 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
     if let Some(profile) = &operation.speed_profile {
         in_profile(SPEED_PROFILE, profile, (SPEED, "rpm"), &mut add);
+    }
+    if let Some(profile) = &operation.outer_speed_profile {
+        in_profile(OUTER_SPEED_PROFILE, profile, (SPEED, "rpm"), &mut add);
     }
     if let Some(profile) = &operation.load_profile {
         in_profile(LOAD_PROFILE, profile, (LOAD, "N"), &mut add);

@@ -3,7 +3,7 @@
 //! Working on the text keeps RON's own rules for enums, options and numbers: an override means exactly what the same
 //! words would mean in the file.
 
-use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
+use super::limits::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::origin::{Override, command_line};
 use super::outline::{Outline, is_single_value};
 use super::problem::{Place, Problem, SceneError};
@@ -175,7 +175,7 @@ fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
             format!("{}{name}: {value}, {}", &text[..inside], &text[inside..])
         }
         // A profile of another kind than the one that has such fields.
-        Some((SPEED_PROFILE | LOAD_PROFILE, name)) => {
+        Some((SPEED_PROFILE | OUTER_SPEED_PROFILE | LOAD_PROFILE, name)) => {
             let (section, kind) = (path.rsplit_once('.').map_or("", |(section, _)| section), kind_with(name));
             write(text, outline, section, &format!("{kind}({name}: {value})"))
         }

@@ -1,6 +1,6 @@
 //! Every field that a scene has, its default and what kind of value it takes.
 
-use super::limits::{LOAD_PROFILE, SPEED_PROFILE};
+use super::limits::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
 use crate::deviation::DeviationScene;
 use crate::housing::HousingScene;
@@ -60,6 +60,7 @@ impl Schema {
         (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (0.5, 0.5);
         scene.bearing.clearance_change_um = 0.5;
         let of_housing = |housing| {
+            scene.operation.outer_speed_profile.clone_from(&scene.operation.speed_profile);
             let complete = Complete::of(&Scene { housing, ..scene.clone() });
             // The next one shows the other kind of each profile.
             std::mem::swap(&mut scene.operation.speed_profile, &mut scene.operation.load_profile);
@@ -184,7 +185,9 @@ fn in_other_profile(path: &str) -> Option<String> {
         let rest = path.strip_prefix(from)?;
         (rest.is_empty() || rest.starts_with('.')).then(|| format!("{to}{rest}"))
     };
-    other(SPEED_PROFILE, LOAD_PROFILE).or_else(|| other(LOAD_PROFILE, SPEED_PROFILE))
+    [(SPEED_PROFILE, LOAD_PROFILE), (OUTER_SPEED_PROFILE, LOAD_PROFILE), (LOAD_PROFILE, SPEED_PROFILE)]
+        .into_iter()
+        .find_map(|(from, to)| other(from, to))
 }
 
 /// A kind of value.

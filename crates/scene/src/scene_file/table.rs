@@ -14,7 +14,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::limits::{self, LOAD_PROFILE, SPEED_PROFILE};
+use super::limits::{self, LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::origin::Origin;
 use super::problem::{Problem, SceneError, place_in_file};
 use super::wording::{number, shown};
@@ -41,7 +41,11 @@ struct Table<'a> {
 /// Puts the points of tables in their place; `folder` is where their paths count from.
 pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Result<(), SceneError> {
     let o = &mut scene.operation;
-    for (path, profile) in [(SPEED_PROFILE, &mut o.speed_profile), (LOAD_PROFILE, &mut o.load_profile)] {
+    for (path, profile) in [
+        (SPEED_PROFILE, &mut o.speed_profile),
+        (OUTER_SPEED_PROFILE, &mut o.outer_speed_profile),
+        (LOAD_PROFILE, &mut o.load_profile),
+    ] {
         let Some(ProfileScene::Table(name)) = profile else { continue };
         let refuses = |value: f64| limits::refuses_in_profile(path, value);
         let table = Table { path, columns: ["time_ms", "value"], refuses: &refuses };

@@ -392,6 +392,16 @@ fn example_housings_are_written_in_files_and_behind_set() {
     assert_eq!(turning.load_zone_deg(), 190.0);
     assert!(turning.housing.is_rigid() && turning.operation.outer_speed_rpm == -200.0);
     assert_eq!(set(&["housing.mass_kg=3"]).housing, HousingScene::Rigid(RigidHousingScene { mass_kg: 3.0 }));
+    // Either speed over time beside the other.
+    let ramps = set(&[
+        "housing=rigid()",
+        "operation.speed_profile=ramp(to: 900)",
+        "operation.outer_speed_profile.amplitude=30",
+    ]);
+    assert!(
+        matches!(ramps.operation.outer_speed_profile, Some(ProfileScene::Harmonic(ref s)) if s.amplitude == 30.0)
+    );
+    assert_eq!(parse(&ramps.to_ron()).expect("valid"), ramps);
     let springs = set(&["housing=springs()", "housing.stiffness_n_um=50"]);
     assert!(matches!(springs.housing, HousingScene::Springs(ref s) if s.stiffness_n_um == 50.0));
     // What is not said is not written: hashes of older scenes stay.
@@ -424,9 +434,19 @@ fn refuses_housings_that_do_not_fit() {
         ),
         ("operation: (outer_speed_rpm: 100)", "operation.outer_speed_rpm", "the housing cannot turn"),
         (
-            "housing: rigid(), operation: (outer_speed_rpm: 100, speed_profile: ramp())",
-            "operation.outer_speed_rpm",
-            "one speed may change",
+            "operation: (outer_speed_profile: ramp(to: 100))",
+            "operation.outer_speed_profile",
+            "the housing cannot turn",
+        ),
+        (
+            "housing: rigid(), operation: (outer_speed_profile: ramp(to: 1e6))",
+            "operation.outer_speed_profile.to",
+            "outside its range",
+        ),
+        (
+            "housing: rigid(), operation: (outer_speed_profile: points([(3, 1), (2, 2)]))",
+            "operation.outer_speed_profile",
+            "[1]` is at 2 ms: times must ascend",
         ),
         (
             "bearing: (clearance_change_um: -200)",

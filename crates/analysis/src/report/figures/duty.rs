@@ -13,26 +13,32 @@ const DEPTH_DB: f64 = 80.0;
 
 /// Speed, load and orders, as far as they change.
 pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Vec<Figure> {
-    if findings.summary.duty.is_none() {
-        return Vec::new();
-    }
+    let Some(duty) = &findings.summary.duty else { return Vec::new() };
     let interval_s = record.interval_s();
     let mut figures = Vec::new();
     if let Some(angle) = record.channel("shaft.angle_rad").filter(|angle| angle.len() > 2)
         && record.run().scene.operation.speed_varies()
     {
-        let rpm = angle.windows(2).map(|pair| -60.0 / TAU * (pair[1] - pair[0]) / interval_s).collect();
-        figures.push(
-            Figure::new(
-                "speed",
-                "Speed of the shaft",
-                Axis::si("Time", "s"),
-                Axis::plain("Clockwise", "rpm"),
-            )
-            .synced("time")
-            .with(Series::sampled("shaft", Colour::Blue, 1.5 * interval_s, interval_s, rpm))
-            .caption("From the recorded angle of the shaft, which every passage follows."),
-        );
+        let rpm = |name: &str, colour: Colour, angle: &[f64]| {
+            let rates = angle.windows(2).map(|pair| -60.0 / TAU * (pair[1] - pair[0]) / interval_s);
+            Series::sampled(name, colour, 1.5 * interval_s, interval_s, rates.collect())
+        };
+        let outer = record.channel("outer_ring.angle_rad");
+        let mut figure = Figure::new(
+            "speed",
+            if outer.is_some() { "Speeds of the rings" } else { "Speed of the shaft" },
+            Axis::si("Time", "s"),
+            Axis::plain("Clockwise", "rpm"),
+        )
+        .synced("time")
+        .with(rpm("shaft", Colour::Blue, angle));
+        if let Some(outer) = outer {
+            figure = figure.with(rpm("outer ring", Colour::Orange, outer));
+        }
+        figures.push(figure.caption(format!(
+            "From the recorded angle of the {}, which every passage follows.",
+            duty.over()
+        )));
     }
     if let Some(load) = record.channel("adapter.load_n").filter(|load| load.len() > 1) {
         let kilo = load.iter().map(|n| 1e-3 * n).collect();
@@ -54,7 +60,8 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Vec<Figure> {
 
 fn orders(findings: &Findings) -> Option<Figure> {
     let spectrum = findings.orders.as_ref()?;
-    let envelope = findings.summary.duty.as_ref()?.envelope.as_ref()?;
+    let duty = findings.summary.duty.as_ref()?;
+    let envelope = duty.envelope.as_ref()?;
     let order = envelope.lines.first()?.predicted;
     let top = (FAMILY as f64 + 1.0) * order;
     let decibels: Vec<f64> = spectrum.values().iter().map(|p| 10.0 * p.log10()).collect();
@@ -62,7 +69,7 @@ fn orders(findings: &Findings) -> Option<Figure> {
     let floored = decibels.iter().map(|d| d.max(highest - DEPTH_DB)).collect();
     let mut figure = Figure::new(
         "orders",
-        "Envelope spectrum over the angle of the shaft",
+        &format!("Envelope spectrum over the angle of the {}", duty.over()),
         Axis::plain("Order", "a turn").over(0.0, top),
         Axis::plain("Squared envelope spectrum", "dB re 1 g⁴"),
     )

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use crate::Error;
+use crate::duty;
 use crate::findings::Findings;
 use crate::load::running_mean;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
@@ -23,12 +24,21 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     let k = &findings.prediction.kinematics;
     let start = record.time_s()[0] + 0.5 * (width + 1) as f64 * record.interval_s();
     let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
+    let cage_rad_s = k.outer_rad_s - k.sense() * TAU * k.cage_on_outer_hz;
     let crossing: Vec<usize> = findings.summary.events.iter().map(|e| e.roller).take(3).collect();
-    // What the shaft turns at, over its mean; a shaft that hardly turns tells nothing of slip.
-    let shaft = record.channel("shaft.angle_rad").map(|angle| rates(angle, record.interval_s(), width));
-    let pace = |n: usize| shaft.as_ref().map_or(1.0, |rate| (rate[n] / k.shaft_rad_s).abs());
+    // What the rings turn at against each other, over its mean; rings that hardly do tell nothing of slip.
+    let against = duty::angle(record).map(|angle| rates(&angle, record.interval_s(), width));
+    let mean = k.shaft_rad_s - k.outer_rad_s;
+    let pace = |n: usize| against.as_ref().map_or(1.0, |rate| (rate[n] / mean).abs());
     let percent = |name: &str, colour: Colour, angle: &[f64], without_slip_rad_s: f64| {
-        let rate = rates(angle, record.interval_s(), width);
+        let mut rate = rates(angle, record.interval_s(), width);
+        // Beside an outer ring whose angle is on record motion is seen from there.
+        let mut without_slip_rad_s = without_slip_rad_s;
+        if let Some(outer) = record.channel("outer_ring.angle_rad") {
+            let outer = rates(outer, record.interval_s(), width);
+            rate.iter_mut().zip(outer).for_each(|(rate, outer)| *rate -= outer);
+            without_slip_rad_s -= k.outer_rad_s;
+        }
         let off = |(n, r): (usize, &f64)| {
             let rolling = pace(n) * without_slip_rad_s.abs();
             if pace(n) < LEAST_PACE { 0.0 } else { 100.0 * (r.abs() / rolling - 1.0) }
@@ -45,10 +55,10 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
         let Some(roller) = rollers.roller(number) else { continue };
         let name = format!("roller {number}");
         spin = spin.with(percent(&name, colour, roller.spin, k.roller_rad_s));
-        orbit = orbit.with(percent(&name, colour, &roller.orbit(), TAU * k.cage_hz));
+        orbit = orbit.with(percent(&name, colour, &roller.orbit(), cage_rad_s));
     }
     if let Some(angle) = record.channel("cage.angle_rad") {
-        orbit = orbit.with(percent("cage", Colour::Black, angle, TAU * k.cage_hz));
+        orbit = orbit.with(percent("cage", Colour::Black, angle, cage_rad_s));
     }
     if spin.series.is_empty() && orbit.series.is_empty() {
         return Ok(Vec::new());

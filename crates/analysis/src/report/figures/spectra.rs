@@ -6,6 +6,7 @@ use stribeck_dsp::Spectrum;
 
 use super::{mark, spoken};
 use crate::artefacts;
+use crate::duty::DutyFinding;
 use crate::families::{FamilyFinding, SIDEBANDS};
 use crate::findings::Findings;
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
@@ -36,7 +37,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
 
 /// Whether the speed changes: lines at constant frequencies are then neither looked for nor taken out.
 fn unsteady(findings: &Findings) -> bool {
-    findings.summary.duty.as_ref().is_some_and(|duty| duty.speed_rpm.0 != duty.speed_rpm.1)
+    findings.summary.duty.as_ref().is_some_and(DutyFinding::is_unsteady)
 }
 
 /// Which families were found, in one sentence.
