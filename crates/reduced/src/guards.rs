@@ -84,16 +84,8 @@ impl Guards {
     }
 
     /// What is worth a word before the first step.
-    pub(crate) fn before(scene: &Scene, info: &RunInfo, bearing: &Bearing) -> Vec<String> {
+    pub(crate) fn before(scene: &Scene, bearing: &Bearing) -> Vec<String> {
         let mut warnings = Vec::new();
-        if info.time_step_s > info.critical_time_step_s {
-            warnings.push(format!(
-                "the time step of {:.2} µs is {:.2} times the critical one: the run may diverge. Take a smaller `model.step_us` or \
-                 `model.modes_khz`",
-                1e6 * info.time_step_s,
-                info.time_step_s / info.critical_time_step_s
-            ));
-        }
         let gain = bearing.seat_loop_gain();
         if gain > SEAT_LOOP_GAIN {
             warnings.push(format!(

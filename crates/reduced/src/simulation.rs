@@ -80,7 +80,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
             1e6 * most
         ));
     }
-    info.warnings.extend(Guards::before(scene, &info, &bearing));
+    info.warnings.extend(Guards::before(scene, &bearing));
     dir.start(scene, &info)?;
     write_atomic(&dir.mesh(), &picture)?;
     let saved = Saved::first(&bearing, state);

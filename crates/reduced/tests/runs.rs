@@ -69,6 +69,19 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     }
 }
 
+/// Contacts ten times as stiff do not take steps of 5 µs.
+#[test]
+fn example_a_step_beyond_the_critical_one_is_shortened() {
+    let folder = Scratch::create("reduced-step");
+    let mut scene = coarse(1.0);
+    scene.contact.penalty_scale = 10.0;
+    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 5.0 });
+    let info = run(&scene, &folder, "stiff", 1);
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    assert!(info.time_step_s < info.critical_time_step_s && info.critical_time_step_s < 5e-6, "{info:?}");
+    assert!(info.warnings.iter().any(|w| w.contains("the critical one")), "{:?}", info.warnings);
+}
+
 /// Load, cage and energy of a run of two periods of the rollers.
 #[test]
 fn conserves_energy_and_carries_the_load() {
