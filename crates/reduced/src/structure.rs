@@ -197,3 +197,99 @@ pub(crate) fn flexibility(
     let columns = each_response(motions, modes, &units, &seen);
     (0..nodes.len()).map(|i| columns.iter().map(|column| column[i]).collect()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use stribeck_mesh::{Annulus, Mesh};
+    use stribeck_solver::{Dynamics, Elastic, Model, statics::modes_below};
+    use stribeck_testing::ledger::compare;
+
+    use super::*;
+
+    /// (2π · 200 Hz)², as reductions take it.
+    const SHIFT: f64 = 1.6e6;
+    const FACETS: usize = 96;
+
+    /// The paper's outer ring, free, and the slots of its nodes.
+    fn ring() -> (Dynamics, Vec<u32>) {
+        let ring = Annulus {
+            inner_radius: 0.1,
+            outer_radius: 0.11,
+            facets: FACETS,
+            layers: 3,
+            start_angle: 0.0,
+            grooves: Vec::new(),
+        };
+        let mut mesh = Mesh::new();
+        mesh.add("ring", &ring.part().expect("a ring"));
+        let steel = Elastic::new(208e9, 0.3, 7800.0).expect("steel");
+        let model = Model::new(mesh, steel, 0.03).expect("a model");
+        let loaded = vec![false; model.mesh.x.len()];
+        let dynamics = Dynamics::new(&model, &loaded, 1).expect("a ring can move");
+        let slots = 0..dynamics.state.x.len() as u32;
+        let slots = slots.filter(|&slot| dynamics.mass()[slot as usize] > 0.0).collect();
+        (dynamics, slots)
+    }
+
+    /// Slot of the raceway's node in a direction of the x axis.
+    fn on_raceway(dynamics: &Dynamics, slots: &[u32], side: f64) -> u32 {
+        let off = |slot: &u32| {
+            let slot = *slot as usize;
+            (dynamics.state.x[slot] - 0.1 * side).hypot(dynamics.state.y[slot])
+        };
+        *slots.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
+    }
+
+    /// Two opposite forces from within on a free ring: what modes and what lies beyond them give under one of them is the
+    /// deflection of all elements, however few modes there are, and the more there are the less lies beyond.
+    #[test]
+    fn converges_a_static_deflection_is_that_of_all_elements() {
+        const TOLERANCE: f64 = 1e-3;
+        let (dynamics, slots) = ring();
+        let [right, left] = [1.0, -1.0].map(|side| on_raceway(&dynamics, &slots, side));
+        let mut force = NodeForces::zeros(dynamics.state.x.len());
+        (force.fx[right as usize], force.fx[left as usize]) = (1.0, -1.0);
+
+        // All elements: K u = f, by what K + σM leaves over. The load has no part in rigid motions.
+        let mut motions = SmallMotions::new(&dynamics, &slots, &[], SHIFT).expect("definite with the shift");
+        let load = field(&motions, &slots, &force);
+        let mut whole = vec![0.0; motions.equations()];
+        for _ in 0..40 {
+            let mut left: Vec<f64> =
+                load.iter().zip(motions.stiffness_times(&whole)).map(|(f, k)| f - k).collect();
+            motions.solve(&mut left);
+            whole.iter_mut().zip(&left).for_each(|(u, more)| *u += more);
+        }
+        let at = motions.equation(right).expect("it moves");
+        let whole = whole[at];
+
+        let mut beyond_before = f64::INFINITY;
+        for khz in [2.0, 5.0, 15.0, 30.0] {
+            let mut motions = SmallMotions::new(&dynamics, &slots, &[], SHIFT).expect("definite with the shift");
+            let modes = modes_below(&mut motions, 1e3 * khz).expect("modes");
+            // Three rigid motions, which the load does not move.
+            let elastic = modes.shapes.iter().zip(&modes.squares).skip(3);
+            let by_modes: f64 = elastic
+                .map(|(shape, square)| {
+                    let push: f64 = shape.iter().zip(&load).map(|(u, f)| u * f).sum();
+                    shape[at] * push / square
+                })
+                .sum();
+            let slots = slots.clone();
+            let mut structure = Structure::Elastic { motions: Box::new(motions), modes, slots };
+            let beyond = structure.residuals(std::slice::from_ref(&force), &[right])[0][0][0];
+            compare(
+                &format!("ring under two forces, deflection by modes below {khz} kHz and what lies beyond"),
+                "all elements: K u = f, own",
+                "m",
+                by_modes + beyond,
+                whole,
+                TOLERANCE,
+            );
+            assert!(beyond > 0.0 && beyond < beyond_before, "{khz} kHz: {beyond}, before {beyond_before}");
+            beyond_before = beyond;
+        }
+        // What is left is the dent under the force, which waves around the ring hardly make.
+        assert!(beyond_before < 0.5 * whole, "{beyond_before} of {whole}");
+    }
+}

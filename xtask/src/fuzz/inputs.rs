@@ -133,7 +133,7 @@ fn small(scene: &Scene) -> bool {
 }
 
 fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
-    const FIELDS: [&str; 18] = [
+    const FIELDS: [&str; 19] = [
         "mesh.size_mm",
         "bearing.rollers",
         "cage",
