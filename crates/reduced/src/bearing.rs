@@ -38,8 +38,6 @@ pub struct Bearing {
     pub reduction: Reduction,
     /// Their shapes at the vertices of the outer raceway again, in rows.
     pub(crate) shapes: Vec<Row>,
-    /// The largest displacement of any of these vertices by a unit of each mode.
-    pub(crate) widest: Vec<Row>,
     /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
     pub(crate) dampers: Vec<Row>,
     /// Contact with the outer raceway.
@@ -257,14 +255,7 @@ impl Bearing {
         level_walls(&mut reduction.shapes, &angles);
         reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
         let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let shapes: Vec<Row> = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let groups = reduction.padded / LANES;
-        let mut widest = vec![Row::default(); groups];
-        for vertex in shapes.chunks_exact((2 * groups).max(1)) {
-            for ((widest, x), y) in widest.iter_mut().zip(vertex).zip(&vertex[groups..]) {
-                *widest = Row(std::array::from_fn(|mode| widest[mode].max(x[mode].hypot(y[mode]))));
-            }
-        }
+        let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let bounds =
             nearest_about(&outer, BESIDE * radius).into_iter().map(|near| near - sag_of_outer).collect();
         let mut outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
@@ -303,7 +294,6 @@ impl Bearing {
             rims,
             rim_of,
             shapes,
-            widest,
             dampers,
             reduction,
         })

@@ -9,7 +9,7 @@ use crate::{
     bearing::Bearing,
     heard::Heard,
     row::Row,
-    seat::{Hold, Springs},
+    seat::Springs,
     state::{Spent, State, Stored},
 };
 
@@ -43,6 +43,8 @@ pub(crate) struct Modes {
     pub(crate) drag: Vec<Row>,
     /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
     pub(crate) tension: Vec<Row>,
+    /// By how much these have opened and slipped [m].
+    pub(crate) opened: Vec<Row>,
 }
 
 impl Modes {
@@ -51,7 +53,7 @@ impl Modes {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
         let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
         let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension }
+        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, opened: tension.clone(), tension }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -83,31 +85,6 @@ impl Bearing {
             [&both[..groups], &both[groups..2 * groups]]
         };
         Place { facet, share, shapes: [shapes(facet), shapes(second)] }
-    }
-
-    /// No place of the raceway is displaced by more than that [m].
-    #[inline(always)]
-    pub(crate) fn most_displaced<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&Hold>) -> f64 {
-        let mut sum = Vector::all(simd, 0.0);
-        let opened = hold.map_or(&[][..], |hold| hold.open.as_chunks::<LANES>().0);
-        let by_seat = self.seat.iter().flat_map(|seat| &seat.widest).zip(opened);
-        for (widest, open) in by_seat {
-            let mut at = 0;
-            while at < LANES {
-                let open = Vector::load(simd, open, at);
-                sum = Vector::load(simd, widest, at).times_plus(open.max(-open), sum);
-                at += Vector::<S>::LEN;
-            }
-        }
-        for (widest, q) in self.widest.iter().zip(&modes.q) {
-            let mut at = 0;
-            while at < LANES {
-                let q = Vector::load(simd, q, at);
-                sum = Vector::load(simd, widest, at).times_plus(q.max(-q), sum);
-                at += Vector::<S>::LEN;
-            }
-        }
-        sum.sum()
     }
 
     /// How the raceway moves at a place. Both vertices are summed over all modes, and what lies between follows from the sums.

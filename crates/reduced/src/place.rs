@@ -8,19 +8,16 @@ use crate::{
     block::Block,
     modes::{Modes, Moved},
     row::{lanes, load, of_one, store},
-    seat::Hold,
     step::Turning,
 };
 
 impl Bearing {
-    /// Finds the places of eight rollers. `most` is what [`Bearing::most_displaced`] says; the raceways may turn.
+    /// Finds the places of eight rollers; the raceways may turn.
     #[inline(always)]
     pub(crate) fn place_rollers<S: Simd>(
         &self,
         simd: S,
         modes: &Modes,
-        hold: Option<&Hold>,
-        most: f64,
         block: &mut Block,
         [outer, inner]: [Option<Turning>; 2],
     ) {
@@ -29,18 +26,11 @@ impl Bearing {
             self.find_facets(block, gone);
             self.see_facets(simd, block, outer);
         }
-        let near =
-            if self.oil.is_some() { block.bits } else { block.bits & self.may_touch(simd, block, most) };
-        for lane in lanes(block.bits & !near) {
-            for c in 0..2 {
-                (block.by[c][lane], block.moving[c][lane], block.tilt[c][lane]) = (0.0, 0.0, 0.0);
-            }
-        }
-        for lane in lanes(near) {
+        for lane in lanes(block.bits) {
             let (facet, share) = (block.facet[lane] as usize, block.share[lane]);
             let Moved { mut by, velocity, mut tilt } = self.moved(simd, &self.place(facet, share), modes);
-            if let (Some(seat), Some(hold)) = (&self.seat, hold) {
-                let [first, second] = seat.under(simd, hold, facet);
+            if let Some(seat) = &self.seat {
+                let [first, second] = seat.under(simd, &modes.opened, facet);
                 let outwards = first + share * (second - first);
                 let slope = (second - first) * self.outer.angle[facet];
                 // It points outwards at every place, so that it turns along the raceway.
@@ -117,23 +107,5 @@ impl Bearing {
             }
         }
         block.placed |= gone;
-    }
-
-    /// Rollers that may touch an outer raceway which is displaced by `most` [m], or did so in the last step.
-    #[inline(always)]
-    fn may_touch<S: Simd>(&self, simd: S, block: &Block, most: f64) -> u64 {
-        let (zero, one, most) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0), Vector::all(simd, most));
-        let contacts = &block.contacts[0];
-        let mut near = 0;
-        let mut at = 0;
-        while at < LANES {
-            let of = |row: &[f64]| Vector::load(simd, row, at);
-            let deep = of(&block.distance) - of(&contacts.bound) + of(&block.top) + most;
-            let [drag, damping, about] = [0, 1, 2].map(|kind| of(&contacts.passive[kind]));
-            let pressed = (drag * drag).max(damping * damping).max(about * about).max(of(&contacts.force));
-            near |= zero.choose_below(deep.max(pressed), one, zero).bits() << at;
-            at += Vector::<S>::LEN;
-        }
-        near
     }
 }

@@ -131,8 +131,9 @@ impl Bearing {
                 scratch.seated.clear();
                 scratch.seated.extend(self.heard_from_the_seat(hold, &scratch.modes.tension));
             }
-            let Modes { push, tension, .. } = &mut scratch.modes;
-            let [heat, stored] = seat.hold(simd, hold, &state.q, &scratch.heard, [push, tension], last);
+            let Modes { push, tension, opened, .. } = &mut scratch.modes;
+            let [heat, stored] =
+                seat.hold(simd, hold, &state.q, &scratch.heard, [push, tension, opened], last);
             spent.heat[0] += 2.0 * heat / dt;
             energy.strain += stored;
         }
@@ -144,10 +145,9 @@ impl Bearing {
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
         let mut on_cage = [0.0; 3];
         let mut sums = Sums::<S>::new(simd);
-        let most = self.most_displaced(simd, &scratch.modes, state.seat.as_ref());
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
-            self.place_rollers(simd, &scratch.modes, state.seat.as_ref(), most, block, [outer, Some(inner)]);
+            self.place_rollers(simd, &scratch.modes, block, [outer, Some(inner)]);
             let Block { first, top, bits, contacts: [on_outer, on_inner], .. } = block;
             self.press_together(simd, &self.outer, *first, top, *bits, on_outer);
             self.press_together(simd, &self.inner, *first, top, *bits, on_inner);

@@ -23,8 +23,6 @@ pub(crate) struct Springs {
     by_spring: Vec<Row>,
     /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of the preload.
     by_rollers: Vec<Row>,
-    /// The largest of these at any vertex.
-    pub(crate) widest: Vec<Row>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
     stiffness: Vec<Row>,
@@ -53,6 +51,13 @@ pub struct Hold {
     pub(crate) pressed: Vec<Heard>,
 }
 
+impl Hold {
+    /// Gaps and slips in rows [m].
+    pub(crate) fn opened(&self) -> Vec<Row> {
+        self.open.as_chunks().0.iter().copied().map(Row).collect()
+    }
+}
+
 /// A spring that opens or slips further [m].
 struct Change {
     spring: usize,
@@ -70,20 +75,12 @@ impl Springs {
         let by_spring: Vec<f64> =
             (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
         let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
-        let by_rollers = rows(&seat.by_rollers);
-        let mut widest = vec![Row::default(); n / LANES];
-        for vertex in by_rollers.chunks_exact(n / LANES) {
-            for (widest, row) in widest.iter_mut().zip(vertex) {
-                *widest = Row(std::array::from_fn(|spring| widest[spring].max(row[spring].abs())));
-            }
-        }
         Self {
             panels: seat.panels,
             padded: seat.padded,
             by_mode: rows(&seat.tension),
             by_spring: rows(&by_spring),
-            by_rollers,
-            widest,
+            by_rollers: rows(&seat.by_rollers),
             at_preload: rows(&seat.at_preload),
             per_own: own.iter().map(|stiffness| 1.0 / stiffness).collect(),
             own,
@@ -129,8 +126,8 @@ impl Springs {
         self.settle(simd, hold, &mut tension, PASSES_AT_REST);
     }
 
-    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`. Returns the heat of this step [J] and, when it is
-    /// the `last` of a sample, the energy that is stored by it [J].
+    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`; `opened` becomes gaps and
+    /// slips. Returns the heat of this step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
     #[inline(always)]
     pub(crate) fn hold<S: Simd>(
         &self,
@@ -138,11 +135,14 @@ impl Springs {
         hold: &mut Hold,
         q: &[f64],
         rollers: &[Heard],
-        [push, tension]: [&mut [Row]; 2],
+        [push, tension, opened]: [&mut [Row]; 3],
         last: bool,
     ) -> [f64; 2] {
         self.pull(simd, hold, q, rollers, tension);
         let heat = self.settle(simd, hold, tension, PASSES);
+        for (row, open) in opened.iter_mut().zip(hold.open.as_chunks().0) {
+            *row = Row(*open);
+        }
         for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
             for (push, more) in push.iter_mut().zip(more) {
                 *push += more;
@@ -152,23 +152,24 @@ impl Springs {
             return [heat, 0.0];
         }
         // What rollers press is part of the tensions, and its work part of their own energy.
-        let by_rollers = rollers.iter().filter(|roller| roller.force != 0.0).map(|roller| {
-            let [first, second] = self.under(simd, hold, roller.facet as usize);
-            roller.next() * (first + roller.share * (second - first))
-        });
-        [heat, self.stored(hold, tension) + by_rollers.sum::<f64>()]
+        let mut by_rollers = 0.0;
+        for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
+            let [first, second] = self.under(simd, opened, roller.facet as usize);
+            by_rollers += roller.next() * (first + roller.share * (second - first));
+        }
+        [heat, self.stored(hold, tension) + by_rollers]
     }
 
-    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m].
+    /// Displacement of the raceway to the outside by what has `opened` and slipped, at both vertices of a facet [m].
     #[inline(always)]
-    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [f64; 2] {
+    pub(crate) fn under<S: Simd>(&self, simd: S, open: &[Row], facet: usize) -> [f64; 2] {
         let groups = self.rows();
         let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
         let mut both = [0.0; 2];
         for (by, vertex) in both.iter_mut().zip([facet, second]) {
             let rows = &self.by_rollers[groups * vertex..groups * (vertex + 1)];
             let mut sum = Vector::all(simd, 0.0);
-            for (row, open) in rows.iter().zip(hold.open.as_chunks::<LANES>().0) {
+            for (row, open) in rows.iter().zip(open) {
                 let mut at = 0;
                 while at < LANES {
                     sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, open, at), sum);
@@ -229,6 +230,7 @@ impl Springs {
     fn settle<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], passes: usize) -> f64 {
         hold.before.copy_from_slice(&hold.open);
         let mut last = Change { spring: 0, more: 0.0 };
+        let mut moved = 0_u128;
         for _ in 0..passes {
             let mut most: f64 = 0.0;
             for panel in 0..self.panels {
@@ -240,6 +242,7 @@ impl Springs {
                 // It pulls and opens, or was open and closes.
                 if pulls > 0.0 || had > 0.0 {
                     let has = (had + pulls * self.per_own[panel]).max(0.0);
+                    moved |= 1 << panel;
                     most = most.max(self.change(simd, hold, tension, &mut last, panel, has));
                     pulls -= self.own[panel] * (has - had);
                 }
@@ -254,6 +257,7 @@ impl Springs {
                 let excess = (holding.abs() - limit).max(0.0).copysign(holding);
                 let has = before + excess * self.per_own[at];
                 if has != had {
+                    moved |= 1 << at;
                     most = most.max(self.change(simd, hold, tension, &mut last, at, has));
                 }
             }
@@ -262,7 +266,7 @@ impl Springs {
             }
         }
         self.pass_on(simd, tension, &last);
-        self.take_along(simd, hold);
+        self.take_along(simd, hold, moved);
         let along = self.padded..self.padded + self.panels;
         let slipped = hold.open[along.clone()].iter().zip(&hold.before[along.clone()]);
         let held_by = tension.iter().flat_map(|row| row.iter()).skip(along.start);
@@ -310,27 +314,25 @@ impl Springs {
         }
     }
 
-    /// What all tensions have lost, and what is done to the modes, by what has opened and slipped in this step.
+    /// What all tensions have lost, and what is done to the modes, by the springs that have opened and slipped in this step: a bit for each.
     #[inline(always)]
-    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold) {
-        let (groups, modes) = (self.rows(), hold.push.len() / LANES);
-        for spring in 0..hold.open.len() {
-            let more = hold.open[spring] - hold.before[spring];
-            if more == 0.0 {
-                continue;
-            }
-            let more = Vector::all(simd, more);
-            let losses = &self.stiffness[groups * spring..groups * (spring + 1)];
-            let shapes = &self.by_spring[modes * spring..modes * (spring + 1)];
-            for (rows, sums) in [(losses, &mut hold.lost), (shapes, &mut hold.push)] {
-                for (row, sum) in rows.iter().zip(sums.as_chunks_mut::<LANES>().0) {
-                    let mut at = 0;
-                    while at < LANES {
-                        Vector::load(simd, row, at)
-                            .times_plus(more, Vector::load(simd, sum, at))
-                            .store(sum, at);
-                        at += Vector::<S>::LEN;
+    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moved: u128) {
+        let sums = [(&self.stiffness, &mut hold.lost), (&self.by_spring, &mut hold.push)];
+        for (all, sums) in sums {
+            let rows = sums.len() / LANES;
+            for (row, sum) in sums.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
+                let mut at = 0;
+                while at < LANES {
+                    let mut number = Vector::load(simd, sum, at);
+                    let mut left = moved;
+                    while left != 0 {
+                        let spring = left.trailing_zeros() as usize;
+                        let more = Vector::all(simd, hold.open[spring] - hold.before[spring]);
+                        number = Vector::load(simd, &all[rows * spring + row], at).times_plus(more, number);
+                        left &= left - 1;
                     }
+                    number.store(sum, at);
+                    at += Vector::<S>::LEN;
                 }
             }
         }
