@@ -31,7 +31,7 @@ pub(crate) struct Options {
     /// Where the sequence of inputs begins; a failure names the seed of its input
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Only inputs of this kind: scene, override, table, trace, checkpoint, run-info, mesh, shape
+    /// Only inputs of this kind: scene, override, table, campaign, trace, checkpoint, run-info, mesh, shape
     #[arg(long)]
     kind: Option<String>,
 }

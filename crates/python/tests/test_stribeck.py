@@ -88,12 +88,82 @@ class Runs(unittest.TestCase):
         np.testing.assert_array_equal(frame.index, self.run_["time_s"])
         self.assertEqual(len(frame.columns) + 1, len(self.run_.channels))
 
-    def test_scenes_are_written_out(self):
-        self.assertIn("load_n: 30000", stribeck.scene({"operation.load_n": 30e3}))
+    def test_the_ledger_is_that_of_the_file(self):
+        table = np.load(self.run_.folder / "energy.npy")
+        self.assertEqual(list(self.run_.energy), list(table.dtype.names))
+        self.assertGreater(self.run_.energy["strain_j"].max(), 0)
+        np.testing.assert_array_equal(self.run_.energy["strain_j"], table["strain_j"])
+
+    def test_a_run_is_exported(self):
+        path = self.run_.export("npz", channels=["sensor."])
+        with np.load(path) as written:
+            self.assertTrue(any(name.startswith("sensor.side") for name in written.files), written.files)
+        with self.assertRaisesRegex(RuntimeError, "ended with"):
+            self.run_.export("docx")
+
+    def test_a_campaign_is_its_tables(self):
+        quick = Path(__file__).parents[3] / "fixtures" / "scenes" / "quick.ron"
+        file = Path(self.folder.name) / "two.ron"
+        file.write_text(
+            f"""(name: "two", scene: {json.dumps(str(quick))}, set: ["mesh.size_mm=4.0", "mesh.roller_facets=40",
+            "solver.start=sudden", "solver.duration_ms=0.3", "output.frames=None"],
+            variants: grid([(field: "operation.load_n", values: [10000, 20000])]))"""
+        )
+        data = stribeck.campaign(file, out=Path(self.folder.name) / "two", threads=1)
+        self.assertTrue((data.folder / "events.parquet").exists())
+        try:
+            import pandas, pyarrow  # noqa: F401
+        except ImportError:
+            return
+        self.assertEqual(data.runs.load_n.tolist(), [10e3, 20e3])
+        self.assertTrue(set(data.events.run) <= {1, 2})
 
     def test_commands_of_the_program(self):
         self.assertEqual(stribeck.command("report", self.run_.folder), 0)
         self.assertNotEqual(stribeck.command("simulate", "nowhere.ron"), 0)
+
+
+class Scenes(unittest.TestCase):
+    def test_scenes_are_written_out(self):
+        self.assertIn("load_n: 30000", stribeck.scene({"operation.load_n": 30e3}))
+
+    def test_fields_as_dicts_are_those_of_scene_files(self):
+        for fields, overrides in [
+            ({"operation": {"load_n": 30e3, "speed_rpm": -500}}, ["operation.load_n=30000.0", "operation.speed_rpm=-500"]),
+            ({"output": {"sensors": [{"name": "side", "angle_deg": 0}]}}, ['output.sensors=[(name: "side", angle_deg: 0)]']),
+            ({"model": {"reduced": {"modes_khz": 30}}}, ["model=reduced(modes_khz: 30)"]),
+            ({"model": "full"}, ["model=full"]),
+            (
+                {"defects": [{"on": "outer", "form": {"spall": {"length_mm": 4, "depth_mm": 0.05}}}]},
+                ["defects=[(on: outer, form: spall(length_mm: 4, depth_mm: 0.05))]"],
+            ),
+            (
+                {"defects": [{"on": {"roller": 3}, "form": "missing"}]},
+                ["defects=[(on: roller(3), form: missing)]"],
+            ),
+            (
+                {"defects": [{"form": {"profile": {"points": [{"at_mm": -1, "depth_um": 0}, {"at_mm": 0, "depth_um": 5}, {"at_mm": 1, "depth_um": 0}]}}}]},
+                ["defects=[(form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 0, depth_um: 5), (at_mm: 1, depth_um: 0)]))]"],
+            ),
+            (
+                {"operation": {"speed_profile": {"points": [(0, 500.0), [20.5, 100]]}}},
+                ["operation.speed_profile=points([(0, 500.0), (20.5, 100)])"],
+            ),
+            ({"housing": {"springs": {"stiffness_n_um": 500}}}, ["housing=springs(stiffness_n_um: 500)"]),
+            ({"cage": None, "mesh": {"outer_facets": np.int64(400)}}, ["cage=None", "mesh.outer_facets=400"]),
+        ]:
+            self.assertEqual(stribeck._ron.overrides(fields), overrides)
+            stribeck.scene({"film": None, "defect": None, **fields})
+        whole = stribeck.scene({"film": None, "defects": [{"on": "inner", "form": {"dent": {"depth_mm": 0.02}}}]})
+        self.assertRegex(whole, r"on: inner,\s+angle_deg: 90.0,\s+form: dent\(")
+
+    def test_what_no_scene_can_hold_is_said(self):
+        with self.assertRaisesRegex(ValueError, "load_n is nan"):
+            stribeck.scene({"operation": {"load_n": float("nan")}})
+        with self.assertRaisesRegex(ValueError, "load_n is a set"):
+            stribeck.scene({"operation": {"load_n": {1}}})
+        with self.assertRaisesRegex(ValueError, "form"):
+            stribeck.scene({"film": None, "defects": [{"form": {"spal": {}}}]})
 
 
 class Signals(unittest.TestCase):
@@ -143,7 +213,7 @@ class Signals(unittest.TestCase):
             stribeck.dsp.welch(self.x, window="han")
 
     def test_help_reads_well(self):
-        for thing in (stribeck, stribeck.run, stribeck.analyse, stribeck.dsp.welch, stribeck.Run):
+        for thing in map(stribeck.__dict__.get, stribeck.__all__):
             self.assertGreater(len(thing.__doc__ or ""), 40, thing)
 
 

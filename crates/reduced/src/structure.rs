@@ -265,7 +265,8 @@ mod tests {
 
         let mut beyond_before = f64::INFINITY;
         for khz in [2.0, 5.0, 15.0, 30.0] {
-            let mut motions = SmallMotions::new(&dynamics, &slots, &[], SHIFT).expect("definite with the shift");
+            let mut motions =
+                SmallMotions::new(&dynamics, &slots, &[], SHIFT).expect("definite with the shift");
             let modes = modes_below(&mut motions, 1e3 * khz).expect("modes");
             // Three rigid motions, which the load does not move.
             let elastic = modes.shapes.iter().zip(&modes.squares).skip(3);

@@ -15,15 +15,15 @@ mod limits;
 mod load;
 mod named;
 mod origin;
-mod outline;
+pub(crate) mod outline;
 mod overrides;
-mod problem;
+pub(crate) mod problem;
 mod reference;
 mod schema;
-mod suggest;
+pub(crate) mod suggest;
 mod syntax;
 mod table;
-mod wording;
+pub(crate) mod wording;
 
 use std::path::Path;
 
@@ -102,8 +102,25 @@ fn compose<S: AsRef<str>>(
     folder: &Path,
     overrides: &[S],
 ) -> Result<Scene, SceneError> {
-    // Some editors put a byte order mark in front; RON knows none.
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = without_mark(text);
+    let (mut scene, set) = understand(text, file, overrides)?;
+    let origin = Origin::in_file(file, text, set);
+    table::read(&mut scene, folder, &origin)?;
+    check(&scene, &origin)?;
+    Ok(scene)
+}
+
+/// Some editors put a byte order mark in front; RON knows none.
+fn without_mark(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// Text → scene, overrides.
+fn understand<S: AsRef<str>>(
+    text: &str,
+    file: &str,
+    overrides: &[S],
+) -> Result<(Scene, Vec<origin::Override>), SceneError> {
     let outline = Outline::of(text);
     let in_file = named::take(text, &outline);
     let mut scene = syntax::parse(in_file.as_ref().map_or(text, |(blanked, _)| blanked), file)?;
@@ -115,11 +132,26 @@ fn compose<S: AsRef<str>>(
             unknown_bearing(why, place.unwrap_or(Place::Unwritten { file: file.to_owned() }))
         })?;
     }
-    let (mut scene, set) = overrides::apply(scene, overrides)?;
-    let origin = Origin::in_file(file, text, set);
-    table::read(&mut scene, folder, &origin)?;
-    check(&scene, &origin)?;
-    Ok(scene)
+    overrides::apply(scene, overrides)
+}
+
+/// Whether the scene file at `path`, or the default scene, can be read with `overrides`. What further overrides may repair is not
+/// looked at: numbers outside their range, bodies that cannot exist, tables that are not there.
+pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
+    match path {
+        Some(path) => {
+            understand(without_mark(&load(path)?), &path.display().to_string(), overrides).map(drop)
+        }
+        None => overrides::apply(Scene::default(), overrides).map(drop),
+    }
+}
+
+/// What is wrong with the name of a field that no scene has; `None` for one that some scene has.
+pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
+    let schema = schema::Schema::new();
+    let known = schema.default_of(path).is_some();
+    let answer = || overrides::known(path, path, &schema, &Outline::default()).err();
+    if known { None } else { answer().map(|problem| *problem) }
 }
 
 /// A designation that gives no bearing.

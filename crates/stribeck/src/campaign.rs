@@ -48,11 +48,12 @@ pub struct Options {
     /// Runs only part I of N, for several machines; whichever comes last makes the tables
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<Shard>,
-    /// Runs nothing: writes the script that has an engine run N parts, for --shards
-    #[arg(long, value_name = "ENGINE", requires = "shards")]
+    /// Runs nothing: prints the script that has an engine run the campaign in parts, to be sent to a file: `> job.sh`. Each part has
+    /// the --jobs, --threads [default there: one] and --memory-gb of this command
+    #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     emit: Option<emit::Engine>,
-    /// Parts of an emitted script
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    /// Parts of an emitted script [default: as many as runs, 16 at most]
+    #[arg(long, value_name = "N", requires = "emit", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     shards: Option<u32>,
 }
 
@@ -134,10 +135,11 @@ fn stage(folder: &Folder, keep: Keep, variant: &Variant) -> Result<Stage> {
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let file = place.locate(&options.file);
-    let campaign = Campaign::read(&file).map_err(anyhow::Error::msg)?;
+    let campaign = Campaign::read(&file)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&campaign.name));
-    if let (Some(engine), Some(shards)) = (options.emit, options.shards) {
-        println!("{}", emit::script(engine, &file, &out, shards)?);
+    if let Some(engine) = options.emit {
+        let part = emit::Part::of(options, campaign.runs.len());
+        print!("{}", emit::script(engine, &file, &out, part)?);
         return Ok(ExitCode::SUCCESS);
     }
     let folder = Folder(out);

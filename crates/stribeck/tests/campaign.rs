@@ -40,8 +40,8 @@ fn run(desk: &Scratch, words: &[&str]) -> Output {
     campaign(desk, words).output().expect("it starts")
 }
 
-fn tables(folder: &Path) -> [Vec<u8>; 3] {
-    ["runs.parquet", "signals.parquet", "DATASHEET.md"]
+fn tables(folder: &Path) -> [Vec<u8>; 4] {
+    ["runs.parquet", "events.parquet", "signals.parquet", "DATASHEET.md"]
         .map(|name| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")))
 }
 
@@ -148,7 +148,12 @@ fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
     fs::write(desk.join("campaign.ron"), keeping("numbers")).expect("a campaign");
     let done = run(&desk, &["--out=numbers"]);
     assert!(done.status.success(), "{}", said(&done));
-    assert!(numbers(desk.join("all/runs.parquet")) == numbers(desk.join("numbers/runs.parquet")));
+    for table in ["runs.parquet", "events.parquet"] {
+        assert!(
+            numbers(desk.join("all").join(table)) == numbers(desk.join("numbers").join(table)),
+            "{table}"
+        );
+    }
     assert!(!desk.join("numbers/signals.parquet").exists());
     let kept = runs(&desk.join("numbers"));
     assert_eq!(files(&kept[0]), ["run.json", "scene.ron", "summary.json"]);
@@ -219,6 +224,21 @@ fn refuses_to_keep_what_it_does_not_know() {
 }
 
 #[test]
+fn refuses_fields_that_no_scene_has_before_anything_runs() {
+    for (right, wrong, line) in [
+        ("operation.load_n", "operation.laod_n", "campaign.ron:7:17"),
+        ("mesh.size_mm=4.0", "mesh.sise_mm=4.0", "campaign.ron:4:11"),
+    ] {
+        let desk = desk("campaign-misspelt", &CAMPAIGN.replace(right, wrong));
+        let refused = run(&desk, &["--out=A"]);
+        assert!(!refused.status.success() && !desk.join("A").exists(), "{}", said(&refused));
+        let field = wrong.split('=').next().expect("a field");
+        let did_you_mean = format!("did you mean `{}`?", right.split('=').next().expect("a field"));
+        says(&refused, &[line, field, &did_you_mean]);
+    }
+}
+
+#[test]
 fn example_variants_that_cannot_be_are_rows_with_their_reason() {
     let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
         "(field: \"operation.load_n\", from: 5000, to: 50000),",
@@ -242,14 +262,25 @@ fn example_variants_that_cannot_be_are_rows_with_their_reason() {
 #[test]
 fn example_scripts_for_engines_name_every_part() {
     let desk = desk("campaign-emit", CAMPAIGN);
-    for (engine, words) in
-        [("slurm", ["--array=1-16", "$SLURM_ARRAY_TASK_ID/16"]), ("hq", ["--array=1-16", "$HQ_TASK_ID/16"])]
-    {
+    for (engine, words) in [
+        ("slurm", ["--array=1-16", "$SLURM_ARRAY_TASK_ID/16", "--cpus-per-task=1\n", "--threads 1\n"]),
+        ("hq", ["--array=1-16", "$HQ_TASK_ID/16", "--cpus=1 ", "--threads 1'"]),
+    ] {
         let output = run(&desk, &["--emit", engine, "--shards=16"]);
         assert!(output.status.success(), "{}", said(&output));
         says(&output, &words);
+        // A part that fails is one that the engine says has failed.
+        assert!(!said(&output).contains("|| true"), "{}", said(&output));
         assert!(!desk.join("runs").exists());
     }
+    // Eight runs are eight parts where nobody says how many, and parts are told what the command is told.
+    let limits = ["--threads=4", "--jobs=2", "--memory-gb=1.5"];
+    let told = |engine| run(&desk, &[&["--emit", engine][..], &limits].concat());
+    let to_program = "/8 --jobs 2 --threads 4 --memory-gb 1.5";
+    says(&told("slurm"), &["--array=1-8", "--cpus-per-task=4", "--mem=1431M", to_program]);
+    says(&told("hq"), &["--array=1-8", "--cpus=4", to_program]);
+    says(&run(&desk, &["--emit=hq", "--jobs=2"]), &["--jobs 2 --threads 2", "--cpus=2"]);
+    says(&run(&desk, &["--shards=3"]), &["--emit"]);
     says(&run(&desk, &["--shard=4/3"]), &["I from 1 to N"]);
 }
 

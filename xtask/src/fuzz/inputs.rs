@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_bearing::simulation;
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
+use stribeck_scene::campaign::Campaign;
 use stribeck_scene::duty::Duty;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::scene::Scene;
@@ -26,10 +27,11 @@ pub(crate) struct Kind {
     pub(crate) attempt: fn(&Inputs, &mut Dice) -> Result<Answer>,
 }
 
-pub(crate) const KINDS: [Kind; 8] = [
+pub(crate) const KINDS: [Kind; 9] = [
     Kind { name: "scene", weight: 50, attempt: scene },
     Kind { name: "override", weight: 15, attempt: set },
     Kind { name: "table", weight: 10, attempt: table },
+    Kind { name: "campaign", weight: 2, attempt: campaign },
     Kind { name: "trace", weight: 10, attempt: trace },
     Kind { name: "checkpoint", weight: 10, attempt: checkpoint },
     Kind { name: "run-info", weight: 5, attempt: run_info },
@@ -44,6 +46,12 @@ const DUTY: &str = "(operation: (speed_rpm: -300, speed_profile: points([(0.0, 5
 
 /// A table of a profile.
 const TABLE: &str = "time_ms, value # by hand\n0.0, 500.0\n10, 600\n20.25, 1e2\n30,-50.5\n";
+
+/// A campaign of everything, with the table above as that of its other kind.
+const CAMPAIGN: &str = "(name: \"x\", scene: \"table.ron\", set: [\"cage=None\", \"mesh.size_mm=4.0\"], seed: 3, starts: 2, \
+                        split: (train: 0.5, validation: 0.25, test: 0.25), keep: numbers, variants: sobol(count: 4, over: [\
+                        (field: \"operation.load_n\", from: 5e3, to: 5e4, log: true), \
+                        (field: \"defects\", values: [[], [(on: roller(1), form: dent())]])]))";
 
 /// Bytes before the content of a checkpoint; length and checksum are the last twelve.
 const HEADER: usize = 52;
@@ -193,6 +201,27 @@ fn table(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
         );
     }
     Ok(answer)
+}
+
+/// The file of a campaign, or the table that it names.
+fn campaign(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
+    let (file, table) = (inputs.folder.join("campaign.ron"), inputs.folder.join("points.csv"));
+    std::fs::write(inputs.folder.join("table.ron"), "()")?;
+    let good = "operation.load_n, defect.ring\n5e3, outer\n20000.0, inner\n";
+    let content = if dice.one_in(3) {
+        std::fs::write(&table, text(good, dice))?;
+        "(name: \"x\", variants: table(\"points.csv\"))".to_owned()
+    } else {
+        text(CAMPAIGN, dice)
+    };
+    // Counts that are large and allowed make large campaigns, as they should; they are left out.
+    let number =
+        |rest: &str| rest.trim_start().chars().take_while(|c| c.is_ascii_digit() || *c == '_').count();
+    if ["count:", "starts:"].into_iter().any(|key| content.split(key).skip(1).any(|rest| number(rest) > 3)) {
+        return Ok(Answer::Refused);
+    }
+    std::fs::write(&file, content)?;
+    Ok(answered(Campaign::read(&file))?.0)
 }
 
 fn trace(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {

@@ -13,49 +13,42 @@ A verdict on a measured record::
     found = stribeck.analyse(signal, 25_600, bearing="6205", speed_rpm=1797)
     print(found["verdict"])
 
-Everything the program can do in a shell it can do here: ``stribeck.command("campaign", "quick64.ron")``.
+Many runs and their tables::
+
+    data = stribeck.campaign("fixtures/campaigns/quick64.ron")
+    print(data.runs.groupby("fault_location").size(), data.events.spall_mm.mean())
+
+What else the program can do in a shell it can do here: ``stribeck.command("plan", "scene.ron")``.
 """
 
 from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Callable
 
-from . import _stribeck, dsp
+from . import _ron, _stribeck, dsp
+from ._program import Campaign, campaign, command, export, validate
 
-__all__ = ["Run", "analyse", "command", "dsp", "load", "run", "scene"]
+__all__ = [
+    "Campaign",
+    "Run",
+    "analyse",
+    "campaign",
+    "command",
+    "dsp",
+    "export",
+    "load",
+    "run",
+    "scene",
+    "validate",
+]
 __version__ = _stribeck.__version__
 
 Progress = Callable[[str, float, float], None]
-
-
-def _value(value: Any) -> str:
-    """A value as scenes write it."""
-    if value is None:
-        return "None"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_value(v) for v in value) + "]"
-    if isinstance(value, Mapping):
-        return "(" + ", ".join(f"{key}: {_value(v)}" for key, v in value.items()) + ")"
-    return str(value)
-
-
-def _overrides(fields: Mapping[str, Any], above: str = "") -> list[str]:
-    found: list[str] = []
-    for key, value in fields.items():
-        path = f"{above}.{key}" if above else str(key)
-        if isinstance(value, Mapping) and value:
-            found += _overrides(value, path)
-        else:
-            found.append(f"{path}={_value(value)}")
-    return found
 
 
 def _asked(scene: Any, fields: Mapping[str, Any] | None, duration_ms: float | None) -> tuple[Path | None, list[str]]:
@@ -63,11 +56,11 @@ def _asked(scene: Any, fields: Mapping[str, Any] | None, duration_ms: float | No
     file = None
     changed: list[str] = []
     if isinstance(scene, Mapping):
-        changed += _overrides(scene)
+        changed += _ron.overrides(scene)
     elif scene is not None:
         file = Path(scene)
     if fields:
-        changed += _overrides(fields)
+        changed += _ron.overrides(fields)
     if duration_ms is not None:
         changed.append(f"solver.duration_ms={duration_ms}")
     return file, changed
@@ -126,6 +119,18 @@ class Run:
         """How the run went: status, steps, times, versions, as in ``run.json``."""
         return json.loads((self.folder / "run.json").read_text())
 
+    @property
+    def energy(self) -> dict[str, Any]:
+        """The sampled ledger of energy, ``energy.npy``: arrays by name, whose unit is its end."""
+        import numpy
+
+        table = numpy.load(self.folder / "energy.npy")
+        return {name: numpy.ascontiguousarray(table[name]) for name in table.dtype.names}
+
+    def export(self, to: str, **options: Any) -> Path:
+        """Writes the run in the format of another program and returns the path: ``help(stribeck.export)``."""
+        return export(self.folder, to, **options)
+
     def report(self) -> Path:
         """Writes ``report.html`` and returns its path."""
         return _stribeck.report(self.folder)
@@ -156,7 +161,9 @@ def run(
     """Simulates a scene and returns the run.
 
     scene: a scene file, or fields that differ from the paper's bearing, as nested dicts
-        (``{"operation": {"load_n": 30e3}}``) or with dots (``{"operation.load_n": 30e3}``).
+        (``{"operation": {"load_n": 30e3}}``) or with dots (``{"operation.load_n": 30e3}``). A word of a scene that has fields of its
+        own is a dict of one key (``{"model": {"reduced": {"modes_khz": 30}}}``), a list is given whole
+        (``{"defects": [{"on": "outer", "form": {"spall": {"length_mm": 4, "depth_mm": 0.05}}}]}``).
     fields: more fields, over those of a file.
     duration_ms: simulated time [ms].
     out: folder of the run; without it ``runs/NAME``, numbered where there is one already.
@@ -205,11 +212,6 @@ def analyse(
     unit: of the samples, for what is shown.
     """
     return json.loads(_stribeck.analyse(dsp._samples(signal), rate_hz, bearing, speed_rpm, unit, name))
-
-
-def command(*arguments: str | os.PathLike[str]) -> int:
-    """Runs a command of the program, as in a shell, in a process of its own, and returns its exit code."""
-    return subprocess.run([sys.executable, "-m", "stribeck", *map(os.fspath, arguments)]).returncode
 
 
 def _main() -> None:

@@ -94,7 +94,12 @@ fn incomplete(path: &str, value: &str, schema: &Schema, place: Place) -> Box<Pro
 }
 
 /// Refuses a path that no scene has.
-fn known(path: &str, argument: &str, schema: &Schema, outline: &Outline) -> Result<(), Box<Problem>> {
+pub(crate) fn known(
+    path: &str,
+    argument: &str,
+    schema: &Schema,
+    outline: &Outline,
+) -> Result<(), Box<Problem>> {
     let mark = command_line(argument, 0, argument.find('=').unwrap_or(argument.len()));
     if schema.default_of(path).is_some() && (outline.get(path).is_some() || !path.contains('[')) {
         return Ok(());

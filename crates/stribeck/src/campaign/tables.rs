@@ -1,23 +1,27 @@
-//! The data set of a campaign: one table with a row for each run, one with the sampled signals.
+//! The data set of a campaign: a table with a row for each run, one with a row for each event, one with the sampled signals.
+
+mod events;
+mod signals;
+mod truth;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use serde_json::Value;
-use stribeck_formats::parquet::{Column, Values, Writer, write_table};
-use stribeck_scene::campaign::Campaign;
-use stribeck_scene::deviation::RollingSurface;
+use stribeck_formats::parquet::{Column, Values, write_table};
+use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::run_dir::{Keep, RunDir, SENSOR};
+use stribeck_scene::run_dir::{Keep, RunDir};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
-use stribeck_scene::trace::{Trace, TraceFile};
 
 use super::{Folder, Stage, summary_of};
+pub(super) use truth::{Truth, model};
 
-/// Names of the two tables.
+/// Names of the tables.
 pub(super) const RUNS: &str = "runs.parquet";
+pub(super) const EVENTS: &str = "events.parquet";
 pub(super) const SIGNALS: &str = "signals.parquet";
 
 /// One run in the table. What depends on the machine or on interruptions, such as seconds, stays in its folder.
@@ -29,16 +33,25 @@ pub(super) struct Row {
     variant: usize,
     start: usize,
     values: Vec<String>,
-    scene: Option<Scene>,
+    pub(super) scene: Option<Scene>,
+    /// Version and commit of the program that ran it.
+    pub(super) program: Option<String>,
     folder: Option<PathBuf>,
     /// Numbers of the summary by their path.
     numbers: BTreeMap<String, f64>,
     samples: Option<i64>,
 }
 
+/// Columns of the tables, by their names; of a table that is not written none.
+pub(super) struct Written {
+    pub(super) runs: Vec<String>,
+    pub(super) events: Vec<String>,
+    pub(super) signals: Vec<String>,
+}
+
 /// Reads what the runs left.
 pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Result<Vec<Row>> {
-    let row = |(variant, stage): (&stribeck_scene::campaign::Variant, &Stage)| -> Result<Row> {
+    let row = |(variant, stage): (&Variant, &Stage)| -> Result<Row> {
         let mut row = Row {
             number: variant.number,
             split: variant.split,
@@ -48,6 +61,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
             start: variant.start,
             values: variant.values.clone(),
             scene: variant.scene.clone().ok(),
+            program: None,
             folder: None,
             numbers: BTreeMap::new(),
             samples: None,
@@ -61,6 +75,9 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 }
                 flatten(&summary_of(&path)?, "", &mut row.numbers);
                 row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
+                // An overflow is no number, and a column without numbers is none.
+                row.numbers.retain(|_, number| number.is_finite());
+                row.program = Some(format!("{} ({})", info.version, info.commit));
                 row.samples = i64::try_from(info.samples).ok();
                 row.folder = Some(path);
             }
@@ -87,18 +104,24 @@ fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
     }
 }
 
-/// Writes both tables, each whole or not at all; gives the columns of the first. The second needs the runs' signals.
-pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Result<Vec<String>> {
-    let columns = columns(campaign, rows);
+/// Writes the tables, each whole or not at all. That of the signals needs those of the runs.
+pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Result<Written> {
     let notes = vec![
         ("campaign".to_owned(), campaign.text.clone()),
         ("stribeck".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
     ];
+    let names = |columns: Vec<Column>| columns.into_iter().map(|column| column.name).collect();
+    let columns = columns(campaign, rows);
     replace(&folder.0.join(RUNS), |path| Ok(write_table(path, &columns, &notes)?))?;
+    replace(&folder.0.join(EVENTS), |path| events::write(path, rows, &notes))?;
+    let mut written =
+        Written { runs: names(columns), events: names(events::columns(&[])), signals: Vec::new() };
     if campaign.keep != Keep::Numbers {
-        replace(&folder.0.join(SIGNALS), |path| signals(path, rows, &notes))?;
+        let signals = signals::names(rows)?;
+        replace(&folder.0.join(SIGNALS), |path| signals::write(path, rows, &signals, &notes))?;
+        written.signals = signals.into_iter().collect();
     }
-    Ok(columns.into_iter().map(|column| column.name).collect())
+    Ok(written)
 }
 
 /// Lets `write` make a file beside `path`, then puts it in its place. Parts that write the same file at once do not meet: each has
@@ -125,6 +148,7 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
     let of_scene = |name: &str, of: &dyn Fn(&Scene) -> f64| number(name, &|row| row.scene.as_ref().map(of));
     let kinematic = |name: &str, of: &dyn Fn(&Kinematics) -> f64| of_scene(name, &|s| of(&Kinematics::of(s)));
     let as_count = |n: usize| i64::try_from(n).ok();
+    let truth = |row: &Row| row.scene.as_ref().map(Truth::of);
     let mut columns = vec![
         count("run", &|row| as_count(row.number)),
         count("variant", &|row| as_count(row.variant)),
@@ -134,11 +158,17 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
         text("reason", &|row| row.reason.clone()),
         text("scene_hash", &|row| row.scene.as_ref().map(Scene::hash)),
         text("bearing", &|row| row.scene.as_ref().map(|s| s.bearing.designation.clone())),
-        text("fault_location", &|row| row.scene.as_ref().map(fault)),
-        number("fault_size_mm", &|row| row.scene.as_ref().and_then(fault_size_mm)),
+        text("model", &|row| row.scene.as_ref().map(|s| model(s).to_owned())),
+        text("fault_location", &|row| truth(row).map(|t| t.location)),
+        text("fault_type", &|row| truth(row)?.form),
+        count("fault_count", &|row| as_count(truth(row)?.count)),
+        number("fault_size_mm", &|row| Some(truth(row)?.first?.length_mm)),
+        number("fault_depth_mm", &|row| Some(truth(row)?.first?.depth_mm)),
+        number("fault_angle_deg", &|row| Some(truth(row)?.first?.angle_deg)),
+        text("deviation_type", &|row| truth(row)?.deviations),
         of_scene("shaft_speed_rpm", &|s| s.operation.speed_rpm),
         of_scene("load_n", &|s| s.operation.load_n),
-        of_scene("sampling_rate_hz", &|s| (1e6 / s.output.interval_us * 1e3).round() / 1e3),
+        of_scene("sampling_rate_hz", &sampling_rate_hz),
         count("n_samples", &|row| row.samples),
         kinematic("bpfo_hz", &|k| k.bpfo_hz),
         kinematic("bpfi_hz", &|k| k.bpfi_hz),
@@ -154,74 +184,15 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
         });
     }
     let names: BTreeSet<&String> = rows.iter().flat_map(|row| row.numbers.keys()).collect();
-    columns.extend(names.into_iter().map(|name| {
-        number(&format!("summary.{name}"), &|row| row.numbers.get(name).copied().filter(|n| n.is_finite()))
-    }));
+    columns.extend(
+        names
+            .into_iter()
+            .map(|name| number(&format!("summary.{name}"), &|row| row.numbers.get(name).copied())),
+    );
     columns
 }
 
-/// Where the defect is, in the words of data sets.
-fn fault(scene: &Scene) -> String {
-    let name = |on: &RollingSurface| match on {
-        RollingSurface::Outer => "outer_race",
-        RollingSurface::Inner => "inner_race",
-        RollingSurface::Roller(_) => "rolling_element",
-    };
-    // In their order: rollers come last, one beside the other.
-    let mut names: Vec<&str> = scene.faults().iter().map(name).collect();
-    names.dedup();
-    if scene.rollers_in_place().count() < scene.bearing.rollers {
-        names.push("missing_rolling_element");
-    }
-    if names.is_empty() { "healthy".to_owned() } else { names.join("+") }
-}
-
-/// Length of the first defect along its surface [mm].
-fn fault_size_mm(scene: &Scene) -> Option<f64> {
-    let of_defect = scene.defect.as_ref().map(|defect| defect.length_mm);
-    of_defect.or_else(|| scene.defects.iter().find_map(|deviation| deviation.form.length_mm()))
-}
-
-/// One group of rows for each run that has signals: a row a sample. The signals of one run are in memory at a time.
-fn signals(path: &Path, rows: &[Row], notes: &[(String, String)]) -> Result<()> {
-    let recorded = || {
-        rows.iter().filter_map(|row| {
-            let dir = RunDir::open(row.folder.as_ref()?).ok()?;
-            Some((row, if dir.signals().exists() { dir.signals() } else { dir.trace() }))
-        })
-    };
-    let mut names = BTreeSet::new();
-    for (_, file) in recorded() {
-        names.extend(TraceFile::open(file)?.names().iter().filter(|name| name.starts_with(SENSOR)).cloned());
-    }
-    let schema: Vec<Column> = group(None, &names, Trace::default()).collect();
-    let mut writer = Writer::create(path, &schema, notes)?;
-    for (row, file) in recorded() {
-        let file = TraceFile::open(file)?;
-        let trace = file.read(0..file.len(), |name| name == "time_s" || name.starts_with(SENSOR))?;
-        writer.add(group(Some(row), &names, trace))?;
-    }
-    writer.finish()?;
-    Ok(())
-}
-
-/// The columns of a run's signals; one that it has not recorded is empty.
-fn group<'a>(
-    row: Option<&'a Row>,
-    names: &'a BTreeSet<String>,
-    mut trace: Trace,
-) -> impl Iterator<Item = Column> + use<'a> {
-    let all = trace.len();
-    let column = |name: &str, values| Column { name: name.to_owned(), values };
-    let run = move || row.and_then(|row| i64::try_from(row.number).ok());
-    let split = move || row.map(|row| row.split.to_owned());
-    let run = std::iter::once_with(move || column("run", Values::Count(vec![run(); all])));
-    let split = std::iter::once_with(move || column("split", Values::Text(vec![split(); all])));
-    let time = trace.take("time_s").unwrap_or_default();
-    let time = std::iter::once_with(move || Column::numbers("time_s", time));
-    let signals = names.iter().map(move |name| match trace.take(name) {
-        Some(values) => Column::numbers(name.clone(), values),
-        None => column(name, Values::Number(vec![None; all])),
-    });
-    run.chain(split).chain(time).chain(signals)
+/// Samples a second, to a thousandth.
+pub(super) fn sampling_rate_hz(scene: &Scene) -> f64 {
+    (1e6 / scene.output.interval_us * 1e3).round() / 1e3
 }

@@ -1,0 +1,190 @@
+//! How the values of a campaign are chosen: a grid, a design over ranges, or the rows of a table.
+
+use std::path::{Path, PathBuf};
+
+use ron::value::RawValue;
+use serde::Deserialize;
+
+use super::MOST_RUNS;
+use crate::dice::Dice;
+
+/// Most runs of a Sobol sequence.
+const MOST_OF_SOBOL: usize = 1 << 16;
+
+/// How values are chosen.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "snake_case")]
+pub(super) enum Variants {
+    /// Every value with every other.
+    Grid(Vec<Axis>),
+    /// Each of `count` equal parts of every range once.
+    LatinHypercube { count: usize, over: Vec<Axis> },
+    /// A scrambled Sobol sequence.
+    Sobol { count: usize, over: Vec<Axis> },
+    /// The rows of a CSV file, whose first row names the fields.
+    Table(PathBuf),
+}
+
+/// A field and its values, or its range.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields, rename = "axis")]
+pub(super) struct Axis {
+    field: String,
+    #[serde(default)]
+    values: Vec<Box<RawValue>>,
+    #[serde(default)]
+    from: Option<f64>,
+    #[serde(default)]
+    to: Option<f64>,
+    /// Evenly over the logarithm.
+    #[serde(default)]
+    log: bool,
+}
+
+/// Fields, each with the place in the campaign's file that names it, and the values of each variant.
+pub(super) struct Rows {
+    pub(super) fields: Vec<(String, String)>,
+    pub(super) values: Vec<Vec<String>>,
+}
+
+/// What cannot be: the place in the campaign's file, as a path, and why.
+pub(super) struct Refused {
+    pub(super) at: String,
+    pub(super) why: String,
+}
+
+impl Refused {
+    fn new(at: impl Into<String>, why: String) -> Self {
+        Self { at: at.into(), why }
+    }
+}
+
+impl Variants {
+    /// The values of each variant. Tables are looked for from `folder`.
+    pub(super) fn rows(&self, seed: u64, folder: &Path) -> Result<Rows, Refused> {
+        match self {
+            Self::Grid(axes) => grid(axes),
+            Self::LatinHypercube { count, over } => {
+                let places = latin_hypercube(seed, *count, over.len());
+                drawn(over, *count, MOST_RUNS, &|row, axis| places[axis][row])
+            }
+            Self::Sobol { count, over } => {
+                let seed = (seed ^ (seed >> 32)) as u32;
+                let place =
+                    |row: usize, axis: usize| f64::from(sobol_burley::sample(row as u32, axis as u32, seed));
+                drawn(over, *count, MOST_OF_SOBOL, &place)
+            }
+            Self::Table(path) => table(&folder.join(path)).map_err(|why| Refused::new("variants", why)),
+        }
+    }
+}
+
+impl Axis {
+    fn listed(&self) -> Vec<String> {
+        self.values.iter().map(|value| value.get_ron().trim().to_owned()).collect()
+    }
+
+    /// The value at `share` of the way, 0 to 1.
+    fn at(&self, share: f64) -> Result<String, String> {
+        let values = self.listed();
+        let field = &self.field;
+        match (self.from, self.to) {
+            (None, None) if !values.is_empty() => {
+                let which = ((share * values.len() as f64) as usize).min(values.len() - 1);
+                Ok(values[which].clone())
+            }
+            (Some(from), Some(to)) if values.is_empty() => {
+                if !(from.is_finite() && to.is_finite() && from < to && (!self.log || from > 0.0)) {
+                    return Err(format!(
+                        "`{field}` goes from {from} to {to}; `from` is below `to`, and above 0 with `log: true`"
+                    ));
+                }
+                let value =
+                    if self.log { from * (to / from).powf(share) } else { from + share * (to - from) };
+                // Seven digits: short to read in a scene, and finer than anything that is measured.
+                Ok(format!("{}", format!("{value:.6e}").parse::<f64>().unwrap_or(value)))
+            }
+            _ => Err(format!("`{field}` takes either `values: […]` or both `from` and `to`")),
+        }
+    }
+}
+
+fn grid(axes: &[Axis]) -> Result<Rows, Refused> {
+    let mut rows = vec![Vec::new()];
+    for (n, axis) in axes.iter().enumerate() {
+        let values = axis.listed();
+        if values.is_empty() || axis.from.is_some() || axis.to.is_some() {
+            let why = "a grid takes `values: […]`; `latin_hypercube` and `sobol` take ranges";
+            return Err(Refused::new(format!("variants[{n}]"), format!("`{}`: {why}", axis.field)));
+        }
+        if rows.len().saturating_mul(values.len()) > MOST_RUNS {
+            return Err(Refused::new("variants", format!("the grid has more than {MOST_RUNS} variants")));
+        }
+        rows = rows
+            .iter()
+            .flat_map(|row: &Vec<String>| {
+                values.iter().map(|value| [&row[..], std::slice::from_ref(value)].concat())
+            })
+            .collect();
+    }
+    let place = |(n, axis): (usize, &Axis)| (axis.field.clone(), format!("variants[{n}].field"));
+    Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: rows })
+}
+
+fn drawn(
+    axes: &[Axis],
+    count: usize,
+    most: usize,
+    place: &dyn Fn(usize, usize) -> f64,
+) -> Result<Rows, Refused> {
+    if count == 0 || count > most || axes.is_empty() || axes.len() > 256 {
+        let why =
+            format!("`variants` draws {count} points over {} fields; 1 to {most} over 1 to 256", axes.len());
+        return Err(Refused::new("variants", why));
+    }
+    let value = |row, (n, axis): (usize, &Axis)| {
+        axis.at(place(row, n)).map_err(|why| Refused::new(format!("variants.over[{n}]"), why))
+    };
+    let row = |row: usize| axes.iter().enumerate().map(|axis| value(row, axis)).collect();
+    let values: Result<Vec<Vec<String>>, Refused> = (0..count).map(row).collect();
+    let place = |(n, axis): (usize, &Axis)| (axis.field.clone(), format!("variants.over[{n}].field"));
+    Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: values? })
+}
+
+/// Places 0 to 1 by axis and row: each row in a part of its own.
+fn latin_hypercube(seed: u64, count: usize, axes: usize) -> Vec<Vec<f64>> {
+    let mut dice = Dice::new(seed);
+    let axis = |_| {
+        let mut parts: Vec<usize> = (0..count).collect();
+        for i in (1..count).rev() {
+            parts.swap(i, dice.below(i + 1));
+        }
+        parts.into_iter().map(|part| (part as f64 + dice.share()) / count as f64).collect()
+    };
+    (0..axes).map(axis).collect()
+}
+
+fn table(path: &Path) -> Result<Rows, String> {
+    let text =
+        std::fs::read_to_string(path).map_err(|e| format!("cannot read table `{}`: {e}", path.display()))?;
+    let cells = |line: &str| line.split(',').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+    let Some((_, head)) = lines.next() else { return Err(format!("table `{}` is empty", path.display())) };
+    let fields = cells(head);
+    let mut rows = Vec::new();
+    for (number, line) in lines {
+        let row = cells(line);
+        if row.len() != fields.len() {
+            return Err(format!(
+                "table `{}`, line {}: {} cells where the first line names {} fields",
+                path.display(),
+                number + 1,
+                row.len(),
+                fields.len()
+            ));
+        }
+        rows.push(row);
+    }
+    let fields = fields.into_iter().map(|field| (field, "variants".to_owned())).collect();
+    Ok(Rows { fields, values: rows })
+}

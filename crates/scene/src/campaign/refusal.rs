@@ -1,0 +1,142 @@
+//! What is wrong with a campaign's file, said as of scenes: with line, field, what is allowed and what to try.
+
+use ron::error::SpannedError;
+
+use crate::scene_file::outline::Outline;
+use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_file};
+use crate::scene_file::wording::{list, shown};
+use crate::scene_file::{self, suggest};
+
+/// The text of a campaign, and where its fields stand.
+pub(super) struct File<'a> {
+    name: &'a str,
+    text: &'a str,
+    outline: Outline,
+}
+
+/// A file that the system does not give.
+pub(super) fn unreadable(name: &str, error: &std::io::Error) -> SceneError {
+    let place = Place::Unwritten { file: name.to_owned() };
+    let mut problem = Problem::new(format!("cannot read campaign `{name}`: {error}"), place);
+    problem.suggestion = "name a campaign's file, such as fixtures/campaigns/quick64.ron".to_owned();
+    problem.into()
+}
+
+impl<'a> File<'a> {
+    pub(super) fn new(name: &'a str, text: &'a str) -> Self {
+        Self { name, text, outline: Outline::of(text) }
+    }
+
+    /// The value at a path; the whole file where it is not written.
+    fn place(&self, path: &str) -> Place {
+        match self.outline.get(path) {
+            Some(entry) => place_in_file(self.name, self.text, entry.value.clone()),
+            None => Place::Unwritten { file: self.name.to_owned() },
+        }
+    }
+
+    /// Refuses the value at a path.
+    pub(super) fn refuse(&self, path: &str, why: String) -> SceneError {
+        let mut problem = Problem::new(why, self.place(path));
+        path.clone_into(&mut problem.field);
+        problem.into()
+    }
+
+    /// A field that no scene has, named at a path.
+    pub(super) fn unknown_field(&self, mut problem: Problem, path: &str) -> SceneError {
+        problem.place = self.place(path);
+        problem.into()
+    }
+
+    /// The scene that variants start from; what is wrong with an item of `set` is shown there.
+    pub(super) fn of_base(&self, error: SceneError) -> SceneError {
+        let in_set = |argument: &str| {
+            let items = self.outline.entries.iter().filter(|entry| entry.path.starts_with("set["));
+            items.map(|entry| &entry.value).find(|at| self.text[(*at).clone()].trim_matches('"') == argument)
+        };
+        let placed = error.problems().iter().cloned().map(|mut problem| {
+            if let Place::CommandLine { argument, .. } = &problem.place {
+                problem.place = match in_set(argument) {
+                    Some(at) => place_in_file(self.name, self.text, at.clone()),
+                    None => self.place("set"),
+                };
+            }
+            problem
+        });
+        SceneError::new(placed.collect())
+    }
+
+    /// A text that is no campaign.
+    pub(super) fn no_campaign(&self, error: &SpannedError) -> SceneError {
+        use ron::Error as E;
+        let start = offset(self.text, error.span.start.line, error.span.start.col);
+        let end = offset(self.text, error.span.end.line, error.span.end.col).max(start);
+        let mut range = start..end;
+        let mut problem = Problem::new("", self.place(""));
+        match &error.code {
+            E::NoSuchStructField { expected, found, outer } => {
+                let named = self.outline.entries.iter().map(|entry| &entry.key);
+                let named = named.filter(|key| self.text[(*key).clone()] == **found && key.end <= end + 1);
+                range = named.max_by_key(|key| key.start).cloned().unwrap_or(range);
+                problem.field.clone_from(found);
+                problem.message = format!("unknown field `{}` in {}", shown(found), part(outer.as_deref()));
+                problem.allowed = list(expected);
+                problem.suggestion = match suggest::nearest(found, expected) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None if scene_file::unknown_field(found).is_none() => {
+                        format!(
+                            "a field of the scene stands in `set: [\"{found}=…\"]`, or in `variants` where it varies"
+                        )
+                    }
+                    None => String::new(),
+                };
+            }
+            E::NoSuchEnumVariant { expected, found, .. } => {
+                problem.field = self.outline.at(start).map_or_else(String::new, |entry| entry.path.clone());
+                problem.message =
+                    format!("`{}` is `{}`, which is not one of its words", problem.field, shown(found));
+                problem.allowed = list(expected);
+                if let Some(near) = suggest::nearest(found, expected) {
+                    problem.suggestion = format!("did you mean `{near}`?");
+                }
+            }
+            E::MissingStructField { field, outer } => {
+                problem.field = (*field).to_owned();
+                problem.message = format!("{} lacks `{field}`, which has no default", part(outer.as_deref()));
+                problem.suggestion = match outer.as_deref() {
+                    Some("split") => {
+                        format!("`train`, `validation` and `test` sum to 1; `{field}: 0` for none")
+                    }
+                    Some("axis") => {
+                        "`(field: \"operation.load_n\", values: [10000, 20000])` is one".to_owned()
+                    }
+                    _ => EXAMPLE.to_owned(),
+                };
+            }
+            E::DuplicateStructField { field, .. } => {
+                problem.field = (*field).to_owned();
+                problem.message = format!("field `{field}` is given twice");
+                problem.suggestion = "keep one of the two".to_owned();
+            }
+            code => {
+                problem.message = format!("the campaign cannot be read: {code}");
+                problem.suggestion = EXAMPLE.to_owned();
+            }
+        }
+        problem.place = place_in_file(self.name, self.text, range);
+        problem.into()
+    }
+}
+
+const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, `split` and `keep`; \
+                       fixtures/campaigns/quick64.ron is one";
+
+/// The part of a campaign that has this name among its types.
+fn part(outer: Option<&str>) -> &'static str {
+    match outer {
+        Some("split") => "`split`",
+        Some("axis") => "a field that varies",
+        Some("sobol" | "latin_hypercube" | "Sobol" | "LatinHypercube") => "`variants`",
+        _ => "a campaign",
+    }
+}

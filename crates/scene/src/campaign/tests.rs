@@ -1,0 +1,128 @@
+//! What files of campaigns make, and what they are told.
+
+use super::*;
+
+fn parse(text: &str) -> Result<Campaign, String> {
+    Campaign::parse(text, "a.ron", Path::new("")).map_err(|why| why.to_string())
+}
+
+#[test]
+fn example_a_grid_has_every_value_with_every_other() {
+    let text = "(name: \"g\", starts: 2, variants: grid([
+        (field: \"operation.load_n\", values: [10000, 20000]),
+        (field: \"bearing\", values: [\"NU 205\", \"NU 206\", \"6205\"]),
+    ]))";
+    let campaign = parse(text).unwrap();
+    assert_eq!(campaign.runs.len(), 12);
+    let last = &campaign.runs[11];
+    assert_eq!(
+        (last.variant, last.start, &last.values[..]),
+        (6, 2, &["20000".to_owned(), "\"6205\"".to_owned()][..])
+    );
+    let scene = last.scene.as_ref().unwrap();
+    assert_eq!((scene.bearing.designation.as_str(), scene.operation.load_n), ("6205", 20_000.0));
+    assert_ne!(scene.hash(), campaign.runs[10].scene.as_ref().unwrap().hash());
+    assert_eq!(campaign.runs[10].split, last.split);
+}
+
+#[test]
+fn invariant_designs_fill_their_ranges_and_repeat() {
+    for design in ["latin_hypercube", "sobol"] {
+        let text = format!(
+            "(name: \"d\", seed: 7, variants: {design}(count: 64, over: [
+            (field: \"operation.load_n\", from: 1000, to: 100000, log: true),
+            (field: \"operation.speed_rpm\", from: 100, to: 900),
+            (field: \"contact.surface\", values: [facet, arc])]))"
+        );
+        let (a, b) = (parse(&text).unwrap(), parse(&text).unwrap());
+        assert!(a.runs.iter().zip(&b.runs).all(|(a, b)| a.values == b.values && a.split == b.split));
+        // Each eighth of the range holds eight of the 64, by construction of both.
+        let mut eighths = [0; 8];
+        for run in &a.runs {
+            let rpm: f64 = run.values[1].parse().unwrap();
+            eighths[(((rpm - 100.0) / 100.0) as usize).min(7)] += 1;
+            assert!(run.scene.is_ok(), "{:?}", run.scene);
+        }
+        assert_eq!(eighths, [8; 8], "{design}");
+        let arcs = a.runs.iter().filter(|run| run.values[2] == "arc").count();
+        assert_eq!(arcs, 32, "{design}");
+    }
+}
+
+#[test]
+fn example_a_scene_that_cannot_be_is_a_row_with_its_reason() {
+    let text = "(name: \"x\", variants: grid([(field: \"defect.depth_mm\", values: [0.2, 9])]))";
+    let campaign = parse(text).unwrap();
+    assert!(campaign.runs[0].scene.is_ok());
+    assert!(campaign.runs[1].scene.as_ref().unwrap_err().contains("defect.depth_mm"));
+}
+
+#[test]
+fn refuses_campaigns_that_cannot_be() {
+    let with = |rest: &str| format!("(name: \"x\",\n{rest})");
+    let field = |name: &str| with(&format!("variants: grid([(field: \"{name}\", values: [1])])"));
+    for (text, says) in [
+        (with(""), &["a.ron:", "`variants`"][..]),
+        ("(name: \"x y\", variants: grid([]))".to_owned(), &["a.ron:1:8", "folder's name"]),
+        (
+            with("variants: grid([(field: \"operation.load_n\", from: 1, to: 2)])"),
+            &["a.ron:2:17", "a grid takes"],
+        ),
+        (with("variants: sobol(count: 0, over: [])"), &["a.ron:2:11", "0 points"]),
+        (
+            with("variants: sobol(count: 2, over: [(field: \"mesh.size_mm\", from: 2, to: 1)])"),
+            &["a.ron:2:34", "below `to`"],
+        ),
+        (with("variants: sobol(count: 2, over: [], scramble: true)"), &["a.ron:2:", "`scramble`", "`over`"]),
+        (with("variants: sobl(count: 2, over: [])"), &["`sobl`", "did you mean `sobol`?"]),
+        (with("variants: table(\"none.csv\")"), &["none.csv"]),
+        (with("starts: 0, variants: grid([])"), &["a.ron:2:9", "`starts`"]),
+        (with("split: (train: 1, validation: 1, test: 1), variants: grid([])"), &["a.ron:2:8", "sums to 3"]),
+        (
+            with("split: (train: 0.8, test: 0.2), variants: grid([])"),
+            &["a.ron:2:", "`split` lacks `validation`", "`validation: 0`"],
+        ),
+        ("(nam: \"x\")".to_owned(), &["a.ron:1:2", "`nam`", "did you mean `name`?"]),
+        (with("bearing: \"NU 205\""), &["a.ron:2:1", "`bearing`", "`set"]),
+        (
+            field("operation.laod_n"),
+            &["a.ron:2:25", "`operation.laod_n`", "did you mean `operation.load_n`?"],
+        ),
+        (field("load_n"), &["a.ron:2:25", "operation.load_n"]),
+        (with("set: [\"seed=1\", \"mesh.size=1.0\"], variants: grid([])"), &["a.ron:2:7", "`seed`"]),
+        (
+            with("set: [\"cage=None\", \"mesh.size=1.0\"], variants: grid([])"),
+            &["a.ron:2:20", "`mesh.size`", "did you mean `mesh.size_mm`?"],
+        ),
+        (with("scene: \"no.ron\", variants: grid([])"), &["no.ron", "there is no such file"]),
+    ] {
+        let why = parse(&text).unwrap_err();
+        for word in says {
+            assert!(why.contains(word), "{text}: {word} is not in\n{why}");
+        }
+    }
+}
+
+#[test]
+fn example_campaigns_of_the_repository_have_no_variant_that_cannot_be() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/campaigns");
+    let files = std::fs::read_dir(folder).expect("fixtures").flatten().map(|entry| entry.path());
+    let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "ron"));
+    let mut runs = 0;
+    // A thousand scenes take seconds, and are made in the same way.
+    for path in files.filter(|path| !path.ends_with("records.ron")) {
+        let campaign = Campaign::read(&path).unwrap_or_else(|why| panic!("{why}"));
+        for run in &campaign.runs {
+            assert!(run.scene.is_ok(), "{}: {:?}", path.display(), run.scene);
+        }
+        runs += campaign.runs.len();
+    }
+    assert!(runs >= 64 + 36 + 32 + 16 + 4, "{runs}");
+}
+
+#[test]
+fn example_variants_repair_the_scene_that_they_start_from() {
+    // Deeper than the ring is thick, but for what varies.
+    let text = "(name: \"x\", set: [\"defect.depth_mm=9\"], variants: grid([(field: \"defect.depth_mm\", values: [0.2])]))";
+    assert!(parse(text).unwrap().runs[0].scene.is_ok());
+}

@@ -1,0 +1,67 @@
+//! The sampled signals of all runs: a row for each sample.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::Result;
+use stribeck_formats::parquet::{Column, Values, Writer};
+use stribeck_scene::run_dir::{RunDir, SENSOR};
+use stribeck_scene::trace::{Trace, TraceFile};
+
+use super::Row;
+
+/// Runs that have signals, and the file of each.
+fn recorded(rows: &[Row]) -> impl Iterator<Item = (&Row, PathBuf)> {
+    rows.iter().filter_map(|row| {
+        let dir = RunDir::open(row.folder.as_ref()?).ok()?;
+        Some((row, if dir.signals().exists() { dir.signals() } else { dir.trace() }))
+    })
+}
+
+/// Names of the signals that any of the runs has.
+pub(super) fn names(rows: &[Row]) -> Result<BTreeSet<String>> {
+    let mut names = BTreeSet::new();
+    for (_, file) in recorded(rows) {
+        names.extend(TraceFile::open(file)?.names().iter().filter(|name| name.starts_with(SENSOR)).cloned());
+    }
+    Ok(names)
+}
+
+/// One group of rows for each run that has signals. The signals of one run are in memory at a time.
+pub(super) fn write(
+    path: &Path,
+    rows: &[Row],
+    names: &BTreeSet<String>,
+    notes: &[(String, String)],
+) -> Result<()> {
+    let schema: Vec<Column> = group(None, names, Trace::default()).collect();
+    let mut writer = Writer::create(path, &schema, notes)?;
+    for (row, file) in recorded(rows) {
+        let file = TraceFile::open(file)?;
+        let trace = file.read(0..file.len(), |name| name == "time_s" || name.starts_with(SENSOR))?;
+        writer.add(group(Some(row), names, trace))?;
+    }
+    writer.finish()?;
+    Ok(())
+}
+
+/// The columns of a run's signals; one that it has not recorded is empty.
+fn group<'a>(
+    row: Option<&'a Row>,
+    names: &'a BTreeSet<String>,
+    mut trace: Trace,
+) -> impl Iterator<Item = Column> + use<'a> {
+    let all = trace.len();
+    let column = |name: &str, values| Column { name: name.to_owned(), values };
+    let run = move || row.and_then(|row| i64::try_from(row.number).ok());
+    let split = move || row.map(|row| row.split.to_owned());
+    let run = std::iter::once_with(move || column("run", Values::Count(vec![run(); all])));
+    let split = std::iter::once_with(move || column("split", Values::Text(vec![split(); all])));
+    let time = trace.take("time_s").unwrap_or_default();
+    let time = std::iter::once_with(move || Column::numbers("time_s", time));
+    let signals = names.iter().map(move |name| match trace.take(name) {
+        Some(values) => Column::numbers(name.clone(), values),
+        None => column(name, Values::Number(vec![None; all])),
+    });
+    run.chain(split).chain(time).chain(signals)
+}
