@@ -7,7 +7,6 @@
 //! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the outer ring turns, too, their
 //! orders count turns of the shaft against it, and the angle is that between the rings.
 
-use std::borrow::Cow;
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
@@ -146,22 +145,9 @@ pub fn family(scene: &Scene) -> Option<(&'static str, f64)> {
     })
 }
 
-/// Angle of the shaft against the outer ring [rad], of the angles of both.
-pub fn against<'a>(shaft: &'a [f64], outer: Option<&[f64]>) -> Cow<'a, [f64]> {
-    match outer {
-        Some(outer) => shaft.iter().zip(outer).map(|(shaft, outer)| shaft - outer).collect(),
-        None => Cow::Borrowed(shaft),
-    }
-}
-
-/// Angle of the shaft against the outer ring at each sample [rad]; `None` when it was not recorded.
-pub fn angle<'a>(record: &'a Record<'_>) -> Option<Cow<'a, [f64]>> {
-    Some(against(record.channel("shaft.angle_rad")?, record.channel("outer_ring.angle_rad")))
-}
-
-/// The same in turns, rising where it turns its main way.
+/// Turns of the shaft against the outer ring at each sample, rising where it turns its main way; `None` when they were not recorded.
 pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
-    let angle = angle(record)?;
+    let angle = record.relative_angle()?;
     let back = angle.last()? < angle.first()?;
     let turn = if back { -1.0 / TAU } else { 1.0 / TAU };
     Some(angle.iter().map(|rad| turn * rad).collect())

@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 
 use stribeck_scene::kinematics::Kinematics;
 
-use crate::duty;
 use crate::record::{Record, Roller};
 
 /// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
@@ -185,7 +184,7 @@ impl KinematicsFinding {
 /// each other: rates are then those at that speed, whatever the true one did.
 fn clock<'a>(record: &'a Record<'_>, expected: &Kinematics) -> Cow<'a, [f64]> {
     let against = expected.shaft_rad_s - expected.outer_rad_s;
-    match duty::angle(record) {
+    match record.relative_angle() {
         Some(angle) if against != 0.0 => angle.iter().map(|rad| rad / against).collect(),
         _ => Cow::Borrowed(record.time_s()),
     }

@@ -1,5 +1,6 @@
 //! The samples of a run, cut where they stop being numbers, and its channels under their names.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use stribeck_scene::run_dir::Run;
@@ -52,6 +53,14 @@ pub struct Roller<'a> {
     pub inner_fx: &'a [f64],
     /// Force of the inner raceway, y [N].
     pub inner_fy: &'a [f64],
+}
+
+/// Angle of the shaft against the outer ring [rad], of the angles of both.
+pub fn against<'a>(shaft: &'a [f64], outer: Option<&[f64]>) -> Cow<'a, [f64]> {
+    match outer {
+        Some(outer) => shaft.iter().zip(outer).map(|(shaft, outer)| shaft - outer).collect(),
+        None => Cow::Borrowed(shaft),
+    }
 }
 
 /// Whether a channel is one of these rollers'.
@@ -191,6 +200,11 @@ impl<'a> Record<'a> {
     /// Times [s].
     pub fn time_s(&self) -> &[f64] {
         self.channel("time_s").unwrap_or(&[])
+    }
+
+    /// Angle of the shaft against the outer ring at each sample [rad]; `None` when it was not recorded.
+    pub fn relative_angle(&self) -> Option<Cow<'_, [f64]>> {
+        Some(against(self.channel("shaft.angle_rad")?, self.channel("outer_ring.angle_rad")))
     }
 
     /// Values of a channel that is in memory.

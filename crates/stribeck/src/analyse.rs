@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::duty;
 use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
 use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
+use stribeck_analysis::record;
 use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
 use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::CatalogueBearing;
@@ -294,7 +294,7 @@ fn machine(
         if scene.operation.outer_turns() {
             // Families go with the difference of both speeds.
             let outer = recording.channel("outer_ring.angle_rad")?.read()?;
-            let values = duty::against(&angle.read()?, Some(&outer)).into_owned();
+            let values = record::against(&angle.read()?, Some(&outer)).into_owned();
             against = Channel::held(angle.name.clone(), values);
             angle = &against;
         }

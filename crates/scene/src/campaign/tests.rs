@@ -121,6 +121,18 @@ fn example_campaigns_of_the_repository_have_no_variant_that_cannot_be() {
 }
 
 #[test]
+fn example_the_guide_shows_the_campaigns_of_the_repository() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).expect("a file of the repository");
+    let page = read("docs/guide/src/campaign_file.md");
+    for name in ["starts.ron", "spalls.ron", "quick64.ron", "records.ron", "duty.ron", "duty.csv"] {
+        let text = read(&format!("fixtures/campaigns/{name}"));
+        let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("//")).collect();
+        assert!(page.contains(&format!("{name}`:\n\n```text\n{}\n```", lines.join("\n"))), "{name}");
+    }
+}
+
+#[test]
 fn example_variants_repair_the_scene_that_they_start_from() {
     // Deeper than the ring is thick, but for what varies.
     let text = "(name: \"x\", set: [\"defect.depth_mm=9\"], variants: grid([(field: \"defect.depth_mm\", values: [0.2])]))";

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 
 use crate::Error;
-use crate::duty;
 use crate::findings::Findings;
 use crate::load::running_mean;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
@@ -27,7 +26,7 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     let cage_rad_s = k.outer_rad_s - k.sense() * TAU * k.cage_on_outer_hz;
     let crossing: Vec<usize> = findings.summary.events.iter().map(|e| e.roller).take(3).collect();
     // What the rings turn at against each other, over its mean; rings that hardly do tell nothing of slip.
-    let against = duty::angle(record).map(|angle| rates(&angle, record.interval_s(), width));
+    let against = record.relative_angle().map(|angle| rates(&angle, record.interval_s(), width));
     let mean = k.shaft_rad_s - k.outer_rad_s;
     let pace = |n: usize| against.as_ref().map_or(1.0, |rate| (rate[n] / mean).abs());
     let percent = |name: &str, colour: Colour, angle: &[f64], without_slip_rad_s: f64| {

@@ -120,13 +120,13 @@ mod tests {
         let found = truth(&[
             "film=None",
             "defect=None",
-            "defects=[(on: roller(3), angle_deg: 20, form: dent(length_mm: 2.0, depth_mm: 0.04)), \
+            "defects=[(on: roller(3), angle_deg: 20, form: dent(length_mm: 2.2, depth_mm: 0.04)), \
              (on: outer, form: waviness(order: 9)), (on: inner, form: spall(length_mm: 4.0)), (on: roller(5), form: missing)]",
         ]);
         assert_eq!(found.location, "inner_race+rolling_element+missing_rolling_element");
         assert_eq!((found.form.as_deref(), found.count), (Some("dent+spall+missing"), 3));
         // The hollow and half as much of the rim on either side; the first one of the scene.
-        assert_eq!(found.first, Some(Extent { length_mm: 4.0, depth_mm: 0.04, angle_deg: 20.0 }));
+        assert_eq!(found.first, Some(Extent { length_mm: 4.4, depth_mm: 0.04, angle_deg: 20.0 }));
         assert_eq!(found.deviations.as_deref(), Some("waviness"));
     }
 
