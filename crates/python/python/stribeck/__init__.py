@@ -180,7 +180,7 @@ def run(
 
 
 def load(folder: str | os.PathLike[str]) -> Run:
-    """A run that lies in a folder."""
+    """A run that lies in a folder; its signals are read when they are first asked for."""
     found = Run(folder)
     if not (found.folder / "run.json").exists():
         raise FileNotFoundError(f"{folder} holds no run: there is no run.json")
