@@ -12,11 +12,11 @@ use crate::campaign::summary_of;
 /// Rows that are written at a time: of many short runs, or of one long one and what came before it.
 const GROUP: usize = 1 << 16;
 
-/// A column's name, and its number of an event.
-type Column = (&'static str, fn(&Event) -> Option<f64>);
+/// The name of a number of an event, and where it stands.
+type Field = (&'static str, fn(&Event) -> Option<f64>);
 
 /// What an event says in numbers, under the names of `summary.json`.
-const NUMBERS: [Column; 14] = [
+const NUMBERS: [Field; 14] = [
     ("expected_entry_ms", |e| Some(e.expected_entry_ms)),
     ("expected_exit_ms", |e| Some(e.expected_exit_ms)),
     ("path_entry_ms", |e| e.path_entry_ms),
