@@ -24,7 +24,7 @@ pub struct Options {
     #[arg(long, default_value_t = 3.5)]
     ns_per_element_step: f64,
     /// Processor time for one roller and one step of the reduced model, dry [ns], for the estimate of cost
-    #[arg(long, default_value_t = 330.0)]
+    #[arg(long, default_value_t = 250.0)]
     ns_per_roller_step: f64,
 }
 
