@@ -143,15 +143,16 @@ pub struct Pressed<'a> {
 /// The sag of the surfaces at a point [m], and its shares of two nodes of each.
 type Point = (f64, [[(usize, f64); 2]; 2]);
 
-/// Integration points on a facet.
+/// Integration points on a facet, or on half the contact where that is shorter.
 const POINTS: usize = 16;
 
 impl Pressed<'_> {
     /// Force [N] at the approach `delta` [m], with the middle nodes off the contact's middle by these shares of a facet.
     pub fn force(&self, delta: f64, phase: [f64; 2]) -> f64 {
         let n = self.flexibility.map(<[_]>::len);
-        let step = self.spacing[0].min(self.spacing[1]) / POINTS as f64;
-        let half = (2.0 * self.radius * delta).sqrt() + step;
+        let touching = (2.0 * self.radius * delta).sqrt();
+        let step = (self.spacing[0].min(self.spacing[1]).min(touching)) / POINTS as f64;
+        let half = touching + step;
         let points = (2.0 * half / step).ceil() as usize;
         // Nodes and shares of each point on both surfaces.
         let share = |body: usize, x: f64| {

@@ -7,7 +7,11 @@ use stribeck_scene::{duty::Duty, scene::Scene};
 use crate::{bearing::Bearing, error::Error, oil::Films, state::State, touch::Near};
 
 /// Newton iterations for modes and rollers.
-const ITERATIONS: usize = 60;
+const ITERATIONS: usize = 200;
+
+/// How far an iteration moves the raceway under a roller at most [m], halved whenever it would go back: under a light load few rollers
+/// touch or none, and what holds the ring is not known before they do.
+const FARTHEST: f64 = 10e-6;
 
 /// Unbalanced force on a roller or a mode that is left, over the load.
 const TOLERANCE: f64 = 1e-9;
@@ -55,6 +59,7 @@ impl Bearing {
         let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
         let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers];
+        let (mut farthest, mut last) = (FARTHEST, vec![0.0; r]);
         for iteration in 0..ITERATIONS {
             let mut force = self.reduction.constant.clone();
             let mut matrix = Mat::<f64>::zeros(r, r);
@@ -136,9 +141,17 @@ impl Bearing {
             // A motion that nothing resists, the turn of ring and adapter, is left to inertia.
             let step = matrix.partial_piv_lu().solve(&Mat::from_fn(r, 1, |n, _| force[n]));
             let residual = (0..r).map(|n| (force[n] * step[(n, 0)]).abs()).sum::<f64>();
-            for n in 0..r {
-                state.q[n] += step[(n, 0)];
+            let step: Vec<f64> = (0..r).map(|n| step[(n, 0)]).collect();
+            let along =
+                |shapes: &[f64]| shapes.iter().zip(&step).map(|(shape, step)| shape * step).sum::<f64>();
+            let moves = shapes.chunks_exact(2 * r).map(|both| along(&both[..r]).hypot(along(&both[r..])));
+            let most = moves.fold(0.0, f64::max);
+            if most > farthest && along(&last) < 0.0 {
+                farthest *= 0.5;
             }
+            let share = (farthest / most).min(1.0);
+            state.q.iter_mut().zip(&step).for_each(|(q, step)| *q += share * step);
+            last = step;
             // Work of the unbalanced forces, against that of the load over a nanometre.
             if iteration > 0 && residual <= TOLERANCE * load * 1e-9 {
                 break;

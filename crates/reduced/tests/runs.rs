@@ -370,6 +370,28 @@ fn invariant_a_run_over_a_profile_in_pieces_writes_the_same_bytes() {
     }
 }
 
+/// A bearing that hardly anything loads: one or two rollers carry, and the ring would swing far before they touch. What they carry is
+/// the load, and the ring stays where its clearance lets it.
+#[test]
+fn example_light_loads() {
+    for load_n in [300, 30, 3] {
+        let text = format!(
+            "(bearing: \"NU 205\", model: reduced(step_us: 0.5), film: None, defect: None, operation: (load_n: {load_n}, speed_rpm: 1500),
+              cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: 56), output: (frames: None),
+              contact: (surface: arc, friction: 0.05), solver: (duration_ms: 2, mass_damping_per_s: 5000, structural_damping: None))"
+        );
+        let scene = Scene::parse(&text, "here").expect("a sound scene");
+        let folder = Scratch::create("reduced-light");
+        let info = run(&scene, &folder, "run", 1);
+        assert_eq!(info.status, Status::Complete, "{load_n} N: {:?}", info.stop_reason);
+        assert!(info.guards.penetration_share < 0.1, "{load_n} N: {}", info.guards.penetration_share);
+        let trace = trace(&folder, "run");
+        let at_start: f64 = (1..=13).map(|i| -channel(&trace, &format!("roller.{i}.outer_fy_n"))[0]).sum();
+        // Rollers press outwards with what their way around weighs, all around.
+        assert!((at_start / info.expected_support_n - 1.0).abs() < 0.01, "{load_n} N: {at_start} N");
+    }
+}
+
 /// A ring that does not deform leaves the compliance to the rollers and the inner ring, which theory takes as two half-spaces.
 /// Source: Stribeck and Sjövall's distribution between rigid rings with Johnson's approach of line contacts, THEORY §6.2; the load
 /// comes back as the sum of the rollers' forces.
