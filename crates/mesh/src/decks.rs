@@ -10,16 +10,21 @@
 //! | Abaqus `.inp` | `*NODE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*NSET` |
 //! | Gmsh `.msh` 4.1, ASCII | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
 //!
+//! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MAT_ELASTIC`, `*SECTION_SHELL` and
+//! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT PAIR`.
+//!
 //! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh Reference Manual*,
 //! MSH file format 4.1.
 
 mod abaqus;
 mod gmsh;
 mod lsdyna;
+mod model;
 
 use std::collections::BTreeMap;
 use std::fmt;
 
+pub use self::model::{ContactPair, Model, Side};
 use crate::smoothing::sound;
 use crate::{Body, Error, Mesh, Part};
 
@@ -52,6 +57,17 @@ impl Deck {
             Self::LsDyna => lsdyna::write(mesh, &title),
             Self::Abaqus => abaqus::write(mesh, &title),
             Self::Gmsh => gmsh::write(mesh, &title),
+        }
+    }
+
+    /// The mesh with material, sections, the surfaces of all bodies and their contacts, for who adds loads and motions; Gmsh's files have
+    /// no place for more than the mesh. Not in contact are surfaces that no [`ContactPair`] names.
+    pub fn write_model(self, model: &Model<'_>, title: &str) -> String {
+        let title = title.replace(['\n', '\r'], " ");
+        match self {
+            Self::LsDyna => lsdyna::write_model(model, &title),
+            Self::Abaqus => abaqus::write_model(model, &title),
+            Self::Gmsh => gmsh::write(model.mesh, &title),
         }
     }
 

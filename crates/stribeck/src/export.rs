@@ -1,5 +1,6 @@
 //! `stribeck export`: the results of a run in the formats of other programs.
 
+mod deck;
 mod vtkhdf;
 
 use std::path::PathBuf;
@@ -58,9 +59,9 @@ enum Format {
     Pvd,
     /// ParaView: the same in one file (VTKHDF)
     Vtkhdf,
-    /// The mesh, undeformed, for LS-DYNA
+    /// The mesh, undeformed, with material, sections and contacts, for LS-DYNA
     K,
-    /// The mesh, undeformed, for Abaqus
+    /// The mesh, undeformed, with material, sections and contacts, for Abaqus or CalculiX
     Inp,
     /// The mesh, undeformed, for Gmsh (4.1)
     Msh,
@@ -84,9 +85,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             vtkhdf::write(&path, &stressed(&dir, &run)?, &provenance(&run))?;
             path
         }
-        Format::K => mesh(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
-        Format::Inp => mesh(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
-        Format::Msh => mesh(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
+        Format::K => deck::write(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
+        Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
+        Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
         _ => signals(&dir, &run, options)?,
     };
     println!("{}", shown(&written));
@@ -212,32 +213,6 @@ pub(crate) fn unit(name: &str) -> Option<&'static str> {
     .into_iter()
     .find(|(end, _)| name.ends_with(end))
     .map(|(_, unit)| unit)
-}
-
-/// The mesh of the run, each body a part or set of its name.
-fn mesh(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Result<PathBuf> {
-    let whole = RunMesh::read(dir.mesh())?;
-    let nodes = |body: &stribeck_scene::mesh_file::Body| {
-        let quads = whole.quads[body.quads.clone()].iter().flatten();
-        let corners = quads.chain(whole.triangles[body.triangles.clone()].iter().flatten());
-        let (low, high) = corners.fold((u32::MAX, 0), |(low, high), &n| (low.min(n), high.max(n + 1)));
-        low.min(high) as usize..high as usize
-    };
-    let bodies = whole.bodies.iter().map(|body| Body {
-        name: body.name.clone(),
-        nodes: nodes(body),
-        quads: body.quads.clone(),
-        triangles: body.triangles.clone(),
-    });
-    let mesh = Mesh {
-        x: whole.reference.iter().map(|[x, _]| *x).collect(),
-        y: whole.reference.iter().map(|[_, y]| *y).collect(),
-        bodies: bodies.collect(),
-        quads: whole.quads.clone(),
-        triangles: whole.triangles.clone(),
-    };
-    write_atomic(&path, deck.write(&mesh, &provenance(run).join("; ")).as_bytes())?;
-    Ok(path)
 }
 
 /// What is known of one frame.

@@ -2,16 +2,34 @@
 
 use std::fmt::Write;
 
+use super::model::{Model, Side, surfaces};
 use super::{DeckError, Gathered, ReadDeck, fault, plain, real, whole};
 use crate::Mesh;
 
 /// Numbers in a data line.
 const A_LINE: usize = 16;
 
+/// Characters in an item of a data line.
+const AN_ITEM: usize = 20;
+
+/// A number to its last bit, or as near as an item holds it: within 10⁻¹³ of it.
+fn item(value: f64) -> String {
+    let short = format!("{value:e}");
+    if short.len() <= AN_ITEM {
+        return short;
+    }
+    let plain = format!("{value}").replacen("0.", ".", 1);
+    if plain.len() <= AN_ITEM {
+        return plain;
+    }
+    // A sign, a point and an exponent of four characters leave fourteen digits.
+    format!("{value:.13e}")
+}
+
 pub(super) fn write(mesh: &Mesh, title: &str) -> String {
     let mut out = format!("*HEADING\n{title}\n*NODE\n");
     for (n, (x, y)) in mesh.x.iter().zip(&mesh.y).enumerate() {
-        let _ = writeln!(out, "{}, {x:e}, {y:e}, 0.0", n + 1);
+        let _ = writeln!(out, "{}, {}, {}, 0.0", n + 1, item(*x), item(*y));
     }
     let mut number = 0;
     for body in &mesh.bodies {
@@ -38,6 +56,63 @@ pub(super) fn write(mesh: &Mesh, title: &str) -> String {
                 body.nodes.end
             );
         }
+    }
+    out
+}
+
+/// Rigid bodies are elastic ones here: whoever wants them stiff adds `*RIGID BODY` with a node of their own.
+pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
+    let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts } = model;
+    let mut out = write(mesh, title);
+    let set = |body: usize| plain(&mesh.bodies[body].name);
+    let surface_name = |(body, side): (usize, Side)| format!("{}_{}", set(body), side.name());
+    for surface in surfaces(mesh) {
+        let name = surface_name((surface.body, surface.side));
+        let _ = writeln!(out, "*SURFACE, NAME={name}, TYPE=ELEMENT");
+        for face in &surface.faces {
+            let _ = writeln!(out, "{}, S{}", face.element, face.edge);
+        }
+        let _ = writeln!(out, "*NSET, NSET=NODES_{name}");
+        for line in surface.nodes().chunks(A_LINE) {
+            let words: Vec<String> = line.iter().map(usize::to_string).collect();
+            let _ = writeln!(out, "{}", words.join(", "));
+        }
+    }
+    for (body, density) in density.iter().enumerate() {
+        let set = set(body);
+        if rigid.contains(&body) {
+            let _ = writeln!(out, "** {set} is rigid: add *RIGID BODY, ELSET={set}");
+        }
+        let _ = writeln!(
+            out,
+            "*MATERIAL, NAME=OF_{set}\n*DENSITY\n{density:e}\n*ELASTIC\n{youngs_modulus:e}, {poissons_ratio}"
+        );
+        let _ = writeln!(out, "*SOLID SECTION, ELSET={set}, MATERIAL=OF_{set}\n{thickness}");
+    }
+    let mut interactions: Vec<f64> = Vec::new();
+    for pair in contacts {
+        if !interactions.contains(&pair.friction) {
+            interactions.push(pair.friction);
+        }
+    }
+    for (n, friction) in interactions.iter().enumerate() {
+        let _ = writeln!(
+            out,
+            "*SURFACE INTERACTION, NAME=CONTACT_{}\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD",
+            n + 1
+        );
+        if *friction > 0.0 {
+            let _ = writeln!(out, "*FRICTION\n{friction}");
+        }
+    }
+    for pair in contacts {
+        let n = interactions.iter().position(|friction| *friction == pair.friction).unwrap_or_default();
+        let [one, other] = pair.surfaces.map(surface_name);
+        let _ = writeln!(
+            out,
+            "*CONTACT PAIR, INTERACTION=CONTACT_{}, TYPE=SURFACE TO SURFACE\n{one}, {other}",
+            n + 1
+        );
     }
     out
 }

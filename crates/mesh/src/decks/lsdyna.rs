@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use super::model::{Model, Side, surfaces};
 use super::{DeckError, Gathered, ReadDeck, fault, real, whole};
 use crate::Mesh;
 
@@ -10,18 +11,75 @@ use crate::Mesh;
 const A_LINE: usize = 8;
 
 pub(super) fn write(mesh: &Mesh, title: &str) -> String {
+    let mut out = head(title);
+    mesh_cards(&mut out, mesh, |_| String::new());
+    out + "*END\n"
+}
+
+/// Elastic bodies have material 1, rigid ones 2, of densities that may differ: a material for each that does.
+pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
+    let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts } = model;
+    let mut out = head(title);
+    let mut materials: Vec<(f64, bool)> = Vec::new();
+    let of_body: Vec<usize> = (0..mesh.bodies.len())
+        .map(|body| (density[body], rigid.contains(&body)))
+        .map(|wanted| {
+            materials.iter().position(|known| *known == wanted).unwrap_or_else(|| {
+                materials.push(wanted);
+                materials.len() - 1
+            })
+        })
+        .collect();
+    for (n, (density, rigid)) in materials.iter().enumerate() {
+        let kind = if *rigid { "RIGID" } else { "ELASTIC" };
+        let _ = writeln!(out, "*MAT_{kind}\n{},{density:e},{youngs_modulus:e},{poissons_ratio}", n + 1);
+        if *rigid {
+            // Free in all directions, seen in the axes of the model.
+            out += "0.0,0,0\n0.0,0.0,0.0,0.0,0.0,0.0\n";
+        }
+    }
+    // Element form 13: plane strain in the plane of x and y.
+    let _ = writeln!(out, "*SECTION_SHELL\n1,13\n{0},{0},{0},{0}", thickness);
+    mesh_cards(&mut out, mesh, |body| format!(",1,{}", of_body[body] + 1));
+    let surfaces = surfaces(mesh);
+    let mut sets: BTreeMap<(usize, Side), usize> = BTreeMap::new();
+    for (n, surface) in surfaces.iter().enumerate() {
+        let set = mesh.bodies.len() + n + 1;
+        sets.insert((surface.body, surface.side), set);
+        let name = format!("{} {}", mesh.bodies[surface.body].name, surface.side.name().to_lowercase());
+        node_set(&mut out, &name, set, surface.nodes());
+    }
+    for pair in contacts {
+        // Negative numbers are sets of nodes.
+        if let [Some(one), Some(other)] = pair.surfaces.map(|surface| sets.get(&surface)) {
+            let _ = writeln!(
+                out,
+                "*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE\n-{one},-{other},1.0,50,{0},{0},0.0,6\n0.0,1e20,1.0,1.0,0,0,0,0",
+                pair.friction
+            );
+        }
+    }
+    out + "*END\n"
+}
+
+fn head(title: &str) -> String {
     // Long lines would be cut at 80 characters.
     let title: String = title.chars().take(79).collect();
-    let mut out = format!("*KEYWORD\n*TITLE\n{title}\n*NODE\n");
+    format!("*KEYWORD\n*TITLE\n{title}\n")
+}
+
+/// Nodes, parts, elements, and the nodes of each body as a set; `of_part` follows the number of a part.
+fn mesh_cards(out: &mut String, mesh: &Mesh, of_part: impl Fn(usize) -> String) {
+    *out += "*NODE\n";
     for (n, (x, y)) in mesh.x.iter().zip(&mesh.y).enumerate() {
         // Free format: fixed columns would leave ten digits.
         let _ = writeln!(out, "{},{x:e},{y:e},0.0", n + 1);
     }
     for (n, body) in mesh.bodies.iter().enumerate() {
         let name: String = body.name.chars().take(70).collect();
-        let _ = writeln!(out, "*PART\n{name}\n{}", n + 1);
+        let _ = writeln!(out, "*PART\n{name}\n{}{}", n + 1, of_part(n));
     }
-    out += "*ELEMENT_SHELL\n";
+    *out += "*ELEMENT_SHELL\n";
     let mut number = 0;
     for (n, body) in mesh.bodies.iter().enumerate() {
         let quads = mesh.quads[body.quads.clone()].iter().copied();
@@ -32,15 +90,16 @@ pub(super) fn write(mesh: &Mesh, title: &str) -> String {
         }
     }
     for (n, body) in mesh.bodies.iter().enumerate().filter(|(_, body)| !body.nodes.is_empty()) {
-        let _ = writeln!(out, "*SET_NODE_LIST_TITLE\n{}\n{}", body.name, n + 1);
-        let nodes: Vec<usize> = body.nodes.clone().map(|n| n + 1).collect();
-        for line in nodes.chunks(A_LINE) {
-            let words: Vec<String> = line.iter().map(usize::to_string).collect();
-            let _ = writeln!(out, "{}", words.join(","));
-        }
+        node_set(out, &body.name, n + 1, body.nodes.clone().map(|n| n + 1).collect());
     }
-    out += "*END\n";
-    out
+}
+
+fn node_set(out: &mut String, name: &str, number: usize, nodes: Vec<usize>) {
+    let _ = writeln!(out, "*SET_NODE_LIST_TITLE\n{name}\n{number}");
+    for line in nodes.chunks(A_LINE) {
+        let words: Vec<String> = line.iter().map(usize::to_string).collect();
+        let _ = writeln!(out, "{}", words.join(","));
+    }
 }
 
 pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {

@@ -1,0 +1,123 @@
+//! What makes a mesh a model: material, sections, surfaces and contacts.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::Mesh;
+
+/// A side of a body: its outer boundary, or those of its holes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    /// The boundary around it.
+    Outside,
+    /// The boundaries of all holes in it.
+    Inside,
+}
+
+/// Two surfaces that may touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactPair {
+    /// Body and side of each.
+    pub surfaces: [(usize, Side); 2],
+    /// Coefficient of friction [-].
+    pub friction: f64,
+}
+
+/// A mesh with what it lacks to be computed elsewhere, but for loads and motions. All bodies are in plane strain.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model<'a> {
+    /// Nodes, elements and bodies.
+    pub mesh: &'a Mesh,
+    /// Young's modulus [Pa].
+    pub youngs_modulus: f64,
+    /// Poisson's ratio [-].
+    pub poissons_ratio: f64,
+    /// Density of each body [kg/m³].
+    pub density: Vec<f64>,
+    /// Thickness across the plane [m].
+    pub thickness: f64,
+    /// Bodies that do not deform.
+    pub rigid: Vec<usize>,
+    /// What may touch.
+    pub contacts: Vec<ContactPair>,
+}
+
+/// An edge of an element on a boundary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Face {
+    /// Number of the element in a file, from 1.
+    pub(super) element: usize,
+    /// Which of its edges, from 1: that from its first to its second corner.
+    pub(super) edge: usize,
+    /// Its nodes, the body to the left.
+    nodes: [u32; 2],
+}
+
+/// A side of a body.
+pub(super) struct Surface {
+    pub(super) body: usize,
+    pub(super) side: Side,
+    /// Along the boundary.
+    pub(super) faces: Vec<Face>,
+}
+
+impl Surface {
+    /// Its nodes along the boundary, in numbers of a file, from 1.
+    pub(super) fn nodes(&self) -> Vec<usize> {
+        self.faces.iter().map(|face| face.nodes[0] as usize + 1).collect()
+    }
+}
+
+impl Side {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Outside => "OUTSIDE",
+            Self::Inside => "INSIDE",
+        }
+    }
+}
+
+/// The sides of all bodies. Elements are numbered body by body, quadrilaterals first, as files have them.
+pub(super) fn surfaces(mesh: &Mesh) -> Vec<Surface> {
+    let mut number = 0;
+    let mut all = Vec::new();
+    for (body, held) in mesh.bodies.iter().enumerate() {
+        let quads = mesh.quads[held.quads.clone()].iter().map(|q| &q[..]);
+        let mut edges: HashMap<[u32; 2], Face> = HashMap::new();
+        for corners in quads.chain(mesh.triangles[held.triangles.clone()].iter().map(|t| &t[..])) {
+            number += 1;
+            for (at, &a) in corners.iter().enumerate() {
+                let b = corners[(at + 1) % corners.len()];
+                // An edge between two elements is gone through both ways.
+                if edges.remove(&[b, a]).is_none() {
+                    edges.insert([a, b], Face { element: number, edge: at + 1, nodes: [a, b] });
+                }
+            }
+        }
+        let mut from: BTreeMap<u32, Vec<Face>> = BTreeMap::new();
+        edges.into_values().for_each(|face| from.entry(face.nodes[0]).or_default().push(face));
+        from.values_mut().for_each(|faces| faces.sort_by_key(|face| face.element));
+        let mut sides: BTreeMap<Side, Vec<Face>> = BTreeMap::new();
+        while let Some((&first, _)) = from.first_key_value() {
+            let (mut boundary, mut at) = (Vec::new(), first);
+            while let Some(faces) = from.get_mut(&at) {
+                let next = faces.pop();
+                if faces.is_empty() {
+                    from.remove(&at);
+                }
+                let Some(face) = next else { break };
+                at = face.nodes[1];
+                boundary.push(face);
+            }
+            let place = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
+            let twice_area: f64 = boundary
+                .iter()
+                .map(|face| face.nodes.map(place))
+                .map(|[[ax, ay], [bx, by]]| ax * by - bx * ay)
+                .sum();
+            let side = if twice_area > 0.0 { Side::Outside } else { Side::Inside };
+            sides.entry(side).or_default().extend(boundary);
+        }
+        all.extend(sides.into_iter().map(|(side, faces)| Surface { body, side, faces }));
+    }
+    all
+}
