@@ -78,16 +78,16 @@ pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
             let _ = writeln!(out, "{}", words.join(", "));
         }
     }
-    for (body, density) in density.iter().enumerate() {
+    let _ = writeln!(
+        out,
+        "*MATERIAL, NAME=ELASTIC\n*DENSITY\n{density:e}\n*ELASTIC\n{youngs_modulus:e}, {poissons_ratio}"
+    );
+    for body in 0..mesh.bodies.len() {
         let set = set(body);
         if rigid.contains(&body) {
             let _ = writeln!(out, "** {set} is rigid: add *RIGID BODY, ELSET={set}");
         }
-        let _ = writeln!(
-            out,
-            "*MATERIAL, NAME=OF_{set}\n*DENSITY\n{density:e}\n*ELASTIC\n{youngs_modulus:e}, {poissons_ratio}"
-        );
-        let _ = writeln!(out, "*SOLID SECTION, ELSET={set}, MATERIAL=OF_{set}\n{thickness}");
+        let _ = writeln!(out, "*SOLID SECTION, ELSET={set}, MATERIAL=ELASTIC\n{thickness}");
     }
     let mut interactions: Vec<f64> = Vec::new();
     for pair in contacts {

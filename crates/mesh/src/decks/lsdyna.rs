@@ -16,31 +16,19 @@ pub(super) fn write(mesh: &Mesh, title: &str) -> String {
     out + "*END\n"
 }
 
-/// Elastic bodies have material 1, rigid ones 2, of densities that may differ: a material for each that does.
+/// Elastic bodies have material 1, rigid ones 2.
 pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
     let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts } = model;
     let mut out = head(title);
-    let mut materials: Vec<(f64, bool)> = Vec::new();
-    let of_body: Vec<usize> = (0..mesh.bodies.len())
-        .map(|body| (density[body], rigid.contains(&body)))
-        .map(|wanted| {
-            materials.iter().position(|known| *known == wanted).unwrap_or_else(|| {
-                materials.push(wanted);
-                materials.len() - 1
-            })
-        })
-        .collect();
-    for (n, (density, rigid)) in materials.iter().enumerate() {
-        let kind = if *rigid { "RIGID" } else { "ELASTIC" };
-        let _ = writeln!(out, "*MAT_{kind}\n{},{density:e},{youngs_modulus:e},{poissons_ratio}", n + 1);
-        if *rigid {
-            // Free in all directions, seen in the axes of the model.
-            out += "0.0,0,0\n0.0,0.0,0.0,0.0,0.0,0.0\n";
-        }
-    }
+    let _ = writeln!(out, "*MAT_ELASTIC\n1,{density:e},{youngs_modulus:e},{poissons_ratio}");
+    // Free in all directions, seen in the axes of the model.
+    let _ = writeln!(
+        out,
+        "*MAT_RIGID\n2,{density:e},{youngs_modulus:e},{poissons_ratio}\n0.0,0,0\n0.0,0.0,0.0,0.0,0.0,0.0"
+    );
     // Element form 13: plane strain in the plane of x and y.
     let _ = writeln!(out, "*SECTION_SHELL\n1,13\n{0},{0},{0},{0}", thickness);
-    mesh_cards(&mut out, mesh, |body| format!(",1,{}", of_body[body] + 1));
+    mesh_cards(&mut out, mesh, |body| format!(",1,{}", 1 + usize::from(rigid.contains(&body))));
     let surfaces = surfaces(mesh);
     let mut sets: BTreeMap<(usize, Side), usize> = BTreeMap::new();
     for (n, surface) in surfaces.iter().enumerate() {

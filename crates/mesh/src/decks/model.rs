@@ -22,7 +22,7 @@ pub struct ContactPair {
     pub friction: f64,
 }
 
-/// A mesh with what it lacks to be computed elsewhere, but for loads and motions. All bodies are in plane strain.
+/// A mesh with what it lacks to be computed elsewhere, but for loads and motions. All bodies are of one material, in plane strain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model<'a> {
     /// Nodes, elements and bodies.
@@ -31,8 +31,8 @@ pub struct Model<'a> {
     pub youngs_modulus: f64,
     /// Poisson's ratio [-].
     pub poissons_ratio: f64,
-    /// Density of each body [kg/m³].
-    pub density: Vec<f64>,
+    /// Density [kg/m³].
+    pub density: f64,
     /// Thickness across the plane [m].
     pub thickness: f64,
     /// Bodies that do not deform.

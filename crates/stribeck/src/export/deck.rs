@@ -67,7 +67,7 @@ fn model<'a>(scene: &Scene, mesh: &'a Mesh) -> Model<'a> {
         mesh,
         youngs_modulus: 1e9 * youngs_modulus_gpa,
         poissons_ratio,
-        density: vec![density_kg_m3; mesh.bodies.len()],
+        density: density_kg_m3,
         thickness: Geometry::of(scene).thickness,
         rigid: named("cage").into_iter().chain(outer.filter(|_| held)).collect(),
         contacts,
