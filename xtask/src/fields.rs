@@ -12,7 +12,7 @@ use syn::{Attribute, Expr, ExprLit, Fields, GenericArgument, Item, Lit, Meta, Pa
 use crate::workspace;
 
 /// Where the types of a scene stand.
-const SOURCES: [&str; 3] = ["scene.rs", "deviation.rs", "housing.rs"];
+const SOURCES: [&str; 4] = ["scene.rs", "deviation.rs", "housing.rs", "ring_mesh.rs"];
 
 /// The page.
 const PAGE: &str = "docs/guide/src/fields.md";

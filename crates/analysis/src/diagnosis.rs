@@ -10,7 +10,7 @@ use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::Scene;
 
 use crate::Error;
-use crate::kinematics::{KinematicsFinding, relative_hz};
+use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
 use crate::measured::{Analysis, Family, Machine};
 use crate::record::Record;
 
@@ -136,7 +136,7 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
         DiagnosedFamily {
             name: family.name.to_owned(),
             expected_hz: family.expected_hz,
-            from_motion_hz: from_motion(family.name, motion),
+            from_motion_hz: from_motion(family, motion, &present),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
@@ -163,14 +163,20 @@ pub fn family_of(on: RollingSurface) -> &'static str {
     }
 }
 
-/// Frequency of a family by the recorded motion [Hz].
-fn from_motion(name: &str, motion: &KinematicsFinding) -> Option<f64> {
-    match name {
+/// Frequency of a family by the recorded motion [Hz], with what is `present`.
+fn from_motion(family: &Family, motion: &KinematicsFinding, present: &[RollingSurface]) -> Option<f64> {
+    match family.name {
         "BPFO" => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
         "BPFI" => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
-        // Under load: a roller that carries nothing may turn as it likes, and strikes nothing.
-        "BSF" => motion.roller_spin_hz,
+        // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of the cage to the next its phase goes
+        // on by all that its roller has turned, outside the load zone as well: lines stand at the mean spin.
+        "BSF" if family.in_passages => motion.roller_spin_hz,
+        "BSF" => {
+            let damaged = |roller: &&RollerMotion| present.contains(&RollingSurface::Roller(roller.roller));
+            let own = mean(motion.rollers.iter().filter(damaged).map(|roller| roller.spin_hz));
+            own.or(motion.roller_spin_all_hz)
+        }
         _ => motion.cage_hz,
     }
 }

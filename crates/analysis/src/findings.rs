@@ -254,6 +254,8 @@ impl Findings {
             energy: EnergyFinding {
                 max_relative_error: run.info.energy.max_relative_error,
                 peak_strain_j: run.info.energy.peak_strain_j,
+                heat_j: run.info.energy.heat_j,
+                share_of_heat: run.info.energy.share_of_heat(),
             },
             kinematics: motion,
             duty,

@@ -24,6 +24,7 @@ use serde::Serialize;
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::duty::Duty;
 use stribeck_scene::housing::HousingScene;
+use stribeck_scene::ring_mesh::RingMeshScene;
 use stribeck_scene::run_dir::{Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{DefectRing, ModelScene, Scene};
@@ -233,11 +234,21 @@ fn lead(scene: &Scene, simulated_ms: f64) -> String {
     format!(
         "{name}{} rollers{} under {} at {}, {defect}; {:.1} ms on record.",
         scene.rollers_in_place().count(),
-        housing(scene),
+        own_rings(scene) + &housing(scene),
         load(scene, simulated_ms),
         speed(scene, simulated_ms),
         simulated_ms
     )
+}
+
+/// Rings from files, in words.
+fn own_rings(scene: &Scene) -> String {
+    let rings = [("outer", &scene.outer_ring_mesh), ("inner", &scene.inner_ring_mesh)];
+    let of_file = |(ring, mesh): (&str, &Option<RingMeshScene>)| {
+        let file = Path::new(&mesh.as_ref()?.file).file_stem().unwrap_or_default().display().to_string();
+        Some(format!(" with an {ring} ring of its own ({file})"))
+    };
+    rings.into_iter().filter_map(of_file).collect()
 }
 
 /// What holds the outer ring, in words, where it is not the adapter.

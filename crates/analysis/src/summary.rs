@@ -124,6 +124,12 @@ pub struct EnergyFinding {
     pub max_relative_error: f64,
     /// Peak strain energy [J].
     pub peak_strain_j: f64,
+    /// What friction, films and damping have turned into heat [J].
+    #[serde(default)]
+    pub heat_j: f64,
+    /// Largest |imbalance| over the heat [-], where that is more than the peak strain energy.
+    #[serde(default)]
+    pub share_of_heat: Option<f64>,
 }
 
 impl Summary {

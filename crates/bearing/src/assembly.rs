@@ -15,7 +15,7 @@ use stribeck_solver::{
 };
 use stribeck_system::{Film, Pair, Plan, System};
 
-use crate::{error::Error, grading, housing::housing, suspension::suspend};
+use crate::{error::Error, grading, housing::housing, own_mesh, suspension::suspend};
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
@@ -181,7 +181,11 @@ impl Assembly {
             start_angle: 0.0,
             grooves: grooves_in(&g, DefectRing::Outer),
         };
-        let outer = formed(made(&outer, &outer_grading)?, "inner", Circle::Inner, g.outer_relief.as_ref())?;
+        let outer = match &scene.outer_ring_mesh {
+            Some(own) => own_mesh::ring(own, DefectRing::Outer, &g)?,
+            None => made(&outer, &outer_grading)?,
+        };
+        let outer = formed(outer, "inner", Circle::Inner, g.outer_relief.as_ref())?;
         let (outer_area, outer) = (outer.area(), mesh.add("outer ring", &outer));
 
         let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
@@ -194,7 +198,11 @@ impl Assembly {
             start_angle: 0.0,
             grooves: grooves_in(&g, DefectRing::Inner),
         };
-        let inner = formed(made(&inner, &inner_grading)?, "outer", Circle::Outer, g.inner_relief.as_ref())?;
+        let inner = match &scene.inner_ring_mesh {
+            Some(own) => own_mesh::ring(own, DefectRing::Inner, &g)?,
+            None => made(&inner, &inner_grading)?,
+        };
+        let inner = formed(inner, "outer", Circle::Outer, g.inner_relief.as_ref())?;
         let inner = mesh.add("inner ring", &inner);
 
         let made = housing(scene, &g, &mesh, surface(&outer, "outer"))?;
@@ -277,10 +285,14 @@ impl Assembly {
         for &n in &surface(&inner, "inner").nodes {
             model.motion[n as usize] = Motion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s };
         }
+        let around = |ring: DefectRing, own: bool, facets: usize, raceway: &Surface| {
+            if own { raceway.facets() as f64 } else { g.facets_around(ring, facets) }
+        };
+        let [own_outer, own_inner] = [&scene.outer_ring_mesh, &scene.inner_ring_mesh].map(Option::is_some);
         let facets = FacetCounts {
             roller: scene.mesh.roller_facets,
-            outer: g.facets_around(DefectRing::Outer, outer_facets),
-            inner: g.facets_around(DefectRing::Inner, inner_facets),
+            outer: around(DefectRing::Outer, own_outer, outer_facets, surface(&outer, "inner")),
+            inner: around(DefectRing::Inner, own_inner, inner_facets, surface(&inner, "outer")),
         };
         Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
@@ -356,13 +368,21 @@ impl Assembly {
         let g = Geometry::of(scene);
         plan.smooth(
             OUTER_RACEWAY,
-            smoothing(scene.contact.surface, [0.0; 2], g.outer_relief.is_none()),
+            smoothing(
+                scene.contact.surface,
+                [0.0; 2],
+                g.outer_relief.is_none() && scene.outer_ring_mesh.is_none(),
+            ),
             spline,
         )?;
         plan.surface(INNER_RACEWAY, surface(&self.inner, "outer").clone())?;
         plan.smooth(
             INNER_RACEWAY,
-            smoothing(scene.contact.surface, [0.0; 2], g.inner_relief.is_none()),
+            smoothing(
+                scene.contact.surface,
+                [0.0; 2],
+                g.inner_relief.is_none() && scene.inner_ring_mesh.is_none(),
+            ),
             spline,
         )?;
         let back = surface(&self.outer, "outer");

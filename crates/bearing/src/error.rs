@@ -16,9 +16,11 @@ pub enum Error {
     #[error("mesh: {0}")]
     Mesh(#[from] stribeck_mesh::Error),
 
-    /// The file of a housing is not one that the bearing fits.
-    #[error("`housing.file` `{file}`: {what}")]
-    HousingFile {
+    /// The file of a housing or a ring is not one that the bearing fits.
+    #[error("`{field}` `{file}`: {what}")]
+    MeshFile {
+        /// The field that names it.
+        field: String,
         /// Its name in the scene.
         file: String,
         /// What is wrong, and what there is.

@@ -1,6 +1,6 @@
 //! How coarse the bodies become where nothing rolls.
 
-use stribeck_mesh::{Circle, Grading, Surface};
+use stribeck_mesh::{Circle, Grading};
 
 use stribeck_scene::scene::{GradingScene, MeshScene};
 
@@ -40,9 +40,8 @@ pub(crate) fn roller_layers(grading: &GradingScene) -> usize {
 /// Nodes [m] of the adapter's seat from left to right: those of the ring that sits in it, so that the two surfaces fit
 /// facet to facet, however long their facets are. At its two ends the seat continues the facets of the ring. No column
 /// becomes narrower than `narrowest` [m]; a node of the ring that would need it gets none.
-pub(crate) fn seat(back: &Surface, x: &[f64], y: &[f64], half_width: f64, narrowest: f64) -> Vec<[f64; 2]> {
-    let nodes = back.nodes.iter().map(|&n| n as usize);
-    let mut above: Vec<[f64; 2]> = nodes.filter(|&n| y[n] > 0.0).map(|n| [x[n], y[n]]).collect();
+pub(crate) fn seat(back: &[[f64; 2]], half_width: f64, narrowest: f64) -> Vec<[f64; 2]> {
+    let mut above: Vec<[f64; 2]> = back.iter().copied().filter(|p| p[1] > 0.0).collect();
     above.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let crown = above.partition_point(|p| p[0] < 0.0);
     let (left, right) = above.split_at(crown);

@@ -1,15 +1,15 @@
 //! What holds the outer ring, from the scene: the paper's adapter, a pedestal, a mesh from a file, a frame on springs.
 
-use std::path::Path;
+use std::f64::consts::TAU;
 
-use stribeck_mesh::{Annulus, BoredBlock, Mesh, Part, SeatedBlock, Surface, decks::Deck};
+use stribeck_mesh::{Annulus, BoredBlock, Mesh, Part, SeatedBlock, Surface};
 use stribeck_scene::{
     geometry::Geometry,
-    housing::{HousingScene, MeshHousingScene, PedestalScene, SpringHousingScene},
+    housing::{HousingScene, PedestalScene, SpringHousingScene},
     scene::Scene,
 };
 
-use crate::{error::Error, grading};
+use crate::{error::Error, grading, own_mesh};
 
 /// Height of the flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is narrower
 /// would set the time step.
@@ -18,9 +18,6 @@ const FLATTEST: f64 = 0.91;
 /// A frame on springs stands so far off the ring, and is so thick, in radii of its bore: it is drawn, and has a mass, no more.
 const FRAME_GAP: f64 = 0.02;
 const FRAME_THICKNESS: f64 = 0.04;
-
-/// Nodes of a bore lie within this part of its radius around the outer ring.
-const LOOSE: f64 = 0.01;
 
 /// A body around or on top of the outer ring.
 pub(crate) struct Housing {
@@ -46,24 +43,25 @@ pub(crate) fn housing(
     mesh: &Mesh,
     back: &Surface,
 ) -> Result<Option<Housing>, Error> {
+    let back = &polygon(scene, g, mesh, back);
     let made = match &scene.housing {
         HousingScene::Adapter => Housing {
             name: "adapter",
-            part: adapter(g, mesh, back)?,
+            part: adapter(g, back)?,
             seat: Some("seat"),
             loaded: "top",
             density: 1.0,
         },
         HousingScene::Pedestal(pedestal) => Housing {
             name: "pedestal",
-            part: pedestal_part(pedestal, g, mesh, back)?,
+            part: pedestal_part(pedestal, g, back)?,
             seat: Some("bore"),
             loaded: "base",
             density: 1.0,
         },
         HousingScene::Mesh(file) => Housing {
             name: "housing",
-            part: from_file(file, g)?,
+            part: own_mesh::housing(file, g)?,
             seat: Some("bore"),
             loaded: "loaded",
             density: 1.0,
@@ -74,8 +72,22 @@ pub(crate) fn housing(
     Ok(Some(made))
 }
 
+/// What the outer ring sits in: its own polygon, so that both fit facet to facet; around a ring from a file, which may have notches there,
+/// as many facets about its circle.
+fn polygon(scene: &Scene, g: &Geometry, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> {
+    if scene.outer_ring_mesh.is_none() {
+        return back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
+    }
+    let facet = TAU / back.nodes.len() as f64;
+    let radius = (g.outer_race_radius + g.outer_ring_thickness) / (0.5 * facet).cos();
+    (0..back.nodes.len())
+        .map(|i| (i as f64 * facet).sin_cos())
+        .map(|(s, c)| [radius * c, radius * s])
+        .collect()
+}
+
 /// The adapter. In a graded mesh its seat is the polygon of the outer ring, whose back surface is given.
-fn adapter(g: &Geometry, mesh: &Mesh, back: &Surface) -> Result<Part, Error> {
+fn adapter(g: &Geometry, back: &[[f64; 2]]) -> Result<Part, Error> {
     let size = g.element_size;
     let mut adapter = SeatedBlock {
         width: g.adapter_width,
@@ -85,7 +97,7 @@ fn adapter(g: &Geometry, mesh: &Mesh, back: &Surface) -> Result<Part, Error> {
         rows: adapter_rows(g, size),
     };
     let Some(coarse) = g.coarse_size else { return Ok(adapter.part()?) };
-    let seat = grading::seat(back, &mesh.x, &mesh.y, 0.5 * adapter.width, size);
+    let seat = grading::seat(back, 0.5 * adapter.width, size);
     adapter.columns = seat.len() - 1;
     adapter.rows = adapter_rows(g, coarse);
     Ok(adapter.part_on(&seat)?)
@@ -97,23 +109,22 @@ fn adapter_rows(g: &Geometry, size: f64) -> usize {
 }
 
 /// A pedestal whose bore is the polygon of the outer ring.
-fn pedestal_part(pedestal: &PedestalScene, g: &Geometry, mesh: &Mesh, back: &Surface) -> Result<Part, Error> {
-    let bore: Vec<[f64; 2]> = back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
+fn pedestal_part(pedestal: &PedestalScene, g: &Geometry, back: &[[f64; 2]]) -> Result<Part, Error> {
     let [width, base, top] = [pedestal.width_mm, pedestal.base_mm, pedestal.top_mm].map(|mm| 1e-3 * mm);
     let wall = (0.5 * width).min(base).min(top) - (g.outer_race_radius + g.outer_ring_thickness);
     let size = g.coarse_size.unwrap_or(g.element_size);
     let rows = ((wall / (FLATTEST * size)) as usize).max(2);
-    Ok(BoredBlock { bore: &bore, width, base, top, rows }.part()?)
+    Ok(BoredBlock { bore: back, width, base, top, rows }.part()?)
 }
 
 /// A frame that stands off the ring, of one row of cells.
-fn frame(springs: &SpringHousingScene, g: &Geometry, back: &Surface) -> Result<Housing, Error> {
+fn frame(springs: &SpringHousingScene, g: &Geometry, back: &[[f64; 2]]) -> Result<Housing, Error> {
     let radius = g.outer_race_radius + g.outer_ring_thickness;
     let inner_radius = (1.0 + FRAME_GAP) * radius;
     let ring = Annulus {
         inner_radius,
         outer_radius: inner_radius + FRAME_THICKNESS * radius,
-        facets: back.nodes.len(),
+        facets: back.len(),
         layers: 1,
         start_angle: 0.0,
         grooves: Vec::new(),
@@ -121,49 +132,4 @@ fn frame(springs: &SpringHousingScene, g: &Geometry, back: &Surface) -> Result<H
     let part = ring.part()?;
     let density = springs.mass_kg / (part.area() * g.thickness * g.material.density);
     Ok(Housing { name: "frame", part, seat: None, loaded: "outer", density })
-}
-
-/// The mesh of a file, with its bore and its loaded edge.
-fn from_file(housing: &MeshHousingScene, g: &Geometry) -> Result<Part, Error> {
-    let refuse = |what: String| Error::HousingFile { file: housing.file.clone(), what };
-    let extension = Path::new(&housing.file).extension().and_then(|e| e.to_str()).unwrap_or_default();
-    let deck = Deck::of_extension(extension)
-        .ok_or_else(|| refuse("its name ends in neither `.msh`, `.inp` nor `.k`".to_owned()))?;
-    let read = deck.read(&housing.text).map_err(|fault| refuse(fault.to_string()))?;
-    let mut part = read.part().map_err(|error| refuse(error.to_string()))?;
-    let unit = 1e-3 * housing.unit_mm;
-    part.x.iter_mut().chain(&mut part.y).for_each(|place| *place *= unit);
-    for (surface, name) in [("bore", &housing.bore), ("loaded", &housing.loaded)] {
-        let sets = || read.node_sets.keys().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        let nodes = read.node_sets.get(name).ok_or_else(|| {
-            let there = if read.node_sets.is_empty() { "none".to_owned() } else { sets() };
-            refuse(format!("it has no set of nodes `{name}`, which `housing.{surface}` names; sets: {there}"))
-        })?;
-        let mut pieces = part.boundary_along(nodes);
-        pieces.sort_by_key(|piece| std::cmp::Reverse(piece.facets()));
-        let Some(longest) = pieces.first() else {
-            return Err(refuse(format!("no edge of an element lies along the set `{name}`")));
-        };
-        if surface == "bore" && !(longest.closed && pieces.len() == 1) {
-            let places = pieces.len();
-            return Err(refuse(format!(
-                "the set `{name}` is no closed bore, but {places} pieces of boundary"
-            )));
-        }
-        if surface == "bore" {
-            let ring = g.outer_race_radius + g.outer_ring_thickness;
-            let radius = |n: &u32| part.x[*n as usize].hypot(part.y[*n as usize]);
-            let off = longest.nodes.iter().map(radius).find(|radius| (radius / ring - 1.0).abs() > LOOSE);
-            if let Some(radius) = off {
-                return Err(refuse(format!(
-                    "its bore does not fit the outer ring: a node lies {:.4} mm from the centre, the ring is {:.4} mm in radius. Look at \
-                     `housing.unit_mm`; the bearing's centre is the origin of the mesh",
-                    1e3 * radius,
-                    1e3 * ring
-                )));
-            }
-        }
-        part.surfaces.push((surface.to_owned(), longest.clone()));
-    }
-    Ok(part)
 }

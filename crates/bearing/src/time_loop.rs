@@ -275,6 +275,7 @@ impl<M: Motion> Run<M> {
     /// Writes one sample.
     fn write(&mut self, l: &Ledger) -> Result<(), Error> {
         [self.info.energy.peak_strain_j, self.info.energy.max_relative_error] = self.motion.balance();
+        self.info.energy.heat_j = l.friction + l.damping + l.contact_damping + l.film;
         let mut row = vec![
             l.time,
             l.kinetic,

@@ -50,6 +50,8 @@ pub fn reference(scene: &Scene) -> Scene {
         cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
         adapter: scene.adapter.clone(),
         housing: scene.housing.clone(),
+        outer_ring_mesh: scene.outer_ring_mesh.clone(),
+        inner_ring_mesh: scene.inner_ring_mesh.clone(),
         defect: scene.defect.clone(),
         // All others change places, hardly the rings' stiffness: outlines get them later.
         defects: scene.defects.iter().filter(|deviation| deviation.groove().is_some()).cloned().collect(),

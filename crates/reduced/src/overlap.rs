@@ -25,7 +25,7 @@ pub struct Sides {
 impl Sides {
     /// Whether roller and raceway are arcs.
     #[inline(always)]
-    fn are_round(self) -> bool {
+    pub(crate) fn are_round(self) -> bool {
         self.bulge != 0.0 || self.curvature != 0.0
     }
 }

@@ -12,7 +12,17 @@ use crate::{
 };
 
 impl Bearing {
-    /// Finds the places of eight rollers; the raceways may turn.
+    /// Finds the facets of the outer raceway, which may turn, that eight rollers are by.
+    #[inline(always)]
+    pub(crate) fn see_raceway<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<Turning>) {
+        let gone = self.see_facets(simd, block, outer);
+        if gone != 0 {
+            self.find_facets(block, gone);
+            self.see_facets(simd, block, outer);
+        }
+    }
+
+    /// Finds the places of eight rollers, whose facets are known, by raceways that may turn.
     #[inline(always)]
     pub(crate) fn place_rollers<S: Simd>(
         &self,
@@ -21,11 +31,6 @@ impl Bearing {
         block: &mut Block,
         [outer, inner]: [Option<Turning>; 2],
     ) {
-        let gone = self.see_facets(simd, block, outer);
-        if gone != 0 {
-            self.find_facets(block, gone);
-            self.see_facets(simd, block, outer);
-        }
         for lane in lanes(block.bits) {
             let (facet, share) = (block.facet[lane] as usize, block.share[lane]);
             let Moved { mut by, velocity, mut tilt } = self.moved(simd, &self.place(facet, share), modes);

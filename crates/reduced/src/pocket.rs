@@ -198,17 +198,21 @@ impl Bearing {
         let to = [foot[0] / distance, foot[1] / distance];
         let d = [c * to[0] - s * to[1], s * to[0] + c * to[1]];
         let own_d = [turned[0] * d[0] + turned[1] * d[1], turned[0] * d[1] - turned[1] * d[0]];
-        let (depth, tilt) = self.rims[0].outline.depth(own_d, distance);
+        let rim = &self.rims[0];
+        let (depth, [level, tilt]) = if self.outer.sides.are_round() {
+            (rim.top - distance, [1.0, 0.0])
+        } else {
+            rim.outline.depth(own_d, distance)
+        };
         let parted = depth <= 0.0;
         if parted && *passive == [0.0; 2] {
             *slip = 0.0;
             return None;
         }
         let depth = depth.max(0.0);
-        let level = (1.0 - tilt * tilt).sqrt();
         let (n, [force, stiffness, stored], couple) = if t > 0.0 && t < 1.0 {
             // Flat against round: the parabola on the penalty. The foot goes along the wall with the roller, so that the force stands on
-            // the wall, and that the facet leans from it by an angle of sine `tilt` turns roller and cage against each other.
+            // the wall, and that the facet leans from it by `tilt` turns roller and cage against each other.
             let reach = (2.0 * self.arm * depth).sqrt();
             let force = self.penalty * depth * reach * (4.0 / 3.0);
             (d, [level * force, self.penalty * 2.0 * reach, 0.4 * force * depth], -force * distance * tilt)

@@ -125,6 +125,16 @@ impl Bearing {
         if last {
             scratch.before.copy_from_slice(&scratch.heard);
         }
+        let inner = Turning { rate, turned: turned(state.shaft) };
+        let outer = self.outer_turns.then(|| Turning { rate: outer_rate, turned: turned(outer_angle) });
+        for block in &mut scratch.blocks {
+            self.see_raceway(simd, block, outer);
+            // A roller presses where it is now: what the seat gives way by hangs on that, and work on both.
+            let heard = &mut scratch.heard[block.first..block.first + block.count];
+            for ((heard, facet), share) in heard.iter_mut().zip(&block.facet).zip(block.share.iter()) {
+                (heard.facet, heard.share) = (*facet, *share);
+            }
+        }
         let mut spent = Spent::default();
         if let (Some(seat), Some(hold)) = (&self.seat, &mut state.seat) {
             if last {
@@ -138,8 +148,6 @@ impl Bearing {
             energy.strain += stored;
         }
         let (cs, cc) = state.cage[2].sin_cos();
-        let inner = Turning { rate, turned: turned(state.shaft) };
-        let outer = self.outer_turns.then(|| Turning { rate: outer_rate, turned: turned(outer_angle) });
         let placed =
             PlacedCage { at: [state.cage[0], state.cage[1]], turn: [cc, cs], velocity: state.cage_velocity };
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
@@ -170,7 +178,7 @@ impl Bearing {
                 }
                 let force = block.contacts[0].normal[lane] + lifted[lane];
                 let heard = &mut scratch.heard[block.first + lane];
-                *heard = Heard { facet, share, force, growth: force - heard.force };
+                *heard = Heard { growth: force - heard.force, force, ..*heard };
             }
             for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
                 scratch.deepest = scratch.deepest.max(Self::deepest(contacts));

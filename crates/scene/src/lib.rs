@@ -67,6 +67,7 @@ pub mod lubrication;
 pub mod material;
 pub mod mesh_file;
 mod point_contact;
+pub mod ring_mesh;
 pub mod run_dir;
 pub mod run_info;
 pub mod scene;

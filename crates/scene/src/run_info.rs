@@ -114,6 +114,18 @@ pub struct EnergyInfo {
     /// Peak strain energy [J]; infinite likewise.
     #[serde(deserialize_with = "null_is_infinite")]
     pub peak_strain_j: f64,
+    /// What friction, films and damping have turned into heat [J]; nothing in runs of programs that did not say.
+    #[serde(default, deserialize_with = "null_is_infinite")]
+    pub heat_j: f64,
+}
+
+impl EnergyInfo {
+    /// Largest |imbalance| over the heat [-], where that is more than was ever stored as strain: in a long run what a step is off by
+    /// grows with the heat, and the strain energy does not.
+    pub fn share_of_heat(&self) -> Option<f64> {
+        let share = self.max_relative_error * self.peak_strain_j / self.heat_j;
+        (self.heat_j > self.peak_strain_j && share.is_finite()).then_some(share)
+    }
 }
 
 /// The worst that the guards have seen (`guards.rs`).

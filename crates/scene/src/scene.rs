@@ -6,6 +6,7 @@ use crate::housing;
 
 pub use crate::deviation::DeviationScene;
 pub use crate::housing::HousingScene;
+pub use crate::ring_mesh::RingMeshScene;
 
 /// A complete scene. `()` in a file is the paper's bearing; every field has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,6 +25,12 @@ pub struct Scene {
     /// What holds the outer ring and takes the load; absent for `adapter`.
     #[serde(skip_serializing_if = "HousingScene::is_adapter")]
     pub housing: HousingScene,
+    /// The mesh of the outer ring from a file; absent for one that the program makes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outer_ring_mesh: Option<RingMeshScene>,
+    /// The mesh of the inner ring from a file; absent for one that the program makes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inner_ring_mesh: Option<RingMeshScene>,
     /// Spall on a raceway; `None` is a sound bearing.
     pub defect: Option<DefectScene>,
     /// Further defects of raceways and rolling elements, and other deviations from round.
@@ -562,6 +569,8 @@ impl Default for Scene {
             cage: Some(CageScene::default()),
             adapter: AdapterScene::default(),
             housing: HousingScene::Adapter,
+            outer_ring_mesh: None,
+            inner_ring_mesh: None,
             defect: Some(DefectScene::default()),
             defects: Vec::new(),
             material: MaterialScene::default(),

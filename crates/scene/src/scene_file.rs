@@ -19,6 +19,7 @@ pub(crate) mod outline;
 mod overrides;
 pub(crate) mod problem;
 mod reference;
+mod ring_meshes;
 mod schema;
 pub(crate) mod suggest;
 mod syntax;

@@ -274,8 +274,11 @@ fn announce(info: &RunInfo) {
             )
         }
     };
+    let heat = info.energy.share_of_heat().map_or(String::new(), |share| {
+        format!(" of the peak strain energy, {:.3} % of the heat", 100.0 * share)
+    });
     println!(
-        "{how}: {} steps of {step}, {size}, {} (set-up {}), {pace}, energy error {:.3} %",
+        "{how}: {} steps of {step}, {size}, {} (set-up {}), {pace}, energy error {:.3} %{heat}",
         info.steps,
         clock(info.wall_s),
         clock(info.setup_s),

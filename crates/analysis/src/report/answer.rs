@@ -227,7 +227,14 @@ fn physics(summary: &Summary) -> String {
 }
 
 fn trust(summary: &Summary) -> String {
-    let energy = format!("Energy balances to {:.2} %", 100.0 * summary.energy.max_relative_error);
+    let heat = summary
+        .energy
+        .share_of_heat
+        .map_or(String::new(), |share| format!(" ({:.3} % of what became heat)", 100.0 * share));
+    let energy = format!(
+        "Energy balances to {:.2} % of the peak strain energy{heat}",
+        100.0 * summary.energy.max_relative_error
+    );
     let load = summary
         .load
         .relative_error

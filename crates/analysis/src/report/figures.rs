@@ -216,6 +216,11 @@ fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
     let mut figures = vec![ledger];
     if let Some(error) = energy.get("relative_error") {
         let percent = error.iter().map(|e| 100.0 * e).collect();
+        let heat = run
+            .info
+            .energy
+            .share_of_heat()
+            .map_or(String::new(), |share| format!(" and {:.3} % of all heat", 100.0 * share));
         figures.push(
             Figure::new(
                 "energy-error",
@@ -226,7 +231,7 @@ fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
             .synced("time")
             .with(Series::listed("imbalance", Colour::Red, time.to_vec(), percent))
             .caption(format!(
-                "The largest imbalance is {:.3} % of the peak strain energy; a run stops when its limit is passed.",
+                "The largest imbalance is {:.3} % of the peak strain energy{heat}; a run stops when its limit is passed.",
                 100.0 * run.info.energy.max_relative_error
             )),
         );

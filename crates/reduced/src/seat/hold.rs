@@ -7,7 +7,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{heard::Heard, row::Row, seat::Seat};
 
 /// Passes over the panels in a step at most, and before the first step.
-const PASSES: usize = 4;
+const PASSES: usize = 200;
 const PASSES_AT_REST: usize = 1000;
 
 /// Passes end when no tension changes by more than this share of the mean force on a panel.

@@ -113,6 +113,8 @@ pub(crate) fn refuses_in_profile(path: &str, value: f64) -> Option<String> {
 }
 
 /// Paths of the profiles.
+pub(crate) const OUTER_RING_MESH: &str = "outer_ring_mesh";
+pub(crate) const INNER_RING_MESH: &str = "inner_ring_mesh";
 pub(crate) const SPEED_PROFILE: &str = "operation.speed_profile";
 pub(crate) const OUTER_SPEED_PROFILE: &str = "operation.outer_speed_profile";
 pub(crate) const LOAD_PROFILE: &str = "operation.load_profile";
@@ -222,6 +224,11 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         }
         HousingScene::Mesh(mesh) => add("housing.unit_mm", mesh.unit_mm, positive(1e6), "mm"),
         HousingScene::Adapter => {}
+    }
+    for (path, mesh) in [(OUTER_RING_MESH, &scene.outer_ring_mesh), (INNER_RING_MESH, &scene.inner_ring_mesh)] {
+        if let Some(mesh) = mesh {
+            add(&format!("{path}.unit_mm"), mesh.unit_mm, positive(1e6), "mm");
+        }
     }
     if let Some(defect) = &scene.defect {
         add("defect.length_mm", defect.length_mm, positive(20_000.0), "mm");

@@ -5,12 +5,12 @@ use super::outline::Outline;
 use crate::deviation::DeviationScene;
 use crate::housing::HousingScene;
 use crate::scene::{
-    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
 /// Groups that a scene may lack.
-const OPTIONAL_GROUPS: [&str; 7] = [
+const OPTIONAL_GROUPS: [&str; 9] = [
     "cage",
     "defect",
     "film",
@@ -18,6 +18,8 @@ const OPTIONAL_GROUPS: [&str; 7] = [
     "operation.rotating_load",
     "solver.structural_damping",
     "output.frames",
+    "outer_ring_mesh",
+    "inner_ring_mesh",
 ];
 
 /// Every field that a scene has, from the defaults.
@@ -55,6 +57,8 @@ impl Schema {
         // One profile shows the fields of a ramp, the other those of a sine.
         scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
         scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
+        scene.outer_ring_mesh = Some(RingMeshScene::default());
+        scene.inner_ring_mesh = Some(RingMeshScene::default());
         scene.operation.rotating_load = Some(RotatingLoadScene::default());
         // Not written by default.
         (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (0.5, 0.5);

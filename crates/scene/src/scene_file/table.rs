@@ -1,4 +1,4 @@
-//! Profiles from CSV files, and meshes of housings: a scene that was read holds what is in them, so that a run holds all of its
+//! Profiles from CSV files, and meshes of housings and rings: a scene that was read holds what is in them, so that a run holds all of its
 //! scene.
 //!
 //! ```text
@@ -14,7 +14,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::limits::{self, LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
+use super::limits::{
+    self, INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE,
+};
 use super::origin::Origin;
 use super::problem::{Problem, SceneError, place_in_file};
 use super::wording::{number, shown};
@@ -24,7 +26,7 @@ use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
 const MAX_BYTES: u64 = 1 << 20;
-/// Largest mesh of a housing [bytes]: some fifty thousand elements. The scene of the run holds it.
+/// Largest mesh of a body [bytes]: some fifty thousand elements. The scene of the run holds it.
 const MAX_MESH_BYTES: u64 = 4 << 20;
 /// Most rows: the scene of the run holds them all.
 const MAX_ROWS: usize = 10_000;
@@ -51,21 +53,15 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Res
         let table = Table { path, columns: ["time_ms", "value"], refuses: &refuses };
         *profile = Some(ProfileScene::Points(table.read(folder, name, origin)?));
     }
-    if let HousingScene::Mesh(housing) = &mut scene.housing
-        && housing.text.is_empty()
+    if let HousingScene::Mesh(housing) = &mut scene.housing {
+        read_mesh("housing", &housing.file, &mut housing.text, folder, origin)?;
+    }
+    for (path, mesh) in
+        [(OUTER_RING_MESH, &mut scene.outer_ring_mesh), (INNER_RING_MESH, &mut scene.inner_ring_mesh)]
     {
-        const PATH: &str = "housing.file";
-        let file = folder.join(&housing.file);
-        housing.text = text_of(&file, MAX_MESH_BYTES).map_err(|why| {
-            let mut problem = Problem::new(
-                format!("cannot read the mesh `{}`: {why}", shown(&housing.file)),
-                origin.place(PATH),
-            );
-            PATH.clone_into(&mut problem.field);
-            "a Gmsh (`.msh`), Abaqus (`.inp`) or LS-DYNA (`.k`) file".clone_into(&mut problem.allowed);
-            "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
-            problem
-        })?;
+        if let Some(mesh) = mesh {
+            read_mesh(path, &mesh.file, &mut mesh.text, folder, origin)?;
+        }
     }
     for (i, deviation) in scene.defects.iter_mut().enumerate() {
         let FormScene::Profile(profile) = &mut deviation.form else { continue };
@@ -78,6 +74,29 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Res
         let points = table.read(folder, &profile.file, origin)?;
         profile.points = points.into_iter().map(|(at_mm, depth_um)| PointScene { at_mm, depth_um }).collect();
     }
+    Ok(())
+}
+
+/// Puts what the mesh `file` of the group `path` holds into `text`, unless it is there.
+fn read_mesh(
+    path: &str,
+    file: &str,
+    text: &mut String,
+    folder: &Path,
+    origin: &Origin<'_>,
+) -> Result<(), SceneError> {
+    if !text.is_empty() {
+        return Ok(());
+    }
+    *text = text_of(&folder.join(file), MAX_MESH_BYTES).map_err(|why| {
+        let field = format!("{path}.file");
+        let mut problem =
+            Problem::new(format!("cannot read the mesh `{}`: {why}", shown(file)), origin.place(&field));
+        problem.field = field;
+        "a Gmsh (`.msh`), Abaqus (`.inp`) or LS-DYNA (`.k`) file".clone_into(&mut problem.allowed);
+        "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
+        problem
+    })?;
     Ok(())
 }
 

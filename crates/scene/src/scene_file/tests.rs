@@ -413,6 +413,46 @@ fn example_housings_are_written_in_files_and_behind_set() {
 }
 
 #[test]
+fn refuses_what_a_ring_from_a_file_leaves_to_the_file() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/rings/notched_outer.msh");
+    for (more, field, words) in [
+        // The paper's spall, which nobody has written: what is at fault is what was.
+        (
+            "",
+            "outer_ring_mesh",
+            "`defect` has steep walls on a ring whose mesh is that of `outer_ring_mesh.file`",
+        ),
+        (
+            "defect: None, defects: [(on: inner, form: spall()), (on: outer, form: spall())]",
+            "defects[1].form",
+            "`defects[1]` has steep walls",
+        ),
+        (
+            "defect: None, mesh: (outer_facets: 200)",
+            "mesh.outer_facets",
+            "the facets of that raceway are those of",
+        ),
+    ] {
+        let text = format!("(outer_ring_mesh: (file: {file:?}), {more})");
+        let error = parse(&text).expect_err(more);
+        let problem = &error.problems()[0];
+        assert_eq!((problem.field.as_str(), problem.message.contains(words)), (field, true), "{error}");
+    }
+    let inner = format!("(inner_ring_mesh: (file: {file:?}), bearing: (clearance_change_um: 3))");
+    let said = parse(&inner).expect_err("a clearance").to_string();
+    assert!(said.contains("let the file have it"), "{said}");
+    let none = only(parse("(outer_ring_mesh: (file: \"none.msh\"))"));
+    assert_eq!(none.field, "outer_ring_mesh.file");
+    assert!(none.message.contains("cannot read the mesh `none.msh`"), "{none}");
+    // Leaning walls are moved out of any raceway.
+    parse(&format!(
+        "(film: None, defect: None, outer_ring_mesh: (file: {file:?}), defects: [(form: spall(edge_mm: 1))])"
+    ))
+    .expect("valid");
+    assert!(!Scene::default().to_ron().contains("ring_mesh"));
+}
+
+#[test]
 fn refuses_housings_that_do_not_fit() {
     for (scene, field, words) in [
         (

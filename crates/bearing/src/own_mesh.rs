@@ -1,0 +1,153 @@
+//! Bodies whose meshes come from files: housings and rings.
+
+use std::path::Path;
+
+use stribeck_mesh::{
+    Part, Surface,
+    decks::{Deck, ReadDeck},
+};
+use stribeck_scene::{
+    geometry::Geometry, housing::MeshHousingScene, ring_mesh::RingMeshScene, scene::DefectRing,
+};
+
+use crate::error::Error;
+
+/// Nodes along a fit lie within this part of its radius around or within what they fit.
+const LOOSE: f64 = 0.01;
+
+/// Half of the nodes of a raceway, and all that rollers may meet, lie within this part of its radius on its circle.
+const ROUND: f64 = 1e-3;
+
+/// The mesh of a file, and who asked for it.
+struct OwnMesh<'a> {
+    /// Group of the scene.
+    group: &'static str,
+    file: &'a str,
+    part: Part,
+    deck: ReadDeck,
+}
+
+impl<'a> OwnMesh<'a> {
+    fn read(group: &'static str, file: &'a str, text: &str, unit_mm: f64) -> Result<Self, Error> {
+        let refuse = |what: String| refused(group, file, what);
+        let extension = Path::new(file).extension().and_then(|e| e.to_str()).unwrap_or_default();
+        let deck = Deck::of_extension(extension)
+            .ok_or_else(|| refuse("its name ends in neither `.msh`, `.inp` nor `.k`".to_owned()))?;
+        let deck = deck.read(text).map_err(|fault| refuse(fault.to_string()))?;
+        let mut part = deck.part().map_err(|error| refuse(error.to_string()))?;
+        let unit = 1e-3 * unit_mm;
+        part.x.iter_mut().chain(&mut part.y).for_each(|place| *place *= unit);
+        Ok(Self { group, file, part, deck })
+    }
+
+    fn refuse<T>(&self, what: String) -> Result<T, Error> {
+        Err(refused(self.group, self.file, what))
+    }
+
+    /// The boundary along the set `name`, which the field `field` asks for: its pieces, the longest first.
+    fn pieces(&self, field: &str, name: &str) -> Result<Vec<Surface>, Error> {
+        let Some(nodes) = self.deck.node_sets.get(name) else {
+            let sets =
+                self.deck.node_sets.keys().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+            let there = if sets.is_empty() { "none" } else { &sets };
+            return self.refuse(format!(
+                "it has no set of nodes `{name}`, which `{}.{field}` names; sets: {there}",
+                self.group
+            ));
+        };
+        let mut pieces = self.part.boundary_along(nodes);
+        pieces.sort_by_key(|piece| std::cmp::Reverse(piece.facets()));
+        if pieces.is_empty() {
+            return self.refuse(format!("no edge of an element lies along the set `{name}`"));
+        }
+        Ok(pieces)
+    }
+
+    /// The same of a boundary that goes all around; `what` says of what.
+    fn closed(&self, field: &str, name: &str, what: &str) -> Result<Surface, Error> {
+        let mut pieces = self.pieces(field, name)?;
+        if !(pieces[0].closed && pieces.len() == 1) {
+            let places = pieces.len();
+            return self
+                .refuse(format!("the set `{name}` is no closed {what}, but {places} pieces of boundary"));
+        }
+        Ok(pieces.swap_remove(0))
+    }
+
+    /// Distances of the nodes of a surface from the bearing's centre [m].
+    fn radii(&self, surface: &Surface) -> Vec<f64> {
+        surface.nodes.iter().map(|&n| self.part.x[n as usize].hypot(self.part.y[n as usize])).collect()
+    }
+
+    fn misses<T>(&self, what: &str, fits: &str, [is, wanted]: [f64; 2]) -> Result<T, Error> {
+        self.refuse(format!(
+            "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, and the radius there is {:.4} mm. Look at \
+             `{}.unit_mm`; the bearing's centre is the origin of the mesh",
+            1e3 * is,
+            1e3 * wanted,
+            self.group
+        ))
+    }
+}
+
+/// A housing, with its surfaces `bore` and `loaded`.
+///
+/// # Errors
+/// When the file says something else, or does not fit the outer ring.
+pub(crate) fn housing(housing: &MeshHousingScene, g: &Geometry) -> Result<Part, Error> {
+    let mut own = OwnMesh::read("housing", &housing.file, &housing.text, housing.unit_mm)?;
+    let bore = own.closed("bore", &housing.bore, "bore")?;
+    let ring = g.outer_race_radius + g.outer_ring_thickness;
+    if let Some(&off) = own.radii(&bore).iter().find(|radius| (*radius / ring - 1.0).abs() > LOOSE) {
+        return own.misses("bore", "the outer ring", [off, ring]);
+    }
+    let loaded = own.pieces("loaded", &housing.loaded)?.swap_remove(0);
+    own.part.surfaces.extend([("bore".to_owned(), bore), ("loaded".to_owned(), loaded)]);
+    Ok(own.part)
+}
+
+/// A ring, with its surfaces `inner` and `outer`, of which one is its raceway.
+///
+/// # Errors
+/// When the file says something else, or is no such ring of the bearing.
+pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, g: &Geometry) -> Result<Part, Error> {
+    // Outwards, seen from the rollers: where the ring's material is.
+    let (group, outwards, race, thickness) = match of {
+        DefectRing::Outer => ("outer_ring_mesh", 1.0, g.outer_race_radius, g.outer_ring_thickness),
+        DefectRing::Inner => ("inner_ring_mesh", -1.0, g.inner_race_radius, g.inner_ring_thickness),
+    };
+    let mut own = OwnMesh::read(group, &ring.file, &ring.text, ring.unit_mm)?;
+    let raceway = own.closed("raceway", &ring.raceway, "raceway")?;
+    let mut radii = own.radii(&raceway);
+    radii.sort_by(f64::total_cmp);
+    let (middle, towards) =
+        (radii[radii.len() / 2], if outwards > 0.0 { radii[0] } else { radii[radii.len() - 1] });
+    for off in [middle, towards] {
+        let deeper = outwards * (off / race - 1.0);
+        if deeper < -ROUND || off == middle && deeper > ROUND {
+            return own.misses("raceway", "the one of `bearing`", [off, race]);
+        }
+    }
+    let fit = own.closed("fit", &ring.fit, if outwards > 0.0 { "back" } else { "bore" })?;
+    let mut radii = own.radii(&fit);
+    radii.sort_by(f64::total_cmp);
+    let wanted = race + outwards * thickness;
+    let (middle, away) =
+        (radii[radii.len() / 2], if outwards > 0.0 { radii[radii.len() - 1] } else { radii[0] });
+    for off in [middle, away] {
+        let beyond = outwards * (off / wanted - 1.0);
+        if beyond > LOOSE || off == middle && beyond < -LOOSE {
+            return own.misses("fit", "the thickness of the ring", [off, wanted]);
+        }
+    }
+    let names = match of {
+        DefectRing::Outer => ["inner", "outer"],
+        DefectRing::Inner => ["outer", "inner"],
+    };
+    own.part.surfaces.extend(names.map(str::to_owned).into_iter().zip([raceway, fit]));
+    Ok(own.part)
+}
+
+fn refused(group: &'static str, file: &str, what: String) -> Error {
+    Error::MeshFile { field: format!("{group}.file"), file: file.to_owned(), what }
+}
