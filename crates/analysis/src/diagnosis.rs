@@ -11,7 +11,7 @@ use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
-use crate::measured::{Analysis, Family, Machine};
+use crate::measured::{Analysis, Family, Machine, sidebands_seen};
 use crate::record::Record;
 
 /// Verdict on a record, beside the truth.
@@ -63,12 +63,6 @@ pub struct Sidebands {
     /// How many of them noise would not make, of six.
     pub seen: usize,
 }
-
-/// Harmonics whose sidebands are looked for.
-const HARMONICS: usize = 3;
-
-/// Probability that noise makes a line as high, below which it is seen.
-const ALPHA: f64 = 1e-3;
 
 /// What channel `name` of the record says by itself; `None` where it is too short or not recorded. The longest transforms of a run:
 /// nothing else need be in memory.
@@ -187,8 +181,9 @@ fn sidebands(family: &Family, band: &BandEnvelope, of: &str, spacing_hz: f64) ->
     let times = if family.name == "BSF" { 2.0 } else { 1.0 };
     let fundamental_hz = times * family.measured_hz?;
     let spectrum = Whitened::new(&band.values, band.grid_hz, band.segments).ok()?;
-    let seen = |hz: f64| spectrum.line_p_value(spectrum.at(hz)) < ALPHA;
-    let beside =
-        (1..=HARMONICS).flat_map(|n| [-1.0, 1.0].map(|side| n as f64 * fundamental_hz + side * spacing_hz));
-    Some(Sidebands { of: of.to_owned(), spacing_hz, seen: beside.filter(|hz| seen(*hz)).count() })
+    Some(Sidebands {
+        of: of.to_owned(),
+        spacing_hz,
+        seen: sidebands_seen(&spectrum, fundamental_hz, spacing_hz),
+    })
 }

@@ -54,6 +54,7 @@ pub use enhanced::Enhanced;
 pub use screening::Health;
 use screening::Screening;
 pub use verdict::Family;
+pub(crate) use verdict::sidebands_seen;
 
 /// What is known of the machine.
 #[derive(Debug, Clone, PartialEq, Default)]

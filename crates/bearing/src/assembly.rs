@@ -297,6 +297,20 @@ impl Assembly {
         Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
 
+    /// Nodes of the housing that take the load and are guided up and down; none where the load may come from anywhere.
+    pub fn guided(&self) -> Vec<u32> {
+        self.that_move(|motion| *motion == Motion::HeldX)
+    }
+
+    /// Nodes of the inner ring's bore.
+    pub fn turned_by_the_shaft(&self) -> Vec<u32> {
+        self.that_move(|motion| matches!(motion, Motion::Rotating { .. }))
+    }
+
+    fn that_move(&self, so: impl Fn(&Motion) -> bool) -> Vec<u32> {
+        (0..).zip(&self.model.motion).filter(|(_, motion)| so(motion)).map(|(n, _)| n).collect()
+    }
+
     /// Counts for `run.json`.
     pub fn mesh_info(&self) -> MeshInfo {
         let mesh = &self.model.mesh;

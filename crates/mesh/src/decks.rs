@@ -11,7 +11,8 @@
 //! | Gmsh `.msh` 4.1, ASCII | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
 //!
 //! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MAT_ELASTIC`, `*SECTION_SHELL` and
-//! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT PAIR`.
+//! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT PAIR`; and a step of explicit
+//! dynamics ([`Step`]): gravity, loads on nodes, guided and turning nodes, and the velocities of all at the start.
 //!
 //! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh Reference Manual*,
 //! MSH file format 4.1.
@@ -24,7 +25,7 @@ mod model;
 use std::collections::BTreeMap;
 use std::fmt;
 
-pub use self::model::{ContactPair, Model, Side};
+pub use self::model::{ContactPair, Model, Side, Step};
 use crate::smoothing::sound;
 use crate::{Body, Error, Mesh, Part};
 
@@ -60,8 +61,8 @@ impl Deck {
         }
     }
 
-    /// The mesh with material, sections, the surfaces of all bodies and their contacts, for who adds loads and motions; Gmsh's files have
-    /// no place for more than the mesh. Not in contact are surfaces that no [`ContactPair`] names.
+    /// The mesh with material, sections, the surfaces of all bodies, their contacts and a step, if there is one; Gmsh's files have no place
+    /// for more than the mesh. Not in contact are surfaces that no [`ContactPair`] names.
     pub fn write_model(self, model: &Model<'_>, title: &str) -> String {
         let title = title.replace(['\n', '\r'], " ");
         match self {

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use stribeck_mesh::decks::{ContactPair, Deck, Model, Side};
+use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Annulus, Disc, Groove, Mesh};
 use stribeck_testing::{Noise, Scratch, said, says};
 
@@ -80,6 +80,7 @@ fn model(mesh: &Mesh) -> Model<'_> {
         thickness: 0.02,
         rigid: vec![1],
         contacts: vec![ContactPair { surfaces: [(1, Side::Outside), (0, Side::Inside)], friction: 0.1 }],
+        step: None,
     }
 }
 
@@ -179,6 +180,96 @@ fn peer_calculix_finds_the_frequencies_of_a_ring() {
         println!("{n}: {pair:.2?} Hz, thin ring {:.2} Hz", love(n));
         assert!(pair.iter().all(|hz| (hz / love(n) - 1.0).abs() < 0.03), "{n}: {hz:?}, {}", love(n));
     }
+}
+
+/// A free disc that flies, falls and is pushed, for two milliseconds.
+fn flight(mesh: &Mesh) -> Step {
+    Step {
+        duration: 2e-3,
+        gravity: [0.0, -9.81],
+        load: ((0..mesh.x.len() as u32).collect(), [300.0, -40.0]),
+        velocity: vec![[0.5, 0.25]; mesh.x.len()],
+        left_out: vec!["the wind".to_owned()],
+        ..Step::default()
+    }
+}
+
+/// Loads, weight and velocities of a step as CalculiX takes them from our file.
+/// Source: Newton (1687), x = v t + ½ (F/m + g) t² for the mean of all nodes of a free body, weighted by mass; half a per cent for the mean over nodes.
+#[test]
+fn peer_calculix_lets_a_disc_fly() {
+    if Command::new("ccx").arg("-v").output().is_err() {
+        eprintln!("decks are not computed by CalculiX: there is no `ccx`");
+        return;
+    }
+    let mut mesh = Mesh::new();
+    let disc = Disc { radius: 4e-3, facets: 40, size: 6e-4, rotation: 0.2 }.part().expect("a disc");
+    let mass = 7850.0 * 0.02 * disc.area();
+    mesh.add("roller 1", &disc);
+    let step = flight(&mesh);
+    let model = Model { rigid: Vec::new(), contacts: Vec::new(), step: Some(step.clone()), ..model(&mesh) };
+    let folder = Scratch::create("flight");
+    let text = Deck::Abaqus
+        .write_model(&model, "a disc")
+        // Implicit, because explicit steps of the mesh's size are more than it takes.
+        .replace("*DYNAMIC, EXPLICIT\n, 2e-3", "*DYNAMIC\n2e-5, 2e-3")
+        .replace("*END STEP", "*NODE PRINT, NSET=NODES_ROLLER_1, FREQUENCY=100000\nU\n*END STEP");
+    std::fs::write(folder.join("disc.inp"), text).expect("it is written");
+    let output = Command::new("ccx").current_dir(folder.path()).arg("disc").output().expect("it starts");
+    let listed =
+        std::fs::read_to_string(folder.join("disc.dat")).unwrap_or_else(|_| panic!("{}", said(&output)));
+    let moved: Vec<Vec<f64>> = listed
+        .lines()
+        .map(|line| line.split_whitespace().filter_map(|word| word.parse().ok()).collect::<Vec<f64>>())
+        .filter(|numbers| numbers.len() == 4)
+        .collect();
+    let last = &moved[moved.len() - mesh.x.len()..];
+    for axis in 0..2 {
+        let mean = last.iter().map(|numbers| numbers[1 + axis]).sum::<f64>() / last.len() as f64;
+        let (t, a) = (step.duration, step.load.1[axis] / mass + step.gravity[axis]);
+        let flown = step.velocity[0][axis] * t + 0.5 * a * t * t;
+        println!("axis {axis}: {:.4} mm, by Newton {:.4} mm", 1e3 * mean, 1e3 * flown);
+        assert!((mean / flown - 1.0).abs() < 5e-3, "{mean} {flown}\n{}", said(&output));
+    }
+}
+
+/// What is done to bodies stands in both files, and leaves the mesh as it is.
+#[test]
+fn roundtrip_a_step() {
+    let mesh = mesh();
+    let step = Step { guided: vec![0, 1], turning: vec![(vec![2, 3], -50.0)], ..flight(&mesh) };
+    for (deck, cards) in [
+        (
+            Deck::LsDyna,
+            &[
+                "$ left out: the wind",
+                "*CONTROL_TERMINATION\n2e-3",
+                "*LOAD_BODY_Y\n1,9.81e0",
+                ",0,1,0,0,0,0,0",
+                ",11,0,1,-5e1\n0.0,0.0",
+                "\n1,5e-1,2.5e-1,0.0",
+            ][..],
+        ),
+        (
+            Deck::Abaqus,
+            &[
+                "** left out: the wind",
+                "TIE NSET=TURNING_1",
+                "\nGUIDED, 1, 1",
+                ", 6, 6, -5e1",
+                "*DYNAMIC, EXPLICIT\n, 2e-3",
+                "ROLLER_1, GRAV, 9.81, 0, -1, 0.0",
+            ],
+        ),
+    ] {
+        let text = deck.write_model(&Model { step: Some(step.clone()), ..model(&mesh) }, "a bearing");
+        let read = deck.read(&text).unwrap_or_else(|e| panic!("{deck:?}: {e}"));
+        assert_eq!(read.mesh, deck.read(&deck.write(&mesh, "a bearing")).expect("a mesh").mesh, "{deck:?}");
+        for card in cards {
+            assert!(text.contains(card), "{deck:?}: `{card}` is not there");
+        }
+    }
+    assert_eq!(flight(&mesh).load.0.len(), mesh.x.len());
 }
 
 #[test]

@@ -21,7 +21,7 @@ use crate::{
     overlap::Sides,
     reduction::Reduction,
     row::{Row, Rows},
-    seat::{STICKING, Seat, Springs},
+    seat::{STICKING, Springs},
     state::State,
 };
 
@@ -327,8 +327,9 @@ impl Bearing {
     /// What a single roller's force loses if it lets the whole seat slip, over the force: the gain of a loop whose lag is a step
     /// (THEORY §9.1).
     pub fn seat_loop_gain(&self) -> f64 {
-        let give = self.reduction.springs.as_ref().map_or(0.0, Seat::give);
-        give * self.outer.compliance.stiffest(self.penalty, self.outer.relative)
+        let gives = self.reduction.springs.as_ref().map_or(Vec::new(), |seat| seat.give(seat.padded));
+        gives.into_iter().fold(0.0, f64::max)
+            * self.outer.compliance.stiffest(self.penalty, self.outer.relative)
     }
 
     /// The rim of a roller, from 0.

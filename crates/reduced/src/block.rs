@@ -93,6 +93,15 @@ pub(crate) struct Contacts {
     pub(crate) overlap: Overlap<Row>,
 }
 
+impl Contacts {
+    /// By how much the force on one of the rollers falls when the raceway gives way [N/m].
+    #[inline(always)]
+    pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {
+        let own = penalty * self.overlap.length[lane];
+        if self.normal[lane] > 0.0 { own / (1.0 + own * self.give[lane]) } else { 0.0 }
+    }
+}
+
 /// Contacts of eight rollers with a wall of their pockets: elastic slip [m], drag and damping force [N].
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Walls {

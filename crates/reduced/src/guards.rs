@@ -87,9 +87,10 @@ impl Guards {
     pub(crate) fn before(scene: &Scene, bearing: &Bearing) -> Vec<String> {
         let mut warnings = Vec::new();
         let gain = bearing.seat_loop_gain();
-        if gain > SEAT_LOOP_GAIN {
+        // Films do not answer to the seat, contacts do.
+        if scene.film.is_some() && gain > SEAT_LOOP_GAIN {
             warnings.push(format!(
-                "the seat may answer a roller with {:.0} % of its force, a step late: above {:.0} % the run may diverge. Take a larger \
+                "the seat may answer a roller on its film with {:.0} % of its force, a step late: above {:.0} % the run may diverge. Take a larger \
                  `model.modes_khz` or a smaller `contact.penalty_scale`",
                 100.0 * gain,
                 100.0 * SEAT_LOOP_GAIN

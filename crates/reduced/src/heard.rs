@@ -10,6 +10,8 @@ pub struct Heard {
     pub(crate) force: f64,
     /// By how much it has grown in the last step.
     pub(crate) growth: f64,
+    /// By how much it falls when the raceway gives way, the roller staying where it is [N/m]: what the seat feels of a roller.
+    pub(crate) stiffness: f64,
 }
 
 impl Heard {

@@ -9,7 +9,7 @@ use crate::{
     bearing::Bearing,
     heard::Heard,
     row::Row,
-    seat::Springs,
+    seat::{Answers, Springs},
     state::{Spent, State, Stored},
 };
 
@@ -45,6 +45,8 @@ pub(crate) struct Modes {
     pub(crate) tension: Vec<Row>,
     /// By how much these have opened and slipped [m].
     pub(crate) opened: Vec<Row>,
+    /// What rollers do to the seat.
+    pub(crate) answers: Answers,
 }
 
 impl Modes {
@@ -53,7 +55,15 @@ impl Modes {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
         let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
         let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, opened: tension.clone(), tension }
+        Self {
+            q: rows.clone(),
+            v: rows.clone(),
+            push: rows,
+            drag,
+            opened: tension.clone(),
+            tension,
+            answers: Answers::default(),
+        }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -72,7 +82,7 @@ impl Bearing {
     pub(crate) fn heard_at(&self, hint: u32, radial: [f64; 2], force: f64) -> Heard {
         let outline = &self.outer.outline;
         let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
-        Heard { facet: facet as u32, share: outline.share(facet, radial), force, growth: 0.0 }
+        Heard { facet: facet as u32, share: outline.share(facet, radial), force, ..Heard::default() }
     }
 
     /// The place on a facet with this share of its second vertex.

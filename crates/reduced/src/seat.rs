@@ -11,7 +11,7 @@ use stribeck_simd::lanes::LANES;
 use stribeck_solver::{state::NodeForces, statics::Spring};
 
 pub use self::hold::Hold;
-pub(crate) use self::hold::Springs;
+pub(crate) use self::hold::{Answers, Springs};
 use crate::{
     error::Error,
     structure::{Structure, product},
@@ -184,21 +184,21 @@ impl Seat {
 }
 
 impl Seat {
-    /// Largest displacement of the raceway under a unit force on it [m/N], beyond the modes, if the whole seat slips. The force opens
-    /// nothing where it presses.
-    pub(crate) fn give(&self) -> f64 {
+    /// Displacement of the raceway at each vertex under a unit force there [m/N], beyond the modes, if the springs from `first` on give
+    /// way: all of them, or those along the seat.
+    pub(crate) fn give(&self, first: usize) -> Vec<f64> {
         let n = 2 * self.padded;
-        let slips: Vec<usize> = (self.padded..n).filter(|at| self.stiffness[at * n + at] > 0.0).collect();
-        let of = |i: usize, j: usize| self.stiffness[slips[i] * n + slips[j]];
-        if slips.is_empty() {
-            return 0.0;
-        }
-        let stiffness = Mat::from_fn(slips.len(), slips.len(), of);
+        let gives: Vec<usize> = (first..n).filter(|at| self.stiffness[at * n + at] > 0.0).collect();
+        let of = |i: usize, j: usize| self.stiffness[gives[i] * n + gives[j]];
         let vertices = self.by_rollers.len() / n;
-        let pulled = Mat::from_fn(slips.len(), vertices, |i, vertex| self.by_rollers[vertex * n + slips[i]]);
-        let slipped = stiffness.partial_piv_lu().solve(&pulled);
-        let under = |at: usize| (0..slips.len()).map(|i| pulled[(i, at)] * slipped[(i, at)]).sum();
-        (0..vertices).map(under).fold(0.0, f64::max)
+        if gives.is_empty() {
+            return vec![0.0; vertices];
+        }
+        let stiffness = Mat::from_fn(gives.len(), gives.len(), of);
+        let pulled = Mat::from_fn(gives.len(), vertices, |i, vertex| self.by_rollers[vertex * n + gives[i]]);
+        let given = stiffness.partial_piv_lu().solve(&pulled);
+        let under = |at: usize| (0..gives.len()).map(|i| pulled[(i, at)] * given[(i, at)]).sum();
+        (0..vertices).map(under).collect()
     }
 }
 

@@ -141,9 +141,9 @@ impl Bearing {
                 scratch.seated.clear();
                 scratch.seated.extend(self.heard_from_the_seat(hold, &scratch.modes.tension));
             }
-            let Modes { push, tension, opened, .. } = &mut scratch.modes;
+            let Modes { push, tension, opened, answers, .. } = &mut scratch.modes;
             let [heat, stored] =
-                seat.hold(simd, hold, &state.q, &scratch.heard, [push, tension, opened], last);
+                seat.hold(simd, hold, &state.q, &scratch.heard, answers, [push, tension, opened], last);
             spent.heat[0] += 2.0 * heat / dt;
             energy.strain += stored;
         }
@@ -178,7 +178,8 @@ impl Bearing {
                 }
                 let force = block.contacts[0].normal[lane] + lifted[lane];
                 let heard = &mut scratch.heard[block.first + lane];
-                *heard = Heard { growth: force - heard.force, force, ..*heard };
+                let stiffness = block.contacts[0].stiffness(self.penalty, lane);
+                *heard = Heard { growth: force - heard.force, force, stiffness, ..*heard };
             }
             for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
                 scratch.deepest = scratch.deepest.max(Self::deepest(contacts));

@@ -128,7 +128,8 @@ pub(super) fn judge(
             family
         })
         .collect();
-    share_out(&mut families, 1.0 / segment_s);
+    let modulated = is_modulated_by_the_cage(&families, &whitened);
+    share_out(&mut families, 1.0 / segment_s, modulated);
     decide(&mut families);
     tell_the_element(&mut families, bands);
     let verdict = conclude(&families);
@@ -217,8 +218,31 @@ fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -
     (!heights.is_empty()).then(|| as_high as f64 / heights.len() as f64)
 }
 
-/// Lines that two families both take for theirs belong to the one that is nearer to its place.
-fn share_out(families: &mut [Family], resolution_hz: f64) {
+/// Harmonics whose sidebands are looked for, and how many of both sides of all make a family modulated.
+const HARMONICS: usize = 3;
+const MODULATED: usize = 3;
+
+/// How many of the six sidebands of the first three harmonics of a family noise would not make.
+pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_hz: f64) -> usize {
+    let beside =
+        (1..=HARMONICS).flat_map(|n| [-1.0, 1.0].map(|side| n as f64 * fundamental_hz + side * spacing_hz));
+    beside.filter(|hz| spectrum.line_p_value(spectrum.at(*hz)) < ALPHA).count()
+}
+
+/// Whether what may be a spot on a rolling element comes under the load once a turn of the cage, as one must.
+fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whitened)]) -> bool {
+    let of = |name: &str| families.iter().find(|family| family.name == name);
+    let (Some(element), Some(cage)) = (of("BSF"), of("FTF")) else { return false };
+    let Some(hz) = element.measured_hz else { return false };
+    let band = bands.iter().find(|(band, _)| element.band_hz == Some((band.low_hz, band.high_hz)));
+    let spacing_hz = cage.measured_hz.unwrap_or(cage.expected_hz);
+    band.is_some_and(|(_, spectrum)| sidebands_seen(spectrum, 2.0 * hz, spacing_hz) >= MODULATED)
+}
+
+/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage is
+/// heard in them: `modulated`.
+fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
+    let cannot_be = |family: &Family| family.name == "BSF" && !modulated;
     let comb = |family: &Family| {
         let times = FAMILIES.iter().find(|f| f.0 == family.name).map_or(1.0, |f| f.2);
         Some((times * family.measured_hz?, (family.measured_hz? / family.expected_hz - 1.0).abs()))
@@ -226,14 +250,23 @@ fn share_out(families: &mut [Family], resolution_hz: f64) {
     let combs: Vec<Option<(f64, f64)>> = families.iter().map(comb).collect();
     for (at, own) in combs.iter().enumerate() {
         let Some((hz, off)) = own else { continue };
-        let nearer = combs.iter().position(|other| {
-            other.is_some_and(|(there, less)| (there - hz).abs() < resolution_hz && less < *off)
+        let shares =
+            |other: &Option<(f64, f64)>| other.is_some_and(|(there, _)| (there - hz).abs() < resolution_hz);
+        let other = combs.iter().enumerate().find_map(|(n, other)| {
+            let (_, less) = (*other).filter(|_| n != at && shares(other))?;
+            let gives_way = match [at, n].map(|n| cannot_be(&families[n])) {
+                [false, false] => less < *off,
+                [gives_way, _] => gives_way,
+            };
+            gives_way.then_some(n)
         });
-        if let Some(nearer) = nearer {
-            let reason =
-                format!("its lines are those of {}, which are nearer to their place", families[nearer].name);
-            families[at].reason = reason;
-        }
+        let Some(other) = other else { continue };
+        let why = if cannot_be(&families[at]) {
+            "and no turn of the cage is heard in them, as it is where a spot on a rolling element comes under the load"
+        } else {
+            "which are nearer to their place"
+        };
+        families[at].reason = format!("its lines are those of {}, {why}", families[other].name);
     }
 }
 
@@ -399,13 +432,21 @@ mod tests {
     #[test]
     fn example_one_line_is_claimed_for_one_family() {
         let mut families = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 53.081)];
-        share_out(&mut families, 1.25);
+        share_out(&mut families, 1.25, true);
         decide(&mut families);
         assert!(families[0].claimed && !families[1].claimed, "{families:?}");
-        assert!(families[1].reason.contains("those of BPFO"), "{}", families[1].reason);
+        assert!(families[1].reason.contains("those of BPFO, which are nearer"), "{}", families[1].reason);
+        // A cage that slips takes BPFO to where the element would be; only a turn of the cage makes it one.
+        for (modulated, claimed) in [(true, "BSF"), (false, "BPFO")] {
+            let mut families = [found("BPFO", 106.328, 105.153), found("BSF", 52.304, 52.576)];
+            share_out(&mut families, 1.25, modulated);
+            decide(&mut families);
+            let names: Vec<&str> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+            assert_eq!(names, [claimed], "{families:?}");
+        }
         // Two lines of their own are two defects.
         let mut apart = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 52.2)];
-        share_out(&mut apart, 1.25);
+        share_out(&mut apart, 1.25, true);
         decide(&mut apart);
         assert!(apart.iter().all(|family| family.claimed), "{apart:?}");
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::model::{Model, Side, surfaces};
+use super::model::{Model, Side, Step, numbers, surfaces};
 use super::{DeckError, Gathered, ReadDeck, fault, plain, real, whole};
 use crate::Mesh;
 
@@ -62,7 +62,7 @@ pub(super) fn write(mesh: &Mesh, title: &str) -> String {
 
 /// Rigid bodies are elastic ones here: whoever wants them stiff adds `*RIGID BODY` with a node of their own.
 pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
-    let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts } = model;
+    let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts, step } = model;
     let mut out = write(mesh, title);
     let set = |body: usize| plain(&mesh.bodies[body].name);
     let surface_name = |(body, side): (usize, Side)| format!("{}_{}", set(body), side.name());
@@ -72,11 +72,7 @@ pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
         for face in &surface.faces {
             let _ = writeln!(out, "{}, S{}", face.element, face.edge);
         }
-        let _ = writeln!(out, "*NSET, NSET=NODES_{name}");
-        for line in surface.nodes().chunks(A_LINE) {
-            let words: Vec<String> = line.iter().map(usize::to_string).collect();
-            let _ = writeln!(out, "{}", words.join(", "));
-        }
+        node_set(&mut out, &format!("NODES_{name}"), &surface.nodes());
     }
     let _ = writeln!(
         out,
@@ -114,7 +110,69 @@ pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
             n + 1
         );
     }
+    if let Some(step) = step {
+        step_cards(&mut out, mesh, step);
+    }
     out
+}
+
+/// Sets, velocities at the start, and the step.
+fn step_cards(out: &mut String, mesh: &Mesh, step: &Step) {
+    for what in &step.left_out {
+        let _ = writeln!(out, "** left out: {what}");
+    }
+    let sets = [("LOADED", &step.load.0), ("GUIDED", &step.guided)];
+    for (name, nodes) in sets.into_iter().filter(|(_, nodes)| !nodes.is_empty()) {
+        node_set(out, name, &numbers(nodes));
+    }
+    // Nodes that turn are tied to one in the centre.
+    let centre = |n: usize| mesh.x.len() + n + 1;
+    for (n, (nodes, _)) in step.turning.iter().enumerate() {
+        node_set(out, &format!("TURNING_{}", n + 1), &numbers(nodes));
+        let _ = writeln!(
+            out,
+            "*NODE, NSET=CENTRE_{0}\n{1}, 0.0, 0.0\n*RIGID BODY, REF NODE={1}, TIE NSET=TURNING_{0}",
+            n + 1,
+            centre(n)
+        );
+    }
+    *out += "*INITIAL CONDITIONS, TYPE=VELOCITY\n";
+    for (node, velocity) in step.moving() {
+        for (axis, v) in velocity.into_iter().enumerate().filter(|(_, v)| *v != 0.0) {
+            let _ = writeln!(out, "{node}, {}, {}", axis + 1, item(v));
+        }
+    }
+    let _ = writeln!(out, "*STEP, NLGEOM\n*DYNAMIC, EXPLICIT\n, {:e}", step.duration);
+    if !step.guided.is_empty() {
+        *out += "*BOUNDARY\nGUIDED, 1, 1\n";
+    }
+    for (n, (_, rate)) in step.turning.iter().enumerate() {
+        let _ =
+            writeln!(out, "*BOUNDARY, TYPE=VELOCITY\n{0}, 1, 2, 0.0\n{0}, 6, 6, {1}", centre(n), item(*rate));
+    }
+    if !step.load.0.is_empty() {
+        *out += "*CLOAD\n";
+        for (axis, force) in step.force().into_iter().enumerate().filter(|(_, force)| *force != 0.0) {
+            let _ = writeln!(out, "LOADED, {}, {}", axis + 1, item(force));
+        }
+    }
+    let [gx, gy] = step.gravity;
+    let g = gx.hypot(gy);
+    if g > 0.0 {
+        *out += "*DLOAD\n";
+        for body in &mesh.bodies {
+            let _ = writeln!(out, "{}, GRAV, {g}, {}, {}, 0.0", plain(&body.name), gx / g, gy / g);
+        }
+    }
+    *out += "*END STEP\n";
+}
+
+fn node_set(out: &mut String, name: &str, nodes: &[usize]) {
+    let _ = writeln!(out, "*NSET, NSET={name}");
+    for line in nodes.chunks(A_LINE) {
+        let words: Vec<String> = line.iter().map(usize::to_string).collect();
+        let _ = writeln!(out, "{}", words.join(", "));
+    }
 }
 
 pub(super) fn read(text: &str) -> Result<ReadDeck, DeckError> {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use super::model::{Model, Side, surfaces};
+use super::model::{Model, Side, Step, numbers, surfaces};
 use super::{DeckError, Gathered, ReadDeck, fault, real, whole};
 use crate::Mesh;
 
@@ -18,7 +18,7 @@ pub(super) fn write(mesh: &Mesh, title: &str) -> String {
 
 /// Elastic bodies have material 1, rigid ones 2.
 pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
-    let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts } = model;
+    let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts, step } = model;
     let mut out = head(title);
     let _ = writeln!(out, "*MAT_ELASTIC\n1,{density:e},{youngs_modulus:e},{poissons_ratio}");
     // Free in all directions, seen in the axes of the model.
@@ -47,7 +47,44 @@ pub(super) fn write_model(model: &Model<'_>, title: &str) -> String {
             );
         }
     }
+    if let Some(step) = step {
+        step_cards(&mut out, step, mesh.bodies.len() + surfaces.len() + 1);
+    }
     out + "*END\n"
+}
+
+/// Sets, whose numbers are free from `free` on, loads, motions and velocities at the start.
+fn step_cards(out: &mut String, step: &Step, free: usize) {
+    for what in &step.left_out {
+        let _ = writeln!(out, "$ left out: {what}");
+    }
+    let _ = writeln!(out, "*CONTROL_TERMINATION\n{:e}", step.duration);
+    // Curve 1 is one all the time: everything begins at once and stays.
+    let _ = writeln!(out, "*DEFINE_CURVE\n1\n0.0,1.0\n{:e},1.0", 2.0 * step.duration);
+    if !step.load.0.is_empty() {
+        node_set(out, "loaded", free, numbers(&step.load.0));
+        for (axis, force) in step.force().into_iter().enumerate().filter(|(_, force)| *force != 0.0) {
+            let _ = writeln!(out, "*LOAD_NODE_SET\n{free},{},1,{force:e}", axis + 1);
+        }
+    }
+    // A base that accelerates upwards is a weight downwards.
+    for (axis, g) in ["X", "Y"].into_iter().zip(step.gravity).filter(|(_, g)| *g != 0.0) {
+        let _ = writeln!(out, "*LOAD_BODY_{axis}\n1,{:e}", -g);
+    }
+    if !step.guided.is_empty() {
+        node_set(out, "guided", free + 1, numbers(&step.guided));
+        let _ = writeln!(out, "*BOUNDARY_SPC_SET\n{},0,1,0,0,0,0,0", free + 1);
+    }
+    for (n, (nodes, rate)) in step.turning.iter().enumerate() {
+        let set = free + 2 + n;
+        node_set(out, &format!("turning {}", n + 1), set, numbers(nodes));
+        // Degree of freedom 11: nodes that turn about an axis along z, through the offsets of the second line.
+        let _ = writeln!(out, "*BOUNDARY_PRESCRIBED_MOTION_SET\n{set},11,0,1,{rate:e}\n0.0,0.0");
+    }
+    *out += "*INITIAL_VELOCITY_NODE\n";
+    for (node, [vx, vy]) in step.moving() {
+        let _ = writeln!(out, "{node},{vx:e},{vy:e},0.0");
+    }
 }
 
 fn head(title: &str) -> String {

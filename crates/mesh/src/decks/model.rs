@@ -1,4 +1,4 @@
-//! What makes a mesh a model: material, sections, surfaces and contacts.
+//! What makes a mesh a model: material, sections, surfaces and contacts, and a step with its loads and motions.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -22,7 +22,46 @@ pub struct ContactPair {
     pub friction: f64,
 }
 
-/// A mesh with what it lacks to be computed elsewhere, but for loads and motions. All bodies are of one material, in plane strain.
+/// A step of explicit dynamics: what is done to the bodies, and how they move when it begins.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Step {
+    /// How long it is [s].
+    pub duration: f64,
+    /// Acceleration of gravity [m/s²].
+    pub gravity: [f64; 2],
+    /// Nodes that share a load alike, and the whole of it [N].
+    pub load: (Vec<u32>, [f64; 2]),
+    /// Nodes that do not move along x.
+    pub guided: Vec<u32>,
+    /// Nodes that turn about the origin, and how fast [rad/s], counter-clockwise.
+    pub turning: Vec<(Vec<u32>, f64)>,
+    /// Velocity of each node at the start [m/s].
+    pub velocity: Vec<[f64; 2]>,
+    /// What the formats have no place for, in words: comments of the file.
+    pub left_out: Vec<String>,
+}
+
+impl Step {
+    /// What each of the nodes under load takes [N].
+    pub(super) fn force(&self) -> [f64; 2] {
+        let (nodes, [x, y]) = &self.load;
+        let share = 1.0 / nodes.len().max(1) as f64;
+        [share * x, share * y]
+    }
+
+    /// Nodes that move at the start, with their numbers in a file, from 1, and velocities.
+    pub(super) fn moving(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
+        let all = self.velocity.iter().enumerate().map(|(n, v)| (n + 1, *v));
+        all.filter(|(_, v)| *v != [0.0; 2])
+    }
+}
+
+/// Numbers of nodes in a file, from 1.
+pub(super) fn numbers(nodes: &[u32]) -> Vec<usize> {
+    nodes.iter().map(|n| *n as usize + 1).collect()
+}
+
+/// A mesh with what it lacks to be computed elsewhere. All bodies are of one material, in plane strain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model<'a> {
     /// Nodes, elements and bodies.
@@ -39,6 +78,8 @@ pub struct Model<'a> {
     pub rigid: Vec<usize>,
     /// What may touch.
     pub contacts: Vec<ContactPair>,
+    /// What happens; none leaves the file without a step.
+    pub step: Option<Step>,
 }
 
 /// An edge of an element on a boundary.

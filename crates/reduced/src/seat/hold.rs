@@ -13,6 +13,10 @@ const PASSES_AT_REST: usize = 1000;
 /// Passes end when no tension changes by more than this share of the mean force on a panel.
 const STILL: f64 = 1e-4;
 
+/// A roller answers to the seat where that takes more than this part of its force if all panels let go. Where less, its force of the
+/// step before serves, taken on as it grew, which is stable up to a third.
+const FELT: f64 = 0.2;
+
 /// What is looked up of the seat in every step, in rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Springs {
@@ -28,8 +32,10 @@ pub(crate) struct Springs {
     stiffness: Vec<Row>,
     /// The same of each by its own [N/m].
     own: Vec<f64>,
-    /// One over it.
+    /// One over it, zero where there is no spring.
     per_own: Vec<f64>,
+    /// What the raceway gives way by at each vertex under a unit force there if the whole seat lets go [m/N].
+    give: Vec<f64>,
     /// Force that presses each panel at the preload [N].
     pressed: Vec<f64>,
     friction: f64,
@@ -64,6 +70,54 @@ struct Change {
     more: f64,
 }
 
+/// What rollers press in a step, and how they answer to a seat that gives way.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Answers {
+    rollers: Vec<Answer>,
+    /// Tensions by a unit force of each, roller by roller.
+    by: Vec<Row>,
+}
+
+/// What one of them does.
+#[derive(Debug, Clone, Copy)]
+struct Answer {
+    /// Force on the raceway [N].
+    force: f64,
+    /// What it is expected to be, which may be below zero, if the seat has given way under it by `given` [m].
+    expected: f64,
+    given: f64,
+    /// By how much it falls where the seat gives way further [N/m]; zero where that is not felt.
+    stiffness: f64,
+}
+
+/// Adds a multiple of some rows to others.
+#[inline(always)]
+fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
+    let times = Vector::all(simd, times);
+    for (row, to) in rows.iter().zip(to) {
+        let mut at = 0;
+        while at < LANES {
+            let had = Vector::load(simd, to, at);
+            Vector::load(simd, row, at).times_plus(times, had).store(to, at);
+            at += Vector::<S>::LEN;
+        }
+    }
+}
+
+/// Sum of the products of two rows.
+#[inline(always)]
+fn dot<S: Simd>(simd: S, rows: &[Row], values: &[[f64; LANES]]) -> f64 {
+    let mut sum = Vector::all(simd, 0.0);
+    for (row, values) in rows.iter().zip(values) {
+        let mut at = 0;
+        while at < LANES {
+            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, values, at), sum);
+            at += Vector::<S>::LEN;
+        }
+    }
+    sum.sum()
+}
+
 impl Springs {
     pub(crate) fn new(seat: &Seat, modes: usize, friction: f64) -> Self {
         let n = 2 * seat.padded;
@@ -75,6 +129,8 @@ impl Springs {
         let by_spring: Vec<f64> =
             (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
         let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
+        let per_own: Vec<f64> =
+            own.iter().map(|stiffness| if *stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }).collect();
         Self {
             panels: seat.panels,
             padded: seat.padded,
@@ -82,7 +138,8 @@ impl Springs {
             by_spring: rows(&by_spring),
             by_rollers: rows(&seat.by_rollers),
             at_preload: rows(&seat.at_preload),
-            per_own: own.iter().map(|stiffness| 1.0 / stiffness).collect(),
+            per_own,
+            give: seat.give(0),
             own,
             stiffness: rows(&seat.stiffness),
             pressed: seat.pressed.clone(),
@@ -119,11 +176,10 @@ impl Springs {
     /// Lets the seat open and slip where it does at rest, the modes being at `q`.
     pub(crate) fn slip(&self, hold: &mut Hold, q: &[f64]) {
         let simd = Scalar::new();
-        let mut tension = vec![Row::default(); self.rows()];
-        let rollers = std::mem::take(&mut hold.pressed);
-        self.pull(simd, hold, q, &rollers, &mut tension);
-        hold.pressed = rollers;
-        self.settle(simd, hold, &mut tension, PASSES_AT_REST);
+        let (mut tension, mut answers) = (vec![Row::default(); self.rows()], Answers::default());
+        self.answer(simd, hold, &hold.pressed, &mut answers);
+        self.pull(simd, hold, q, &answers, &mut tension);
+        self.settle(simd, hold, &mut tension, &mut answers, PASSES_AT_REST);
     }
 
     /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`; `opened` becomes gaps and
@@ -135,11 +191,13 @@ impl Springs {
         hold: &mut Hold,
         q: &[f64],
         rollers: &[Heard],
+        answers: &mut Answers,
         [push, tension, opened]: [&mut [Row]; 3],
         last: bool,
     ) -> [f64; 2] {
-        self.pull(simd, hold, q, rollers, tension);
-        let heat = self.settle(simd, hold, tension, PASSES);
+        self.answer(simd, hold, rollers, answers);
+        self.pull(simd, hold, q, answers, tension);
+        let heat = self.settle(simd, hold, tension, answers, PASSES);
         for (row, open) in opened.iter_mut().zip(hold.open.as_chunks().0) {
             *row = Row(*open);
         }
@@ -153,9 +211,8 @@ impl Springs {
         }
         // What rollers press is part of the tensions, and its work part of their own energy.
         let mut by_rollers = 0.0;
-        for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
-            let [first, second] = self.under(simd, opened, roller.facet as usize);
-            by_rollers += roller.next() * (first + roller.share * (second - first));
+        for (roller, by) in answers.rollers.iter().zip(answers.by.chunks_exact(self.rows())) {
+            by_rollers += roller.force * dot(simd, by, hold.open.as_chunks().0);
         }
         [heat, self.stored(hold, tension) + by_rollers]
     }
@@ -181,11 +238,61 @@ impl Springs {
         both
     }
 
-    /// Tensions at the coordinates `q` of the modes, while `rollers` press, less what has been lost; across the seat beyond the preload.
+    /// What rollers do to the tensions, each by itself: a unit force at its place, the force if the seat stays as it is, and how much less it
+    /// presses where the seat gives way. That force was expected from the seat going on as in the step before.
     #[inline(always)]
-    fn pull<S: Simd>(&self, simd: S, hold: &Hold, q: &[f64], rollers: &[Heard], tension: &mut [Row]) {
-        let groups = tension.len();
+    fn answer<S: Simd>(&self, simd: S, hold: &Hold, rollers: &[Heard], answers: &mut Answers) {
+        let groups = self.rows();
         let vertices = self.by_rollers.len() / groups;
+        answers.rollers.clear();
+        answers.by.clear();
+        for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
+            let facet = roller.facet as usize;
+            let second = if facet + 1 == vertices { 0 } else { facet + 1 };
+            let ends = [facet, second].map(|vertex| &self.by_rollers[groups * vertex..][..groups]);
+            let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
+            let first = answers.by.len();
+            answers.by.resize(first + groups, Row::default());
+            for (n, by) in answers.by[first..].iter_mut().enumerate() {
+                let mut at = 0;
+                while at < LANES {
+                    let (ahead, behind) =
+                        (Vector::load(simd, &ends[0][n], at), Vector::load(simd, &ends[1][n], at));
+                    ahead.times_plus(a, behind * b).store(by, at);
+                    at += Vector::<S>::LEN;
+                }
+            }
+            let force = roller.next();
+            let mut answer = Answer { force, expected: force, given: 0.0, stiffness: 0.0 };
+            if roller.stiffness * self.give[facet].max(self.give[second]) > FELT {
+                let by = &answers.by[first..];
+                let [now, before] = [&hold.open, &hold.before].map(|open| dot(simd, by, open.as_chunks().0));
+                let expected = force + roller.stiffness * (now - before);
+                answer =
+                    Answer { force: expected.max(0.0), expected, given: now, stiffness: roller.stiffness };
+            }
+            answers.rollers.push(answer);
+        }
+    }
+
+    /// Lets rollers answer to how far the seat has given way by now.
+    #[inline(always)]
+    fn press_again<S: Simd>(&self, simd: S, hold: &Hold, tension: &mut [Row], answers: &mut Answers) {
+        let Answers { rollers, by } = answers;
+        let felt =
+            rollers.iter_mut().zip(by.chunks_exact(self.rows())).filter(|(roller, _)| roller.stiffness > 0.0);
+        for (roller, by) in felt {
+            let further = dot(simd, by, hold.open.as_chunks().0) - roller.given;
+            let force = (roller.expected - roller.stiffness * further).max(0.0);
+            add(simd, tension, by, force - roller.force);
+            roller.force = force;
+        }
+    }
+
+    /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost; across the seat beyond the preload.
+    #[inline(always)]
+    fn pull<S: Simd>(&self, simd: S, hold: &Hold, q: &[f64], answers: &Answers, tension: &mut [Row]) {
+        let groups = tension.len();
         let lost = hold.lost.as_chunks::<LANES>().0;
         // Two rows at a time, whose sums need not wait for each other.
         for first in (0..groups).step_by(2) {
@@ -200,26 +307,13 @@ impl Springs {
                     one = Vector::load(simd, &rows[first], at).times_plus(q, one);
                     two = Vector::load(simd, &rows[first + 1], at).times_plus(q, two);
                 }
-                let [mut more, mut also] = [Vector::all(simd, 0.0); 2];
-                for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
-                    let force = roller.next();
-                    let (a, b) = (
-                        Vector::all(simd, (1.0 - roller.share) * force),
-                        Vector::all(simd, roller.share * force),
-                    );
-                    let facet = roller.facet as usize;
-                    let second = if facet + 1 == vertices { 0 } else { facet + 1 };
-                    let (ahead, behind) = (
-                        &self.by_rollers[groups * facet..][..groups],
-                        &self.by_rollers[groups * second..][..groups],
-                    );
-                    one = Vector::load(simd, &ahead[first], at).times_plus(a, one);
-                    two = Vector::load(simd, &ahead[first + 1], at).times_plus(a, two);
-                    more = Vector::load(simd, &behind[first], at).times_plus(b, more);
-                    also = Vector::load(simd, &behind[first + 1], at).times_plus(b, also);
+                for (rows, roller) in answers.by.chunks_exact(groups).zip(&answers.rollers) {
+                    let force = Vector::all(simd, roller.force);
+                    one = Vector::load(simd, &rows[first], at).times_plus(force, one);
+                    two = Vector::load(simd, &rows[first + 1], at).times_plus(force, two);
                 }
-                (one + more).store(&mut tension[first], at);
-                (two + also).store(&mut tension[first + 1], at);
+                one.store(&mut tension[first], at);
+                two.store(&mut tension[first + 1], at);
                 at += Vector::<S>::LEN;
             }
         }
@@ -227,7 +321,14 @@ impl Springs {
 
     /// Passes over the panels until no tension changes any more; returns the heat [J].
     #[inline(always)]
-    fn settle<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], passes: usize) -> f64 {
+    fn settle<S: Simd>(
+        &self,
+        simd: S,
+        hold: &mut Hold,
+        tension: &mut [Row],
+        answers: &mut Answers,
+        passes: usize,
+    ) -> f64 {
         hold.before.copy_from_slice(&hold.open);
         let mut last = Change { spring: 0, more: 0.0 };
         let mut moved = 0_u128;
@@ -243,7 +344,8 @@ impl Springs {
                 if pulls > 0.0 || had > 0.0 {
                     let has = (had + pulls * self.per_own[panel]).max(0.0);
                     moved |= 1 << panel;
-                    most = most.max(self.change(simd, hold, tension, &mut last, panel, has));
+                    most =
+                        most.max(self.own[panel] * self.change(simd, hold, tension, &mut last, panel, has));
                     pulls -= self.own[panel] * (has - had);
                 }
                 let at = self.padded + panel;
@@ -258,12 +360,13 @@ impl Springs {
                 let has = before + excess * self.per_own[at];
                 if has != had {
                     moved |= 1 << at;
-                    most = most.max(self.change(simd, hold, tension, &mut last, at, has));
+                    most = most.max(self.own[at] * self.change(simd, hold, tension, &mut last, at, has));
                 }
             }
             if most <= self.still {
                 break;
             }
+            self.press_again(simd, hold, tension, answers);
         }
         self.pass_on(simd, tension, &last);
         self.take_along(simd, hold, moved);
@@ -273,7 +376,7 @@ impl Springs {
         slipped.zip(held_by).map(|((open, before), tension)| tension * (open - before)).sum()
     }
 
-    /// Opens or shifts a panel, and passes the change before on; returns by how much its tension changes [N].
+    /// Opens or shifts a panel, and passes the change before on; returns by how much [m].
     #[inline(always)]
     fn change<S: Simd>(
         &self,
@@ -288,7 +391,7 @@ impl Springs {
         hold.open[spring] = has;
         self.pass_on(simd, tension, last);
         *last = Change { spring, more };
-        self.own[spring] * more.abs()
+        more.abs()
     }
 
     /// Tension of a spring after the last change, which has not been passed on yet: the next panel need not wait for all tensions.
@@ -302,16 +405,12 @@ impl Springs {
     #[inline(always)]
     fn pass_on<S: Simd>(&self, simd: S, tension: &mut [Row], change: &Change) {
         let groups = tension.len();
-        let less = Vector::all(simd, -change.more);
-        let losses = &self.stiffness[groups * change.spring..groups * (change.spring + 1)];
-        for (row, tension) in losses.iter().zip(tension) {
-            let mut at = 0;
-            while at < LANES {
-                let had = Vector::load(simd, tension, at);
-                Vector::load(simd, row, at).times_plus(less, had).store(tension, at);
-                at += Vector::<S>::LEN;
-            }
-        }
+        add(
+            simd,
+            tension,
+            &self.stiffness[groups * change.spring..groups * (change.spring + 1)],
+            -change.more,
+        );
     }
 
     /// What all tensions have lost, and what is done to the modes, by the springs that have opened and slipped in this step: a bit for each.
@@ -383,8 +482,9 @@ mod tests {
         let mut all = vec![0.0; LANES];
         all[..2].copy_from_slice(&q);
         let mut tension = vec![Row::default(); springs.rows()];
-        springs.pull(Scalar::new(), hold, &all, &[], &mut tension);
-        let heat = springs.settle(Scalar::new(), hold, &mut tension, PASSES);
+        let mut answers = Answers::default();
+        springs.pull(Scalar::new(), hold, &all, &answers, &mut tension);
+        let heat = springs.settle(Scalar::new(), hold, &mut tension, &mut answers, PASSES);
         [heat, springs.stored(hold, &tension), tension[0][0] - springs.pressed[0], tension[1][0]]
     }
 

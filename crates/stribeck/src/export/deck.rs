@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Result;
-use stribeck_mesh::decks::{ContactPair, Deck, Model, Side};
+use stribeck_bearing::assembly::Assembly;
+use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
+use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::mesh_file::{self, RunMesh};
@@ -36,7 +38,8 @@ pub(super) fn write(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Resul
         triangles: whole.triangles.clone(),
     };
     let title = provenance(run).join("; ");
-    write_atomic(&path, deck.write_model(&model(&run.scene, &mesh), &title).as_bytes())?;
+    let model = Model { step: step(&run.scene, &mesh)?, ..model(&run.scene, &mesh) };
+    write_atomic(&path, deck.write_model(&model, &title).as_bytes())?;
     Ok(path)
 }
 
@@ -71,5 +74,81 @@ fn model<'a>(scene: &Scene, mesh: &'a Mesh) -> Model<'a> {
         thickness: Geometry::of(scene).thickness,
         rigid: named("cage").into_iter().chain(outer.filter(|_| held)).collect(),
         contacts,
+        step: None,
     }
+}
+
+/// What happens in the scene from its start on, as far as decks can say it; none when this program would mesh another model than that of
+/// the run.
+fn step(scene: &Scene, mesh: &Mesh) -> Result<Option<Step>> {
+    let assembly = Assembly::new(scene)?;
+    let (own, k) = (&assembly.model.mesh, &assembly.kinematics);
+    if (&own.x, &own.y) != (&mesh.x, &mesh.y) {
+        return Ok(None);
+    }
+    let (g, duty) = (Geometry::of(scene), Duty::of(scene));
+    let guided = assembly.guided();
+    let mut velocity = vec![[0.0; 2]; mesh.x.len()];
+    for body in &mesh.bodies {
+        let roller = body.name.strip_prefix("roller ").and_then(|number| number.parse::<usize>().ok());
+        let (centre, rate, orbit) = match (body.name.as_str(), roller) {
+            (_, Some(number)) => {
+                let (s, c) = g.roller_angle(number - 1).sin_cos();
+                let path = g.outer_race_radius - g.roller_radius;
+                ([path * c, path * s], k.roller_rad_s, k.cage_rad_s)
+            }
+            ("inner ring", _) => ([0.0; 2], k.shaft_rad_s, 0.0),
+            ("outer ring", _) => ([0.0; 2], k.outer_rad_s, 0.0),
+            ("cage", _) => ([0.0; 2], k.cage_rad_s, 0.0),
+            _ => ([0.0; 2], 0.0, 0.0),
+        };
+        for n in body.nodes.clone() {
+            let [rx, ry] = [mesh.x[n] - centre[0], mesh.y[n] - centre[1]];
+            velocity[n] = [-orbit * centre[1] - rate * ry, orbit * centre[0] + rate * rx];
+        }
+    }
+    let [x, y] = scene.load_direction();
+    let load = duty.load_n(0.0);
+    // Guides hold what takes the load; a body without one takes it all around.
+    let loaded = if guided.is_empty() { all_around(mesh) } else { guided.clone() };
+    Ok(Some(Step {
+        duration: 1e-3 * scene.solver.duration_ms,
+        gravity: [0.0, -scene.operation.gravity_m_s2],
+        load: (loaded, [load * x, load * y]),
+        guided,
+        turning: vec![(assembly.turned_by_the_shaft(), k.shaft_rad_s)],
+        velocity,
+        left_out: left_out(scene),
+    }))
+}
+
+/// Nodes along the outside of the outermost ring: of the frame on springs, or of a rigid outer ring.
+fn all_around(mesh: &Mesh) -> Vec<u32> {
+    let named = |name: &str| mesh.bodies.iter().find(|body| body.name == name);
+    let Some(ring) = named("frame").or_else(|| named("outer ring")) else { return Vec::new() };
+    let radius = |n: &usize| mesh.x[*n].hypot(mesh.y[*n]);
+    let most = ring.nodes.clone().map(|n| radius(&n)).fold(0.0, f64::max);
+    ring.nodes.clone().filter(|n| radius(n) > (1.0 - 1e-6) * most).map(|n| n as u32).collect()
+}
+
+/// What of a scene a deck does not have.
+fn left_out(scene: &Scene) -> Vec<String> {
+    let o = &scene.operation;
+    let profiles = o.speed_profile.is_some() || o.outer_speed_profile.is_some() || o.load_profile.is_some();
+    let all = [
+        (true, "the preload: the load is there from the start, and the bodies are free of stress"),
+        (scene.cage.is_some(), "contact of the rollers with the cage"),
+        (profiles, "profiles of speed and load: they stay as they are at the start"),
+        (o.rotating_load.is_some(), "the load that turns with the shaft"),
+        (scene.film.is_some(), "oil films"),
+        (scene.solver.structural_damping.is_some(), "structural damping"),
+        (scene.solver.mass_damping_per_s > 0.0, "mass damping"),
+        (scene.solver.stiffness_damping_ns > 0.0, "stiffness damping"),
+        (
+            matches!(scene.housing, HousingScene::Springs(_)),
+            "the springs and dampers of the housing, which hold the ring",
+        ),
+        (matches!(scene.housing, HousingScene::Rigid(_)), "the mass of the housing beyond that of the ring"),
+    ];
+    all.into_iter().filter(|(there, _)| *there).map(|(_, what)| what.to_owned()).collect()
 }
