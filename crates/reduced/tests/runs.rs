@@ -120,10 +120,10 @@ fn example_a_seat_that_answers_too_much_is_warned_of_with_oil() {
     assert!(warned(3.0, oil()) && !warned(30.0, oil()) && !warned(3.0, None));
 }
 
-/// A scene of the atlas with some fields of its own.
-fn of_the_atlas(fields: &[&str]) -> Scene {
-    let atlas = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/atlas.ron");
-    Scene::read_with(atlas, fields).expect("valid")
+/// One of the scenes that come with the program, with some fields of its own.
+fn of(file: &str, fields: &[&str]) -> Scene {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/");
+    Scene::read_with(format!("{scenes}{file}"), fields).expect("valid")
 }
 
 /// Thin rings open and slip in their seats under every roller that falls onto a floor. Passes over the panels that end early, and rollers
@@ -145,7 +145,7 @@ fn conserves_energy_while_the_seat_opens_under_rollers() {
             "defects=[(on: outer, form: spall(length_mm: 4.3912, depth_mm: 0.0878))]",
         ),
     ] {
-        let scene = of_the_atlas(&[bearing, cage[0], cage[1], defects, "solver.duration_ms=150"]);
+        let scene = of("atlas.ron", &[bearing, cage[0], cage[1], defects, "solver.duration_ms=150"]);
         let info = run(&scene, &folder, name, 1);
         println!("{name}: off by {:.2e} of the peak strain energy", info.energy.max_relative_error);
         assert_eq!(info.status, Status::Complete, "{name}: {:?}", info.stop_reason);
@@ -159,14 +159,20 @@ fn conserves_energy_while_the_seat_opens_under_rollers() {
 fn conserves_energy_while_corners_of_the_cage_pass_vertices() {
     let folder = Scratch::create("reduced-corners");
     for (surface, bound) in [("arc", 5e-4), ("facet", 4e-3)] {
-        let mut scene = Scene { name: surface.into(), ..coarse(60.0) };
-        scene.model = ModelScene::Reduced(ReducedScene { step_us: 1.0, ..ReducedScene::default() });
-        (scene.contact.damping_ratio, scene.contact.friction) = (0.0, 0.0);
-        (scene.solver.mass_damping_per_s, scene.defect) = (0.0, None);
-        (scene.operation.load_n, scene.operation.speed_rpm) = (12500.0, 800.0);
-        scene.cage.iter_mut().for_each(|cage| cage.pocket = PocketWalls::Corners);
-        let scene =
-            scene.with_overrides(&["housing=rigid()", &format!("contact.surface={surface}")]).expect("valid");
+        let surface_is = format!("contact.surface={surface}");
+        let fields = [
+            "housing=rigid()",
+            "defect=None",
+            "solver.duration_ms=60",
+            "solver.mass_damping_per_s=0",
+            "contact.damping_ratio=0",
+            "contact.friction=0",
+            "operation.load_n=12500",
+            "operation.speed_rpm=800",
+            "model.step_us=1",
+            &surface_is,
+        ];
+        let scene = of("reduced.ron", &fields);
         let info = run(&scene, &folder, surface, 1);
         assert_eq!(info.status, Status::Complete, "{surface}: {:?}", info.stop_reason);
         let energy = Trace::read(folder.join(surface).join("energy.npy")).expect("a ledger");

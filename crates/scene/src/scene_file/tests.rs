@@ -423,7 +423,7 @@ fn refuses_what_a_ring_from_a_file_leaves_to_the_file() {
             "`defect` has steep walls on a ring whose mesh is that of `outer_ring_mesh.file`",
         ),
         (
-            "defect: None, defects: [(on: inner, form: spall()), (on: outer, form: spall())]",
+            "film: None, defect: None, defects: [(on: inner, form: spall(edge: rectangular)), (on: outer, form: spall(edge: rectangular))]",
             "defects[1].form",
             "`defects[1]` has steep walls",
         ),
