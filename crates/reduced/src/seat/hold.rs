@@ -185,6 +185,7 @@ impl Springs {
     /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`; `opened` becomes gaps and
     /// slips. Returns the heat of this step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "one seat, with all that it reads and adds to")]
     pub(crate) fn hold<S: Simd>(
         &self,
         simd: S,
