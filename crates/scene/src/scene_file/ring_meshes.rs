@@ -36,7 +36,7 @@ fn walls(scene: &Scene, ring: DefectRing, field: &str) -> Option<Finding> {
         };
         let at = scene.defects.iter().position(steep)?;
         let path = format!("defects[{at}]");
-        (path.clone(), Remedy::new(format!("{path}.form"), "one with `edge: sloped` or `edge: rounded`"))
+        (path.clone(), Remedy::new(format!("{path}.form.edge"), "`sloped` or `rounded`").value("sloped", ""))
     };
     let message = format!(
         "`{path}` has steep walls on a ring whose mesh is that of `{field}.file`: such a spall has to be in the file{or}"

@@ -424,7 +424,7 @@ fn refuses_what_a_ring_from_a_file_leaves_to_the_file() {
         ),
         (
             "film: None, defect: None, defects: [(on: inner, form: spall(edge: rectangular)), (on: outer, form: spall(edge: rectangular))]",
-            "defects[1].form",
+            "defects[1].form.edge",
             "`defects[1]` has steep walls",
         ),
         (
