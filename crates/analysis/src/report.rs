@@ -246,7 +246,7 @@ fn own_rings(scene: &Scene) -> String {
     let rings = [("outer", &scene.outer_ring_mesh), ("inner", &scene.inner_ring_mesh)];
     let of_file = |(ring, mesh): (&str, &Option<RingMeshScene>)| {
         let file = Path::new(&mesh.as_ref()?.file).file_stem().unwrap_or_default().display().to_string();
-        Some(format!(" with an {ring} ring of its own ({file})"))
+        Some(format!(" with an {ring} ring from a file ({file})"))
     };
     rings.into_iter().filter_map(of_file).collect()
 }
@@ -310,7 +310,7 @@ fn banner(run: &Run) -> Markup {
     let why = run.info.stop_reason.as_deref().unwrap_or_default();
     html! {
         div class="banner" role="alert" {
-            strong { (what) } " " (why) " The report shows what exists: "
+            strong { (what) } " " (why) @if !why.is_empty() { ". " } "The report shows what exists: "
             (run.info.steps) " of " (run.info.steps_planned) " steps."
         }
     }

@@ -79,6 +79,13 @@ impl<'a> OwnMesh<'a> {
         surface.nodes.iter().map(|&n| self.part.x[n as usize].hypot(self.part.y[n as usize])).collect()
     }
 
+    /// The median of them, and the least; the largest where `sign` is below zero.
+    fn median_and_least(&self, surface: &Surface, sign: f64) -> [f64; 2] {
+        let mut radii = self.radii(surface);
+        radii.sort_by(|a, b| (sign * a).total_cmp(&(sign * b)));
+        [radii[radii.len() / 2], radii[0]]
+    }
+
     fn misses<T>(&self, what: &str, fits: &str, [is, wanted]: [f64; 2]) -> Result<T, Error> {
         self.refuse(format!(
             "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, and the radius there is {:.4} mm. Look at \
@@ -118,27 +125,25 @@ pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, g: &Geometry) -> Result
     };
     let mut own = OwnMesh::read(group, &ring.file, &ring.text, ring.unit_mm)?;
     let raceway = own.closed("raceway", &ring.raceway, "raceway")?;
-    let mut radii = own.radii(&raceway);
-    radii.sort_by(f64::total_cmp);
-    let (middle, towards) =
-        (radii[radii.len() / 2], if outwards > 0.0 { radii[0] } else { radii[radii.len() - 1] });
-    for off in [middle, towards] {
-        let deeper = outwards * (off / race - 1.0);
-        if deeper < -ROUND || off == middle && deeper > ROUND {
-            return own.misses("raceway", "the one of `bearing`", [off, race]);
-        }
+    // How much deeper in the material than its circle, as a part of its radius: half of the nodes, and those nearest to the rollers.
+    let [half, nearest] = own.median_and_least(&raceway, outwards);
+    let deeper = |radius: f64| outwards * (radius / race - 1.0);
+    if let Some(off) = [half, nearest].into_iter().find(|radius| deeper(*radius) < -ROUND) {
+        return own.misses("raceway", "the one of `bearing`", [off, race]);
     }
-    let fit = own.closed("fit", &ring.fit, if outwards > 0.0 { "back" } else { "bore" })?;
-    let mut radii = own.radii(&fit);
-    radii.sort_by(f64::total_cmp);
+    if deeper(half) > ROUND {
+        return own.misses("raceway", "the one of `bearing`", [half, race]);
+    }
+    let side = if outwards > 0.0 { "back" } else { "bore" };
+    let fit = own.closed("fit", &ring.fit, side)?;
     let wanted = race + outwards * thickness;
-    let (middle, away) =
-        (radii[radii.len() / 2], if outwards > 0.0 { radii[radii.len() - 1] } else { radii[0] });
-    for off in [middle, away] {
-        let beyond = outwards * (off / wanted - 1.0);
-        if beyond > LOOSE || off == middle && beyond < -LOOSE {
-            return own.misses("fit", "the thickness of the ring", [off, wanted]);
-        }
+    let [half, farthest] = own.median_and_least(&fit, -outwards);
+    let beyond = |radius: f64| outwards * (radius / wanted - 1.0);
+    if let Some(off) = [half, farthest].into_iter().find(|radius| beyond(*radius) > LOOSE) {
+        return own.misses(side, "the thickness of the ring", [off, wanted]);
+    }
+    if beyond(half) < -LOOSE {
+        return own.misses(side, "the thickness of the ring", [half, wanted]);
     }
     let names = match of {
         DefectRing::Outer => ["inner", "outer"],

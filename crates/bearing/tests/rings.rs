@@ -138,7 +138,7 @@ fn refuses_a_mesh_that_is_no_ring_of_the_bearing() {
         (ring(", raceway: \"fit\""), "its raceway does not fit the one of `bearing`: a node lies 26.000"),
         (
             ring(", fit: \"raceway\""),
-            "its fit does not fit the thickness of the ring: a node lies 23.2500 mm",
+            "its back does not fit the thickness of the ring: a node lies 23.2500 mm",
         ),
         (ring("").replace("outer_ring", "inner_ring"), "its raceway does not fit the one of `bearing`"),
     ] {

@@ -106,7 +106,7 @@ fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
 
 /// Sum of the products of two rows.
 #[inline(always)]
-fn dot<S: Simd>(simd: S, rows: &[Row], values: &[[f64; LANES]]) -> f64 {
+fn dot<'a, S: Simd>(simd: S, rows: &[Row], values: impl IntoIterator<Item = &'a [f64; LANES]>) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (row, values) in rows.iter().zip(values) {
         let mut at = 0;
@@ -223,20 +223,9 @@ impl Springs {
     pub(crate) fn under<S: Simd>(&self, simd: S, open: &[Row], facet: usize) -> [f64; 2] {
         let groups = self.rows();
         let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
-        let mut both = [0.0; 2];
-        for (by, vertex) in both.iter_mut().zip([facet, second]) {
-            let rows = &self.by_rollers[groups * vertex..groups * (vertex + 1)];
-            let mut sum = Vector::all(simd, 0.0);
-            for (row, open) in rows.iter().zip(open) {
-                let mut at = 0;
-                while at < LANES {
-                    sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, open, at), sum);
-                    at += Vector::<S>::LEN;
-                }
-            }
-            *by = sum.sum();
-        }
-        both
+        [facet, second].map(|vertex| {
+            dot(simd, &self.by_rollers[groups * vertex..][..groups], open.iter().map(|row| &row.0))
+        })
     }
 
     /// What rollers do to the tensions, each by itself: a unit force at its place, the force if the seat stays as it is, and how much less it

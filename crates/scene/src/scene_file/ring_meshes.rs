@@ -3,7 +3,7 @@
 use super::finding::{Finding, Remedy};
 use super::limits::{INNER_RING_MESH, OUTER_RING_MESH};
 use super::wording::number;
-use crate::scene::{DefectRing, Scene};
+use crate::scene::{DefectRing, DeviationScene, Scene};
 
 /// Everything that does not go together with a ring from a file.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
@@ -31,9 +31,7 @@ fn walls(scene: &Scene, ring: DefectRing, field: &str) -> Option<Finding> {
         or = ", and `defect: None` in the scene";
         ("defect".to_owned(), Remedy::new("defect", "`None`").value("None", "a sound raceway"))
     } else {
-        let steep = |deviation: &crate::deviation::DeviationScene| {
-            deviation.groove().is_some_and(|groove| groove.ring == ring)
-        };
+        let steep = |deviation: &DeviationScene| deviation.groove().is_some_and(|groove| groove.ring == ring);
         let at = scene.defects.iter().position(steep)?;
         let path = format!("defects[{at}]");
         (path.clone(), Remedy::new(format!("{path}.form.edge"), "`sloped` or `rounded`").value("sloped", ""))

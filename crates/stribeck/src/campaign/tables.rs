@@ -75,7 +75,6 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 }
                 flatten(&summary_of(&path)?, "", &mut row.numbers);
                 row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
-                row.numbers.insert("energy.heat_j".into(), info.energy.heat_j);
                 // An overflow is no number, and a column without numbers is none.
                 row.numbers.retain(|_, number| number.is_finite());
                 row.program = Some(format!("{} ({})", info.version, info.commit));

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
@@ -38,7 +38,9 @@ pub(super) fn write(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Resul
         triangles: whole.triangles.clone(),
     };
     let title = provenance(run).join("; ");
-    let model = Model { step: step(&run.scene, &mesh)?, ..model(&run.scene, &mesh) };
+    // Gmsh's files have no place for it.
+    let step = if deck == Deck::Gmsh { None } else { Some(step(&run.scene, &mesh)?) };
+    let model = Model { step, ..model(&run.scene, &mesh) };
     write_atomic(&path, deck.write_model(&model, &title).as_bytes())?;
     Ok(path)
 }
@@ -78,13 +80,18 @@ fn model<'a>(scene: &Scene, mesh: &'a Mesh) -> Model<'a> {
     }
 }
 
-/// What happens in the scene from its start on, as far as decks can say it; none when this program would mesh another model than that of
-/// the run.
-fn step(scene: &Scene, mesh: &Mesh) -> Result<Option<Step>> {
+/// What happens in the scene from its start on, as far as decks can say it.
+///
+/// # Errors
+/// When this program meshes another model than that of the run.
+fn step(scene: &Scene, mesh: &Mesh) -> Result<Step> {
     let assembly = Assembly::new(scene)?;
     let (own, k) = (&assembly.model.mesh, &assembly.kinematics);
     if (&own.x, &own.y) != (&mesh.x, &mesh.y) {
-        return Ok(None);
+        bail!(
+            "another version of the program has made this run, which meshes the scene otherwise: repeat the run, or `--to msh`, which \
+             has the mesh alone"
+        );
     }
     let (g, duty) = (Geometry::of(scene), Duty::of(scene));
     let guided = assembly.guided();
@@ -111,7 +118,7 @@ fn step(scene: &Scene, mesh: &Mesh) -> Result<Option<Step>> {
     let load = duty.load_n(0.0);
     // Guides hold what takes the load; a body without one takes it all around.
     let loaded = if guided.is_empty() { all_around(mesh) } else { guided.clone() };
-    Ok(Some(Step {
+    Ok(Step {
         duration: 1e-3 * scene.solver.duration_ms,
         gravity: [0.0, -scene.operation.gravity_m_s2],
         load: (loaded, [load * x, load * y]),
@@ -119,7 +126,7 @@ fn step(scene: &Scene, mesh: &Mesh) -> Result<Option<Step>> {
         turning: vec![(assembly.turned_by_the_shaft(), k.shaft_rad_s)],
         velocity,
         left_out: left_out(scene),
-    }))
+    })
 }
 
 /// Nodes along the outside of the outermost ring: of the frame on springs, or of a rigid outer ring.
