@@ -199,7 +199,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 
 /// Writes a file that other parts may write at the same time.
 fn replace(path: &Path, text: &str) -> Result<()> {
-    tables::replace(path, |beside| Ok(write_atomic(beside, text.as_bytes())?))
+    tables::replace(path, |beside| Ok(std::fs::write(beside, text)?))
 }
 
 /// Makes the folder, or finds the same campaign in it.
@@ -272,28 +272,42 @@ fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
 
 /// Makes the numbers of a run that has come to its end, and removes what is not to be kept.
 fn settle(path: &Path, keep: Keep) -> Result<()> {
-    if keep == Keep::All {
-        return summary_of(path).map(drop);
-    }
     // Nobody else reads what is being removed.
     let dir = match RunDir::reopen(path) {
         Err(Error::FolderInUse { .. }) => return Ok(()),
         dir => dir?,
     };
-    summary_of(path)?;
+    if read_summary(&dir).is_none() {
+        write_summary(&dir)?;
+    }
     Ok(dir.keep_only(keep)?)
 }
 
 /// The summary of a run that has come to its end; it is made when it is not there.
 fn summary_of(path: &Path) -> Result<serde_json::Value> {
-    let dir = RunDir::open(path)?;
-    let there = std::fs::read(dir.summary()).ok().and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    if let Some(there) = there {
+    if let Some(there) = read_summary(&RunDir::open(path)?) {
         return Ok(there);
     }
-    let findings = Findings::of(&Record::new(&Run::read(path)?)?)?;
-    let text = serde_json::to_string_pretty(&findings.summary)? + "\n";
-    // Another part may make the same one at the same time.
-    replace(&dir.summary(), &text)?;
+    match RunDir::reopen(path) {
+        // Another part makes the same one.
+        Err(Error::FolderInUse { .. }) => Ok(serde_json::from_str(&summarise(path)?)?),
+        dir => write_summary(&dir?),
+    }
+}
+
+fn read_summary(dir: &RunDir) -> Option<serde_json::Value> {
+    serde_json::from_slice(&std::fs::read(dir.summary()).ok()?).ok()
+}
+
+/// Makes the summary of a run whose folder is locked, so that nothing stays beside it when this one is killed: the next one writes by
+/// the same name.
+fn write_summary(dir: &RunDir) -> Result<serde_json::Value> {
+    let text = summarise(dir.path())?;
+    write_atomic(&dir.summary(), text.as_bytes())?;
     Ok(serde_json::from_str(&text)?)
+}
+
+fn summarise(path: &Path) -> Result<String> {
+    let findings = Findings::of(&Record::new(&Run::read(path)?)?)?;
+    Ok(serde_json::to_string_pretty(&findings.summary)? + "\n")
 }

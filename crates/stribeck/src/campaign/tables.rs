@@ -129,6 +129,8 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
 pub(super) fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     let beside = path.with_extension(format!("{}.new", std::process::id()));
     write(&beside)?;
+    // The name must not reach the disk before the content.
+    std::fs::File::open(&beside).and_then(|file| file.sync_data())?;
     std::fs::rename(&beside, path).with_context(|| format!("cannot replace `{}`", path.display()))
 }
 
