@@ -111,6 +111,18 @@ fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
         let share = step(&scene(defects, 1.0)) / sound;
         assert!(share > 0.9, "{defects}: {share}");
     }
+    // Steep walls in the small cells of a roller.
+    for defects in [
+        "(on: roller(1), form: spall(length_mm: 3.3, depth_mm: 0.05, edge: rectangular))",
+        "(on: roller(1), angle_deg: 180.0, form: spall(length_mm: 5.1, depth_mm: 0.2, edge: rectangular))",
+        "(on: roller(3), angle_deg: -178.0, form: spall(length_mm: 2.2, depth_mm: 0.5, edge: rectangular)), \
+         (on: roller(3), angle_deg: 30.0, form: spall(length_mm: 3.0, depth_mm: 0.3, edge: rectangular))",
+        "(on: roller(2), form: spall(length_mm: 4.0, depth_mm: 1.3, edge: rectangular))",
+    ] {
+        let share = step(&scene(defects, 1.0)) / sound;
+        println!("{share:.3} {defects}");
+        assert!(share > 0.85, "{defects}: {share}");
+    }
 }
 
 /// A spall with steep walls is the same mesh as `defect`, whatever else is on other surfaces.

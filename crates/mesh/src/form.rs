@@ -3,17 +3,30 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::polar_grid::Circle;
-use crate::smoothing::inside_out;
+use crate::smoothing::{enough, inside_out};
+use crate::walls::shape_by_walls;
 use crate::{Error, Part};
 
 /// Facets on either side of a corner over which the spacing of the nodes goes back to what it was.
 const BESIDE: f64 = 8.0;
+
+/// Two corners nearer than this share of a facet are the ends of a wall.
+const WALL: f64 = 0.5;
+
+/// Facets about a wall within which nodes move for the time step, beside as many as the wall is high.
+const BELOW: f64 = 9.0;
+
+/// What their cells are to reach, in facets: a little more than a disc has elsewhere, because not all is reached.
+const SIDE: f64 = 1.06;
 
 /// A surface about the origin that deviates from its circle.
 ///
 /// No element is removed and none becomes a sliver: nodes of the surface move along their radius by the depth there, after
 /// those nearest to corners of the profile have moved onto them along the surface; below the surface displacements fall off
 /// in proportion to the distance from the other side of the body, in a disc from its centre.
+///
+/// Two corners next to each other that are nearer than half a facet are the ends of a wall, which is one facet. Nodes below such walls
+/// move for the critical time step of the assembled cells instead (THEORY §2.4); walls need facets as long as cells of the body are thick.
 pub struct FormDeviation<'a> {
     /// How far below its circle the surface lies at an angle [rad], into the body [m].
     pub depth: &'a dyn Fn(f64) -> f64,
@@ -44,14 +57,19 @@ impl FormDeviation<'_> {
             Circle::Outer => (of_surface(f64::max, 0.0), radii.iter().copied().fold(f64::INFINITY, f64::min)),
         };
         let moves = self.moves(&rim);
+        let walls = moves.walls();
         let mut moved = part.clone();
         for (n, radius) in radii.iter().enumerate().filter(|(_, radius)| **radius > 0.0) {
             let share = ((radius - far) / (near - far)).clamp(0.0, 1.0);
-            [moved.x[n], moved.y[n]] = self.place([part.x[n], part.y[n]], share, &moves);
+            let along = if walls.is_empty() { share } else { 0.0 };
+            [moved.x[n], moved.y[n]] = self.place([part.x[n], part.y[n]], [along, share], &moves);
         }
         // Those of the surface move by all of it, whatever the rounding of a share.
         for (at, &n) in rim.iter_mut().zip(nodes) {
-            [moved.x[n as usize], moved.y[n as usize]] = self.place(*at, 1.0, &moves);
+            [moved.x[n as usize], moved.y[n as usize]] = self.place(*at, [1.0; 2], &moves);
+        }
+        if !walls.is_empty() {
+            self.shape(near, &walls, nodes.len(), part, &mut moved);
         }
         match inside_out(&moved) {
             None => Ok(moved),
@@ -66,13 +84,29 @@ impl FormDeviation<'_> {
     pub fn of_polygon(&self, vertices: &mut [[f64; 2]]) {
         let moves = self.moves(vertices);
         for vertex in vertices {
-            *vertex = self.place(*vertex, 1.0, &moves);
+            *vertex = self.place(*vertex, [1.0; 2], &moves);
         }
     }
 
-    fn place(&self, at: [f64; 2], share: f64, moves: &Moves) -> [f64; 2] {
+    /// Moves nodes below `walls`, which stand at these angles on the circle of the radius `near`, for the time step.
+    fn shape(&self, near: f64, walls: &[f64], facets: usize, plain: &Part, part: &mut Part) {
+        let facet = TAU * near / facets as f64;
+        let beside = |wall: f64| [wall - WALL * facet / near, wall + WALL * facet / near].map(self.depth);
+        let depth = walls.iter().flat_map(|wall| beside(*wall)).fold(0.0, f64::max);
+        let layers = (depth / facet).ceil();
+        let reach = facet * (BELOW + layers);
+        let near_wall = |(x, y): (&f64, &f64)| {
+            walls.iter().any(|wall| (x - near * wall.cos()).hypot(y - near * wall.sin()) < reach)
+        };
+        let mut movable: Vec<bool> = plain.x.iter().zip(&plain.y).map(near_wall).collect();
+        plain.surfaces.iter().flat_map(|(_, s)| &s.nodes).for_each(|&n| movable[n as usize] = false);
+        shape_by_walls(part, plain, &movable, SIDE * facet, enough(facet), layers as usize);
+    }
+
+    /// Where a node goes that takes these shares of what the surface moves along itself and into the body.
+    fn place(&self, at: [f64; 2], [along, share]: [f64; 2], moves: &Moves) -> [f64; 2] {
         let angle = at[1].atan2(at[0]);
-        let by = moves.at(angle);
+        let by = along * moves.at(angle);
         let depth = (self.depth)(angle + by) * share;
         if by == 0.0 && depth == 0.0 {
             return at;
@@ -82,7 +116,7 @@ impl FormDeviation<'_> {
             Circle::Outer => -1.0,
         };
         let radius = at[0].hypot(at[1]) + outwards * depth;
-        let (s, c) = (angle + by * share).sin_cos();
+        let (s, c) = (angle + by).sin_cos();
         [radius * c, radius * s]
     }
 
@@ -101,7 +135,14 @@ impl FormDeviation<'_> {
         }
         // Corners in the order of the nodes, so that none overtakes another.
         knots.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        Moves { knots, reach: BESIDE * TAU / angles.len().max(1) as f64 }
+        let n = knots.len();
+        for (a, b) in (0..n).map(|b| ((b + n - 1) % n, b)) {
+            let apart = (knots[b][0] - knots[a][0]).rem_euclid(TAU);
+            if apart + knots[b][1] < knots[a][1] {
+                (knots[a][1], knots[b][1]) = (apart + knots[b][1], knots[a][1] - apart);
+            }
+        }
+        Moves { knots, facet: TAU / angles.len().max(1) as f64 }
     }
 }
 
@@ -114,11 +155,21 @@ fn turn(angle: f64) -> f64 {
 struct Moves {
     /// Angles of nodes that move onto corners, ascending, and by how much [rad].
     knots: Vec<[f64; 2]>,
-    /// Angle beside a knot over which its move fades [rad].
-    reach: f64,
+    /// Angle of a facet [rad].
+    facet: f64,
 }
 
 impl Moves {
+    /// Angles where walls stand [rad].
+    fn walls(&self) -> Vec<f64> {
+        let pairs = self.knots.iter().zip(self.knots.iter().cycle().skip(1));
+        let wall = |([a, by_a], [b, by_b]): (&[f64; 2], &[f64; 2])| {
+            let (from, wide) = (a + by_a, turn(b + by_b - a - by_a));
+            (wide > 0.0 && wide < WALL * self.facet).then_some(from + 0.5 * wide)
+        };
+        pairs.filter_map(wall).collect()
+    }
+
     fn at(&self, angle: f64) -> f64 {
         let n = self.knots.len();
         if n == 0 {
@@ -127,12 +178,13 @@ impl Moves {
         let after = self.knots.partition_point(|knot| knot[0] <= angle);
         let [before, after] = [self.knots[(after + n - 1) % n], self.knots[after % n]];
         let (behind, ahead) = ((angle - before[0]).rem_euclid(TAU), (after[0] - angle).rem_euclid(TAU));
-        let fade = |by: f64, off: f64| by * (1.0 - off / self.reach).max(0.0);
+        let reach = BESIDE * self.facet;
+        let fade = |by: f64, off: f64| by * (1.0 - off / reach).max(0.0);
         if n == 1 {
             return fade(before[1], behind.min(ahead));
         }
         let gap = behind + ahead;
-        if gap <= 2.0 * self.reach {
+        if gap <= 2.0 * reach {
             return (before[1] * ahead + after[1] * behind) / gap;
         }
         fade(before[1], behind) + fade(after[1], ahead)
@@ -144,7 +196,7 @@ mod tests {
     use super::*;
 
     fn moves(knots: &[[f64; 2]]) -> Moves {
-        Moves { knots: knots.to_vec(), reach: 0.5 }
+        Moves { knots: knots.to_vec(), facet: 0.0625 }
     }
 
     /// Source: THEORY §6.4.

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use crate::error::{MOST, finite, positive};
 use crate::polar_grid::{Circle, Place, PolarGrid};
-use crate::shape_optimisation::{SHARPNESS, raise_assembled_step};
-use crate::smoothing::{inside_out, raise_critical_step_to};
+use crate::smoothing::inside_out;
+use crate::walls::{REACH, shape_by_walls};
 use crate::{Error, Part};
 
 /// A groove: a floor between two walls, cut into the inner or the outer surface of an annulus.
@@ -61,20 +61,8 @@ impl Groove {
 
 const SHAPE: &str = "groove";
 
-/// Poisson's ratio for which the cells under a groove are shaped; the best shape hardly depends on it.
-const POISSON: f64 = 0.3;
-
-/// Passes of Gauss–Seidel that spread the displacement of the inner row, and passes of the pattern search
-/// for each layer that the groove is deep.
+/// Passes of Gauss–Seidel that spread the displacement of the inner row.
 const SPREAD: usize = 100;
-const SWEEPS: usize = 60;
-
-/// Side of the squares whose time step the cells near a wall are to reach, over that of fine cells. The shorter rows of
-/// thin rings and of discs have 0.9 to 0.95, and a groove need do no better.
-const LENGTH: f64 = 0.95;
-
-/// Columns on each side of a wall, and rows below it, whose nodes may move.
-const REACH: usize = 12;
 
 /// Columns beside the groove that are not radial, in thicknesses of the annulus: what the groove displaces has faded by a
 /// factor of 500 there.
@@ -141,24 +129,8 @@ pub(crate) fn cut(
 /// Moves nodes near the walls of a groove for the critical step of the assembled cells there.
 fn shape(grid: &PolarGrid, cut: &Cut, places: &[Place], enough: f64, plain: &Part, part: &mut Part) {
     let movable = cut.movable(grid, places);
-    let layer = grid.layer();
-    let length = LENGTH * layer.min(grid.inner_facet());
-    let mut ordered = part.clone();
-    let optimise =
-        |part: &mut Part, sharpness| raise_assembled_step(part, plain, &movable, POISSON, length, sharpness);
-    let (gentle, harsh) = SHARPNESS.split_at(1);
-    if optimise(part, gentle).is_none() {
-        // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
-        // another search, whichever comes out better.
-        let turned_back = optimise(part, harsh);
-        let deep = (cut.groove.depth / layer) as usize;
-        raise_critical_step_to(enough, &mut ordered, &movable, POISSON, SWEEPS * (1 + deep));
-        let searched = ordered.clone();
-        let again = optimise(&mut ordered, gentle);
-        if turned_back.is_none() || again.is_some_and(|cost| turned_back.is_none_or(|other| cost < other)) {
-            *part = if again.is_some() { ordered } else { searched };
-        }
-    }
+    let side = grid.layer().min(grid.inner_facet());
+    shape_by_walls(part, plain, &movable, side, enough, (cut.groove.depth / grid.layer()) as usize);
 }
 
 /// Where the nodes of the inner row go.

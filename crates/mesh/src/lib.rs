@@ -110,6 +110,7 @@ mod shape_optimisation;
 pub mod smoothing;
 mod submesh;
 mod tridiagonal;
+mod walls;
 
 pub mod decks;
 pub mod vtu;

@@ -377,7 +377,9 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
     let (of_r, of_w) = (half * curvature, of_raceway);
     let p1 = p1 + of_r * r.inside(u1) + of_w * w.inside(u1);
     let p2 = p2 + of_r * r.inside(u2) + of_w * w.inside(u2);
-    Round { p: [p1, p2], curvature, bulge: half.times_plus(curvature, of_raceway) }
+    // A wall of the roller is no arc, and what a raceway curves away over it, narrow as it is, no more than rounding.
+    let bulge = half.times_plus(curvature, of_raceway).max(shift.constant(0.0));
+    Round { p: [p1, p2], curvature, bulge }
 }
 
 /// Adds what lies between two parabolas on chords.

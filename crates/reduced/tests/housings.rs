@@ -88,8 +88,7 @@ fn analytic_the_cage_between_rings_whose_speeds_change() {
 
 /// From one start both models have the same forces in arrangements of which each is something else's limit: springs and dampers under
 /// a load that turns, a rigid housing under one, an outer ring that turns with a spall, also beside a shaft that speeds up and at a speed of
-/// its own that changes, a roller that is missing, and steep walls on
-/// both rings.
+/// its own that changes, a roller that is missing, and steep walls on both rings and on a roller.
 #[test]
 fn example_arrangements_are_felt_as_by_the_full_model() {
     // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes the stiffness of
@@ -125,6 +124,7 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
                 "defects: [(on: outer, angle_deg: 45, {steep}), (on: outer, angle_deg: 95, {steep}), (on: inner, angle_deg: 84, {steep})]"
             ),
         ),
+        ("pitted roller", format!("defects: [(on: roller(3), angle_deg: 95, {steep})]")),
     ] {
         let scene = small(&more);
         let folder = Scratch::create("reduced-arrangement");

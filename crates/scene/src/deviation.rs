@@ -73,7 +73,7 @@ pub enum Edge {
     Sloped,
     /// Half a cosine wave.
     Rounded,
-    /// Walls at right angles to the surface, as those of `defect`; in raceways alone.
+    /// Walls at right angles to the surface, as those of `defect`.
     Rectangular,
 }
 
@@ -233,7 +233,7 @@ impl DeviationScene {
         forms.into_iter().map(|form| Self { form, ..Self::default() }).collect()
     }
 
-    /// Whether a mesh is cut for it; nodes move for all others.
+    /// Whether it has steep walls, which a mesh is cut for; nodes move for all others.
     pub fn is_cut(&self) -> bool {
         matches!(&self.form, FormScene::Spall(spall) if spall.edge == Edge::Rectangular)
     }
@@ -278,6 +278,9 @@ struct Wave {
     at: f64,
 }
 
+/// How far a wall of a rolling element leans, over its height: a depth has one value at each angle.
+const LEAN: f64 = 1e-3;
+
 /// What changes a part of the surface.
 #[derive(Debug, Clone, PartialEq)]
 struct Piece {
@@ -290,11 +293,11 @@ struct Piece {
 
 impl Relief {
     /// What the deviations make of a surface of the radius `radius` [m] whose facets are `facet_mm` long; `None` when none of
-    /// them is `on` it. Grooves are no part of it.
+    /// them is `on` it. Grooves of raceways are no part of it.
     pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
         let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
         let mut any = false;
-        for deviation in deviations.iter().filter(|d| d.on == on && !d.is_cut()) {
+        for deviation in deviations.iter().filter(|d| d.on == on && d.groove().is_none()) {
             any = true;
             let at = deviation.angle_deg.to_radians();
             match &deviation.form {
@@ -306,6 +309,7 @@ impl Relief {
                 FormScene::Diameter(diameter) => relief.level -= 0.5e-6 * diameter.larger_um,
                 form => {
                     let edge = match form {
+                        FormScene::Spall(spall) if spall.edge == Edge::Rectangular => LEAN * spall.depth_mm,
                         FormScene::Spall(spall) if spall.edge_mm > 0.0 => spall.edge_mm,
                         _ => facet_mm,
                     };
@@ -352,9 +356,8 @@ impl Piece {
                 let down = ((0.5 * spall.length_mm - s.abs()) / self.edge).clamp(0.0, 1.0);
                 spall.depth_mm
                     * match spall.edge {
-                        Edge::Sloped => down,
+                        Edge::Sloped | Edge::Rectangular => down,
                         Edge::Rounded => 0.5 - 0.5 * (PI * down).cos(),
-                        Edge::Rectangular => down.ceil(),
                     }
             }
             FormScene::Dent(dent) => {

@@ -94,10 +94,10 @@ impl<'a> Checked<'a> {
                     Edge::Rounded => 0.5 * PI * spall.depth_mm / edge,
                     Edge::Rectangular => 0.0,
                 };
-                // The floor of a groove has two facets, however short it is.
+                // The floor of a groove of a raceway has two facets, however short it is.
                 let sloped = spall.edge != Edge::Rectangular;
                 vec![
-                    sloped.then(|| self.short(spall.length_mm)).flatten(),
+                    (sloped || self.on_roller()).then(|| self.short(spall.length_mm)).flatten(),
                     self.long(spall.length_mm),
                     self.upright(spall),
                     sloped.then(|| self.edge(spall.edge_mm, spall.length_mm)).flatten(),
@@ -205,19 +205,10 @@ impl<'a> Checked<'a> {
         Some(Finding::new(message, remedies))
     }
 
-    /// Walls at right angles are cut into the mesh of a ring, and take no length.
+    /// Walls at right angles are cut into the mesh, and take no length.
     fn upright(&self, spall: &SpallScene) -> Option<Finding> {
         if spall.edge != Edge::Rectangular {
             return None;
-        }
-        if self.on_roller() {
-            let path = self.path("form.edge");
-            let message = format!(
-                "`{path}` is `rectangular` on {}: meshes of rings are cut, those of rollers are not",
-                self.surface()
-            );
-            let sloped = Remedy::new(path, "`sloped` or `rounded`").value("sloped", "");
-            return Some(Finding::new(message, vec![sloped]));
         }
         let path = self.path("form.edge_mm");
         (spall.edge_mm != 0.0).then(|| {
@@ -240,9 +231,7 @@ impl<'a> Checked<'a> {
             slope.atan().to_degrees(),
             STEEPEST.atan().to_degrees()
         );
-        if !self.on_roller() {
-            message += ". Steep walls have spalls with `edge: rectangular`";
-        }
+        message += ". Steep walls have spalls with `edge: rectangular`";
         let most = round_down(value * STEEPEST / slope, 3);
         let mut remedies =
             vec![Remedy::new(path, format!("at most {} {unit}", number(most))).number(most, "")];
@@ -253,10 +242,8 @@ impl<'a> Checked<'a> {
                 Remedy::new(self.path("form.edge_mm"), format!("at least {} mm", number(longer)))
                     .number(longer, ""),
             );
-            if !self.on_roller() {
-                let upright = Remedy::new(self.path("form.edge"), "`rectangular`, with `edge_mm: 0`");
-                remedies.push(upright.value("rectangular", "walls that stand upright"));
-            }
+            let upright = Remedy::new(self.path("form.edge"), "`rectangular`, with `edge_mm: 0`");
+            remedies.push(upright.value("rectangular", "walls that stand upright"));
         }
         Some(Finding::new(message, remedies))
     }
@@ -435,7 +422,7 @@ impl<'a> Checked<'a> {
         let earlier = self.scene.defects[..self.index].iter().enumerate();
         for (other, deviation) in earlier.filter(|(_, deviation)| deviation.on == self.deviation.on) {
             let Some(length) = deviation.form.length_mm() else { continue };
-            let facets = match [self.deviation, deviation].map(|d| d.groove().is_some()) {
+            let facets = match [self.deviation, deviation].map(DeviationScene::is_cut) {
                 [true, true] => BETWEEN_GROOVES,
                 [false, false] if !(is_spall(self.deviation) && is_spall(deviation)) => continue,
                 [false, false] => BESIDE_SPALL,

@@ -53,9 +53,9 @@ fn refuses_what_no_mesh_can_follow() {
             "an edge takes a facet of 0.500 mm at least",
         ),
         (
-            "on: roller(1), form: spall(edge: rectangular)",
-            "defects[0].form.edge",
-            "meshes of rings are cut, those of rollers are not",
+            "on: roller(1), form: spall(length_mm: 1.5, edge: rectangular)",
+            "defects[0].form.length_mm",
+            "facets of roller 1 are 0.505 mm long",
         ),
         (
             "form: spall(edge: rectangular, edge_mm: 0.3)",
