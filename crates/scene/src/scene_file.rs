@@ -151,7 +151,7 @@ pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> R
 pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
     let schema = schema::Schema::new();
     let known = schema.default_of(path).is_some();
-    let answer = || overrides::known(path, path, &schema, &Outline::default()).err();
+    let answer = || overrides::known(path, path, &schema, "", &Outline::default()).err();
     if known { None } else { answer().map(|problem| *problem) }
 }
 
