@@ -21,7 +21,7 @@ fn side_by_side<T: Sync, R: Send>(cases: &[T], of: impl Fn(&T) -> R + Sync) -> V
     };
     let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
     let mut all: Vec<(usize, R)> = std::thread::scope(|scope| {
-        let working: Vec<_> = (0..threads).map(|_| scope.spawn(&one_after_another)).collect();
+        let working: Vec<_> = (0..threads).map(|_| scope.spawn(one_after_another)).collect();
         working.into_iter().flat_map(|one| one.join().expect("no case panics")).collect()
     });
     all.sort_by_key(|(at, _)| *at);
