@@ -6,6 +6,7 @@ use stribeck_dsp::{PeriodCount, Spectrum, Welch};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::ContactSurface;
 
 use self::passages::{Passages, crossing_forces, level_finding, start_up_end_s};
 use crate::Error;
@@ -187,7 +188,7 @@ impl Findings {
         }
         let families = families::identify(&tracks, &candidates, &channels)?;
         let filter =
-            if steady { filter(record, &prediction, &sensors, &measured, &mut notes)? } else { None };
+            if steady { filter(run, record, &prediction, &sensors, &measured, &mut notes)? } else { None };
         if let Some(filter) = &filter {
             filter_sensors(filter, record, &mut sensors)?;
         }
@@ -448,8 +449,9 @@ fn measured_tones(
 }
 
 /// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or at the
-/// predicted one.
+/// predicted one. Where contact is with the round surface that facets stand for, none is predicted.
 fn filter(
+    run: &Run,
     record: &Record<'_>,
     prediction: &Prediction,
     sensors: &[SensorSignal],
@@ -471,6 +473,15 @@ fn filter(
                 ));
             }
             tone.measured_hz.or(predicted).unwrap_or(PAPER_CENTRE_HZ)
+        }
+        (None, _) if run.scene.contact.surface != ContactSurface::Facet => {
+            notes.push(format!(
+                "no notch: with `contact.surface: {}` no roller goes over edges of facets, and no facet tone stands {} dB above its \
+                 surroundings at any sensor, so that a filter there would take nothing away; its figures and numbers are left out",
+                if run.scene.contact.surface == ContactSurface::Arc { "arc" } else { "nagata" },
+                tones::LEAST_PROMINENCE_DB
+            ));
+            return Ok(None);
         }
         (None, predicted) => {
             notes.push(format!(

@@ -9,7 +9,7 @@ use stribeck_analysis::report;
 use stribeck_analysis::summary::Summary;
 use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::run_info::Status;
-use stribeck_scene::scene::{FilmScene, Scene};
+use stribeck_scene::scene::{ContactSurface, FilmScene, Scene};
 use synthetic::{
     ENTRY_LAG_S, EXIT_LEAD_S, FLOATING_M, IMPULSE_G, INTERVAL_S, NOISE_G, OIL_W, SLIP, SUPPORT_N, Scratch,
     TONE_G, TONE_HZ, WEIGHT_N,
@@ -429,6 +429,41 @@ fn example_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
     assert_eq!((summary.levels.impulse_g, summary.levels.between_filtered_g), (None, None));
     assert!(summary.notes.iter().any(|n| n.contains("until the record ends")), "{:?}", summary.notes);
     assert!(summary.notes.iter().any(|n| n.contains("no impulse level")), "{:?}", summary.notes);
+}
+
+/// Facets of other lengths than those that the tone of the record is from: none of theirs stands out.
+#[test]
+fn example_arcs_without_a_facet_tone_have_no_notch_and_the_page_says_why() {
+    let of = |name: &str, surface: ContactSurface| {
+        let folder = Scratch::new(name);
+        let mut scene = Scene::default();
+        scene.contact.surface = surface;
+        synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
+        let mut info: serde_json::Value = serde_json::from_str(&read(&folder.0, "run.json")).expect("JSON");
+        for facets in ["roller_facets", "outer_facets", "inner_facets"] {
+            let count = info["mesh"][facets].as_u64().expect("a number");
+            info["mesh"][facets] = (count + count / 3).into();
+        }
+        fs::write(folder.0.join("run.json"), info.to_string()).expect("writable");
+        let summary = report::write(&folder.0).expect("a report");
+        (read(&folder.0, "report.html"), summary, folder)
+    };
+    let (page, summary, _folder) = of("arcs", ContactSurface::Arc);
+    assert!(summary.notch.is_none() && summary.levels.between_filtered_g.is_none());
+    assert!(
+        summary.notes.iter().any(|n| n.contains("no notch: with `contact.surface: arc`")),
+        "{:?}",
+        summary.notes
+    );
+    assert!(!summary.notes.iter().any(|n| n.contains("transient")), "{:?}", summary.notes);
+    for figure in ["acceleration-notched", "spectrum-notched", "spectrum-zoom"] {
+        assert!(!page.contains(&format!("id=\"{figure}\"")), "{figure}");
+    }
+    assert!(
+        page.contains("id=\"spectrum\"") && page.contains("so that a filter there would take nothing away")
+    );
+    let (page, summary, _folder) = of("chords", ContactSurface::Facet);
+    assert!(summary.notch.is_some() && page.contains("id=\"spectrum-notched\""));
 }
 
 #[test]

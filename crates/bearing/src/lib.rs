@@ -9,7 +9,7 @@ mod grading;
 mod guards;
 mod host;
 mod housing;
-mod own_mesh;
+pub mod own_mesh;
 pub mod ranks;
 pub mod recorder;
 pub mod simulation;

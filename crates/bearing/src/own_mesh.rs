@@ -7,7 +7,10 @@ use stribeck_mesh::{
     decks::{Deck, ReadDeck},
 };
 use stribeck_scene::{
-    geometry::Geometry, housing::MeshHousingScene, ring_mesh::RingMeshScene, scene::DefectRing,
+    geometry::Geometry,
+    housing::{HousingScene, MeshHousingScene},
+    ring_mesh::RingMeshScene,
+    scene::{DefectRing, Scene},
 };
 
 use crate::error::Error;
@@ -95,6 +98,25 @@ impl<'a> OwnMesh<'a> {
             self.group
         ))
     }
+}
+
+/// Whether the files of a scene's housing and rings are ones that the bearing fits; nothing else is meshed.
+///
+/// # Errors
+/// [`Error::MeshFile`] for the first that is not.
+pub fn check(scene: &Scene) -> Result<(), Error> {
+    let g = Geometry::of(scene);
+    if let HousingScene::Mesh(mesh) = &scene.housing {
+        housing(mesh, &g)?;
+    }
+    for (mesh, of) in
+        [(&scene.outer_ring_mesh, DefectRing::Outer), (&scene.inner_ring_mesh, DefectRing::Inner)]
+    {
+        if let Some(mesh) = mesh {
+            ring(mesh, of, &g)?;
+        }
+    }
+    Ok(())
 }
 
 /// A housing, with its surfaces `bore` and `loaded`.

@@ -72,12 +72,13 @@ const CWRU: &str = "Case Western Reserve University Bearing Data Center, bearing
 const IMS: &str = "J. Lee et al., Bearing data set, IMS, University of Cincinnati, 2007";
 const XJTU: &str = "B. Wang et al., IEEE Trans. Reliab. 69 (2020) 401–412, table II";
 const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E − F)/2, pitch (E + F)/2";
+const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
 
 /// Raceway diameters F and E [mm] of cylindrical roller bearings of E design, by designation, with bore, outside diameter and
-/// width [mm] by ISO 15.
-const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 21] = [
+/// width [mm] by ISO 15; those of [`IN_PROPORTION`] from its neighbour.
+const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 22] = [
     ("NU 202", 19.3, 30.3, [15.0, 35.0, 11.0]),
     ("NU 203", 22.1, 35.1, [17.0, 40.0, 12.0]),
     ("NU 204", 26.5, 41.5, [20.0, 47.0, 14.0]),
@@ -89,6 +90,7 @@ const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 21] = [
     ("NU 210", 59.5, 81.5, [50.0, 90.0, 20.0]),
     ("NU 211", 66.0, 90.0, [55.0, 100.0, 21.0]),
     ("NU 212", 72.0, 100.0, [60.0, 110.0, 22.0]),
+    (IN_PROPORTION, 21.5, 35.9, [15.0, 42.0, 13.0]),
     ("NU 303", 24.2, 40.2, [17.0, 47.0, 14.0]),
     ("NU 304", 27.5, 45.5, [20.0, 52.0, 15.0]),
     ("NU 305", 34.0, 54.0, [25.0, 62.0, 17.0]),
@@ -100,6 +102,9 @@ const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 21] = [
     ("NU 311", 70.5, 106.5, [55.0, 120.0, 29.0]),
     ("NU 312", 77.0, 115.0, [60.0, 130.0, 31.0]),
 ];
+
+/// The one whose raceways are printed nowhere: 15 + 27·(24.2 − 17)/30 and 15 + 27·(40.2 − 17)/30 mm, to a tenth.
+const IN_PROPORTION: &str = "NU 302";
 
 const OTHERS: [Row; 8] = [
     (PAPER, Element::Roller, Some(24), 18.0, 181.98, 0.0, None, SINGH),
@@ -120,7 +125,8 @@ pub fn all() -> Vec<CatalogueBearing> {
     let cylindrical = FLANGES.iter().flat_map(|flanges| {
         CYLINDRICAL.iter().map(move |&(name, f, e, boundary)| {
             let [diameter, pitch] = [0.5 * (e - f), 0.5 * (e + f)];
-            let row = (name, Element::Roller, None, diameter, pitch, 0.0, Some(boundary), E_TYPE);
+            let source = if name == IN_PROPORTION { PROPORTION } else { E_TYPE };
+            let row = (name, Element::Roller, None, diameter, pitch, 0.0, Some(boundary), source);
             CatalogueBearing { name: name.replace("NU", flanges), ..CatalogueBearing::of(row) }
         })
     });
@@ -145,6 +151,11 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
         notes.push(format!(
             "makers fit different numbers of rolling elements into {name}; {} are assumed here",
             bearing.rollers
+        ));
+    }
+    if known.source == PROPORTION {
+        notes.push(format!(
+            "no catalogue known here prints the raceways of {name}; they are assumed to lie where those of its next larger size do, between bore and outside"
         ));
     }
     match known.element {
@@ -180,10 +191,16 @@ impl CatalogueBearing {
     /// # Errors
     /// What is not understood, with the names and numbers that are.
     pub fn parse(text: &str) -> Result<Self, String> {
+        let numbers = "`--bearing \"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
+        Self::parse_or_advise(text, &format!("give its numbers, {numbers}"))
+    }
+
+    /// As [`parse`](Self::parse), with other advice on what to give where a name is not known.
+    pub(crate) fn parse_or_advise(text: &str, advice: &str) -> Result<Self, String> {
         let mut parts = text.split(',').map(str::trim).filter(|part| !part.is_empty()).peekable();
         let named = match parts.peek() {
             Some(name) if !name.contains('=') => {
-                let found = find(name);
+                let found = find(name, advice);
                 parts.next();
                 Some(found?)
             }
@@ -283,7 +300,7 @@ impl fmt::Display for CatalogueBearing {
 }
 
 /// The bearing whose name, letters and digits alone, is that of `name` or begins it.
-fn find(name: &str) -> Result<CatalogueBearing, String> {
+fn find(name: &str, advice: &str) -> Result<CatalogueBearing, String> {
     let plain =
         |text: &str| text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase();
     let fits = |asked: &str, bearing: &CatalogueBearing| {
@@ -299,12 +316,7 @@ fn find(name: &str) -> Result<CatalogueBearing, String> {
     let asked = [Some(name), behind_maker.map(|(_, rest)| rest)];
     let found =
         asked.into_iter().flatten().map(plain).find_map(|asked| all().into_iter().find(|b| fits(&asked, b)));
-    found.ok_or_else(|| {
-        format!(
-            "no bearing `{name}` is known; give its numbers, `--bearing \"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`, or one of {}",
-            names()
-        )
-    })
+    found.ok_or_else(|| format!("no bearing `{name}` is known; {advice}, or one of {}", names()))
 }
 
 #[cfg(test)]

@@ -119,7 +119,7 @@ pub struct WavinessScene {
     pub amplitude_um: f64,
 }
 
-/// Random waves over a band of wavelengths, whose spectrum falls as the square of the wave number.
+/// Random waves over a band of wavelengths.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RoughnessScene {
@@ -131,6 +131,17 @@ pub struct RoughnessScene {
     pub shortest_mm: f64,
     /// Seed of the phases.
     pub seed: u64,
+    /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random walk, 0 the same at all
+    /// wavelengths of the band; a self-affine profile of the Hurst exponent H has 1 + 2H.
+    #[serde(skip_serializing_if = "is_random_walk")]
+    pub slope: f64,
+}
+
+/// The slope of a scene that gives none, which is not written.
+const RANDOM_WALK: f64 = 2.0;
+
+fn is_random_walk(slope: &f64) -> bool {
+    *slope == RANDOM_WALK
 }
 
 /// Another diameter of a rolling element.
@@ -167,7 +178,7 @@ impl Default for WavinessScene {
 
 impl Default for RoughnessScene {
     fn default() -> Self {
-        Self { rq_um: 0.3, longest_mm: 10.0, shortest_mm: 2.5, seed: 1 }
+        Self { rq_um: 0.3, longest_mm: 10.0, shortest_mm: 2.5, seed: 1, slope: RANDOM_WALK }
     }
 }
 
@@ -218,7 +229,7 @@ impl RollingSurface {
 }
 
 impl DeviationScene {
-    /// One of every form: items of a list may have different fields.
+    /// One of every form, with all fields of each: items of a list may have different ones.
     pub(crate) fn of_every_form() -> Vec<Self> {
         let profile = SurfaceProfileScene { points: vec![PointScene::default()], ..Default::default() };
         let forms = [
@@ -226,7 +237,8 @@ impl DeviationScene {
             FormScene::Dent(DentScene::default()),
             FormScene::Profile(profile),
             FormScene::Waviness(WavinessScene::default()),
-            FormScene::Roughness(RoughnessScene::default()),
+            // Its slope is not written by default.
+            FormScene::Roughness(RoughnessScene { slope: 0.5, ..Default::default() }),
             FormScene::Diameter(DiameterScene::default()),
             FormScene::Missing,
         ];
@@ -403,10 +415,14 @@ fn random_waves(roughness: &RoughnessScene, radius: f64, at: f64) -> Vec<Wave> {
     let first = (around / roughness.longest_mm).ceil().max(1.0) as usize;
     let last = ((around / roughness.shortest_mm).floor() as usize).max(first);
     let mut dice = Dice::new(roughness.seed);
+    // A power rounds otherwise than a quotient, and scenes without a slope keep their bits.
+    let amplitude = |order: f64| {
+        if is_random_walk(&roughness.slope) { 1.0 / order } else { order.powf(-0.5 * roughness.slope) }
+    };
     let mut waves: Vec<Wave> = (first..=last)
         .map(|order| {
             let order = order as f64;
-            Wave { order, amplitude: 1.0 / order, at: at + TAU * dice.share() / order }
+            Wave { order, amplitude: amplitude(order), at: at + TAU * dice.share() / order }
         })
         .collect();
     let square: f64 = waves.iter().map(|wave| 0.5 * wave.amplitude * wave.amplitude).sum();
@@ -485,6 +501,48 @@ mod tests {
         assert_eq!((orders[0], orders[orders.len() - 1]), (63.0, 251.0));
         let again = on_outer(FormScene::Roughness(RoughnessScene { rq_um: 0.4, ..Default::default() }));
         assert_eq!(relief, again);
+    }
+
+    /// The power in two bands of the profile, from its sine and cosine parts at each order, tells the slope.
+    /// Source: Persson et al. 2005, §2: a self-affine profile of the Hurst exponent H has C(q) ∝ q^−(1 + 2H); THEORY §6.4.
+    #[test]
+    fn analytic_roughness_has_the_slope_of_its_spectrum() {
+        const N: usize = 4096;
+        for slope in [0.0, 1.0, 1.6, 2.0, 2.6, 4.0] {
+            let form = RoughnessScene { rq_um: 0.4, longest_mm: 20.0, slope, ..Default::default() };
+            let relief = on_outer(FormScene::Roughness(form));
+            let depth: Vec<f64> = (0..N).map(|i| 1e6 * relief.depth(TAU * i as f64 / N as f64)).collect();
+            let square = depth.iter().map(|d| d * d).sum::<f64>() / N as f64;
+            assert!((square.sqrt() - 0.4).abs() < 1e-10, "slope {slope}: Rq {} µm", square.sqrt());
+            // 628.3 mm hold 32 waves of 20 mm and 251 of 2.5 mm. A least-squares line through the logarithms.
+            let points: Vec<[f64; 2]> = (32..=251)
+                .map(|order| {
+                    let part = |wave: fn(f64) -> f64| {
+                        let angle = |i: usize| TAU * ((i * order) % N) as f64 / N as f64;
+                        depth.iter().enumerate().map(|(i, d)| d * wave(angle(i))).sum::<f64>()
+                    };
+                    let power = part(f64::cos).powi(2) + part(f64::sin).powi(2);
+                    [(order as f64).ln(), power.ln()]
+                })
+                .collect();
+            let mean = [0, 1].map(|k| points.iter().map(|p| p[k]).sum::<f64>() / points.len() as f64);
+            let across: f64 = points.iter().map(|p| (p[0] - mean[0]) * (p[1] - mean[1])).sum();
+            let along: f64 = points.iter().map(|p| (p[0] - mean[0]).powi(2)).sum();
+            assert!((across / along + slope).abs() < 1e-6, "slope {slope}: {}", -across / along);
+        }
+    }
+
+    /// Scenes from before there was a slope keep their text, and so their hash, and their surface to the last bit.
+    #[test]
+    fn invariant_roughness_without_a_slope_is_a_random_walk() {
+        let plain = ron::to_string(&RoughnessScene::default()).expect("written");
+        assert!(!plain.contains("slope"), "{plain}");
+        let relief = on_outer(FormScene::Roughness(RoughnessScene::default()));
+        let mut ratio =
+            relief.waves.windows(2).map(|w| w[0].amplitude / w[1].amplitude * w[0].order / w[1].order);
+        assert!(ratio.all(|ratio| (ratio - 1.0).abs() < 1e-15));
+        let steeper = ron::to_string(&RoughnessScene { slope: 3.0, ..Default::default() }).expect("written");
+        assert!(steeper.contains("slope:3.0"), "{steeper}");
     }
 
     #[test]

@@ -96,6 +96,26 @@ impl Scene {
     }
 }
 
+/// What is wrong with `field` of the scene file at `path`, or of the default scene, under `overrides`: `message`, shown where the
+/// field was written. For what is found in a sound scene later, as in the meshes that it names.
+pub fn refused_at<S: AsRef<str>>(
+    path: Option<&Path>,
+    overrides: &[S],
+    field: &str,
+    message: String,
+) -> SceneError {
+    let text = path.and_then(|path| load(path).ok()).unwrap_or_default();
+    let file = path.map_or_else(String::new, |path| path.display().to_string());
+    let text = without_mark(&text);
+    let set = match understand(text, &file, overrides) {
+        Ok((_, set)) if path.is_some() => set,
+        _ => overrides::apply(Scene::default(), overrides).map_or_else(|_| Vec::new(), |(_, set)| set),
+    };
+    let mut problem = Problem::new(message, Origin::in_file(&file, text, set).place(field));
+    field.clone_into(&mut problem.field);
+    problem.into()
+}
+
 /// Text → scene, overrides, tables in `folder`, check.
 fn compose<S: AsRef<str>>(
     text: &str,
@@ -124,7 +144,7 @@ fn understand<S: AsRef<str>>(
 ) -> Result<(Scene, Vec<origin::Override>), SceneError> {
     let outline = Outline::of(text);
     let in_file = named::take(text, &outline);
-    let mut scene = syntax::parse(in_file.as_ref().map_or(text, |(blanked, _)| blanked), file)?;
+    let mut scene = syntax::parse(in_file.as_ref().map_or(text, |(blanked, _)| blanked), text, file)?;
     if let Some((_, name)) = in_file {
         let mut given = named::written(text);
         given.extend(named::written_by(overrides));
@@ -151,7 +171,7 @@ pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> R
 pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
     let schema = schema::Schema::new();
     let known = schema.default_of(path).is_some();
-    let answer = || overrides::known(path, path, &schema, &Outline::default()).err();
+    let answer = || overrides::known(path, path, &schema, "", &Outline::default()).err();
     if known { None } else { answer().map(|problem| *problem) }
 }
 

@@ -35,7 +35,7 @@ pub struct Options {
     /// noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
-    /// File to write, for pvd a folder [default: in the run's folder]
+    /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, paraview, frames.vtkhdf or mesh.FORMAT]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -55,7 +55,8 @@ enum Format {
     Parquet,
     /// Sound, 64-bit floats
     Wav,
-    /// ParaView: a series of grids with the stress about the defect
+    /// ParaView: a folder of VTU files with the stress about the defect, a grid a frame, and the .pvd that lists them
+    #[value(alias = "vtu")]
     Pvd,
     /// ParaView: the same in one file (VTKHDF)
     Vtkhdf,

@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use stribeck_bearing::{error::Error, own_mesh};
 use stribeck_scene::scene::Scene;
+use stribeck_scene::scene_file::refused_at;
 
 /// The surroundings of a command.
 #[derive(Debug, Clone)]
@@ -28,12 +30,21 @@ impl Place {
     /// The scene in a file under `overrides`; without a file the bearing of the paper.
     ///
     /// # Errors
-    /// What is wrong with it, with line and field.
+    /// What is wrong with it, or with the meshes that it names, with line and field.
     pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
-        Ok(match file {
-            Some(file) => Scene::read_with(self.locate(file), overrides)?,
+        let file = file.map(|file| self.locate(file));
+        let scene = match &file {
+            Some(file) => Scene::read_with(file, overrides)?,
             None => Scene::default().with_overrides(overrides)?,
-        })
+        };
+        // Before a folder is made for it.
+        own_mesh::check(&scene).map_err(|error| match error {
+            Error::MeshFile { ref field, .. } => {
+                anyhow!(refused_at(file.as_deref(), overrides, field, error.to_string()))
+            }
+            other => anyhow!(other),
+        })?;
+        Ok(scene)
     }
 
     /// The folder of all runs.

@@ -162,6 +162,10 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
         None => simulation::simulate(&scene, &dir, host, &mut watch),
     });
     meter.finish();
+    if finished.is_err() {
+        // The interrupt has its copy of the place, too, so that nothing made for a run that never began goes with `dir` alone.
+        dir.reservation().unless_started(|| {});
+    }
 
     if let Ok(info) = &finished {
         announce(info);

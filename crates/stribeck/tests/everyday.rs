@@ -250,3 +250,35 @@ fn invariant_the_program_says_what_it_is_and_needs_no_files() {
     says(&desk.run(&["report"]), &["stribeck simulate"]);
     assert!(!desk.0.join("runs").exists());
 }
+
+/// A housing for another bearing is told in the line of the scene that names it, and no folder is left by any command.
+#[test]
+fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
+    let desk = Desk::new("another-housing");
+    let block = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/housings/pillow_block.msh");
+    fs::copy(block, desk.0.join("block.msh")).expect("a mesh");
+    let text =
+        "(\n  bearing: \"NU 203\", film: None, defect: None,\n  housing: mesh(file: \"block.msh\"),\n)";
+    fs::write(desk.0.join("other.ron"), text).expect("writable");
+    for words in [
+        &["simulate", "other.ron"][..],
+        &["simulate", "other.ron", "--starts=2"],
+        &["validate", "other.ron"],
+        &["plan", "other.ron"],
+    ] {
+        let output = desk.run(words);
+        assert!(!output.status.success(), "{words:?}");
+        says(
+            &output,
+            &["bore does not fit the outer ring", "other.ron:3:23", "housing: mesh(file: \"block.msh\")"],
+        );
+        assert!(!desk.0.join("runs").exists(), "{words:?}");
+    }
+    let set = desk.run(&[
+        "simulate",
+        "--set=housing=mesh(file: \"block.msh\")",
+        "--set=bearing=NU 203",
+        "--set=defect=None",
+    ]);
+    says(&set, &["bore does not fit the outer ring", "--set housing=mesh(file: \"block.msh\")"]);
+}

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use stribeck_formats::{Channel, Recording, mat5};
-use stribeck_testing::{Noise, Scratch, said};
+use stribeck_testing::{Noise, Scratch, said, says};
 
 fn stribeck(folder: &Path, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_stribeck")).current_dir(folder).args(words).output().expect("it starts")
@@ -108,8 +108,11 @@ fn example_a_run_is_exported_and_read_back() {
         // A universal file has thirteen digits.
         assert!(ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= 5e-13 * b.abs()), "{format}");
     }
-    let output = stribeck(desk.path(), &["export", "quick", "--to", "pvd"]);
-    assert!(output.status.success(), "{}", said(&output));
+    for word in ["pvd", "vtu"] {
+        let output = stribeck(desk.path(), &["export", "quick", "--to", word]);
+        assert!(output.status.success(), "{}", said(&output));
+        says(&output, &["runs/quick/paraview/frames.pvd"]);
+    }
     let index = std::fs::read_to_string(desk.join("runs/quick/paraview/frames.pvd")).unwrap();
     assert_eq!(index.matches("<DataSet").count(), 3, "{index}");
     let grid = std::fs::read(desk.join("runs/quick/paraview/frame-00000.vtu")).unwrap();

@@ -353,7 +353,7 @@ pub(super) fn level_finding(
     if !sensors.is_empty() && finding.impulse_g.is_none() {
         notes.push("no impulse level: no roller leaves the defect within the record".into());
     }
-    if !sensors.is_empty() && finding.between_filtered_g.is_none() {
+    if filter.is_some() && !sensors.is_empty() && finding.between_filtered_g.is_none() {
         notes.push(format!(
             "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of events",
             1e3 * (settled - start)

@@ -270,6 +270,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
                 add("form.longest_mm", roughness.longest_mm, positive(20_000.0), "mm");
                 add("form.shortest_mm", roughness.shortest_mm, positive(20_000.0), "mm");
                 add("form.seed", roughness.seed as f64, within(0.0, 1e9), "");
+                add("form.slope", roughness.slope, within(0.0, 6.0), "");
             }
             FormScene::Diameter(diameter) => {
                 add("form.larger_um", diameter.larger_um, within(-1_000.0, 1_000.0), "µm");

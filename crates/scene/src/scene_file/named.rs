@@ -67,7 +67,8 @@ const FRICTION: f64 = 0.05;
 /// Words on what is not known of the bearing, or why a plane model has no such bearing.
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
     let given = |path: &str| given.iter().any(|written| written == path);
-    let known = CatalogueBearing::parse(name)?;
+    let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
+    let known = CatalogueBearing::parse_or_advise(name, fields)?;
     let paper = Scene::default();
     // Scenes are the paper's where nothing is said.
     if known.name == catalogue::PAPER {

@@ -44,7 +44,7 @@ fn apply_one(
     let text = scene.to_ron();
     let outline = Outline::of(&text);
     let by = Override { path: path.to_owned(), argument: argument.to_owned() };
-    known(path, argument, schema, &outline)?;
+    known(path, argument, schema, &text, &outline)?;
 
     if path == "bearing"
         && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
@@ -98,10 +98,14 @@ pub(crate) fn known(
     path: &str,
     argument: &str,
     schema: &Schema,
+    text: &str,
     outline: &Outline,
 ) -> Result<(), Box<Problem>> {
     let mark = command_line(argument, 0, argument.find('=').unwrap_or(argument.len()));
     if schema.default_of(path).is_some() && (outline.get(path).is_some() || !path.contains('[')) {
+        return Ok(());
+    }
+    if absent_in_its_form(path, schema, text, outline) {
         return Ok(());
     }
     if let Some((list, _)) = path.split_once('[')
@@ -145,6 +149,16 @@ pub(crate) fn known(
     Err(problem)
 }
 
+/// Whether `path` is a field that an item of a list may have in the form that it has, and that its text leaves out.
+fn absent_in_its_form(path: &str, schema: &Schema, text: &str, outline: &Outline) -> bool {
+    let form = || {
+        let (group, name) = path.rsplit_once('.').filter(|(group, _)| group.contains('['))?;
+        let (word, _) = text[outline.get(group)?.value.clone()].split_once('(')?;
+        schema.behind(group, word, name)
+    };
+    form().is_some()
+}
+
 /// Writes the names in a text as `--set` wants them, with their section.
 fn with_section(text: String, section: &str, names: &[&str]) -> String {
     if section.is_empty() {
@@ -171,7 +185,9 @@ fn write(text: &str, outline: &Outline, path: &str, value: &str) -> String {
     }
     let group = |section: &str| {
         let value = outline.get(section)?.value.clone();
-        text[value.clone()].starts_with('(').then_some(value.start + 1)
+        // Behind the word of a form, where the form of an item of a list is not another one.
+        let bracket = text[value.clone()].find('(')?;
+        (bracket == 0 || section.contains('[')).then_some(value.start + bracket + 1)
     };
     match path.rsplit_once('.') {
         // A field that a section may lack beside others.

@@ -50,13 +50,16 @@ impl FieldReference {
         let Some((scene, path, default)) = self.schema.behind(path, word, name) else {
             return Field::default();
         };
+        let later = LATER.iter().find(|(later, _)| *later == format!("{word}.{name}"));
+        let default = later.map_or(default, |(_, default)| default);
         Field { default: Some(default.to_owned()), range: limits::allowed_in(scene, &path) }
     }
 }
 
 /// Fields that are absent where they have these values.
-const LATER: [(&str, &str); 3] = [
+const LATER: [(&str, &str); 4] = [
     ("operation.load_angle_deg", "270.0"),
     ("operation.outer_speed_rpm", "0.0"),
     ("bearing.clearance_change_um", "0.0"),
+    ("roughness.slope", "2.0"),
 ];

@@ -112,8 +112,9 @@ impl Schema {
     /// The field `name` of the group behind `word` at `path`: the scene that has such a group, the field's path there and its
     /// value.
     pub(crate) fn behind(&self, path: &str, word: &str, name: &str) -> Option<(&Scene, String, &str)> {
+        let path = &first_item(path);
         let groups: Vec<String> =
-            std::iter::once(path.to_owned()).chain(in_other_profile(path)).chain(forms_of(path)).collect();
+            std::iter::once(path.clone()).chain(in_other_profile(path)).chain(forms_of(path)).collect();
         groups.iter().find_map(|group| {
             self.scenes.iter().find_map(|complete| {
                 let value = |path: &str| Some(&complete.text[complete.outline.get(path)?.value.clone()]);

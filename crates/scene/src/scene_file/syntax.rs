@@ -11,10 +11,11 @@ use super::{foreign, limits, suggest};
 use crate::catalogue::CatalogueBearing;
 use crate::scene::Scene;
 
-/// Reads the types of a scene; its meaning is checked later.
-pub(crate) fn parse(text: &str, file: &str) -> Result<Scene, SceneError> {
+/// Reads the types of a scene; its meaning is checked later. `written` is what the user wrote, in which all places are those of
+/// `text`.
+pub(crate) fn parse(text: &str, written: &str, file: &str) -> Result<Scene, SceneError> {
     deserialize(text).map_err(|fault| {
-        let place = place_in_file(file, text, fault.range.clone());
+        let place = place_in_file(file, written, fault.range.clone());
         fault.problem(place).into()
     })
 }
@@ -60,6 +61,9 @@ pub(crate) fn deserialize(text: &str) -> Result<Scene, Box<Fault>> {
     }
 }
 
+/// What a mesh file says, which the scene of a run holds and nobody writes.
+const HELD: &str = "text";
+
 /// Words for one error of RON.
 fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
     use ron::Error as E;
@@ -93,8 +97,9 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
             fault.range = named.map_or(start..end, |entry| entry.key.clone());
             let inside = if home.is_empty() { "a scene".to_owned() } else { format!("`{home}`") };
             fault.message = format!("unknown field `{}` in {inside}", shown(found));
-            fault.allowed = list(expected);
-            fault.suggestion = suggest::field(found, expected, &schema.paths()).unwrap_or_default();
+            let expected: Vec<&str> = expected.iter().copied().filter(|name| *name != HELD).collect();
+            fault.allowed = list(&expected);
+            fault.suggestion = suggest::field(found, &expected, &schema.paths()).unwrap_or_default();
         }
         E::NoSuchEnumVariant { expected, found, .. } => {
             fault.field = path.to_owned();

@@ -683,13 +683,25 @@ fn invariant_balls_are_cylinders_of_their_own_stiffness() {
 }
 
 #[test]
+fn refuses_unknown_fields_of_meshes_without_naming_the_one_that_runs_write() {
+    for text in ["(housing: mesh(fil: \"x.msh\"))", "(outer_ring_mesh: (fil: \"x.msh\"))"] {
+        let why = Scene::parse(text, "mine").unwrap_err().to_string();
+        assert!(why.contains("`file`") && !why.contains("`text`"), "{why}");
+    }
+}
+
+#[test]
 fn refuses_a_bearing_that_nobody_knows() {
     for set in ["bearing=NU 999", "bearing=\"NU 999\""] {
         let why = Scene::default().with_overrides(&[set]).unwrap_err();
         assert!(why.to_string().contains("no bearing `NU 999`"), "{why}");
     }
-    let why = Scene::parse("(\n  bearing: \"NU 999\",\n)", "mine").unwrap_err();
-    assert!(why.to_string().contains("mine:2:12"), "{why}");
+    let why = Scene::parse("(\n  bearing: \"NU 999\",\n)", "mine").unwrap_err().to_string();
+    assert!(why.contains("mine:2:12"), "{why}");
+    assert!(why.contains("`bearing: (rollers: 13") && !why.contains("--bearing"), "{why}");
+    // A slip elsewhere in the line leaves the name as it was written.
+    let why = Scene::parse("(bearing: \"NU 205\", mesh: (sise_mm: 1))", "mine").unwrap_err().to_string();
+    assert!(why.contains("(bearing: \"NU 205\", mesh: (sise_mm: 1))"), "{why}");
 }
 
 #[test]

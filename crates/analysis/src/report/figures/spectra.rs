@@ -57,13 +57,12 @@ fn found(findings: &Findings) -> String {
 /// Raw and notched, whole and about the tone (the paper's Figs. 7a and 7b).
 pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
     let Some(leading) = findings.sensors.first().filter(|_| !unsteady(findings)) else { return Vec::new() };
-    let Some(raw) = &leading.raw_density else { return Vec::new() };
+    let (Some(raw), Some(filtered)) = (&leading.raw_density, &leading.filtered_density) else {
+        return Vec::new();
+    };
     let overlay = |id: &str, title: &str, range: (f64, f64)| {
-        let mut figure = over_frequency(id, title, range);
         // Drawn first, so that the raw curve stays visible where both agree.
-        if let Some(filtered) = &leading.filtered_density {
-            figure = figure.with(density("notched", Colour::Orange, filtered));
-        }
+        let figure = over_frequency(id, title, range).with(density("notched", Colour::Orange, filtered));
         figure.with(density("raw", Colour::Blue, raw))
     };
     let attenuation = findings.summary.notch.as_ref().and_then(|n| n.attenuation_db);

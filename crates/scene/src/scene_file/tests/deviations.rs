@@ -24,6 +24,14 @@ fn example_defects_of_every_form_are_read_and_written_again() {
         scene.with_overrides(&["defects[1].form.rim_um=2.5", "defects[3].form.order=5"]).expect("fields");
     let FormScene::Dent(dent) = &set.defects[1].form else { panic!("{:?}", set.defects[1]) };
     assert_eq!(dent.rim_um, 2.5);
+    let steeper = scene.with_overrides(&["defects[4].form.slope=2.6"]).expect("a field that was not written");
+    let FormScene::Roughness(roughness) = &steeper.defects[4].form else {
+        panic!("{:?}", steeper.defects[4])
+    };
+    assert_eq!(roughness.slope, 2.6);
+    assert_eq!(parse(&steeper.to_ron()).expect("its own text"), steeper);
+    // A spall has no slope.
+    assert!(scene.with_overrides(&["defects[0].form.slope=2.6"]).is_err());
     let none = Scene::default().with_overrides(&["film=None", "defects=[(on: inner, form: dent())]"]);
     assert_eq!(none.expect("a list on the command line").defects.len(), 1);
     // The hash of a scene without them is that of scenes from before.
@@ -65,6 +73,7 @@ fn refuses_what_no_mesh_can_follow() {
         ("form: spall(depth_mm: 6.1, edge: rectangular)", "defects[0].form", "make room for 6 mm"),
         ("form: dent(depth_mm: 0.5)", "defects[0].form.depth_mm", "would slope"),
         ("form: waviness(order: 300)", "defects[0].form.order", "a wave would have 4.2 facets"),
+        ("form: roughness(slope: -1)", "defects[0].form.slope", "outside its range"),
         ("form: roughness(shortest_mm: 1)", "defects[0].form.shortest_mm", "less than 4 facets"),
         (
             "form: roughness(shortest_mm: 5, longest_mm: 5)",
