@@ -106,6 +106,17 @@ impl Problem {
         self.suggestion = if note.is_empty() { written } else { format!("{written} ({note})") };
         self.repair = Some(format!("{field}={value}"));
     }
+
+    /// The same problem with a value that stands at `place` by itself, without the name of its field. No `--set` removes it there.
+    pub(crate) fn of_value_at(mut self, place: Place) -> Self {
+        if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
+            && let Some(note) = self.suggestion.strip_prefix(&format!("--set {}", for_a_shell(field, value)))
+        {
+            self.suggestion = format!("`{value}`{note}");
+        }
+        self.place = place;
+        self
+    }
 }
 
 /// `field=value` as a word of a shell.
