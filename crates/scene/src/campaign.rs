@@ -206,6 +206,7 @@ impl Campaign {
             }
         }
         if !unreadable.is_empty() {
+            unreadable.sort_by_key(Problem::line_and_column);
             return Err(SceneError::new(unreadable));
         }
         let fields = rows.fields.into_iter().map(|(field, _)| field).collect();

@@ -243,11 +243,11 @@ fn refuses_values_that_no_field_takes_before_anything_runs() {
     for (wrong, words) in [
         (
             "[outr, inner]",
-            ["campaign.ron:8:43", "`defect.ring` is `outr`", "`outer`, `inner`", "did you mean `outer`?"],
+            ["campaign.ron:8:41", "`defect.ring` is `outr`", "`outer`, `inner`", "did you mean `outer`?"],
         ),
         (
             "[outer, 2]",
-            ["campaign.ron:8:50", "`defect.ring` is `2`", "`outer`, `inner`", "`outer` (the default)"],
+            ["campaign.ron:8:48", "`defect.ring` is `2`", "`outer`, `inner`", "`outer` (the default)"],
         ),
     ] {
         let desk = desk("campaign-misspelt-value", &CAMPAIGN.replace("[outer, inner]", wrong));

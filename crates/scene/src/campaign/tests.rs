@@ -145,6 +145,10 @@ fn refuses_values_that_their_field_cannot_have() {
         }
         assert!(!why.contains("--set"), "{why}");
     }
+    // In the order of the file, whichever variant comes first.
+    let text = surface("[facet, acr]),\n(field: \"operation.load_n\", values: [much]");
+    let why = parse(&text).unwrap_err();
+    assert!(why.find("a.ron:3:44").unwrap() < why.find("a.ron:4:38").unwrap(), "{why}");
 }
 
 #[test]
@@ -161,7 +165,7 @@ fn refuses_cells_that_their_field_cannot_have_in_the_tables_own_lines() {
 
 #[test]
 fn example_values_that_contradict_each_other_are_rows_with_their_reason() {
-    // The second sensor is there in one variant and missing in the other: no value is misspelt.
+    // The sensor is there in one variant and missing in the other: no value is misspelt.
     let text = "(name: \"x\", variants: grid([
         (field: \"output.sensors\", values: [[], [(name: \"a\", angle_deg: 10.0)]]),
         (field: \"output.sensors[0].angle_deg\", values: [20.0]),

@@ -107,6 +107,14 @@ impl Problem {
         self.repair = Some(format!("{field}={value}"));
     }
 
+    /// Where it stands in its file, from 1; zeros where it is not in one.
+    pub(crate) fn line_and_column(&self) -> (usize, usize) {
+        match self.place {
+            Place::File { line, column, .. } => (line, column),
+            _ => (0, 0),
+        }
+    }
+
     /// The same problem with a value that stands at `place` by itself, without the name of its field. No `--set` removes it there.
     pub(crate) fn of_value_at(mut self, place: Place) -> Self {
         if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
