@@ -38,6 +38,7 @@ const CHECKS: &[Check] = &[
     ("THEORY has every section that code cites", documents::check_citations),
     ("GLOSSARY is sorted and has no term twice", documents::check_glossary),
     ("links in the documents lead somewhere", documents::check_links),
+    ("links in the book of the documents stay in it", documents::check_book),
     ("commands in the documents exist", documents::check_commands),
     ("scenes in the documents can be run", documents::check_scenes),
     ("the guide lists the fields that scenes have", crate::fields::check),

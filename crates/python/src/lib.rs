@@ -3,6 +3,10 @@
 mod runs;
 mod signals;
 
+mod filters;
+mod knocks;
+mod spectra;
+
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use stribeck_scene::Error;
@@ -32,10 +36,35 @@ fn _stribeck(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(runs::summary, module)?)?;
     module.add_function(wrap_pyfunction!(runs::report, module)?)?;
     module.add_function(wrap_pyfunction!(signals::analyse, module)?)?;
-    module.add_function(wrap_pyfunction!(signals::welch, module)?)?;
-    module.add_function(wrap_pyfunction!(signals::notch, module)?)?;
-    module.add_function(wrap_pyfunction!(signals::envelope_spectrum, module)?)?;
-    module.add_function(wrap_pyfunction!(signals::fast_kurtogram, module)?)?;
-    module.add_function(wrap_pyfunction!(signals::cepstral_prewhitening, module)?)?;
+    module.add_function(wrap_pyfunction!(signals::defect_orders, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::get_window, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::dpss, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::welch, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::spectrogram, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::multitaper, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::band_rms, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::velocity_rms, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::strongest_line, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::whitened, module)?)?;
+    module.add_function(wrap_pyfunction!(spectra::comb, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::iirnotch, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::notch, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::envelope, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::envelope_spectrum, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::cepstral_prewhitening, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::resample_poly, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::record, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::separate, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::momeda, module)?)?;
+    module.add_function(wrap_pyfunction!(filters::statistic, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::fast_kurtogram, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::infogram, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::spectral_correlation, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::band_envelopes, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::event_spacing, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::order_track, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::means_over_angle, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::ridge, module)?)?;
+    module.add_function(wrap_pyfunction!(knocks::turns_of_ridge, module)?)?;
     Ok(())
 }

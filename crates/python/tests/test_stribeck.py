@@ -190,6 +190,171 @@ class Signals(unittest.TestCase):
         # The ends are padded in another way.
         np.testing.assert_allclose(both[2000:-2000], filtfilt(b, a, self.x)[2000:-2000], atol=1e-8)
 
+    def test_spectra_are_scipys(self):
+        from scipy import signal
+
+        dsp, x, fs = stribeck.dsp, self.x[:20_000], self.fs
+        for options in ({}, {"window": "hann", "scaling": "spectrum"}, {"detrend": "linear"}, {"nfft": 32_768, "detrend": False}):
+            for ours, scipys in zip(dsp.periodogram(x, fs, **options), signal.periodogram(x, fs, **options)):
+                np.testing.assert_allclose(ours, scipys, rtol=1e-9, atol=1e-15)
+        for options in ({}, {"nperseg": 1000, "noverlap": 300, "nfft": 1024, "mode": "magnitude"}):
+            scipys = signal.spectrogram(x, fs, "hann", **{"nperseg": 256, "noverlap": 128, **options})
+            for ours, theirs in zip(dsp.spectrogram(x, fs, **options), scipys):
+                self.assertEqual(ours.shape, theirs.shape)
+                np.testing.assert_allclose(ours, theirs, rtol=1e-9, atol=1e-14)
+        tapers = signal.windows.dpss(2000, 4.0, 7)
+        np.testing.assert_allclose(dsp.dpss(2000, 4.0, 7), tapers, atol=1e-9)
+        f, p = dsp.multitaper(x[:2000], fs, 4.0)
+        powers = np.abs(np.fft.rfft(tapers * (x[:2000] - x[:2000].mean()))) ** 2 / fs
+        powers[:, 1:-1] *= 2
+        np.testing.assert_allclose(p, powers.mean(axis=0), rtol=1e-6)
+        np.testing.assert_allclose(f, np.fft.rfftfreq(2000, 1 / fs), rtol=1e-12)
+        for name, periodic in (("hann", True), ("hann", False), ("hamming", False), ("boxcar", True)):
+            ours = dsp.get_window(name, 101, periodic)
+            np.testing.assert_allclose(ours, signal.get_window(name, 101, periodic), atol=1e-12)
+
+    def test_filters_envelopes_and_rates_are_scipys(self):
+        from scipy import signal, stats
+
+        dsp, x = stribeck.dsp, self.x[:20_000]
+        for ours, scipys in zip(dsp.iirnotch(2335.0, 15.0, self.fs), signal.iirnotch(2335.0, 15.0, self.fs)):
+            np.testing.assert_allclose(ours, scipys, rtol=1e-12)
+        np.testing.assert_allclose(dsp.envelope(x), np.abs(signal.hilbert(x)), atol=1e-10)
+        spectrum = np.fft.rfft(x)
+        f = np.fft.rfftfreq(len(x), 1 / self.fs)
+        spectrum[(f < 2000) | (f > 4000)] = 0
+        in_band = np.abs(signal.hilbert(np.fft.irfft(spectrum)))
+        np.testing.assert_allclose(dsp.envelope(x, self.fs, (2000, 4000)), in_band, atol=1e-10)
+        f, p = dsp.envelope_spectrum(x, self.fs, (2000, 4000))
+        g, q = signal.periodogram(in_band**2, self.fs, "hann", scaling="spectrum")
+        np.testing.assert_allclose(f, g, rtol=1e-12)
+        np.testing.assert_allclose(p, q, rtol=1e-8, atol=1e-14)
+        for up, down in ((1, 2), (3, 2), (147, 160)):
+            np.testing.assert_allclose(dsp.resample_poly(x, up, down), signal.resample_poly(x, up, down), atol=1e-10)
+        flat = np.fft.rfft(x)
+        np.testing.assert_allclose(dsp.cepstral_prewhitening(x), np.fft.irfft(flat / np.abs(flat)), atol=1e-10)
+        np.testing.assert_allclose(dsp.kurtosis(x), stats.kurtosis(x), rtol=1e-9)
+        np.testing.assert_allclose(dsp.kurtosis(x, fisher=False), stats.kurtosis(x, fisher=False), rtol=1e-9)
+        np.testing.assert_allclose(dsp.rms(x), np.sqrt(np.mean(x**2)), rtol=1e-12)
+        np.testing.assert_allclose(dsp.crest_factor(x), dsp.peak(x) / dsp.rms(x), rtol=1e-12)
+        self.assertEqual(dsp.peak(x), np.abs(x).max())
+
+    def test_a_line_and_a_band_have_the_level_of_their_sine(self):
+        # 3 m/s² at 160.3 Hz: 3/√2 rms, and a velocity of that over the circular frequency.
+        dsp, hz = stribeck.dsp, 160.3
+        x = 3.0 * np.sin(2 * np.pi * hz * np.arange(48_000) / self.fs)
+        line = dsp.strongest_line(x, self.fs, 100, 200)
+        self.assertAlmostEqual(line.frequency_hz, hz, places=3)
+        self.assertAlmostEqual(line.amplitude, 3.0, places=3)
+        self.assertFalse(line.at_edge)
+        self.assertAlmostEqual(dsp.band_rms(x, self.fs, 100, 200), 3 / np.sqrt(2), places=4)
+        self.assertAlmostEqual(dsp.velocity_rms(x, self.fs) * 2 * np.pi * hz, 3 / np.sqrt(2), delta=2e-3)
+        self.assertAlmostEqual(dsp.band_rms(x, self.fs, 100, 200, nperseg=12_000), 3 / np.sqrt(2), places=3)
+
+    def test_a_recorder_clips_rounds_and_is_seeded(self):
+        dsp = stribeck.dsp
+        x = 3.0 * np.sin(2 * np.pi * 50 * np.arange(12_000) / self.fs)
+        ideal = dsp.record(x, self.fs, 3000.0)
+        np.testing.assert_allclose(ideal[300:-300], x[::4][300:-300], atol=1e-3)
+        stepped = dsp.record(x, self.fs, 3000.0, range=2.0, bits=4)
+        self.assertLessEqual(np.abs(stepped).max(), 2.0)
+        np.testing.assert_allclose(stepped / 0.25, np.round(stepped / 0.25), atol=1e-9)
+        one, two, other = (dsp.record(x, self.fs, 3000.0, noise_density=0.01, seed=seed) for seed in (1, 1, 2))
+        np.testing.assert_array_equal(one, two)
+        self.assertAlmostEqual((other - ideal).std() / (0.01 * np.sqrt(1500)), 1.0, delta=0.1)
+
+    def test_what_repeats_is_parted_from_what_does_not(self):
+        dsp, n = stribeck.dsp, np.arange(len(self.x))
+        tone = np.sin(2 * np.pi * 500 * n / self.fs)
+        discrete, random = dsp.separate(tone + 0.5 * self.x, taps=512, delay=64)
+        np.testing.assert_allclose(discrete + random, tone + 0.5 * self.x, atol=1e-12)
+        middle = slice(2000, -2000)
+        self.assertLess((discrete - tone)[middle].std(), 0.1)
+        # Pulses every 80.5 samples behind a resonance: their period has the highest multipoint kurtosis of all.
+        x = np.zeros(8000)
+        x[(np.arange(0, 8000, 80.5)).astype(int)] = 1
+        ring = np.exp(-np.arange(40) / 8) * np.sin(0.9 * np.arange(40))
+        x = np.convolve(x, ring)[:8000] + 0.05 * self.x[:8000]
+        periods = [60.0, 70.0, 80.5, 93.0]
+        found = dsp.momeda(x, 200, periods)
+        self.assertEqual([one.period for one in found], periods)
+        self.assertEqual(max(found, key=lambda one: one.kurtosis).period, 80.5)
+        np.testing.assert_allclose([np.linalg.norm(one.filter) for one in found], 1.0)
+        self.assertEqual(found[0].output.shape, (8000 - 200 + 1,))
+
+    def test_modulated_noise_is_found_in_its_band_and_at_its_rate(self):
+        from scipy import signal
+
+        dsp, n = stribeck.dsp, np.arange(len(self.x))
+        band = signal.sosfilt(signal.butter(6, [2200, 2800], "bandpass", fs=self.fs, output="sos"), self.x)
+        x = 0.2 * self.x + band * (1 + np.cos(2 * np.pi * 30 * n / self.fs))
+        alpha, f, s = dsp.spectral_correlation(x, self.fs, 100.0, 256, coherence=True)
+        self.assertEqual(s.shape, (len(f), len(alpha)))
+        self.assertTrue(np.iscomplexobj(s) and f[-1] == self.fs / 2 and alpha[-1] <= 100)
+        improved = np.abs(s[(f > 2200) & (f < 2800)]).mean(axis=0)
+        searched = alpha > 10
+        self.assertAlmostEqual(alpha[searched][np.argmax(improved[searched])], 30.0, delta=0.3)
+        low, high = dsp.band_envelopes(x, self.fs, [(500, 1500), (2200, 2800)], 100.0, nperseg=12_000)
+        peak = high.frequencies_hz[5:][np.argmax(high.values[5:])]
+        self.assertAlmostEqual(peak, 30.0, delta=1.0)
+        self.assertGreater(high.values.max(), 10 * low.values[5:].max())
+        best = max(dsp.infogram(x, self.fs, 3), key=lambda b: b.of_spectrum)
+        self.assertTrue(best.low_hz < 2500 < best.high_hz, best)
+
+    def test_a_family_of_harmonics_has_its_chance(self):
+        dsp, n = stribeck.dsp, np.arange(len(self.x))
+        family = sum(0.06 * np.sin(2 * np.pi * 87.3 * h * n / self.fs + h) for h in range(1, 6))
+        f, p = dsp.welch(self.x + family, self.fs, nperseg=20_000, noverlap=0)
+        found = dsp.comb_search(f, p, 50, 150, segments=3)
+        self.assertAlmostEqual(found.fundamental_hz, 87.3, delta=0.1)
+        self.assertLess(found.p_value, 1e-6)
+        self.assertEqual(len(found.ratios), 5)
+        f, p = dsp.welch(self.x, self.fs, nperseg=20_000, noverlap=0)
+        self.assertGreater(dsp.comb_search(f, p, 50, 150, segments=3).p_value, 1e-3)
+        self.assertAlmostEqual(dsp.whitened_spectrum(f, p, 3)[3:].mean(), 1.0, delta=0.05)
+
+    def test_pairs_of_events_keep_their_distance(self):
+        events = np.zeros(len(self.x))
+        # Never quite on time, as of a bearing: what repeats exactly is whitened away.
+        starts = np.arange(300, len(events) - 300, 331)
+        starts = starts + np.random.default_rng(2).integers(0, 16, len(starts))
+        events[starts], events[starts + 48] = 1.0, 0.8
+        ring = np.exp(-np.arange(40) / 4) * np.sin(1.3 * np.arange(40))
+        x = np.convolve(events, ring)[: len(events)] + 0.01 * self.x
+        found = stribeck.dsp.event_spacing(x, self.fs, 0.0015, 0.012)
+        self.assertEqual(found.verdict, "pairs")
+        self.assertAlmostEqual(found.lag_s, 48 / self.fs, delta=1e-4)
+        self.assertIsNone(found.clear_from_s)
+
+    def test_a_run_up_is_followed_and_becomes_steady_over_the_angle(self):
+        dsp, t = stribeck.dsp, np.arange(len(self.x)) / self.fs
+        turns = 20 * t + 2 * t**2  # 20 to 40 Hz in five seconds
+        x = np.sin(2 * np.pi * 3 * turns) + 0.3 * self.x
+        f, times, s = dsp.spectrogram(x, self.fs, nperseg=4096, noverlap=3072)
+        near = (f > 40) & (f < 140)
+        line = dsp.ridge(f[near], times, s[near], 20.0)
+        np.testing.assert_allclose(line.frequencies_hz[2:-2], 3 * (20 + 4 * times[2:-2]), atol=1.5)
+        pulses = dsp.ridge_turns(times, line.frequencies_hz, self.fs, len(x), order=3)
+        self.assertAlmostEqual(len(pulses), turns[-1], delta=3)
+        tracked = dsp.order_track(x, pulses, 128)
+        self.assertEqual(tracked.shape, (len(pulses) - 1, 128))
+        true = np.interp(np.arange(int(turns[-1]) + 1), turns, np.arange(len(x)))
+        average = dsp.order_track(x, true, 128).mean(axis=0)
+        np.testing.assert_allclose(average, np.sin(2 * np.pi * 3 * np.arange(128) / 128), atol=0.15)
+        means = dsp.means_over_angle(x, turns, 64)
+        f, p = dsp.periodogram(means, 64, "hann")
+        self.assertAlmostEqual(f[np.argmax(p)], 3.0, delta=0.05)
+
+    def test_orders_of_the_catalogue_are_those_of_geometry(self):
+        # SKF's numbers for the 6205-2RS of the Case Western bearing data center: 5.4152, 3.5848, 4.7135/2, 0.39828.
+        orders = stribeck.defect_orders("6205")
+        self.assertAlmostEqual(orders["bpfi"], 5.4152, delta=2e-3)
+        self.assertAlmostEqual(orders["bpfo"], 3.5848, delta=2e-3)
+        self.assertAlmostEqual(orders["bsf"], 4.7135 / 2, delta=2e-3)
+        self.assertAlmostEqual(orders["ftf"], 0.39828, delta=2e-3)
+        with self.assertRaisesRegex(ValueError, "6205"):
+            stribeck.defect_orders("620S")
+
     def test_knocks_are_found_and_called_what_they_are(self):
         shaft_hz, order = 25.0, 3.585
         at = np.arange(0, len(self.x) / self.fs, 1 / (order * shaft_hz))
@@ -206,15 +371,76 @@ class Signals(unittest.TestCase):
         near = (f > 40) & (f < 130)
         self.assertAlmostEqual(f[near][np.argmax(spectrum[near])], order * shaft_hz, delta=0.5)
 
-    def test_a_wrong_shape_or_word_is_said(self):
-        with self.assertRaisesRegex(ValueError, "one dimension"):
-            stribeck.dsp.welch(np.zeros((3, 3)))
-        with self.assertRaisesRegex(ValueError, "known are hann, boxcar"):
-            stribeck.dsp.welch(self.x, window="han")
+    def test_a_wrong_shape_word_or_number_is_said(self):
+        dsp, x = stribeck.dsp, self.x[:4096]
+        for call, says in [
+            (lambda: dsp.welch(np.zeros((3, 3))), "one dimension"),
+            (lambda: dsp.envelope(x * 1j), "is real"),
+            (lambda: dsp.welch(x, window="han"), "known are hann, boxcar"),
+            (lambda: dsp.get_window("hamming", 64), "known are hann, boxcar"),
+            (lambda: dsp.welch(x, detrend=True), "known are constant, linear, none"),
+            (lambda: dsp.welch(x, nperseg=-4), "nperseg=-4"),
+            (lambda: dsp.spectrogram(x, mode="angle"), "known are psd, magnitude"),
+            (lambda: dsp.periodogram(x, nfft=100), "100"),
+            (lambda: dsp.envelope(x, self.fs, (5000, 7000)), "7000"),
+            (lambda: dsp.rms([]), "root mean square"),
+            (lambda: dsp.kurtosis([1.0, np.nan, 2.0]), "signal.1. = NaN"),
+            (lambda: dsp.resample_poly(x, 0, 2), "up=0"),
+            (lambda: dsp.record(x, self.fs, 2 * self.fs), "lower rate"),
+            (lambda: dsp.record(x, self.fs, self.fs, noise_density=-1.0), "noise_density=-1"),
+            (lambda: dsp.record(x, self.fs, self.fs, range=1.0, bits=80), "bits=80"),
+            (lambda: dsp.comb_search([0, 1, 3], [1, 1, 1], 1, 2), "equal steps"),
+            (lambda: dsp.comb_search(np.arange(200), np.ones(200), 1, 2, needed=9), "needed=9"),
+            (lambda: dsp.ridge([1, 2, 3], [0, 1], np.ones((2, 3)), 1.0), "shape"),
+            (lambda: dsp.ridge([1, 2, 2], [0, 1], np.ones((3, 2)), 1.0), "ascend"),
+            (lambda: dsp.ridge_turns([0, 1], [20.0], 1e3, 1000), "2 times"),
+            (lambda: dsp.order_track(x, [5, 4], 64), "ascend"),
+            (lambda: dsp.order_track(x, [5, 40], 0), "samples_per_turn=0"),
+            (lambda: dsp.fast_kurtogram(x, self.fs, 10), "131072|levels|samples"),
+            (lambda: dsp.order_track(x, [5, 40, 80, 120] * 100, 1 << 26), "samples_per_turn would make"),
+            (lambda: dsp.means_over_angle(x, np.linspace(0, 1e12, 4096), 64), "steps_per_turn would make"),
+            (lambda: dsp.ridge_turns([0, 1], [20.0, 20.0], 1e3, 1000, order=1e-9), "`order`"),
+            (lambda: dsp.get_window("hann", 1 << 40), "Nx=1099511627776"),
+            (lambda: dsp.welch([]), "segment|0"),
+            (lambda: dsp.periodogram([]), "nperseg|segment|0"),
+            (lambda: dsp.multitaper([]), "sample"),
+            (lambda: dsp.band_envelopes([], 1e3, [(10, 20)], 5.0), "segment"),
+            (lambda: dsp.spectral_correlation(x, self.fs, 1e5), "100000"),
+            (lambda: dsp.momeda(x, 1, 20.0), "filter"),
+            (lambda: dsp.momeda(x, 10, [[20.0]]), "one dimension"),
+            (lambda: dsp.iirnotch(3.0, 10.0), "half the sample rate|Nyquist|between"),
+        ]:
+            with self.assertRaisesRegex(ValueError, says):
+                call()
+
+    def test_inputs_of_all_kinds_are_taken_and_left_alone(self):
+        x = np.linspace(-1, 1, 600) ** 2
+        kept = x.copy()
+        for kind in (x.tolist(), x.astype(np.float32), np.repeat(x, 2)[::2], np.round(x * 100).astype(int)):
+            f, p = stribeck.dsp.welch(kind, 100.0, nperseg=128)
+            self.assertEqual((f.shape, p.shape, p.dtype), ((65,), (65,), np.float64))
+        stribeck.dsp.notch(x, 100.0, 20.0)
+        np.testing.assert_array_equal(x, kept)
 
     def test_help_reads_well(self):
         for thing in map(stribeck.__dict__.get, stribeck.__all__):
             self.assertGreater(len(thing.__doc__ or ""), 40, thing)
+        for thing in map(stribeck.dsp.__dict__.get, stribeck.dsp.__all__):
+            self.assertGreater(len(thing.__doc__ or ""), 15, thing)
+            self.assertIn(thing.__name__, stribeck.dsp.__all__)
+
+    def test_every_native_function_has_its_stub(self):
+        import inspect
+        import re
+
+        from stribeck import _stribeck
+
+        text = (Path(stribeck.__file__).parent / "_stribeck.pyi").read_text()
+        stubs = {name: re.findall(r"(\w+):", arguments) for name, arguments in re.findall(r"def (\w+)\((.*?)\) ->", text, re.S)}
+        native = {name: thing for name, thing in vars(_stribeck).items() if callable(thing)}
+        self.assertEqual(set(stubs), set(native))
+        for name, thing in native.items():
+            self.assertEqual(stubs[name], list(inspect.signature(thing).parameters), name)
 
 
 if __name__ == "__main__":

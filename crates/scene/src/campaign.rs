@@ -27,12 +27,18 @@ use crate::dice::Dice;
 use crate::ensemble::start;
 use crate::run_dir::Keep;
 use crate::scene::Scene;
-use crate::scene_file::{self, SceneError, dialect};
-use design::{Rows, Variants};
+use crate::scene_file::{self, Problem, SceneError, dialect};
+use design::Variants;
 use refusal::File;
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
+
+/// Values that no field takes are shown up to this many at once.
+const MOST_PROBLEMS: usize = 10;
+
+/// When there is such a value, others are looked for in this many variants: a range of a field that counts has one in nearly all.
+const MOST_LOOKED_AT: usize = 1000;
 
 /// What lies in a campaign's file.
 #[derive(Debug, Clone, Deserialize)]
@@ -119,7 +125,7 @@ impl Campaign {
     ///
     /// # Errors
     /// What is wrong with the file, with its line: its own fields, those of a scene that it names, and the scene that it starts
-    /// from. A scene that cannot be is no error here: its variant says why.
+    /// from, and values that their field cannot have. A scene that cannot be is no error here: its variant says why.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|e| refusal::unreadable(&shown, &e))?;
@@ -147,25 +153,42 @@ impl Campaign {
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
         let rows = file.variants.rows(file.seed, folder).map_err(|no| place.refuse(&no.at, no.why))?;
-        let Rows { fields, values: rows } = rows;
-        for (field, at) in &fields {
+        for (field, at) in &rows.fields {
             if let Some(problem) = scene_file::unknown_field(field) {
                 return Err(place.unknown_field(problem, at));
             }
         }
-        let fields: Vec<String> = fields.into_iter().map(|(field, _)| field).collect();
-        let count = rows.len() * file.starts;
+        let count = rows.values.len() * file.starts;
         if count == 0 || count > MOST_RUNS {
             return refuse("variants", format!("make {count} runs; 1 to {MOST_RUNS} are possible"));
         }
         let mut runs = Vec::with_capacity(count);
-        for (row, values) in rows.iter().enumerate() {
-            let assigned = fields.iter().zip(values).map(|(field, value)| format!("{field}={value}"));
+        let mut unreadable: Vec<Problem> = Vec::new();
+        let mut rows_to_look_at = MOST_LOOKED_AT;
+        for (row, values) in rows.values.iter().enumerate() {
+            let assigned =
+                rows.fields.iter().zip(values).map(|((field, _), value)| format!("{field}={value}"));
             let set: Vec<String> = file.set.iter().cloned().chain(assigned).collect();
             let scene = match &base {
                 Some(path) => Scene::read_with(path, &set),
                 None => Scene::default().with_overrides(&set),
             };
+            if scene.is_err() {
+                for (index, problem) in scene_file::unreadable_values(base.as_deref(), &set) {
+                    let Some(column) = index.checked_sub(file.set.len()) else { continue };
+                    let problem = place.value(problem, &rows, row, column);
+                    if unreadable.iter().all(|other| other.place != problem.place) {
+                        unreadable.push(problem);
+                    }
+                }
+            }
+            if !unreadable.is_empty() {
+                rows_to_look_at -= 1;
+                if unreadable.len() >= MOST_PROBLEMS || rows_to_look_at == 0 {
+                    break;
+                }
+                continue;
+            }
             let scene = scene.map_err(|why| why.to_string());
             let split = split_of(&file.split, file.seed, values);
             for number in 1..=file.starts {
@@ -182,6 +205,11 @@ impl Campaign {
                 });
             }
         }
+        if !unreadable.is_empty() {
+            unreadable.sort_by_key(Problem::line_and_column);
+            return Err(SceneError::new(unreadable));
+        }
+        let fields = rows.fields.into_iter().map(|(field, _)| field).collect();
         Ok(Self { name: file.name, text: text.to_owned(), fields, runs, seed: file.seed, keep: file.keep })
     }
 }

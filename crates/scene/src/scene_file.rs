@@ -167,6 +167,22 @@ pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> R
     }
 }
 
+/// Those of `overrides` whose value cannot be read as one of its field, with their numbers; none where the scene that they are
+/// for cannot be read itself.
+pub(crate) fn unreadable_values<S: AsRef<str>>(
+    path: Option<&Path>,
+    overrides: &[S],
+) -> Vec<(usize, Problem)> {
+    let scene = match path {
+        Some(path) => load(path).and_then(|text| {
+            let nothing: &[&str] = &[];
+            Ok(understand(without_mark(&text), &path.display().to_string(), nothing)?.0)
+        }),
+        None => Ok(Scene::default()),
+    };
+    scene.map_or_else(|_| Vec::new(), |scene| overrides::unreadable_values(scene, overrides))
+}
+
 /// What is wrong with the name of a field that no scene has; `None` for one that some scene has.
 pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
     let schema = schema::Schema::new();

@@ -113,6 +113,40 @@ pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
+/// The pages of the book of `docs` link to each other and to pictures and tables beside them: a page that SUMMARY does not list
+/// is none of the book, and what lies outside of `docs` is not in it.
+pub(crate) fn check_book(root: &Path) -> Result<Vec<String>> {
+    let summary = read(root, "docs/SUMMARY.md")?;
+    let pages = markdown::links(&summary).into_iter();
+    let pages = pages.map(|page| read(root, &format!("docs/{page}")).map(|text| (page, text)));
+    Ok(links_out_of_a_book(&pages.collect::<Result<Vec<_>>>()?))
+}
+
+/// Links that break in a book of these pages, each by its path with its text.
+fn links_out_of_a_book(pages: &[(&str, String)]) -> Vec<String> {
+    let mut complaints = Vec::new();
+    for (page, text) in pages {
+        for link in markdown::links(text) {
+            let mut place: Vec<&str> = page.split('/').collect();
+            place.pop();
+            let inside = link.split('/').filter(|part| *part != ".").all(|part| match part {
+                ".." => place.pop().is_some(),
+                part => {
+                    place.push(part);
+                    true
+                }
+            });
+            let target = place.join("/");
+            let listed = !target.ends_with(".md") || pages.iter().any(|(page, _)| *page == target);
+            if !(inside && listed) {
+                let why = if inside { "docs/SUMMARY.md does not list it" } else { "it is outside of docs" };
+                complaints.push(format!("docs/{page} links to `{link}`, which breaks in the book: {why}"));
+            }
+        }
+    }
+    complaints
+}
+
 /// README, CONTRIBUTING, what lies in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of every crate.
 fn documents(root: &Path) -> Result<Vec<String>> {
     let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
@@ -161,6 +195,24 @@ mod tests {
         assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
         let complaints = compare_crates("crates/mesh and crates/mush", &exist);
         assert_eq!(complaints.len(), 2, "{complaints:?}");
+    }
+
+    #[test]
+    fn example_links_that_break_in_the_book_are_found() {
+        let pages = |a: &str, b: &str| [("guide/a.md", a.to_owned()), ("B.md", b.to_owned())];
+        let fine = pages(
+            "[b](../B.md#x), ![p](a/p.svg), [t](../t.csv), https://x.org",
+            "[a](guide/a.md), [a](./guide/a.md)",
+        );
+        assert_eq!(links_out_of_a_book(&fine), [""; 0]);
+        for (a, b, why) in [
+            ("[f](../../fixtures/x.ron)", "", "docs/guide/a.md links to `../../fixtures/x.ron`"),
+            ("", "[c](../CONTRIBUTING.md)", "outside of docs"),
+            ("[c](../guide/c.md)", "", "SUMMARY.md does not list"),
+        ] {
+            let found = links_out_of_a_book(&pages(a, b));
+            assert!(found.len() == 1 && found[0].contains(why), "{found:?}");
+        }
     }
 
     #[test]

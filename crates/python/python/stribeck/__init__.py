@@ -39,6 +39,7 @@ __all__ = [
     "analyse",
     "campaign",
     "command",
+    "defect_orders",
     "dsp",
     "export",
     "load",
@@ -212,6 +213,15 @@ def analyse(
     unit: of the samples, for what is shown.
     """
     return json.loads(_stribeck.analyse(dsp._samples(signal), rate_hz, bearing, speed_rpm, unit, name))
+
+
+def defect_orders(bearing: str) -> dict[str, float]:
+    """Frequencies of the defects of a bearing over that of the shaft, from geometry without slip: ``bpfo`` and ``bpfi`` for the outer
+    and the inner raceway, ``bsf`` for a rolling element, ``ftf`` for the cage, while the outer ring stands.
+
+    bearing: a name of the catalogue or numbers, as for `analyse`.
+    """
+    return dict(zip(("bpfo", "bpfi", "bsf", "ftf"), _stribeck.defect_orders(bearing)))
 
 
 def _main() -> None:

@@ -1,54 +1,531 @@
-"""Signal processing, with the signatures and conventions of ``scipy.signal`` where it has the function."""
+"""Signal processing, with the signatures and conventions of ``scipy.signal`` where it has the function.
+
+Signals are arrays of one dimension, real, evenly sampled ``fs`` times a second; what is not finite is refused. Arrays that
+come back are new. What cannot be done is a ``ValueError`` that says why and what to try.
+
+================================================== ====================================================================
+how strong it is, and at which frequencies         `welch`, `periodogram`, `multitaper`, `band_rms`, `velocity_rms`,
+                                                   `strongest_line`, `rms`, `peak`, `crest_factor`, `kurtosis`
+how it changes                                     `spectrogram`, `ridge`
+without one line, in one band, at another rate     `iirnotch`, `notch`, `envelope`, `resample_poly`, `record`
+where it knocks, and at what rate                  `fast_kurtogram`, `infogram`, `envelope_spectrum`, `band_envelopes`,
+                                                   `spectral_correlation`, `whitened_spectrum`, `comb_search`
+what repeats and what does not                     `separate`, `cepstral_prewhitening`, `momeda`, `event_spacing`
+over the angle of the shaft                        `ridge_turns`, `order_track`, `means_over_angle`
+================================================== ====================================================================
+"""
 
 from __future__ import annotations
 
-from typing import Any
+import operator
+from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from . import _stribeck
 
-__all__ = ["cepstral_prewhitening", "envelope_spectrum", "fast_kurtogram", "notch", "welch"]
+__all__ = [
+    "BandEnvelope",
+    "Comb",
+    "Deconvolved",
+    "EventSpacing",
+    "InfogramBand",
+    "Line",
+    "Ridge",
+    "band_envelopes",
+    "band_rms",
+    "cepstral_prewhitening",
+    "comb_search",
+    "crest_factor",
+    "dpss",
+    "envelope",
+    "envelope_spectrum",
+    "event_spacing",
+    "fast_kurtogram",
+    "get_window",
+    "iirnotch",
+    "infogram",
+    "kurtosis",
+    "means_over_angle",
+    "momeda",
+    "multitaper",
+    "notch",
+    "order_track",
+    "peak",
+    "periodogram",
+    "record",
+    "resample_poly",
+    "ridge",
+    "ridge_turns",
+    "rms",
+    "separate",
+    "spectral_correlation",
+    "spectrogram",
+    "strongest_line",
+    "velocity_rms",
+    "welch",
+    "whitened_spectrum",
+]
+
+Samples = NDArray[np.float64]
+Band = tuple[float, float]
 
 
-def _samples(x: Any) -> Any:
+class Line(NamedTuple):
+    """A line of a spectrum."""
+
+    frequency_hz: float
+    amplitude: float
+    """Peak amplitude, the root of two times the root mean square, in the unit of the signal."""
+    at_edge: bool
+    """True when the spectrum rises past the end of the band: this is the flank of something outside of it."""
+
+
+class InfogramBand(NamedTuple):
+    """A band of an infogram."""
+
+    low_hz: float
+    high_hz: float
+    of_envelope: float
+    """Negentropy of the squared envelope: how impulsive."""
+    of_spectrum: float
+    """Negentropy of the spectrum of the squared envelope: how much it repeats."""
+
+
+class BandEnvelope(NamedTuple):
+    """What one band of a record shows."""
+
+    low_hz: float
+    high_hz: float
+    rms: float
+    kurtosis: float
+    """Of the complex envelope: 0 for Gaussian noise, -1 for a steady tone."""
+    frequencies_hz: Samples
+    values: Samples
+    """Spectrum of the squared envelope over the square of its mean."""
+
+
+class Comb(NamedTuple):
+    """A family of harmonics."""
+
+    fundamental_hz: float
+    height: float
+    """Height over the background of the weakest harmonic that counts."""
+    ratios: Samples
+    """Height of each harmonic, from the first."""
+    p_value: float
+    """Probability that noise reaches this height anywhere in the search."""
+
+
+class Deconvolved(NamedTuple):
+    """A record through the filter that makes it most like pulses of one period."""
+
+    period: float
+    kurtosis: float
+    """Multipoint kurtosis: 1 when all of the output stands at the pulses."""
+    filter: Samples
+    output: Samples
+
+
+class EventSpacing(NamedTuple):
+    """What a record says of the distance of two events."""
+
+    verdict: str
+    """``"pairs"``, ``"alone"`` or ``"unknown"``."""
+    lag_s: float | None
+    """Distance of the two, for pairs."""
+    correlation: float | None
+    """Correlation of the squared envelope at that distance, for pairs."""
+    clear_from_s: float | None
+    """From this distance on a second event would have shown, where events come alone."""
+
+
+class Ridge(NamedTuple):
+    """A line through a spectrogram."""
+
+    frequencies_hz: Samples
+    height_db: float
+    """Mean height above the median of the spectrogram."""
+
+
+def _samples(x: ArrayLike, name: str = "a signal") -> Samples:
+    if np.iscomplexobj(x):
+        raise ValueError(f"{name} is real, this is complex: take its real part or its magnitude")
     samples = np.ascontiguousarray(x, dtype=np.float64)
     if samples.ndim != 1:
-        raise ValueError(f"a signal has one dimension, this has the shape {samples.shape}: take one channel")
+        raise ValueError(f"{name} has one dimension, this has the shape {samples.shape}: take one channel")
     return samples
 
 
+_MOST = 1 << 27
+"""No window, transform or turn is longer: a slip of the finger is an error, not a full memory."""
+
+_MOST_VALUES = 1 << 30
+
+
+def _count(name: str, value: int, least: int = 1, most: int = _MOST) -> int:
+    count = operator.index(value)
+    if not least <= count <= most:
+        raise ValueError(f"{name}={count}: must be from {least} to {most}")
+    return count
+
+
+def _optional(name: str, value: int | None, least: int = 1) -> int | None:
+    return None if value is None else _count(name, value, least)
+
+
+def _fits(name: str, values: float) -> None:
+    if not values <= _MOST_VALUES:
+        raise ValueError(f"{name} would make {values:.3g} values; {_MOST_VALUES} are possible")
+
+
+def _grid(f: ArrayLike, values: Samples) -> float:
+    frequencies = _samples(f, "`f`")
+    if len(frequencies) != len(values) or len(frequencies) < 2:
+        raise ValueError(f"`f` has {len(frequencies)} frequencies for {len(values)} values: both of one spectrum")
+    step = frequencies[-1] / (len(frequencies) - 1)
+    if not (step > 0 and np.allclose(frequencies, step * np.arange(len(frequencies)), rtol=0, atol=1e-6 * step)):
+        raise ValueError("`f` begins at zero and has equal steps, as from `welch` or `envelope_spectrum`")
+    return float(step)
+
+
+def _steps(step: float, count: int) -> Samples:
+    """Multiples of a step, from zero."""
+    return np.asarray(step * np.arange(count), dtype=np.float64)
+
+
+def _detrend(word: str | bool) -> str:
+    """The word for what is removed; scipy has ``False`` for nothing."""
+    return "none" if word is False else str(word)
+
+
+def get_window(window: str, Nx: int, fftbins: bool = True) -> Samples:
+    """Weights of ``scipy.signal.get_window``: ``hann`` or ``boxcar``, and ``hamming`` with ``fftbins=False``, which
+    makes windows symmetric. Shape ``(Nx,)``; four samples at least. Source: Harris 1978."""
+    return _stribeck.get_window(window, _count("Nx", Nx), fftbins)
+
+
+def dpss(M: int, NW: float, Kmax: int) -> Samples:
+    """The first ``Kmax`` prolate spheroidal tapers of ``M`` samples and half-bandwidth ``NW``, each of unit energy,
+    as ``scipy.signal.windows.dpss(M, NW, Kmax)``. Shape ``(Kmax, M)``. Source: Slepian 1978."""
+    M, Kmax = _count("M", M), _count("Kmax", Kmax)
+    _fits("Kmax", M * Kmax)
+    return _stribeck.dpss(M, NW, Kmax).reshape(Kmax, M)
+
+
 def welch(
-    x: Any,
+    x: ArrayLike,
     fs: float = 1.0,
     window: str = "hann",
     nperseg: int = 256,
     noverlap: int | None = None,
     nfft: int | None = None,
-    detrend: str = "constant",
+    detrend: str | bool = "constant",
     scaling: str = "density",
     average: str = "mean",
-) -> tuple[Any, Any]:
-    """Power spectral density by Welch's method: frequencies [Hz] and values, as ``scipy.signal.welch``."""
-    return _stribeck.welch(_samples(x), fs, window, nperseg, noverlap, nfft, detrend, scaling, average)
+) -> tuple[Samples, Samples]:
+    """Power spectrum by Welch's method, as ``scipy.signal.welch``.
+
+    Frequencies [Hz] and values, one-sided: a density [unit²/Hz] or, with ``scaling="spectrum"``, powers [unit²].
+    Windows are ``hann`` and ``boxcar``, ``detrend`` is ``constant``, ``linear`` or ``False``, ``average`` is ``mean``
+    or ``median``. ``noverlap`` is half a segment without it.
+    """
+    x = _samples(x)
+    nperseg, noverlap, nfft = _count("nperseg", nperseg), _optional("noverlap", noverlap, 0), _optional("nfft", nfft)
+    return _stribeck.welch(x, fs, window, nperseg, noverlap, nfft, _detrend(detrend), scaling, average)
 
 
-def notch(x: Any, fs: float, centre_hz: float, quality: float = 15.0, *, zero_phase: bool = False) -> Any:
-    """The signal behind the notch of ``scipy.signal.iirnotch``; with ``zero_phase`` there and back."""
+def periodogram(
+    x: ArrayLike,
+    fs: float = 1.0,
+    window: str = "boxcar",
+    nfft: int | None = None,
+    detrend: str | bool = "constant",
+    scaling: str = "density",
+) -> tuple[Samples, Samples]:
+    """Spectrum of the whole record as one segment, as ``scipy.signal.periodogram``: see `welch`. ``nfft`` is no
+    shorter than the record; beyond it zeros are added."""
+    x = _samples(x)
+    return welch(x, fs, window, max(len(x), 1), 0, nfft, detrend, scaling)
+
+
+def spectrogram(
+    x: ArrayLike,
+    fs: float = 1.0,
+    window: str = "hann",
+    nperseg: int = 256,
+    noverlap: int | None = None,
+    nfft: int | None = None,
+    detrend: str | bool = "constant",
+    scaling: str = "density",
+    mode: str = "psd",
+) -> tuple[Samples, Samples, Samples]:
+    """Spectra of segments one after the other, as ``scipy.signal.spectrogram``, whose own defaults are a Tukey window
+    and an overlap of one eighth; here they are those of `welch`.
+
+    Frequencies [Hz], shape ``(f,)``, middles of the segments [s], shape ``(t,)``, and values, shape ``(f, t)``.
+    ``mode`` is ``psd`` or ``magnitude``, the magnitude of the short-time transform.
+    """
+    x = _samples(x)
+    nperseg, noverlap, nfft = _count("nperseg", nperseg), _optional("noverlap", noverlap, 0), _optional("nfft", nfft)
+    f, t, values = _stribeck.spectrogram(x, fs, window, nperseg, noverlap, nfft, _detrend(detrend), scaling, mode)
+    return f, t, values.reshape(len(t), len(f)).T
+
+
+def multitaper(x: ArrayLike, fs: float = 1.0, NW: float = 4.0, Kmax: int | None = None) -> tuple[Samples, Samples]:
+    """Thomson's multitaper density of the whole record: frequencies [Hz] and one-sided values [unit²/Hz].
+
+    The mean of ``Kmax`` tapers, ``2 NW - 1`` without it; two lines closer than ``2 NW`` over the record's length are
+    one. Source: Thomson 1982.
+    """
+    x = _samples(x)
+    count = max(int(2 * NW) - 1, 1) if Kmax is None else _count("Kmax", Kmax)
+    values = _stribeck.multitaper(x, fs, NW, count)
+    return _steps(fs / len(x), len(values)), values
+
+
+def band_rms(x: ArrayLike, fs: float, low_hz: float, high_hz: float, nperseg: int | None = None) -> float:
+    """Root mean square of what lies in a band, in the unit of the signal, from a density with a Hann window. The
+    whole record is one segment without ``nperseg``."""
+    return _stribeck.band_rms(_samples(x), fs, low_hz, high_hz, _optional("nperseg", nperseg))
+
+
+def velocity_rms(
+    x: ArrayLike, fs: float, low_hz: float = 10.0, high_hz: float = 1000.0, nperseg: int | None = None
+) -> float:
+    """Root mean square of the velocity [m/s] in a band, from an acceleration [m/s²]: what ISO 20816 judges machines
+    by."""
+    return _stribeck.velocity_rms(_samples(x), fs, low_hz, high_hz, _optional("nperseg", nperseg))
+
+
+def strongest_line(x: ArrayLike, fs: float, low_hz: float, high_hz: float, nperseg: int | None = None) -> Line:
+    """The sinusoid of the highest peak in a band: frequency between the lines of the grid, amplitude corrected for
+    the window.
+
+    Exact for one steady sinusoid without noise, but for the leakage of its mirror image.
+    """
+    return Line(*_stribeck.strongest_line(_samples(x), fs, low_hz, high_hz, _optional("nperseg", nperseg)))
+
+
+def iirnotch(w0: float, Q: float, fs: float = 2.0) -> tuple[Samples, Samples]:
+    """Numerator and denominator of ``scipy.signal.iirnotch``, three each: frequency ``w0`` and rate ``fs`` in Hz,
+    quality ``Q`` (the frequency over the width at -3 dB). For ``scipy.signal.lfilter``, or use `notch`."""
+    return _stribeck.iirnotch(w0, Q, fs)
+
+
+def notch(x: ArrayLike, fs: float, centre_hz: float, quality: float = 15.0, *, zero_phase: bool = False) -> Samples:
+    """The signal behind the notch of ``scipy.signal.iirnotch``; with ``zero_phase`` there and back, which is twice as
+    deep."""
     return _stribeck.notch(_samples(x), fs, centre_hz, quality, zero_phase)
 
 
-def envelope_spectrum(x: Any, fs: float, band_hz: tuple[float, float] | None = None) -> tuple[Any, Any]:
-    """Spectrum of the envelope in a band: frequencies [Hz] and values."""
+def envelope(x: ArrayLike, fs: float = 1.0, band_hz: Band | None = None) -> Samples:
+    """The Hilbert envelope, ``abs(scipy.signal.hilbert(x))``, as long as the signal and in its unit.
+
+    With ``band_hz`` that of the band alone, everything else set to zero in the transform. The record is taken as
+    periodic, so its ends are not to be trusted; without a band the mean is part of the envelope.
+    """
+    return _stribeck.envelope(_samples(x), fs, band_hz)
+
+
+def envelope_spectrum(x: ArrayLike, fs: float, band_hz: Band | None = None) -> tuple[Samples, Samples]:
+    """Spectrum of the squared envelope in a band: frequencies [Hz] and powers [unit⁴], with a Hann window, the mean
+    removed.
+
+    Repeated impacts are lines at their rate and its multiples. Source: Randall and Antoni 2011.
+    """
     return _stribeck.envelope_spectrum(_samples(x), fs, band_hz)
 
 
-def fast_kurtogram(x: Any, fs: float, levels: int = 5) -> list[tuple[float, float, float]]:
-    """Bands with their kurtosis, the widest first: ``(low_hz, high_hz, kurtosis)``. The largest is
-    ``max(bands, key=lambda band: band[2])``."""
-    return _stribeck.fast_kurtogram(_samples(x), fs, levels)
+def resample_poly(x: ArrayLike, up: int, down: int) -> Samples:
+    """The signal at ``up/down`` times its rate, as ``scipy.signal.resample_poly`` with its default filter. The length
+    is ``ceil(len(x) * up / down)``."""
+    return _stribeck.resample_poly(_samples(x), _count("up", up), _count("down", down))
 
 
-def cepstral_prewhitening(x: Any) -> Any:
-    """The signal with all magnitudes of its spectrum made one: what is periodic loses its lead."""
+def record(
+    x: ArrayLike,
+    fs: float,
+    rate_hz: float,
+    *,
+    resonance: tuple[float, float] | None = None,
+    noise_density: float = 0.0,
+    range: float = float("inf"),
+    bits: int | None = None,
+    seed: int = 0,
+) -> Samples:
+    """What a sensor and its recorder make of a computed signal, at ``rate_hz``: the mounted sensor's ``resonance``
+    (frequency [Hz] and quality), an anti-alias filter without delay, white noise [unit/√Hz], clipping beyond
+    ``range`` and steps of ``bits``."""
+    bits, seed = _optional("bits", bits), _count("seed", seed, 0, (1 << 64) - 1)
+    return _stribeck.record(_samples(x), fs, rate_hz, resonance, noise_density, range, bits, seed)
+
+
+def rms(x: ArrayLike) -> float:
+    """Root mean square about zero, in the unit of the signal; the mean is part of it."""
+    return _stribeck.statistic(_samples(x), "rms")
+
+
+def peak(x: ArrayLike) -> float:
+    """Largest magnitude, in the unit of the signal."""
+    return _stribeck.statistic(_samples(x), "peak")
+
+
+def crest_factor(x: ArrayLike) -> float:
+    """Largest magnitude over the root mean square: 1 for a square wave, √2 for a sine, above 4 for impacts."""
+    return _stribeck.statistic(_samples(x), "crest_factor")
+
+
+def kurtosis(x: ArrayLike, fisher: bool = True) -> float:
+    """Kurtosis as ``scipy.stats.kurtosis``: 0 for Gaussian noise, more for impacts; 3 with ``fisher=False``."""
+    return _stribeck.statistic(_samples(x), "kurtosis") - (3.0 if fisher else 0.0)
+
+
+def fast_kurtogram(x: ArrayLike, fs: float, levels: int = 5) -> list[tuple[float, float, float]]:
+    """Bands with their kurtosis, the widest first: ``(low_hz, high_hz, kurtosis)``. The largest is ``max(bands,
+    key=lambda band: band[2])``. At least ``2**(levels + 7)`` samples. Source: Antoni 2007."""
+    return _stribeck.fast_kurtogram(_samples(x), fs, _count("levels", levels, 0, 40))
+
+
+def infogram(x: ArrayLike, fs: float, levels: int = 5) -> list[InfogramBand]:
+    """The bands of `fast_kurtogram` with two negentropies: how impulsive, and how much it repeats. A single knock
+    raises the first alone; the mean of both is the band where knocks repeat. Source: Antoni 2016."""
+    return [InfogramBand(*band) for band in _stribeck.infogram(_samples(x), fs, _count("levels", levels, 0, 40))]
+
+
+def band_envelopes(
+    x: ArrayLike, fs: float, bands_hz: Iterable[Band], highest_hz: float, nperseg: int = 65536
+) -> list[BandEnvelope]:
+    """Spectra of the squared envelope of several bands at once, each up to ``highest_hz``, averaged over segments of
+    at most ``nperseg`` samples. A band without signal is left out. Source: Randall and Antoni 2011."""
+    pairs = [(float(low), float(high)) for low, high in bands_hz]
+    found = _stribeck.band_envelopes(_samples(x), fs, pairs, highest_hz, _count("nperseg", nperseg))
+    return [
+        BandEnvelope(low, high, level, peaky, _steps(grid, len(values)), values)
+        for low, high, level, peaky, grid, values in found
+    ]
+
+
+def spectral_correlation(
+    x: ArrayLike, fs: float, highest_hz: float, nperseg: int = 256, *, coherence: bool = False
+) -> tuple[Samples, Samples, NDArray[np.complex128]]:
+    """Fast spectral correlation [unit²/Hz], or with ``coherence`` the spectral coherence, 0 to about 1.
+
+    Cyclic frequencies [Hz] up to ``highest_hz``, shape ``(a,)``, carrier frequencies [Hz], shape ``(f,)``, and
+    complex values, shape ``(f, a)``. The mean magnitude of the coherence over carriers, ``abs(S).mean(axis=0)``, is
+    the enhanced envelope spectrum, over a chosen band of them the improved one. Source: Antoni, Xin and Hamzaoui
+    2017.
+    """
+    x = _samples(x)
+    nperseg = _count("nperseg", nperseg)
+    step, count, grid, values = _stribeck.spectral_correlation(x, fs, nperseg, highest_hz, coherence)
+    values = values.reshape(-1, count)
+    return _steps(step, count), _steps(grid, len(values)), values
+
+
+def whitened_spectrum(f: ArrayLike, Pxx: ArrayLike, segments: int = 1) -> Samples:
+    """A power spectrum of ``segments`` averaged segments over its own smoothed background, as long as the spectrum:
+    noise of any colour has a mean of one, and the lines next to zero are 0. 104 lines at least."""
+    values = _samples(Pxx, "`Pxx`")
+    return _stribeck.whitened(values, _grid(f, values), _count("segments", segments))
+
+
+def comb_search(
+    f: ArrayLike,
+    Pxx: ArrayLike,
+    low_hz: float,
+    high_hz: float,
+    segments: int = 1,
+    harmonics: int = 5,
+    needed: int = 4,
+) -> Comb:
+    """The highest family of harmonics of a power spectrum, such as one of an envelope, whose fundamental lies between
+    two frequencies [Hz], and the probability that noise looks like it. ``needed`` of ``harmonics`` must stand: one
+    strong line is no family."""
+    values = _samples(Pxx, "`Pxx`")
+    segments, harmonics, needed = (
+        _count("segments", segments),
+        _count("harmonics", harmonics),
+        _count("needed", needed),
+    )
+    return Comb(*_stribeck.comb(values, _grid(f, values), segments, low_hz, high_hz, harmonics, needed))
+
+
+def separate(x: ArrayLike, taps: int = 4096, delay: int = 512) -> tuple[Samples, Samples]:
+    """The discrete and the random part, which add up to the signal: what an earlier stretch foretells through a
+    filter of ``taps`` taps, such as gears and shafts, and the rest, such as bearings. ``delay`` [samples] exceeds the
+    ringing of resonances. Source: Antoni and Randall 2004."""
+    return _stribeck.separate(_samples(x), _count("taps", taps), _count("delay", delay))
+
+
+def cepstral_prewhitening(x: ArrayLike) -> Samples:
+    """The signal with all magnitudes of its spectrum made one: what is periodic loses its lead. Source: Sawalhi and
+    Randall 2011."""
     return _stribeck.cepstral_prewhitening(_samples(x))
+
+
+def momeda(x: ArrayLike, taps: int, periods: ArrayLike) -> list[Deconvolved]:
+    """Multipoint optimal minimum entropy deconvolution: for each of ``periods`` [samples] the record through the
+    ``taps`` taps that make it most like pulses of that period. Value n of the output stands for sample ``n + taps -
+    1``. Source: McDonald and Zhao 2017."""
+    periods = np.atleast_1d(np.asarray(periods, dtype=np.float64))
+    found = _stribeck.momeda(_samples(x), _count("taps", taps, 1, 1 << 14), _samples(periods, "`periods`").tolist())
+    return [Deconvolved(*one) for one in found]
+
+
+def event_spacing(x: ArrayLike, fs: float, shortest_s: float, longest_s: float) -> EventSpacing:
+    """The distance between ``shortest_s`` and ``longest_s`` that pairs of events keep, as the entry into a spall and
+    the exit from it, if two bands agree on one. Source: after Sawalhi and Randall 2011."""
+    return EventSpacing(*_stribeck.event_spacing(_samples(x), fs, shortest_s, longest_s))
+
+
+def ridge(f: ArrayLike, t: ArrayLike, Sxx: ArrayLike, steepest_hz_s: float) -> Ridge:
+    """The line of most power through a `spectrogram` among all that change by at most ``steepest_hz_s`` [Hz/s]: a
+    speed without a tachometer. Shapes are those of `spectrogram`; give only the frequencies to be searched: ``Sxx[(f
+    > 20) & (f < 60)]``."""
+    f, t = _samples(f, "`f`"), _samples(t, "`t`")
+    values = np.asarray(Sxx, dtype=np.float64)
+    if values.shape != (len(f), len(t)):
+        raise ValueError(f"`Sxx` has the shape {values.shape}; with these `f` and `t` it is {(len(f), len(t))}")
+    if not (np.isfinite(values).all() and np.isfinite(f).all() and np.isfinite(t).all() and (values >= 0).all()):
+        raise ValueError("`f`, `t` and `Sxx` are finite, and `Sxx` is not negative")
+    if (np.diff(f) <= 0).any() or (np.diff(t) <= 0).any():
+        raise ValueError("`f` and `t` ascend, as those of `spectrogram`")
+    return Ridge(*_stribeck.ridge(f.tolist(), t.tolist(), values.T.ravel().tolist(), steepest_hz_s))
+
+
+def ridge_turns(t: ArrayLike, frequencies_hz: ArrayLike, fs: float, samples: int, order: float = 1.0) -> Samples:
+    """Times of whole turns [samples] in a record of ``samples``, from the ``frequencies_hz`` of the shaft's
+    ``order``-th line at times ``t`` [s], such as a `ridge`: pulses for `order_track`."""
+    t, hz = _samples(t, "`t`"), _samples(frequencies_hz, "`frequencies_hz`")
+    if len(t) != len(hz) or len(t) == 0:
+        raise ValueError(f"`t` has {len(t)} times for {len(hz)} frequencies")
+    if not (np.isfinite(t).all() and np.isfinite(hz).all() and (hz > 0).all() and (np.diff(t) > 0).all()):
+        raise ValueError("`t` ascends, and frequencies are finite and above 0")
+    if fs > 0 and order > 0 and hz.max() / order > fs / 2:
+        raise ValueError("the shaft would turn more than once in two samples: look at `fs` and `order`")
+    return _stribeck.turns_of_ridge(t.tolist(), hz.tolist(), fs, _count("samples", samples, 1, 1 << 40), order)
+
+
+def order_track(x: ArrayLike, pulses: ArrayLike, samples_per_turn: int) -> Samples:
+    """The signal at equal angles between ``pulses``, the times [samples] of one pulse a turn: shape ``(turns,
+    samples_per_turn)``.
+
+    ``.mean(axis=0)`` is the time-synchronous average, what it leaves is not locked to the shaft; a spectrum of
+    ``.ravel()`` with ``fs=samples_per_turn`` is one over orders. Between samples the signal follows a cubic (Catmull
+    and Rom 1974).
+    """
+    pulses, count = _samples(pulses, "`pulses`"), _count("samples_per_turn", samples_per_turn)
+    _fits("samples_per_turn", len(pulses) * count)
+    return _stribeck.order_track(_samples(x), pulses, count).reshape(-1, count)
+
+
+def means_over_angle(x: ArrayLike, turns: ArrayLike, steps_per_turn: int) -> Samples:
+    """Means of the signal over equal steps of the shaft's angle, ``steps_per_turn`` of them: ``turns`` is the angle
+    at each sample, in turns, never falling. Safe from aliases down to rest, which is what an envelope needs."""
+    turns, steps = _samples(turns, "`turns`"), _count("steps_per_turn", steps_per_turn)
+    if len(turns) and np.isfinite(turns).all():
+        _fits("steps_per_turn", float(turns[-1] - turns[0]) * steps)
+    return _stribeck.means_over_angle(_samples(x), turns, steps)

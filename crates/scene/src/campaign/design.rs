@@ -1,5 +1,6 @@
 //! How the values of a campaign are chosen: a grid, a design over ranges, or the rows of a table.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use ron::value::RawValue;
@@ -45,6 +46,32 @@ pub(super) struct Axis {
 pub(super) struct Rows {
     pub(super) fields: Vec<(String, String)>,
     pub(super) values: Vec<Vec<String>>,
+    /// Where they stand when that is not in the campaign's file.
+    pub(super) table: Option<Table>,
+}
+
+/// A table's file.
+pub(super) struct Table {
+    pub(super) name: String,
+    pub(super) text: String,
+}
+
+impl Table {
+    /// Lines that are not empty, each with its number from 0 and with where it begins.
+    fn lines(&self) -> impl Iterator<Item = (usize, usize, &str)> {
+        let begin = |line: &str| line.as_ptr() as usize - self.text.as_ptr() as usize;
+        let lines = self.text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
+        lines.map(move |(number, line)| (number, begin(line), line))
+    }
+
+    /// Byte range of the cell of a variant and a field, both from 0.
+    pub(super) fn cell(&self, row: usize, column: usize) -> Option<Range<usize>> {
+        let (_, begin, line) = self.lines().nth(row + 1)?;
+        let before: usize = line.split(',').take(column).map(|cell| cell.len() + 1).sum();
+        let cell = line.split(',').nth(column)?;
+        let start = begin + before + (cell.len() - cell.trim_start().len());
+        Some(start..start + cell.trim().len())
+    }
 }
 
 /// What cannot be: the place in the campaign's file, as a path, and why.
@@ -128,7 +155,7 @@ fn grid(axes: &[Axis]) -> Result<Rows, Refused> {
             .collect();
     }
     let place = |(n, axis): (usize, &Axis)| (axis.field.clone(), format!("variants[{n}].field"));
-    Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: rows })
+    Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: rows, table: None })
 }
 
 fn drawn(
@@ -148,7 +175,7 @@ fn drawn(
     let row = |row: usize| axes.iter().enumerate().map(|axis| value(row, axis)).collect();
     let values: Result<Vec<Vec<String>>, Refused> = (0..count).map(row).collect();
     let place = |(n, axis): (usize, &Axis)| (axis.field.clone(), format!("variants.over[{n}].field"));
-    Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: values? })
+    Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: values?, table: None })
 }
 
 /// Places 0 to 1 by axis and row: each row in a part of its own.
@@ -167,17 +194,18 @@ fn latin_hypercube(seed: u64, count: usize, axes: usize) -> Vec<Vec<f64>> {
 fn table(path: &Path) -> Result<Rows, String> {
     let text =
         std::fs::read_to_string(path).map_err(|e| format!("cannot read table `{}`: {e}", path.display()))?;
+    let table = Table { name: path.display().to_string(), text };
     let cells = |line: &str| line.split(',').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let Some((_, head)) = lines.next() else { return Err(format!("table `{}` is empty", path.display())) };
+    let mut lines = table.lines();
+    let Some((_, _, head)) = lines.next() else { return Err(format!("table `{}` is empty", table.name)) };
     let fields = cells(head);
     let mut rows = Vec::new();
-    for (number, line) in lines {
+    for (number, _, line) in lines {
         let row = cells(line);
         if row.len() != fields.len() {
             return Err(format!(
                 "table `{}`, line {}: {} cells where the first line names {} fields",
-                path.display(),
+                table.name,
                 number + 1,
                 row.len(),
                 fields.len()
@@ -186,5 +214,5 @@ fn table(path: &Path) -> Result<Rows, String> {
         rows.push(row);
     }
     let fields = fields.into_iter().map(|field| (field, "variants".to_owned())).collect();
-    Ok(Rows { fields, values: rows })
+    Ok(Rows { fields, values: rows, table: Some(table) })
 }

@@ -2,6 +2,7 @@
 
 use ron::error::SpannedError;
 
+use super::design::Rows;
 use crate::scene_file::outline::Outline;
 use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_file};
 use crate::scene_file::wording::{list, shown};
@@ -46,6 +47,23 @@ impl<'a> File<'a> {
     pub(super) fn unknown_field(&self, mut problem: Problem, path: &str) -> SceneError {
         problem.place = self.place(path);
         problem.into()
+    }
+
+    /// A value that its field cannot have, of a variant's row and a field's column: in the list or the range that it is from, or
+    /// in the table's own file.
+    pub(super) fn value(&self, problem: Problem, rows: &Rows, row: usize, column: usize) -> Problem {
+        let place = match &rows.table {
+            Some(table) => table.cell(row, column).map(|cell| place_in_file(&table.name, &table.text, cell)),
+            None => {
+                let axis = rows.fields[column].1.trim_end_matches(".field");
+                let written = &rows.values[row][column];
+                let listed = |i: usize| self.outline.get(&format!("{axis}.values[{i}]"));
+                let item = (0..).map_while(listed).find(|entry| self.text[entry.value.clone()] == **written);
+                item.map(|entry| place_in_file(self.name, self.text, entry.value.clone()))
+                    .or_else(|| Some(self.place(axis)))
+            }
+        };
+        problem.of_value_at(place.unwrap_or_else(|| self.place("variants")))
     }
 
     /// The scene that variants start from; what is wrong with an item of `set` is shown there.

@@ -104,6 +104,78 @@ fn refuses_campaigns_that_cannot_be() {
 }
 
 #[test]
+fn refuses_values_that_their_field_cannot_have() {
+    let grid = |axes: &str| format!("(name: \"x\",\nvariants: grid([\n{axes}\n]))");
+    let surface = |values: &str| grid(&format!("(field: \"contact.surface\", values: {values})"));
+    for (text, says) in [
+        (
+            surface("[facet, acr]"),
+            &["a.ron:3:44", "`contact.surface` is `acr`", "`facet`, `arc`", "did you mean `arc`?"][..],
+        ),
+        // All of them at once, each in its place.
+        (surface("[acr, arc, fasset]"), &["a.ron:3:37", "a.ron:3:47", "did you mean `facet`?"]),
+        (surface("[\"arc\"]"), &["a.ron:3:37", "`arc` (without quotes)"]),
+        (
+            grid("(field: \"operation.load_n\", values: [10000, true])"),
+            &["a.ron:3:45", "`operation.load_n` is `true`, which is not a number"],
+        ),
+        (grid("(field: \"bearing\", values: [\"NU 205\", \"NV 205\"])"), &["a.ron:3:39", "`NV 205`", "NU"]),
+        (
+            grid(
+                "(field: \"defects\", values: [[], [(on: outer, form: spal(length_mm: 6.0, depth_mm: 0.1))]])",
+            ),
+            &["a.ron:3:33", "`spal`", "did you mean `spall`?"],
+        ),
+        // A word beside a bearing that a plane model does not have.
+        (
+            grid("(field: \"bearing\", values: [\"30205\"]),\n(field: \"contact.surface\", values: [acr])"),
+            &["a.ron:4:37", "did you mean `arc`?"],
+        ),
+        (
+            "(name: \"x\", variants: sobol(count: 64, over: [
+(field: \"contact.surface\", values: [facet, acr]),
+(field: \"bearing.rollers\", from: 10, to: 20)]))"
+                .to_owned(),
+            &["a.ron:2:44", "a.ron:3:1", "`bearing.rollers`", "not a whole number"],
+        ),
+    ] {
+        let why = parse(&text).unwrap_err();
+        for word in says {
+            assert!(why.contains(word), "{text}: {word} is not in\n{why}");
+        }
+        assert!(!why.contains("--set"), "{why}");
+    }
+    // In the order of the file, whichever variant comes first.
+    let text = surface("[facet, acr]),\n(field: \"operation.load_n\", values: [much]");
+    let why = parse(&text).unwrap_err();
+    assert!(why.find("a.ron:3:44").unwrap() < why.find("a.ron:4:38").unwrap(), "{why}");
+}
+
+#[test]
+fn refuses_cells_that_their_field_cannot_have_in_the_tables_own_lines() {
+    let scratch = stribeck_testing::Scratch::create("campaign-cells");
+    let table = "operation.load_n, contact.surface\n\n10000, facet\n20000,  acr\nmuch, arc\n";
+    std::fs::write(scratch.join("t.csv"), table).unwrap();
+    let text = "(name: \"t\", variants: table(\"t.csv\"))";
+    let why = Campaign::parse(text, "a.ron", scratch.path()).unwrap_err().to_string();
+    for word in ["t.csv:4:9", "did you mean `arc`?", "t.csv:5:1", "`much`", "not a number"] {
+        assert!(why.contains(word), "{word} is not in\n{why}");
+    }
+}
+
+#[test]
+fn example_values_that_contradict_each_other_are_rows_with_their_reason() {
+    // The sensor is there in one variant and missing in the other: no value is misspelt.
+    let text = "(name: \"x\", variants: grid([
+        (field: \"output.sensors\", values: [[], [(name: \"a\", angle_deg: 10.0)]]),
+        (field: \"output.sensors[0].angle_deg\", values: [20.0]),
+    ]))";
+    let campaign = parse(text).unwrap();
+    assert!(campaign.runs[0].scene.as_ref().unwrap_err().contains("has 0 items"));
+    assert!(campaign.runs[1].scene.is_ok(), "{:?}", campaign.runs[1].scene);
+}
+
+#[test]
 fn example_campaigns_of_the_repository_have_no_variant_that_cannot_be() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/campaigns");
     let files = std::fs::read_dir(folder).expect("fixtures").flatten().map(|entry| entry.path());

@@ -11,6 +11,7 @@ use super::schema::Schema;
 use super::syntax::deserialize;
 use super::wording::{list, shown};
 use super::{foreign, named, suggest};
+use crate::catalogue::CatalogueBearing;
 use crate::scene::Scene;
 
 /// Applies `arguments` in order; the result is not yet checked for meaning.
@@ -27,6 +28,34 @@ pub(crate) fn apply<S: AsRef<str>>(
         set.push(by);
     }
     Ok((scene, set))
+}
+
+/// Those of `arguments` whose value no reading of their field takes: words that are not its words, numbers of another type,
+/// names of no bearing. The others are applied as far as they go, so each value meets the scene that it is written for. What
+/// a value means, and whether it goes together with others, is not looked at.
+pub(crate) fn unreadable_values<S: AsRef<str>>(mut scene: Scene, arguments: &[S]) -> Vec<(usize, Problem)> {
+    let schema = Schema::new();
+    let given = named::written_by(arguments);
+    let mut unreadable = Vec::new();
+    for (index, argument) in arguments.iter().map(AsRef::as_ref).enumerate() {
+        match apply_one(&scene, argument, &schema, &given) {
+            Ok((next, _)) => scene = next,
+            Err(problem) if is_of_value(&scene, argument, &schema) => unreadable.push((index, *problem)),
+            Err(_) => {}
+        }
+    }
+    unreadable
+}
+
+/// Whether an argument that the scene refuses names a field of it and no bearing that is known: its value is to blame.
+fn is_of_value(scene: &Scene, argument: &str, schema: &Schema) -> bool {
+    let Some((path, value)) = argument.split_once('=') else { return false };
+    let path = path.trim();
+    let bearing = (path == "bearing").then(|| named::designation(value).or_else(|| bare_designation(value)));
+    match bearing.flatten() {
+        Some(name) => CatalogueBearing::parse(&name).is_err(),
+        None => known(path, argument, schema, &Outline::of(&scene.to_ron())).is_ok(),
+    }
 }
 
 fn apply_one(

@@ -106,6 +106,25 @@ impl Problem {
         self.suggestion = if note.is_empty() { written } else { format!("{written} ({note})") };
         self.repair = Some(format!("{field}={value}"));
     }
+
+    /// Where it stands in its file, from 1; zeros where it is not in one.
+    pub(crate) fn line_and_column(&self) -> (usize, usize) {
+        match self.place {
+            Place::File { line, column, .. } => (line, column),
+            _ => (0, 0),
+        }
+    }
+
+    /// The same problem with a value that stands at `place` by itself, without the name of its field. No `--set` removes it there.
+    pub(crate) fn of_value_at(mut self, place: Place) -> Self {
+        if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
+            && let Some(note) = self.suggestion.strip_prefix(&format!("--set {}", for_a_shell(field, value)))
+        {
+            self.suggestion = format!("`{value}`{note}");
+        }
+        self.place = place;
+        self
+    }
 }
 
 /// `field=value` as a word of a shell.

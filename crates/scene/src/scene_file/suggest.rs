@@ -5,6 +5,10 @@ use super::wording::number;
 /// Names closer than this (Jaro–Winkler, 1 is equal) are worth proposing.
 const NEAR: f64 = 0.80;
 
+/// A word of this many letters with one of them wrong, too many, missing or in the place of its neighbour is worth proposing, too;
+/// the measure of likeness sees little in common in short words.
+const SLIP: usize = 3;
+
 /// A part of a name has as many letters at least.
 const PART: usize = 4;
 
@@ -60,7 +64,11 @@ pub(crate) fn same_quantity(a: &str, b: &str) -> bool {
 /// The name in `valid` that is most like `found`, when one is.
 pub(crate) fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
     let found = found.to_lowercase();
-    let rated = valid.iter().map(|name| (strsim::jaro_winkler(&found, &name.to_lowercase()), *name));
+    let likeness = |name: &str| {
+        let slip = found.len().min(name.len()) >= SLIP && strsim::osa_distance(&found, name) <= 1;
+        strsim::jaro_winkler(&found, name).max(if slip { NEAR } else { 0.0 })
+    };
+    let rated = valid.iter().map(|name| (likeness(&name.to_lowercase()), *name));
     let best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 >= NEAR).then_some(best.1)
 }
@@ -125,6 +133,8 @@ mod tests {
     #[test]
     fn refuses_a_typing_error_and_recognises_it() {
         assert_eq!(said("sped_rpm"), "did you mean `speed_rpm`?");
+        assert_eq!(nearest("acr", &["facet", "arc", "nagata"]), Some("arc"));
+        assert_eq!(nearest("arx", &["facet", "arc", "nagata"]), Some("arc"));
     }
 
     #[test]
