@@ -54,7 +54,10 @@ fn is_of_value(scene: &Scene, argument: &str, schema: &Schema) -> bool {
     let bearing = (path == "bearing").then(|| named::designation(value).or_else(|| bare_designation(value)));
     match bearing.flatten() {
         Some(name) => CatalogueBearing::parse(&name).is_err(),
-        None => known(path, argument, schema, &Outline::of(&scene.to_ron())).is_ok(),
+        None => {
+            let text = scene.to_ron();
+            known(path, argument, schema, &text, &Outline::of(&text)).is_ok()
+        }
     }
 }
 
