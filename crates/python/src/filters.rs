@@ -128,7 +128,6 @@ pub(crate) fn separate<'py>(
 
 /// For each period: itself, multipoint kurtosis, taps, output.
 #[pyfunction]
-#[expect(clippy::type_complexity, reason = "a tuple in Python, too")]
 pub(crate) fn momeda<'py>(
     py: Python<'py>,
     x: PyReadonlyArray1<'py, f64>,

@@ -30,7 +30,6 @@ pub(crate) fn infogram(
 
 /// Distance and number of the cyclic frequencies, distance of the carriers, values by carrier.
 #[pyfunction]
-#[expect(clippy::type_complexity, reason = "a tuple in Python, too")]
 pub(crate) fn spectral_correlation<'py>(
     py: Python<'py>,
     x: PyReadonlyArray1<'py, f64>,
