@@ -113,7 +113,7 @@ impl Outline {
     }
 
     /// How deep the point at `distance` from the centre in the direction `d` lies within a regular polygon [m], and by how much a metre
-    /// along d and one across it, counter-clockwise, bring it outwards. Vertices are rounded by [`ROUNDED`].
+    /// along d and one across it, counter-clockwise, bring it outwards. Vertices are rounded by a twentieth of a facet to either side.
     #[inline(always)]
     pub fn depth(&self, d: [f64; 2], distance: f64) -> (f64, [f64; 2]) {
         let n = self.x.len();
