@@ -11,7 +11,7 @@ use crate::{Error, Part};
 const BESIDE: f64 = 8.0;
 
 /// Two corners nearer than this share of a facet are the ends of a wall.
-const WALL: f64 = 0.5;
+const WALL: f64 = 0.1;
 
 /// Facets about a wall within which nodes move for the time step, beside as many as the wall is high.
 const BELOW: f64 = 9.0;
@@ -25,7 +25,7 @@ const SIDE: f64 = 1.06;
 /// those nearest to corners of the profile have moved onto them along the surface; below the surface displacements fall off
 /// in proportion to the distance from the other side of the body, in a disc from its centre.
 ///
-/// Two corners next to each other that are nearer than half a facet are the ends of a wall, which is one facet. Nodes below such walls
+/// Two corners next to each other that are nearer than a tenth of a facet are the ends of a wall, which is one facet. Nodes below such walls
 /// move for the critical time step of the assembled cells instead (THEORY §2.4); walls need facets as long as cells of the body are thick.
 pub struct FormDeviation<'a> {
     /// How far below its circle the surface lies at an angle [rad], into the body [m].

@@ -128,10 +128,15 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
 /// a name of its own until then.
 pub(super) fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     let beside = path.with_extension(format!("{}.new", std::process::id()));
-    write(&beside)?;
-    // The name must not reach the disk before the content.
-    std::fs::File::open(&beside).and_then(|file| file.sync_data())?;
-    std::fs::rename(&beside, path).with_context(|| format!("cannot replace `{}`", path.display()))
+    let written = write(&beside).and_then(|()| {
+        // The name must not reach the disk before the content.
+        std::fs::File::open(&beside)?.sync_data()?;
+        Ok(std::fs::rename(&beside, path)?)
+    });
+    if written.is_err() {
+        std::fs::remove_file(&beside).ok();
+    }
+    written.with_context(|| format!("cannot write `{}`", path.display()))
 }
 
 fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
