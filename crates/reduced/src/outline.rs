@@ -193,6 +193,9 @@ impl<N: Number> Facet<N> {
 pub(crate) trait Parts {
     /// Takes the part between two places along t [m], below these facets of roller and raceway.
     fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet);
+    /// Takes a wall of the roller that leans over its own boundary: at `u` one facet of the roller ends and another goes on, higher or
+    /// lower.
+    fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet);
 }
 
 /// Walks along vertices with growing u.
@@ -206,14 +209,29 @@ pub(crate) struct Walk<'a> {
     pub(crate) b: [f64; 2],
     next: [f64; 2],
     slope: f64,
+    /// 1 where what is lower hides what is behind it, as raceways do, −1 where what is higher does.
+    hides: f64,
     /// How far the facet is seen: a wall behind it may lean over it.
     pub(crate) end: f64,
+    /// Whether a wall that leans over has gone by; who asks takes it back.
+    pub(crate) jumps: bool,
 }
 
 impl<'a> Walk<'a> {
-    /// Begins with the facet that holds u = `start`, which is negative.
+    /// Begins with the facet of a roller that holds u = `start`, which is negative.
     #[inline(always)]
-    pub(crate) fn new(view: View<'a>, along: bool, start: f64) -> Self {
+    pub(crate) fn of_roller(view: View<'a>, start: f64) -> Self {
+        Self::new(view, true, -1.0, start)
+    }
+
+    /// The same of a raceway.
+    #[inline(always)]
+    pub(crate) fn of_raceway(view: View<'a>, along: bool, start: f64) -> Self {
+        Self::new(view, along, 1.0, start)
+    }
+
+    #[inline(always)]
+    fn new(view: View<'a>, along: bool, hides: f64, start: f64) -> Self {
         let outline = view.outline;
         // The end of the facet with the smaller u.
         let mut first = if along { view.facet } else { outline.next(view.facet) };
@@ -225,9 +243,11 @@ impl<'a> Walk<'a> {
             first = if along { outline.before(first) } else { outline.next(first) };
             a = view.see(first);
         }
-        let mut walk = Self { view, along, vertex: first, a, b: a, next: a, slope: 0.0, end: a[0] };
+        let mut walk =
+            Self { view, along, vertex: first, a, b: a, next: a, slope: 0.0, hides, end: a[0], jumps: false };
         walk.look();
         walk.step();
+        walk.jumps = false;
         walk
     }
 
@@ -249,7 +269,8 @@ impl<'a> Walk<'a> {
         self.look();
         let width = self.b[0] - self.a[0];
         self.slope = if width > 0.0 { (self.b[1] - self.a[1]) / width } else { 0.0 };
-        let hidden = self.next[0] < self.b[0] && self.next[1] < self.b[1];
+        self.jumps |= width <= 0.0;
+        let hidden = self.next[0] < self.b[0] && self.hides * (self.next[1] - self.b[1]) < 0.0;
         self.end = if hidden { self.next[0] } else { self.b[0] };
     }
 

@@ -245,20 +245,28 @@ impl<'a, S: Simd> Pair<'a, S> {
     #[inline(always)]
     fn walk(&self, reach: f64, parts: &mut impl Parts) {
         let mut u = -reach;
-        let mut r = Walk::new(self.roller, true, u);
-        let mut w = Walk::new(self.raceway, self.sides.along, u);
+        let mut r = Walk::of_roller(self.roller, u);
+        let mut w = Walk::of_raceway(self.raceway, self.sides.along, u);
         let most = self.roller.outline.len() + self.raceway.outline.len();
+        let mut before = None;
         for _ in 0..most {
-            let end = r.b[0].min(w.end).min(reach);
+            let end = r.end.min(w.end).min(reach);
             if end > u {
-                parts.add([u, end], r.facet(), w.facet());
+                let roller = r.facet();
+                if std::mem::take(&mut r.jumps)
+                    && let Some(before) = before
+                {
+                    parts.jump(u, [before, roller], w.facet());
+                }
+                parts.add([u, end], roller, w.facet());
+                before = Some(roller);
                 u = end;
             }
             if end >= reach {
                 break;
             }
             // Walls of a groove may lean over: their facets hold no u.
-            if r.b[0] <= w.end { r.step() } else { w.step() }
+            if r.end <= w.end { r.step() } else { w.step() }
         }
     }
 }
@@ -275,6 +283,13 @@ impl Parts for Chords {
         let p = straight([u1, u2], roller, raceway, self.shift);
         chords(&mut self.sum, [u1, u2], p, roller, raceway);
     }
+
+    #[inline(always)]
+    fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet) {
+        let places =
+            roller.map(|r| [straight([u, u], r, raceway, self.shift)[0], r.slope.mul_add(u, r.base)]);
+        jump(&mut self.sum, places);
+    }
 }
 
 /// Adds up what lies between parabolas.
@@ -290,6 +305,30 @@ impl Parts for Arcs {
         let seen = round(ends, roller, raceway, self.sides, self.shift);
         arcs(&mut self.sum, ends, seen, roller);
     }
+
+    #[inline(always)]
+    fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet) {
+        let places = roller.map(|r| {
+            let seen = round([u, u], r, raceway, self.sides, self.shift);
+            [seen.p[0], 0.5 * seen.curvature * r.inside(u) + r.slope.mul_add(u, r.base)]
+        });
+        jump(&mut self.sum, places);
+    }
+}
+
+/// Adds what a wall of the roller that leans over does to the overlap, though no part holds it: its upper corner hides what is below,
+/// and there the penetration goes from one value to another [m]. Both come with the height of the roller.
+#[inline(always)]
+fn jump(sum: &mut Overlap, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
+    let [corner, deepest] = [h1.max(h2), p1.max(p2)];
+    let (a, b) = (p1.max(0.0), p2.max(0.0));
+    let [length, area] = [b - a, 0.5 * (b * b - a * a)];
+    sum.slope += length;
+    sum.arm += corner * length;
+    sum.across += area;
+    sum.moment += corner * area;
+    // The place of the corner, unlike that of a wall of the raceway, is not where the penetration is zero.
+    sum.skew += 2.0 * deepest * area;
 }
 
 /// Adds what lies in a part, where `present` is one; nothing sinks in elsewhere.

@@ -218,6 +218,54 @@ fn conserves_energy_along_a_path_of_arcs_over_a_slope() {
     }
 }
 
+/// Steep walls of a spall on the roller, which lean over the floor or over the rim as they go by: the energy of a path closes.
+#[test]
+fn conserves_energy_along_a_path_over_walls_of_a_roller() {
+    // The error of the midpoint rule; parabolas on chords turn with d, as above.
+    const TOLERANCE: [f64; 2] = [1e-6, 3e-3];
+    let relative = 1.0 / ROLLER - 1.0 / RACEWAY;
+    let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
+    let arcs = Sides { along: true, bulge: 0.5 * relative, curvature: 1.0 / ROLLER };
+    // About the y axis, 0.1 mm deep; walls lean by a thousandth of their height.
+    let (half, depth) = (0.2, 1e-4);
+    let wall = 1e-3 * depth / ROLLER;
+    let vertex = |radius: f64, angle: f64| [radius * angle.cos(), radius * angle.sin()];
+    let mut vertices = Vec::new();
+    for i in 0..112 {
+        let [angle, next] = [f64::from(i), f64::from(i + 1)].map(|i| TAU * i / 112.0);
+        let inside = |angle: f64| (angle - 0.25 * TAU).abs() < half;
+        vertices.push(vertex(ROLLER - if inside(angle) { depth } else { 0.0 }, angle));
+        for (edge, inwards) in [(0.25 * TAU - half, 1.0), (0.25 * TAU + half, -1.0)] {
+            if (angle..next).contains(&edge) {
+                let corners = [vertex(ROLLER, edge), vertex(ROLLER - depth, edge + inwards * wall)];
+                let [a, b] = corners;
+                vertices.extend(if inwards > 0.0 { [a, b] } else { [b, a] });
+            }
+        }
+    }
+    let (roller, track) = (Outline::new(&vertices), polygon(RACEWAY, 1257));
+    let path = RACEWAY - ROLLER + 3e-5;
+    let steps = 40_000;
+    for (sides, tolerance) in [chords, arcs].into_iter().zip(TOLERANCE) {
+        for rolls in [-0.4, 0.4] {
+            let along = -0.05 * f64::signum(rolls);
+            let seen = |share: f64| {
+                let (s, c) = (0.25 * TAU + share * along).sin_cos();
+                pressed(&roller, &track, sides, [path * c, path * s], share * rolls, [c, s])
+            };
+            let mut work = 0.0;
+            for i in 0..steps {
+                let o = seen((f64::from(i) + 0.5) / f64::from(steps));
+                work -=
+                    (along * path * (o.across - 0.5 * o.skew / path) + rolls * o.moment) / f64::from(steps);
+            }
+            let [first, last] = [0.0, 1.0].map(|share| 0.5 * seen(share).square);
+            assert!(first == 0.0 && last > 0.0, "{first} {last}");
+            assert!((work / last - 1.0).abs() < tolerance, "{rolls}: {work} of {last}");
+        }
+    }
+}
+
 /// Looks at a contact in vectors and step by step.
 struct Both<'a> {
     roller: View<'a>,
