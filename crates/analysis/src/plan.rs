@@ -125,6 +125,7 @@ impl Plan {
         if let Ok(curve) = prediction.static_curve(scene, support_n) {
             let least_n = rolling::least_support_n(scene, &curve, support_n);
             plan.advice.extend(rolling::warnings(support_n, least_n, &KinematicsFinding::default()));
+            plan.advice.extend(rolling::flats(scene, curve.largest_sound_n));
         }
         Ok(plan)
     }

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use stribeck_scene::deviation::{FormScene, RollingSurface, SpallScene};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::Scene;
+use stribeck_scene::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::StaticCurve;
@@ -26,6 +28,39 @@ pub fn least_support_n(scene: &Scene, curve: &StaticCurve, support_n: f64) -> Op
     // Both contacts push a roller without spin the same way round.
     let share = 2.0 * scene.contact.friction * radius * impulse / (inertia * motion.roller_rad_s.abs());
     (share.is_finite() && over_angle > 0.0).then(|| support_n / share)
+}
+
+/// A roller slower than this share of rolling has lost its spin.
+const STOPPED: f64 = 0.5;
+
+/// The friction that turns a roller over the edge of a `spall` under `force_n` for certain [-] (THEORY §5.4). Where there is less, and its
+/// own spin does not carry it over, it slides on the spall.
+pub fn friction_over_edge(geometry: &Geometry, spall: &SpallScene, force_n: f64) -> f64 {
+    let radius = geometry.roller_radius;
+    let lifted = RigidRings::new(geometry).approach_m(force_n).min(1e-3 * spall.depth_mm);
+    let half_angle = 0.5e-3 * spall.length_mm / radius;
+    0.5 * (2.0 * lifted / radius).sqrt().min(half_angle)
+}
+
+/// What to say of spalls on rollers that the friction of a scene may not turn over their edges, when the fullest roller carries `force_n`.
+pub fn flats(scene: &Scene, force_n: f64) -> Vec<String> {
+    let geometry = Geometry::of(scene);
+    let spalls = scene.defects.iter().filter_map(|defect| match (defect.on, &defect.form) {
+        (RollingSurface::Roller(roller), FormScene::Spall(spall)) => Some((roller, spall)),
+        _ => None,
+    });
+    let needed = spalls.map(|(roller, spall)| (roller, friction_over_edge(&geometry, spall, force_n)));
+    let friction = scene.contact.friction;
+    needed
+        .filter(|(_, needed)| friction < *needed)
+        .map(|(roller, needed)| {
+            format!(
+                "roller {roller} may stop on its spall: friction turns it over the edge under {:.1} kN from `contact.friction` {needed:.3} on, \
+                 and the scene has {friction}. A roller that slides has no BSF; less load or a softer spall helps, too",
+                1e-3 * force_n
+            )
+        })
+        .collect()
 }
 
 /// What to say of a load that does not keep rollers rolling, or of rollers that were seen to slide.
@@ -53,6 +88,19 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
     ] {
         said.extend(percent.map(|p| format!("{what} {p:.1} % slower than rolling: they slide")));
     }
+    let least_hz = STOPPED * motion.expected_roller_spin_hz;
+    if motion.roller_spin_hz.is_some_and(|hz| hz > least_hz) {
+        let stopped = motion.rollers.iter().filter(|roller| roller.spin_hz < least_hz);
+        said.extend(stopped.map(|roller| {
+            format!(
+                "roller {} has lost its spin: {:.1} Hz in the mean where others have {:.1} Hz. Friction does not turn it over what is \
+                 missing from its surface, or it is not loaded; a defect on it strikes at no BSF",
+                roller.roller,
+                roller.spin_hz,
+                motion.roller_spin_hz.unwrap_or(motion.expected_roller_spin_hz)
+            )
+        }));
+    }
     said
 }
 
@@ -76,8 +124,63 @@ pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kinematics::RollerMotion;
     use crate::prediction::Prediction;
+    use stribeck_scene::deviation::DeviationScene;
     use stribeck_scene::run_info::MeshInfo;
+
+    /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 · 16/6000) = 0.037 to turn over the
+    /// edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and no more than a quarter of 0.3 mm over 6 mm, 0.0125, over a
+    /// short one.
+    #[test]
+    fn example_friction_that_turns_a_roller_over_an_edge() {
+        let scene = Scene::default();
+        let geometry = Geometry { roller_radius: 6e-3, ..Geometry::of(&scene) };
+        let rings = RigidRings::new(&geometry);
+        let (mut low, mut high): (f64, f64) = (0.0, 1e6);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if rings.approach_m(middle) < 16e-6 { low = middle } else { high = middle }
+        }
+        let needs = |length_mm: f64, depth_mm: f64| {
+            friction_over_edge(&geometry, &SpallScene { length_mm, depth_mm, ..SpallScene::default() }, low)
+        };
+        for (found, by_hand) in
+            [(needs(4.0, 0.25), 0.0365), (needs(4.0, 5e-3), 0.0204), (needs(0.3, 0.25), 0.0125)]
+        {
+            assert!((found - by_hand).abs() < 1e-4, "{found}, {by_hand}");
+        }
+        let spall = FormScene::Spall(SpallScene { length_mm: 4.0, depth_mm: 0.25, ..SpallScene::default() });
+        let mut spalled = Scene {
+            defects: vec![DeviationScene {
+                on: RollingSurface::Roller(5),
+                form: spall,
+                ..DeviationScene::default()
+            }],
+            ..scene
+        };
+        spalled.contact.friction = 0.005;
+        assert!(
+            flats(&spalled, 10e3)[0].contains("roller 5 may stop on its spall"),
+            "{:?}",
+            flats(&spalled, 10e3)
+        );
+        spalled.contact.friction = 0.2;
+        assert_eq!(flats(&spalled, 10e3), [""; 0]);
+    }
+
+    #[test]
+    fn example_a_roller_that_has_stopped_is_named() {
+        let of = |roller: usize, spin_hz: f64| RollerMotion { roller, orbit_hz: 8.0, spin_hz, loaded: true };
+        let motion = KinematicsFinding {
+            expected_roller_spin_hz: 52.9,
+            roller_spin_hz: Some(52.8),
+            rollers: vec![of(4, 52.8), of(5, 3.1)],
+            ..Default::default()
+        };
+        let said = warnings(8e3, None, &motion);
+        assert!(said.len() == 1 && said[0].contains("roller 5 has lost its spin: 3.1 Hz"), "{said:?}");
+    }
 
     #[test]
     fn example_a_cage_that_strays_is_named() {

@@ -83,7 +83,10 @@ impl Bearing {
             let [x, y] = load(simd, &block.centre, at);
             let distance = x.times_plus(x, y * y).sqrt();
             let radial = [x / distance, y / distance];
-            let along = outer.map_or(radial, |outer| outer.back(simd, radial));
+            let along = match outer {
+                Some(outer) => outer.back(simd, radial),
+                None => radial,
+            };
             distance.store(&mut block.distance, at);
             store(radial, &mut block.radial, at);
             store(along, &mut block.along, at);

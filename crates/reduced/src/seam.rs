@@ -53,16 +53,17 @@ impl Seam {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one) = (all(0.0), all(1.0));
         let (shift, near, far) = (all(shift), all(-reach), all(reach));
-        let (own, d) = (sight.own.map(all), sight.d.map(all));
-        let [cx, cy] = sight.from.map(all);
+        let (own, d) = ([all(sight.own[0]), all(sight.own[1])], [all(sight.d[0]), all(sight.d[1])]);
+        let [cx, cy] = [all(sight.from[0]), all(sight.from[1])];
         let mut sum = Overlap::none(zero);
         let (mut before, mut behind, mut middle, mut wrong) = (0, 0, 0, 0);
         let mut at = 0;
         while at < LANES {
             for group in 0..self.groups {
                 let at = LANES * group + at;
-                let [x0, y0, x1, y1, a0, b0, a1, b1] =
-                    self.columns.each_ref().map(|column| Vector::load(simd, column, at));
+                let column = |n: usize| Vector::load(simd, &self.columns[n], at);
+                let [x0, y0, x1, y1] = [column(0), column(1), column(2), column(3)];
+                let [a0, b0, a1, b1] = [column(4), column(5), column(6), column(7)];
                 let roller = seen(own, [x0, y0], [x1, y1]);
                 let raceway = seen(d, [a0 - cx, b0 - cy], [a1 - cx, b1 - cy]);
                 let ends = [roller.from.max(raceway.from), roller.to.min(raceway.to)];

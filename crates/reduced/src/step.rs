@@ -203,7 +203,7 @@ impl Bearing {
             }
         }
         scratch.summed += 1;
-        spent.heat = [0, 1].map(|kind| spent.heat[kind] + sums.heat[kind].sum());
+        spent.heat = [spent.heat[0] + sums.heat[0].sum(), spent.heat[1] + sums.heat[1].sum()];
         let [by_outer, by_inner] = sums.drive;
         spent.drive += dt * rate * by_inner.sum();
         if let Some(outer) = outer {

@@ -61,7 +61,8 @@
 //! ```
 //!
 //! Everything on the way from `with_simd` to an instruction must be `#[inline(always)]`: code in a function or closure of its
-//! own would be compiled for the plain instruction set.
+//! own would be compiled for the plain instruction set, and each operation of a vector become a call. So is what `map` does to the
+//! items of an array, and `map_or` to an option. Programs that were compiled so have such operations among their symbols.
 //!
 //! # Where to look
 //!

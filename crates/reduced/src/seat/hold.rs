@@ -104,14 +104,33 @@ fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
     }
 }
 
+/// Eight numbers, in a line of cache of their own or not.
+trait Values {
+    fn numbers(&self) -> &[f64];
+}
+
+impl Values for Row {
+    #[inline(always)]
+    fn numbers(&self) -> &[f64] {
+        self
+    }
+}
+
+impl Values for [f64; LANES] {
+    #[inline(always)]
+    fn numbers(&self) -> &[f64] {
+        self
+    }
+}
+
 /// Sum of the products of two rows.
 #[inline(always)]
-fn dot<'a, S: Simd>(simd: S, rows: &[Row], values: impl IntoIterator<Item = &'a [f64; LANES]>) -> f64 {
+fn dot<S: Simd>(simd: S, rows: &[Row], values: &[impl Values]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (row, values) in rows.iter().zip(values) {
         let mut at = 0;
         while at < LANES {
-            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, values, at), sum);
+            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, values.numbers(), at), sum);
             at += Vector::<S>::LEN;
         }
     }
@@ -223,9 +242,9 @@ impl Springs {
     pub(crate) fn under<S: Simd>(&self, simd: S, open: &[Row], facet: usize) -> [f64; 2] {
         let groups = self.rows();
         let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
-        [facet, second].map(|vertex| {
-            dot(simd, &self.by_rollers[groups * vertex..][..groups], open.iter().map(|row| &row.0))
-        })
+        // Not `map`: what a closure does over an array is compiled without the vectors' instruction set.
+        let [first, second] = [&self.by_rollers[groups * facet..], &self.by_rollers[groups * second..]];
+        [dot(simd, &first[..groups], open), dot(simd, &second[..groups], open)]
     }
 
     /// What rollers do to the tensions, each by itself: a unit force at its place, the force if the seat stays as it is, and how much less it
@@ -239,7 +258,8 @@ impl Springs {
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
             let facet = roller.facet as usize;
             let second = if facet + 1 == vertices { 0 } else { facet + 1 };
-            let ends = [facet, second].map(|vertex| &self.by_rollers[groups * vertex..][..groups]);
+            let ends =
+                [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]];
             let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
             let first = answers.by.len();
             answers.by.resize(first + groups, Row::default());
@@ -256,7 +276,8 @@ impl Springs {
             let mut answer = Answer { force, expected: force, given: 0.0, stiffness: 0.0 };
             if roller.stiffness * self.give[facet].max(self.give[second]) > FELT {
                 let by = &answers.by[first..];
-                let [now, before] = [&hold.open, &hold.before].map(|open| dot(simd, by, open.as_chunks().0));
+                let [now, before] =
+                    [dot(simd, by, hold.open.as_chunks().0), dot(simd, by, hold.before.as_chunks().0)];
                 let expected = force + roller.stiffness * (now - before);
                 answer =
                     Answer { force: expected.max(0.0), expected, given: now, stiffness: roller.stiffness };

@@ -47,6 +47,7 @@ pub(crate) struct Step<S: Simd> {
 
 impl<S: Simd> Step<S> {
     /// A step with damping at `rate` [1/s].
+    #[inline(always)]
     pub(crate) fn new(simd: S, parameters: &StepParameters, rate: f64, frames: &LaneFrames) -> Self {
         let &StepParameters { dt, gravity, fetch, since_placed, .. } = parameters;
         let frames = frames.after(since_placed);
@@ -56,7 +57,7 @@ impl<S: Simd> Step<S> {
         let given = 2.0 * half * gain;
         Self {
             dt: Vector::all(simd, dt),
-            fall: fall.map(|v| Vector::all(simd, v)),
+            fall: [Vector::all(simd, fall[0]), Vector::all(simd, fall[1])],
             keep: Vector::all(simd, (1.0 - half) * gain),
             drift_x: frames.origin_x.map(|v| fall[0] + given * v),
             drift_y: frames.origin_y.map(|v| fall[1] + given * v),
@@ -68,6 +69,7 @@ impl<S: Simd> Step<S> {
     }
 
     /// Heat of damping [J] from what [`advance`] counts.
+    #[inline(always)]
     pub(crate) fn heat(&self, counted: Vector<S>) -> f64 {
         self.loss * counted.sum()
     }
