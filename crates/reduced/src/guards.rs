@@ -117,10 +117,14 @@ impl Guards {
         let percent = 100.0 * off.of_strain;
         let apart = percent > limits.energy_stop_percent && (off.of_heat.is_nan() || off.of_heat > GATHERED);
         if percent.is_nan() || apart {
+            // A bearing without friction and damping makes no heat to speak of.
+            let of_heat = match off.of_heat {
+                share if share < 1.0 => format!("{:.1} % of all heat", 100.0 * share),
+                _ => "more than all heat".to_owned(),
+            };
             return Some(format!(
-                "energy is off by {percent:.3} % of the peak strain energy and {:.1} % of all heat {when}. Take a smaller `model.step_us`, or `model: full` to see \
-                 which of the two is wrong",
-                100.0 * off.of_heat
+                "energy is off by {percent:.3} % of the peak strain energy and {of_heat} {when}. Take a smaller `model.step_us`, or `model: full` to see \
+                 which of the two is wrong"
             ));
         }
         if percent > limits.energy_warning_percent && !info.guards.energy_warned {
