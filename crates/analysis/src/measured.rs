@@ -244,9 +244,14 @@ impl Analysis {
         // What follows has transforms of its own.
         drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
-        let again = |hz: f64| over_period(channel, rate_hz, segment, hz);
         let (record_s, segment_s) = (screening.count() as f64 / rate_hz, segment as f64 / rate_hz);
-        let judged = verdict::judge(&bands, machine, record_s, segment_s, again)?;
+        let mut judged = verdict::judge(&bands, machine, record_s, segment_s);
+        let mut over = Vec::new();
+        if let Some(first) = &judged.first {
+            over = over_period(channel, rate_hz, segment, first.comb_hz)?;
+            second::tell(&mut judged.families, first, bands.first(), &over);
+        }
+        judged.conclude(&bands);
         notes.extend(judged.notes.iter().cloned());
         let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
         notes.extend(why);
@@ -274,7 +279,7 @@ impl Analysis {
             beginning: kept.into_iter().take(SHOWN).collect(),
             density,
             bands,
-            over: judged.over,
+            over,
             course: tracing.finish(),
             enhanced,
         })

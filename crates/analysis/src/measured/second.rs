@@ -7,23 +7,7 @@
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::unrelated::SLIP;
-use super::verdict::{ALPHA, Family, KNOCK, MODULATED, decibel, rank, sidebands_seen, times_of};
-
-/// What the second step knows of the first.
-pub(super) struct First {
-    /// Its place among the families.
-    pub(super) at: usize,
-    /// Its comb [Hz].
-    pub(super) comb_hz: f64,
-}
-
-/// What turns, whose lines are left where it modulates the first family.
-pub(super) struct Turning {
-    pub(super) shaft_hz: f64,
-    pub(super) cage_hz: f64,
-    /// One over the length of a segment [Hz].
-    pub(super) resolution_hz: f64,
-}
+use super::verdict::{ALPHA, Family, First, KNOCK, MODULATED, decibel, rank, sidebands_seen, times_of};
 
 /// Where a family knocks most over the period of the first.
 struct Beside {
@@ -34,8 +18,14 @@ struct Beside {
     band_hz: (f64, f64),
 }
 
-/// Claims the family that stands highest in `bands`, those over the period of the first family, if it passes there.
-pub(super) fn tell(families: &mut [Family], first: &First, bands: &[BandEnvelope], turning: &Turning) {
+/// Claims the family that stands highest in `bands`, those over the period of the first family, if it passes there; `whole` is the whole
+/// range as it is.
+pub(super) fn tell(
+    families: &mut [Family],
+    first: &First,
+    whole: Option<&BandEnvelope>,
+    bands: &[BandEnvelope],
+) {
     let whitened: Vec<(&BandEnvelope, Whitened)> = bands
         .iter()
         .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
@@ -44,7 +34,7 @@ pub(super) fn tell(families: &mut [Family], first: &First, bands: &[BandEnvelope
         // A family that was not looked for is not there, either.
         *at != first.at && family.name != "FTF" && family.band_hz.is_some()
     });
-    let told = asked.filter_map(|(at, family)| beside(at, family, first, &whitened, turning));
+    let told = asked.filter_map(|(at, family)| beside(at, family, first, whole, &whitened));
     let Some(second) = told.max_by(|a, b| a.comb.height.total_cmp(&b.comb.height)) else { return };
     let name = families[first.at].name;
     let family = &mut families[second.at];
@@ -69,8 +59,8 @@ fn beside(
     at: usize,
     family: &Family,
     first: &First,
+    whole: Option<&BandEnvelope>,
     bands: &[(&BandEnvelope, Whitened)],
-    turning: &Turning,
 ) -> Option<Beside> {
     let comb_hz = times_of(family.name) * family.expected_hz;
     let search = |spectrum: &Whitened, hz: f64| {
@@ -89,16 +79,20 @@ fn beside(
     let remains = search(spectrum, first.comb_hz).map_or(0.0, |left| left.height);
     let own = match family.name {
         // A spot on an element comes under the load once a turn of the cage.
-        "BSF" => sidebands_seen(spectrum, comb.fundamental_hz, turning.cage_hz) >= MODULATED,
-        // Sound elements pass as well, and with the louder family gone they may be all there is to hear.
-        "BPFO" => family.is_there() && family.knocks() && !turning.takes(comb.fundamental_hz),
-        _ => !turning.takes(comb.fundamental_hz),
+        "BSF" => sidebands_seen(spectrum, comb.fundamental_hz, first.cage_hz) >= MODULATED,
+        // Sound elements pass as well, and with the louder family gone they may be all there is to hear: beside it, a defect is to be
+        // loud in the whole range.
+        "BPFO" => {
+            let loud = whole.is_some_and(|whole| whole.depth(comb.fundamental_hz) >= KNOCK);
+            family.is_there() && loud && !first.takes(comb.fundamental_hz)
+        }
+        _ => !first.takes(comb.fundamental_hz),
     };
     let told = depth >= KNOCK
         && own
         && remains < comb.height
         && rank(&comb, comb_hz, spectrum, Some(first.comb_hz)) == Some(0.0);
-    told.then(|| Beside {
+    told.then_some(Beside {
         at,
         p_value: comb.p_value * searched,
         comb,
@@ -107,7 +101,7 @@ fn beside(
     })
 }
 
-impl Turning {
+impl First {
     /// Whether lines are those of the shaft, so many to a turn.
     fn takes(&self, hz: f64) -> bool {
         let turns = (hz / self.shaft_hz).round();

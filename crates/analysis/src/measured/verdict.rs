@@ -9,15 +9,13 @@
 //! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
 //!    of the band must swing by half of its mean.
 //!
-//! The highest that passes is claimed, and what knocks beside it is told by [`second`].
+//! The highest that passes is claimed, and what knocks beside it is told by `second.rs`.
 
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
-use super::second::{self, First, Turning};
 use super::unrelated::{SLIP, is_the_same, unrelated_hz};
 use super::{Machine, passage};
-use crate::Error;
 
 /// One defect family.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -60,8 +58,22 @@ pub(super) struct Judged {
     pub(super) families: Vec<Family>,
     pub(super) verdict: String,
     pub(super) notes: Vec<String>,
-    /// The bands over the period of the first family; none without one.
-    pub(super) over: Vec<BandEnvelope>,
+    /// The defect that stands highest, if there is one.
+    pub(super) first: Option<First>,
+}
+
+/// What is known where something is sought that knocks beside a defect.
+pub(super) struct First {
+    /// Its place among the families.
+    pub(super) at: usize,
+    /// Its comb [Hz].
+    pub(super) comb_hz: f64,
+    /// Turns of the shaft [Hz], whose lines are left where it modulates the first family.
+    pub(super) shaft_hz: f64,
+    /// Turns of the cage without slip [Hz].
+    pub(super) cage_hz: f64,
+    /// One over the length of a segment [Hz].
+    pub(super) resolution_hz: f64,
 }
 
 /// Largest probability of a false alarm at which a family is there.
@@ -86,18 +98,12 @@ pub(super) fn times_of(name: &str) -> f64 {
     FAMILIES.iter().find(|f| f.0 == name).map_or(1.0, |f| f.2)
 }
 
-/// `again` makes the bands over the period of a frequency [Hz].
-pub(super) fn judge(
-    bands: &[BandEnvelope],
-    machine: &Machine,
-    record_s: f64,
-    segment_s: f64,
-    again: impl FnOnce(f64) -> Result<Vec<BandEnvelope>, Error>,
-) -> Result<Judged, Error> {
+/// The families, of which one at most is claimed; [`Judged::conclude`] says the rest.
+pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Judged {
     let mut notes = Vec::new();
     let nothing = |notes: Vec<String>| {
         let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
-        Ok(Judged { families: Vec::new(), verdict, notes, over: Vec::new() })
+        Judged { families: Vec::new(), verdict, notes, first: None }
     };
     let Some(bearing) = &machine.bearing else {
         notes.push("no bearing was given: `--bearing \"6205\"`, or its numbers".to_owned());
@@ -144,16 +150,24 @@ pub(super) fn judge(
     let modulated = is_modulated_by_the_cage(&families, &whitened);
     share_out(&mut families, 1.0 / segment_s, modulated);
     decide(&mut families);
-    let mut over = Vec::new();
-    if let Some(first) = claimed_first(&families) {
-        over = again(first.comb_hz)?;
-        let cage_hz = orders.ftf * shaft_hz;
-        let turning = Turning { shaft_hz, cage_hz, resolution_hz: 1.0 / segment_s };
-        second::tell(&mut families, &first, &over, &turning);
+    let first = claimed_first(&families).map(|(at, comb_hz)| First {
+        at,
+        comb_hz,
+        shaft_hz,
+        cage_hz: orders.ftf * shaft_hz,
+        resolution_hz: 1.0 / segment_s,
+    });
+    Judged { families, verdict: String::new(), notes, first }
+}
+
+impl Judged {
+    /// What all families together say; `bands` are those that were judged.
+    pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
+        if !self.families.is_empty() {
+            tell_the_element(&mut self.families, bands);
+            self.verdict = conclude(&self.families);
+        }
     }
-    tell_the_element(&mut families, bands);
-    let verdict = conclude(&families);
-    Ok(Judged { families, verdict, notes, over })
 }
 
 /// Where a family stands highest.
@@ -293,10 +307,10 @@ fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     }
 }
 
-/// The defect that stands for itself, but for the cage.
-fn claimed_first(families: &[Family]) -> Option<First> {
+/// The defect that stands for itself, but for the cage: its place and its comb [Hz].
+fn claimed_first(families: &[Family]) -> Option<(usize, f64)> {
     let at = families.iter().position(|f| f.claimed && f.name != "FTF")?;
-    Some(First { at, comb_hz: times_of(families[at].name) * families[at].measured_hz? })
+    Some((at, times_of(families[at].name) * families[at].measured_hz?))
 }
 
 /// The family that knocks and stands highest, but for the cage's and those whose lines are another's.
@@ -420,7 +434,7 @@ impl Family {
     }
 
     /// Whether it is more than noise and as deep as knocks, whoever makes them.
-    pub(super) fn knocks(&self) -> bool {
+    fn knocks(&self) -> bool {
         self.p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)
     }
 }
