@@ -39,7 +39,8 @@ impl Cycle {
         let parts = &mut self.parts[..count];
         parts.fill((0.0, 0));
         let step = turns / power.len() as f64;
-        let part = |n: usize| (((n as f64 * step).fract() * count as f64) as usize).min(count - 1);
+        // In the middle of a sample: where a period is a whole number of them, its ends would fall on the ends of parts.
+        let part = |n: usize| ((((n as f64 + 0.5) * step).fract() * count as f64) as usize).min(count - 1);
         for (n, value) in power.iter().enumerate() {
             let (sum, times) = &mut parts[part(n)];
             *sum += value;
