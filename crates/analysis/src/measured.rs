@@ -37,6 +37,7 @@ mod length;
 mod passage;
 pub mod ridge;
 mod screening;
+mod second;
 pub mod tacho;
 mod unrelated;
 mod velocity;
@@ -122,6 +123,8 @@ pub struct Analysis {
     pub density: (Vec<f64>, Vec<f64>),
     /// Squared envelope spectra of all bands.
     pub bands: Vec<BandEnvelope>,
+    /// The same over the period of the defect that stands highest; none without a defect.
+    pub over: Vec<BandEnvelope>,
     /// Density over time.
     pub course: Course,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
@@ -241,8 +244,14 @@ impl Analysis {
         // What follows has transforms of its own.
         drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
-        let judged =
-            verdict::judge(&bands, machine, screening.count() as f64 / rate_hz, segment as f64 / rate_hz)?;
+        let (record_s, segment_s) = (screening.count() as f64 / rate_hz, segment as f64 / rate_hz);
+        let mut judged = verdict::judge(&bands, machine, record_s, segment_s);
+        let mut over = Vec::new();
+        if let Some(first) = &judged.first {
+            over = over_period(channel, rate_hz, segment, first.comb_hz)?;
+            second::tell(&mut judged.families, first, bands.first(), &over);
+        }
+        judged.conclude(&bands);
         notes.extend(judged.notes.iter().cloned());
         let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
         notes.extend(why);
@@ -270,6 +279,7 @@ impl Analysis {
             beginning: kept.into_iter().take(SHOWN).collect(),
             density,
             bands,
+            over,
             course: tracing.finish(),
             enhanced,
         })
@@ -278,8 +288,39 @@ impl Analysis {
     /// The band in which a family stands highest.
     pub fn band_of(&self, family: &Family) -> Option<&BandEnvelope> {
         let (low_hz, high_hz) = family.band_hz?;
-        self.bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
+        let bands = if family.over.is_some() { &self.over } else { &self.bands };
+        bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
     }
+}
+
+/// The bands of a channel over the period of a frequency [Hz]: the samples are gone through again.
+fn over_period(
+    channel: &Channel,
+    rate_hz: f64,
+    segment: usize,
+    frequency_hz: f64,
+) -> Result<Vec<BandEnvelope>, Error> {
+    let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
+    let mut envelopes = BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz)
+        .and_then(|envelopes| envelopes.over_period(frequency_hz))
+        .map_err(Error::Signal)?;
+    let mut buffer: Vec<f64> = Vec::with_capacity(segment);
+    let mut failed = None;
+    channel.for_each_block(|mut block| {
+        while !block.is_empty() && failed.is_none() {
+            let (now, later) = block.split_at((segment - buffer.len()).min(block.len()));
+            buffer.extend_from_slice(now);
+            block = later;
+            if buffer.len() == segment {
+                // Segments with values that are not numbers have been left out before, too.
+                let sound = buffer.iter().all(|x| x.is_finite());
+                failed = if sound { envelopes.add(&buffer).err() } else { None };
+                buffer.clear();
+            }
+        }
+        failed.is_none()
+    })?;
+    failed.map_or_else(|| Ok(envelopes.bands()), |why| Err(Error::Signal(why)))
 }
 
 /// The whole range, its halves, quarters and eighths.

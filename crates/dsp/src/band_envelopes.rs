@@ -12,6 +12,7 @@ use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
 
+use crate::cycle::Cycle;
 use crate::error::{check_band, check_len, check_positive, check_signal};
 use crate::{Error, Result};
 
@@ -25,6 +26,8 @@ pub struct BandEnvelopes {
     spectrum: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
     bands: Vec<Band>,
+    /// What the power is taken over, if it is.
+    cycle: Option<Cycle>,
     work: Work,
 }
 
@@ -56,7 +59,7 @@ pub struct BandEnvelope {
     pub low_hz: f64,
     /// Upper end [Hz].
     pub high_hz: f64,
-    /// Root mean square of the band [unit].
+    /// Root mean square of the band [unit]; near √½ where it is [over a period](BandEnvelopes::over_period).
     pub rms: f64,
     /// Kurtosis of the complex envelope, `⟨|a|⁴⟩/⟨|a|²⟩² − 2`: 0 for Gaussian noise, −1 for a steady tone.
     pub kurtosis: f64,
@@ -137,8 +140,20 @@ impl BandEnvelopes {
             scratch: forward.make_scratch_vec(),
             forward,
             bands,
+            cycle: None,
             work,
         })
+    }
+
+    /// The same with the power of each band in each segment over its own mean course in a period of `frequency_hz`, so that what repeats
+    /// with it is gone. What its power goes up and down with is left at its own frequency, and not beside the lines that are gone. A band
+    /// in which a period holds fewer than four samples is left out.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`].
+    pub fn over_period(mut self, frequency_hz: f64) -> Result<Self> {
+        self.cycle = Some(Cycle::new(frequency_hz, self.work.squared.len())?);
+        Ok(self)
     }
 
     /// A length of at most `record` samples whose transform is fast, and at most `longest`.
@@ -176,7 +191,11 @@ impl BandEnvelopes {
             .process_with_scratch(&mut self.input, &mut self.spectrum, &mut self.scratch)
             .expect("all three buffers have the plan's lengths");
         let scale = 2.0 / self.segment as f64;
-        self.bands.iter_mut().for_each(|band| band.add(&self.spectrum, scale, &mut self.work));
+        let duration_s = self.segment as f64 / self.sample_rate_hz;
+        for band in &mut self.bands {
+            let cycle = self.cycle.as_mut().map(|cycle| (cycle, duration_s));
+            band.add(&self.spectrum, scale, cycle, &mut self.work);
+        }
         self.segments += 1;
         Ok(())
     }
@@ -190,7 +209,13 @@ impl BandEnvelopes {
 }
 
 impl Band {
-    fn add(&mut self, spectrum: &[Complex<f64>], scale: f64, work: &mut Work) {
+    fn add(
+        &mut self,
+        spectrum: &[Complex<f64>],
+        scale: f64,
+        cycle: Option<(&mut Cycle, f64)>,
+        work: &mut Work,
+    ) {
         let ((first, end), len) = (self.lines, self.window.len());
         let (analytic, squared) = (&mut work.analytic[..len], &mut work.squared[..len]);
         let output = &mut work.output[..self.transform.complex_len()];
@@ -199,11 +224,14 @@ impl Band {
         rest.fill(Complex::default());
         self.inverse.process_with_scratch(analytic, &mut work.scratch);
         let count = len as f64;
+        squared.iter_mut().zip(&*analytic).for_each(|(e, a)| *e = a.norm_sqr());
+        if let Some((cycle, duration_s)) = cycle {
+            cycle.divide(squared, duration_s);
+        }
         let mut sums = [0.0; 2];
-        for (e, a) in squared.iter_mut().zip(&*analytic) {
-            *e = a.norm_sqr();
-            sums[0] += *e;
-            sums[1] += *e * *e;
+        for e in &*squared {
+            sums[0] += e;
+            sums[1] += e * e;
         }
         let mean = sums[0] / count;
         self.sums.iter_mut().zip(sums).for_each(|(all, sum)| *all += sum / count);

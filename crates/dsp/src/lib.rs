@@ -96,6 +96,7 @@ mod envelope;
 
 mod band_envelopes;
 mod comb;
+mod cycle;
 
 mod angle;
 mod cepstrum;

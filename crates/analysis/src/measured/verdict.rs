@@ -8,13 +8,14 @@
 //!    combs of unrelated fundamentals in the same spectrum.
 //! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
 //!    of the band must swing by half of its mean.
+//!
+//! The highest that passes is claimed, and what knocks beside it is told by `second.rs`.
 
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::unrelated::{SLIP, is_the_same, unrelated_hz};
 use super::{Machine, passage};
-use crate::Error;
 
 /// One defect family.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,6 +41,9 @@ pub struct Family {
     /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines
     /// ([`BandEnvelope::autocorrelation`]).
     pub in_passages: bool,
+    /// The family that stands higher, over whose period everything that is said of this one is taken
+    /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
+    pub over: Option<&'static str>,
     /// Whether this is called a defect.
     pub claimed: bool,
     /// Why, or why not.
@@ -54,16 +58,30 @@ pub(super) struct Judged {
     pub(super) families: Vec<Family>,
     pub(super) verdict: String,
     pub(super) notes: Vec<String>,
+    /// The defect that stands highest, if there is one.
+    pub(super) first: Option<First>,
+}
+
+/// What is known where something is sought that knocks beside a defect.
+pub(super) struct First {
+    /// Its place among the families.
+    pub(super) at: usize,
+    /// Its comb [Hz].
+    pub(super) comb_hz: f64,
+    /// Turns of the shaft [Hz], whose lines are left where it modulates the first family.
+    pub(super) shaft_hz: f64,
+    /// Turns of the cage without slip [Hz].
+    pub(super) cage_hz: f64,
+    /// One over the length of a segment [Hz].
+    pub(super) resolution_hz: f64,
 }
 
 /// Largest probability of a false alarm at which a family is there.
-const ALPHA: f64 = 1e-3;
+pub(super) const ALPHA: f64 = 1e-3;
 /// Largest part of unrelated combs that may stand as high.
 const MOST_AS_HIGH: f64 = 0.1;
 /// Least modulation of the power of a band that is called a knock.
-const KNOCK: f64 = 0.5;
-/// A second defect may be this much lower than the first; weaker families are taken for its sidebands [dB].
-const SECOND_DB: f64 = 6.0;
+pub(super) const KNOCK: f64 = 0.5;
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
 /// What is looked for: the name, and the order of the comb over that of the name.
@@ -75,16 +93,17 @@ const FAMILIES: [(&str, &str, f64); 4] = [
     ("FTF", "the cage", 1.0),
 ];
 
-pub(super) fn judge(
-    bands: &[BandEnvelope],
-    machine: &Machine,
-    record_s: f64,
-    segment_s: f64,
-) -> Result<Judged, Error> {
+/// The order of the comb of a family over that of its name.
+pub(super) fn times_of(name: &str) -> f64 {
+    FAMILIES.iter().find(|f| f.0 == name).map_or(1.0, |f| f.2)
+}
+
+/// The families, of which one at most is claimed; [`Judged::conclude`] says the rest.
+pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Judged {
     let mut notes = Vec::new();
     let nothing = |notes: Vec<String>| {
         let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
-        Ok(Judged { families: Vec::new(), verdict, notes })
+        Judged { families: Vec::new(), verdict, notes, first: None }
     };
     let Some(bearing) = &machine.bearing else {
         notes.push("no bearing was given: `--bearing \"6205\"`, or its numbers".to_owned());
@@ -131,9 +150,24 @@ pub(super) fn judge(
     let modulated = is_modulated_by_the_cage(&families, &whitened);
     share_out(&mut families, 1.0 / segment_s, modulated);
     decide(&mut families);
-    tell_the_element(&mut families, bands);
-    let verdict = conclude(&families);
-    Ok(Judged { families, verdict, notes })
+    let first = claimed_first(&families).map(|(at, comb_hz)| First {
+        at,
+        comb_hz,
+        shaft_hz,
+        cage_hz: orders.ftf * shaft_hz,
+        resolution_hz: 1.0 / segment_s,
+    });
+    Judged { families, verdict: String::new(), notes, first }
+}
+
+impl Judged {
+    /// What all families together say; `bands` are those that were judged.
+    pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
+        if !self.families.is_empty() {
+            tell_the_element(&mut self.families, bands);
+            self.verdict = conclude(&self.families);
+        }
+    }
 }
 
 /// Where a family stands highest.
@@ -168,6 +202,7 @@ fn look(
         depth: None,
         band_hz: None,
         in_passages: false,
+        over: None,
         claimed: false,
         reason: String::new(),
         height_db: f64::NEG_INFINITY,
@@ -204,7 +239,7 @@ fn look(
 
 /// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried. The comb of
 /// the `first` family [Hz] is none of them.
-fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -> Option<f64> {
+pub(super) fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -> Option<f64> {
     let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| is_the_same(hz, first_hz));
     let heights: Vec<f64> = unrelated_hz(comb_hz)
         .filter(|hz| !of_the_first(*hz))
@@ -220,7 +255,7 @@ fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -
 
 /// Harmonics whose sidebands are looked for, and how many of both sides of all make a family modulated.
 const HARMONICS: usize = 3;
-const MODULATED: usize = 3;
+pub(super) const MODULATED: usize = 3;
 
 /// How many of the six sidebands of the first three harmonics of a family noise would not make.
 pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_hz: f64) -> usize {
@@ -244,8 +279,10 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
 fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     let cannot_be = |family: &Family| family.name == "BSF" && !modulated;
     let comb = |family: &Family| {
-        let times = FAMILIES.iter().find(|f| f.0 == family.name).map_or(1.0, |f| f.2);
-        Some((times * family.measured_hz?, (family.measured_hz? / family.expected_hz - 1.0).abs()))
+        Some((
+            times_of(family.name) * family.measured_hz?,
+            (family.measured_hz? / family.expected_hz - 1.0).abs(),
+        ))
     };
     let combs: Vec<Option<(f64, f64)>> = families.iter().map(comb).collect();
     for (at, own) in combs.iter().enumerate() {
@@ -270,9 +307,15 @@ fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     }
 }
 
-/// The family that knocks and stands highest, but for the cage's.
+/// The defect that stands for itself, but for the cage: its place and its comb [Hz].
+fn claimed_first(families: &[Family]) -> Option<(usize, f64)> {
+    let at = families.iter().position(|f| f.claimed && f.name != "FTF")?;
+    Some((at, times_of(families[at].name) * families[at].measured_hz?))
+}
+
+/// The family that knocks and stands highest, but for the cage's and those whose lines are another's.
 fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
-    let knocking = families.enumerate().filter(|(_, f)| f.name != "FTF" && f.knocks());
+    let knocking = families.enumerate().filter(|(_, f)| f.name != "FTF" && f.reason.is_empty() && f.knocks());
     knocking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
 }
 
@@ -294,7 +337,7 @@ fn decide(families: &mut [Family]) {
             )
         } else if first_db.is_finite() && family.name == "FTF" {
             "it is there, as the cage's share in a family that stands for itself".to_owned()
-        } else if family.height_db < first_db && (family.height_db < first_db - SECOND_DB || rank > 0.0) {
+        } else if family.height_db < first_db {
             "it is there, but another family stands higher, of which it may be sidebands".to_owned()
         } else {
             family.claimed = true;
@@ -401,7 +444,7 @@ fn probability(p: f64) -> String {
     if p >= 0.1 { format!("{p:.1}") } else { format!("{p:.3}") }
 }
 
-fn decibel(power: f64) -> f64 {
+pub(super) fn decibel(power: f64) -> f64 {
     10.0 * power.max(1e-30).log10()
 }
 
@@ -422,6 +465,7 @@ mod tests {
             depth: Some(1.5),
             band_hz: None,
             in_passages: false,
+            over: None,
             claimed: false,
             reason: String::new(),
             height_db: 25.0,
@@ -444,10 +488,9 @@ mod tests {
             let names: Vec<&str> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
         }
-        // Two lines of their own are two defects.
+        // Lines of their own are not shared.
         let mut apart = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 52.2)];
         share_out(&mut apart, 1.25, true);
-        decide(&mut apart);
-        assert!(apart.iter().all(|family| family.claimed), "{apart:?}");
+        assert!(apart.iter().all(|family| family.reason.is_empty()), "{apart:?}");
     }
 }

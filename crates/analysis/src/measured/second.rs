@@ -1,0 +1,110 @@
+//! Does something knock beside the family that stands highest?
+//!
+//! Sidebands of the first family are its own, and stand as high as many a second defect. What modulates it is a factor of its power, and
+//! a second defect is a term beside it: over the mean course of the power in a period of the first family, the factor is left at the
+//! frequency of the shaft or of the cage, and the term keeps its lines (THEORY §7.9).
+
+use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
+
+use super::unrelated::SLIP;
+use super::verdict::{ALPHA, Family, First, KNOCK, MODULATED, decibel, rank, sidebands_seen, times_of};
+
+/// Where a family knocks most over the period of the first.
+struct Beside {
+    at: usize,
+    comb: Comb,
+    p_value: f64,
+    depth: f64,
+    band_hz: (f64, f64),
+}
+
+/// Claims the family that stands highest in `bands`, those over the period of the first family, if it passes there; `whole` is the whole
+/// range as it is.
+pub(super) fn tell(
+    families: &mut [Family],
+    first: &First,
+    whole: Option<&BandEnvelope>,
+    bands: &[BandEnvelope],
+) {
+    let whitened: Vec<(&BandEnvelope, Whitened)> = bands
+        .iter()
+        .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
+        .collect();
+    let asked = families.iter().enumerate().filter(|(at, family)| {
+        // A family that was not looked for is not there, either.
+        *at != first.at && family.name != "FTF" && family.band_hz.is_some()
+    });
+    let told = asked.filter_map(|(at, family)| beside(at, family, first, whole, &whitened));
+    let Some(second) = told.max_by(|a, b| a.comb.height.total_cmp(&b.comb.height)) else { return };
+    let name = families[first.at].name;
+    let family = &mut families[second.at];
+    family.measured_hz = Some(second.comb.fundamental_hz / times_of(family.name));
+    family.level_db = Some(decibel(second.comb.ratios[0]));
+    family.p_value = second.p_value;
+    family.rank = Some(0.0);
+    family.depth = Some(second.depth);
+    family.band_hz = Some(second.band_hz);
+    family.over = Some(name);
+    family.claimed = true;
+    family.reason = format!(
+        "over the mean course of the power in a period of {name}, whose sidebands are gone there, it stands, no unrelated comb stands as \
+         high, and the power swings by {:.0} %",
+        100.0 * second.depth
+    );
+}
+
+/// A family that passes in the band in which its swing is deepest, of those in which it is more than noise: what the first family has been
+/// divided by says how loud a band is no more.
+fn beside(
+    at: usize,
+    family: &Family,
+    first: &First,
+    whole: Option<&BandEnvelope>,
+    bands: &[(&BandEnvelope, Whitened)],
+) -> Option<Beside> {
+    let comb_hz = times_of(family.name) * family.expected_hz;
+    let search = |spectrum: &Whitened, hz: f64| {
+        CombTest::FOUR_OF_FIVE.search(spectrum, (1.0 - SLIP) * hz, (1.0 + SLIP) * hz).ok()
+    };
+    let found: Vec<(usize, Comb)> = bands
+        .iter()
+        .enumerate()
+        .filter_map(|(n, (_, spectrum))| Some((n, search(spectrum, comb_hz)?)))
+        .collect();
+    let searched = found.len() as f64;
+    let there = found.into_iter().filter(|(_, comb)| comb.p_value * searched < ALPHA);
+    let deep = there.map(|(n, comb)| (n, bands[n].0.depth(comb.fundamental_hz), comb));
+    let (n, depth, comb) = deep.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (band, spectrum) = &bands[n];
+    let remains = search(spectrum, first.comb_hz).map_or(0.0, |left| left.height);
+    let own = match family.name {
+        // A spot on an element comes under the load once a turn of the cage.
+        "BSF" => sidebands_seen(spectrum, comb.fundamental_hz, first.cage_hz) >= MODULATED,
+        // Sound elements pass as well, and with the louder family gone they may be all there is to hear: beside it, a defect is to be
+        // loud in the whole range.
+        "BPFO" => {
+            let loud = whole.is_some_and(|whole| whole.depth(comb.fundamental_hz) >= KNOCK);
+            family.is_there() && loud && !first.takes(comb.fundamental_hz)
+        }
+        _ => !first.takes(comb.fundamental_hz),
+    };
+    let told = depth >= KNOCK
+        && own
+        && remains < comb.height
+        && rank(&comb, comb_hz, spectrum, Some(first.comb_hz)) == Some(0.0);
+    told.then_some(Beside {
+        at,
+        p_value: comb.p_value * searched,
+        comb,
+        depth,
+        band_hz: (band.low_hz, band.high_hz),
+    })
+}
+
+impl First {
+    /// Whether lines are those of the shaft, so many to a turn.
+    fn takes(&self, hz: f64) -> bool {
+        let turns = (hz / self.shaft_hz).round();
+        (hz - turns * self.shaft_hz).abs() < self.resolution_hz
+    }
+}
