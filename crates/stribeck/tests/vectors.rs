@@ -9,7 +9,7 @@ const PRECISION: &[u8] = b"_pd";
 /// A closure over an array had been compiled without the instruction set of the vectors in it: each product was a function that was
 /// called, and a second of the reduced bearing took 7.6 s instead of 3.1. Nothing but the clock had told.
 #[test]
-fn no_operation_on_a_vector_is_a_function() {
+fn issue_no_operation_on_a_vector_is_a_function() {
     let program = std::fs::read(env!("CARGO_BIN_EXE_stribeck")).expect("it has been built");
     let holds = |name: &[u8], part: &[u8]| name.windows(part.len()).any(|here| here == part);
     let mut found: Vec<String> = Vec::new();
