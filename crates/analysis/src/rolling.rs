@@ -33,8 +33,8 @@ pub fn least_support_n(scene: &Scene, curve: &StaticCurve, support_n: f64) -> Op
 /// A roller slower than this share of rolling has lost its spin.
 const STOPPED: f64 = 0.5;
 
-/// The friction that turns a roller over the edge of a `spall` under `force_n` for certain [-] (THEORY §5.4). Where there is less, and its
-/// own spin does not carry it over, it slides on the spall.
+/// The friction that slowly turns a roller over the edge of a `spall` under `force_n` [-], contact as stiff as the bodies (THEORY §5.4). Where
+/// there is less, and its own spin does not carry it over, it slides on the spall.
 pub fn friction_over_edge(geometry: &Geometry, spall: &SpallScene, force_n: f64) -> f64 {
     let radius = geometry.roller_radius;
     let lifted = RigidRings::new(geometry).approach_m(force_n).min(1e-3 * spall.depth_mm);
@@ -55,8 +55,8 @@ pub fn flats(scene: &Scene, force_n: f64) -> Vec<String> {
         .filter(|(_, needed)| friction < *needed)
         .map(|(roller, needed)| {
             format!(
-                "roller {roller} may stop on its spall: friction turns it over the edge under {:.1} kN from `contact.friction` {needed:.3} on, \
-                 and the scene has {friction}. A roller that slides has no BSF; less load or a softer spall helps, too",
+                "roller {roller} may stop on its spall: friction turns it over the edge under {:.1} kN from about {needed:.3} on, \
+                 and `contact.friction` is {friction}. A roller that slides has no BSF; less load or a softer spall helps, too",
                 1e-3 * force_n
             )
         })
@@ -89,15 +89,13 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
         said.extend(percent.map(|p| format!("{what} {p:.1} % slower than rolling: they slide")));
     }
     let least_hz = STOPPED * motion.expected_roller_spin_hz;
-    if motion.roller_spin_hz.is_some_and(|hz| hz > least_hz) {
+    if let Some(others_hz) = motion.roller_spin_hz.filter(|hz| *hz > least_hz) {
         let stopped = motion.rollers.iter().filter(|roller| roller.spin_hz < least_hz);
         said.extend(stopped.map(|roller| {
             format!(
-                "roller {} has lost its spin: {:.1} Hz in the mean where others have {:.1} Hz. Friction does not turn it over what is \
-                 missing from its surface, or it is not loaded; a defect on it strikes at no BSF",
-                roller.roller,
-                roller.spin_hz,
-                motion.roller_spin_hz.unwrap_or(motion.expected_roller_spin_hz)
+                "roller {} has lost its spin: {:.1} Hz in the mean where loaded rollers have {others_hz:.1} Hz. Friction does not turn it over \
+                 what is missing from its surface, or it is not loaded; a defect on it strikes at no BSF",
+                roller.roller, roller.spin_hz
             )
         }));
     }

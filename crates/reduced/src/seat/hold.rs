@@ -104,33 +104,14 @@ fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
     }
 }
 
-/// Eight numbers, in a line of cache of their own or not.
-trait Values {
-    fn numbers(&self) -> &[f64];
-}
-
-impl Values for Row {
-    #[inline(always)]
-    fn numbers(&self) -> &[f64] {
-        self
-    }
-}
-
-impl Values for [f64; LANES] {
-    #[inline(always)]
-    fn numbers(&self) -> &[f64] {
-        self
-    }
-}
-
 /// Sum of the products of two rows.
 #[inline(always)]
-fn dot<S: Simd>(simd: S, rows: &[Row], values: &[impl Values]) -> f64 {
+fn dot<'a, S: Simd>(simd: S, rows: &[Row], values: impl IntoIterator<Item = &'a [f64; LANES]>) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (row, values) in rows.iter().zip(values) {
         let mut at = 0;
         while at < LANES {
-            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, values.numbers(), at), sum);
+            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, values, at), sum);
             at += Vector::<S>::LEN;
         }
     }
@@ -244,7 +225,8 @@ impl Springs {
         let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
         // Not `map`: what a closure does over an array is compiled without the vectors' instruction set.
         let [first, second] = [&self.by_rollers[groups * facet..], &self.by_rollers[groups * second..]];
-        [dot(simd, &first[..groups], open), dot(simd, &second[..groups], open)]
+        let open = || open.iter().map(|row| &row.0);
+        [dot(simd, &first[..groups], open()), dot(simd, &second[..groups], open())]
     }
 
     /// What rollers do to the tensions, each by itself: a unit force at its place, the force if the seat stays as it is, and how much less it
