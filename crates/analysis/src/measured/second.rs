@@ -47,8 +47,8 @@ pub(super) fn tell(
     family.over = Some(name);
     family.claimed = true;
     family.reason = format!(
-        "over the mean course of the power in a period of {name}, whose sidebands are gone there, it stands, no unrelated comb stands as \
-         high, and the power swings by {:.0} %",
+        "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated comb stands as high, and the \
+         power swings by {:.0} %",
         100.0 * second.depth
     );
 }

@@ -6,7 +6,7 @@ use crate::findings::{Findings, SensorSignal};
 use crate::paper;
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
 use crate::record::Record;
-use crate::summary::Event;
+use crate::summary::{Event, PhaseLevels};
 
 /// Most exits that are named in full.
 const NAMED: usize = 6;
@@ -18,19 +18,16 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     let title = format!("Acceleration a_y at sensor “{}”", leading.name);
     let mut figure = over_time("acceleration", &title)
         .with(sampled(findings, "mean over each interval", Colour::Blue, &leading.raw_g))
-        .caption(format!(
-            "Peaks: {} at exits, {} at entries, {} in the gaps.",
-            gravities(levels.phases.exit_g),
-            gravities(levels.phases.entry_g),
-            gravities(levels.phases.gap_g),
-        ));
+        .caption(format!("Peaks: {}.", peaks(Some(&levels.phases))));
     figure.marks = passages(&findings.summary.events);
-    figure = figure.note(if findings.summary.events.len() > DRAWN {
-        "Entries and exits are too many to be drawn here; they stand in the table of the contact forces."
-    } else {
-        "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
-         place of the roller on its way is drawn."
-    });
+    figure = match findings.summary.events.len() {
+        0 => figure,
+        1..=DRAWN => figure.note(
+            "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
+             place of the roller on its way is drawn.",
+        ),
+        _ => figure.note("Entries and exits are too many to be drawn here; they stand in the table of the contact forces."),
+    };
     figure.bands = start_up(findings);
     if findings.of_paper {
         figure.levels = both_signs(&[(paper::IMPULSE_G, "impulses"), (paper::BETWEEN_G, "between")]);
@@ -75,12 +72,7 @@ pub(super) fn others(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fig
         figure.bands = transient(findings);
         figure.marks = passages(&findings.summary.events);
         let of_sensor = findings.summary.levels.sensors.iter().find(|l| l.sensor == sensor.name);
-        figures.push(figure.caption(format!(
-            "a_y: {} at exits, {} at entries, {} in the gaps.",
-            gravities(of_sensor.and_then(|l| l.phases.exit_g)),
-            gravities(of_sensor.and_then(|l| l.phases.entry_g)),
-            gravities(of_sensor.and_then(|l| l.phases.gap_g)),
-        )));
+        figures.push(figure.caption(format!("a_y: {}.", peaks(of_sensor.map(|l| &l.phases)))));
     }
     if let Some(leading) = findings.sensors.first() {
         figures.extend(instantaneous(record, findings, leading)?);
@@ -169,6 +161,15 @@ fn transient_note(findings: &Findings) -> String {
             if findings.of_paper { " Dashed across: the paper's level." } else { "" }
         )
     })
+}
+
+/// Peaks about the passages of a spall and in the gaps; where nothing passes one, all of the record is a gap.
+fn peaks(phases: Option<&PhaseLevels>) -> String {
+    let [exit, entry, gap] = phases.map_or([None; 3], |p| [p.exit_g, p.entry_g, p.gap_g]);
+    if exit.or(entry).is_none() && gap.is_some() {
+        return gravities(gap);
+    }
+    format!("{} at exits, {} at entries, {} in the gaps", gravities(exit), gravities(entry), gravities(gap))
 }
 
 fn gravities(level: Option<f64>) -> String {
