@@ -14,7 +14,7 @@ use crate::artefacts;
 use crate::diagnosis;
 use crate::duty::{self, DutyFinding};
 use crate::enveloping;
-use crate::families::{self, Channel, Motion, RollerTrack};
+use crate::families::{self, Channel, FamilyFinding, Motion, RollerTrack};
 use crate::film::FilmFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics::{self, Turning};
@@ -187,8 +187,11 @@ impl Findings {
             ));
         }
         let families = families::identify(&tracks, &candidates, &channels)?;
-        let filter =
-            if steady { filter(run, record, &prediction, &sensors, &measured, &mut notes)? } else { None };
+        let filter = if steady {
+            filter(run, record, &prediction, &sensors, (&measured, &families), &mut notes)?
+        } else {
+            None
+        };
         if let Some(filter) = &filter {
             filter_sensors(filter, record, &mut sensors)?;
         }
@@ -449,13 +452,14 @@ fn measured_tones(
 }
 
 /// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or at the
-/// predicted one. Where contact is with the round surface that facets stand for, none is predicted.
+/// predicted one. Where contact is with the round surface that facets stand for, none is predicted, and a tone there counts only
+/// where the rollers' motion makes it, too: a peak that stands at its place may be anything.
 fn filter(
     run: &Run,
     record: &Record<'_>,
     prediction: &Prediction,
     sensors: &[SensorSignal],
-    measured: &[Tone],
+    (measured, families): (&[Tone], &[FamilyFinding]),
     notes: &mut Vec<String>,
 ) -> Result<Option<Filter>, Error> {
     if record.is_empty() {
@@ -463,7 +467,10 @@ fn filter(
     }
     let predicted = prediction.facet_lines.first().map(|l| l.1).filter(|&hz| hz > 0.0);
     let leading = sensors.first().and_then(|s| tones::dominant(measured, &s.name));
-    let centre_hz = match (leading.or_else(|| tones::clearest(measured)), predicted) {
+    let tone = leading.or_else(|| tones::clearest(measured));
+    let faceted = run.scene.contact.surface == ContactSurface::Facet;
+    let by_motion = families.iter().any(|f| f.found || !f.not_told_apart_from.is_empty());
+    let centre_hz = match (tone.filter(|_| faceted || by_motion), predicted) {
         (Some(tone), _) => {
             if leading.is_none() {
                 notes.push(format!(
@@ -474,12 +481,20 @@ fn filter(
             }
             tone.measured_hz.or(predicted).unwrap_or(PAPER_CENTRE_HZ)
         }
-        (None, _) if run.scene.contact.surface != ContactSurface::Facet => {
+        (None, _) if !faceted => {
+            let seen = match tone.and_then(|tone| tone.measured_hz) {
+                Some(hz) => {
+                    format!("the peak at {hz:.0} Hz does not follow the rollers\u{2019} recorded motion")
+                }
+                None => format!(
+                    "no facet tone stands {} dB above its surroundings at any sensor",
+                    tones::LEAST_PROMINENCE_DB
+                ),
+            };
             notes.push(format!(
-                "no notch: with `contact.surface: {}` no roller goes over edges of facets, and no facet tone stands {} dB above its \
-                 surroundings at any sensor, so that a filter there would take nothing away; its figures and numbers are left out",
+                "no notch: with `contact.surface: {}` no roller goes over edges of facets, and {seen}, so that a filter there would take \
+                 nothing of them away; its figures and numbers are left out",
                 if run.scene.contact.surface == ContactSurface::Arc { "arc" } else { "nagata" },
-                tones::LEAST_PROMINENCE_DB
             ));
             return Ok(None);
         }

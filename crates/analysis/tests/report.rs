@@ -460,7 +460,8 @@ fn example_arcs_without_a_facet_tone_have_no_notch_and_the_page_says_why() {
         assert!(!page.contains(&format!("id=\"{figure}\"")), "{figure}");
     }
     assert!(
-        page.contains("id=\"spectrum\"") && page.contains("so that a filter there would take nothing away")
+        page.contains("id=\"spectrum\"")
+            && page.contains("so that a filter there would take nothing of them away")
     );
     let (page, summary, _folder) = of("chords", ContactSurface::Facet);
     assert!(summary.notch.is_some() && page.contains("id=\"spectrum-notched\""));

@@ -8,6 +8,8 @@ mod emit;
 mod memory;
 mod tables;
 
+use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -100,6 +102,31 @@ impl Folder {
 
     fn file(&self) -> PathBuf {
         self.0.join("campaign.ron")
+    }
+
+    /// Waits until no other part writes the files of the campaign itself, for as long as what is returned lives, and removes what a
+    /// part that was killed has left half written.
+    fn take_turn(&self) -> Result<File> {
+        let path = self.0.join(".lock");
+        let lock = || {
+            let file = File::options().write(true).create(true).truncate(false).open(&path)?;
+            match file.lock() {
+                Ok(()) => self.remove_left_overs(),
+                // Some network file systems know no locks: there, parts do not meet by the names of what they write.
+                Err(error) if error.kind() == ErrorKind::Unsupported => {}
+                Err(error) => return Err(error),
+            }
+            Ok(file)
+        };
+        lock().with_context(|| format!("cannot write `{}`", shown(&path)))
+    }
+
+    fn remove_left_overs(&self) {
+        for entry in std::fs::read_dir(&self.0).into_iter().flatten().flatten() {
+            if tables::is_half_written(&entry.file_name()) {
+                std::fs::remove_file(entry.path()).ok();
+            }
+        }
     }
 }
 
@@ -215,6 +242,7 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
         Err(_) => {
             std::fs::create_dir_all(folder.0.join("runs"))
                 .with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
+            let _turn = folder.take_turn()?;
             replace(&path, &campaign.text)?;
         }
     }
@@ -252,8 +280,10 @@ fn conclude(
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let rows = tables::rows(folder, campaign, &stages)?;
+    let turn = folder.take_turn()?;
     let written = tables::write(folder, campaign, &rows)?;
     replace(&folder.0.join("DATASHEET.md"), &datasheet::text(campaign, &rows, &written))?;
+    drop(turn);
     let complete = rows.iter().filter(|row| row.status == "complete").count();
     for row in rows.iter().filter(|row| row.status != "complete").take(3) {
         let why = row.reason.as_deref().unwrap_or_default();

@@ -88,8 +88,14 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     let table = Recording::open(desk.join("A/runs.parquet")).expect("a table");
     let loads = table.channel("scene.operation.load_n").expect("a column").read().expect("numbers");
     assert_eq!(loads.len(), 8);
-    // Once more: nothing is run, and the tables stay.
+    // Once more: nothing is run, and the tables stay; what a kill has left beside them does not, and files of the owner's do.
+    let (left, own) = (desk.join("A/runs.4711.new"), desk.join("A/notes.new"));
+    for path in [&left, &own] {
+        fs::write(path, "half").expect("it can be written");
+    }
     says(&run(&desk, &["--out=A"]), &["0 of them to be run", "8 of 8"]);
+    assert!(!left.exists() && own.exists());
+    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
 }
 
 /// The campaign, of whose runs no more is to stay than this.

@@ -5,6 +5,7 @@ mod signals;
 mod truth;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -124,10 +125,20 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
     Ok(written)
 }
 
+/// End of the name of a file that is not yet whole.
+const HALF_WRITTEN: &str = ".new";
+
+/// Whether a file of this name is one that [`replace`] was making.
+pub(super) fn is_half_written(name: &OsStr) -> bool {
+    let mut parts =
+        name.to_str().and_then(|name| name.strip_suffix(HALF_WRITTEN)).unwrap_or_default().rsplit('.');
+    parts.next().is_some_and(|process| process.parse::<u32>().is_ok()) && parts.next().is_some()
+}
+
 /// Lets `write` make a file beside `path`, then puts it in its place. Parts that write the same file at once do not meet: each has
 /// a name of its own until then.
 pub(super) fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
-    let beside = path.with_extension(format!("{}.new", std::process::id()));
+    let beside = path.with_extension(format!("{}{HALF_WRITTEN}", std::process::id()));
     let written = write(&beside).and_then(|()| {
         // The name must not reach the disk before the content.
         std::fs::File::open(&beside)?.sync_data()?;
