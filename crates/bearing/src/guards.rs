@@ -11,9 +11,10 @@
 //! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
 //! | time without a roller that carries anything | `unsupported_warning_ms` | |
 //! | rollers and housing out of their place | | [`OUT_OF_PLACE`] |
+//! | the cage's centre from that of the bearing | | the radius of the pitch circle |
 //!
 //! The fields are those of `guards` in the scene. [`System::look`] watches what can go wrong with any bodies in motion and
-//! says it in the scene's words ([`arm`]); before the first step, for the penetration in the fourth row, and for the last two rows, it is said here. A warning is
+//! says it in the scene's words ([`arm`]); before the first step, for the penetration in the fourth row, and for the last three rows, it is said here. A warning is
 //! given once, at the first sample above its limit. What has been seen is in checkpoints and in
 //! [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
 
@@ -52,6 +53,8 @@ pub(crate) struct Guards {
     soft: Softness,
     /// Nearest and farthest place of a roller's centre from that of the outer ring [m].
     annulus: [f64; 2],
+    /// How far the middle of the cage may be from there [m].
+    pitch_radius: f64,
     /// How far the housing may leave the ring [m].
     seat: f64,
     /// Height of the housing above the outer ring at rest [m], if there is one.
@@ -113,6 +116,7 @@ impl Guards {
             soft: Softness::of(scene, &g),
             unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
             annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
+            pitch_radius: 0.5 * (g.inner_race_radius + g.outer_race_radius),
             seat: slack,
             housing_height: machine.housing.map(|housing| height(housing) - height(machine.outer)),
         }
@@ -211,6 +215,17 @@ impl Guards {
                      larger `contact.penalty_scale`, less `operation.load_n` or a smaller `solver.time_step_factor`",
                     roller.pocket + 1,
                     1e3 * radius,
+                    when(info)
+                ));
+            }
+        }
+        if let Some(cage) = machine.cage {
+            let off = (middle(cage, 0) - ring[0]).hypot(middle(cage, 1) - ring[1]);
+            if off > self.pitch_radius {
+                return Some(format!(
+                    "the cage has left the bearing: its centre is {:.1} mm from that of the outer ring {}. Nothing holds it there: take `cage.pocket: \
+                     corners` with pockets narrower than rollers, more `contact.friction`, or `cage: None`",
+                    1e3 * off,
                     when(info)
                 ));
             }

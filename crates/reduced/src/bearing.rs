@@ -256,8 +256,8 @@ impl Bearing {
         reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
         let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let bounds =
-            nearest_about(&outer, BESIDE * radius).into_iter().map(|near| near - sag_of_outer).collect();
+        let bounds = nearest_about(&outer, BESIDE * radius, 1.0 / (kr - ko));
+        let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
         let mut outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
         outer.bounds = bounds;
         let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
@@ -488,21 +488,33 @@ fn level_walls(of_vertices: &mut [f64], per_angle: &[f64]) {
 /// A facet that takes less than this share of the mean angle is a wall.
 const WALL: f64 = 0.05;
 
-/// No contact reaches farther to either side than this share of the roller's radius: it would be a fortieth of it deep.
+/// On even ground no contact reaches farther to either side than this share of the roller's radius: it would be a fortieth of it deep.
 const BESIDE: f64 = 0.25;
 
-/// For every facet, how near to the origin an outline comes within a distance along it [m].
-fn nearest_about(outline: &Outline, beside: f64) -> Vec<f64> {
+/// For every facet, how near to the origin an outline comes where a roller over that facet may touch it [m]: as far to either side as a
+/// contact on even ground, and beyond that at what stands out so far that the roller, which falls away by u² / 2R over u, meets it, such
+/// as the edge of a deep spall. `relative` is R [m].
+fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {
     let place = |i: usize| [outline.x[i], outline.y[i]];
     let apart = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| (bx - ax).hypot(by - ay);
+    let out = |i: usize| apart([0.0; 2], place(i));
+    let reach = |stands_out: f64| (beside * beside + 2.0 * relative * stands_out.max(0.0)).sqrt();
+    let nearest_of_all = (0..outline.len()).map(out).fold(f64::INFINITY, f64::min);
     let about = |facet: usize| {
         let mut nearest = f64::INFINITY;
         let ends = [facet, outline.next(facet)];
+        let here = out(ends[0]).max(out(ends[1]));
         for (end, ahead) in ends.into_iter().zip([false, true]) {
             let mut vertex = end;
+            let mut within = true;
             for _ in 0..outline.len() {
-                nearest = nearest.min(apart([0.0; 2], place(vertex)));
-                if apart(place(end), place(vertex)) > beside {
+                let away = apart(place(end), place(vertex));
+                // The first vertex beyond is taken, too: the facet before it is within.
+                if within || away <= reach(here - out(vertex)) {
+                    nearest = nearest.min(out(vertex));
+                }
+                within = away <= beside;
+                if away > reach(here - nearest_of_all) {
                     break;
                 }
                 vertex = if ahead { outline.next(vertex) } else { outline.before(vertex) };

@@ -18,6 +18,8 @@ pub(crate) struct LedgerError {
     of_strain: f64,
     /// Over the heat since the start.
     of_heat: f64,
+    /// Over the energy of motion.
+    of_motion: f64,
 }
 
 impl LedgerError {
@@ -26,13 +28,26 @@ impl LedgerError {
         Self {
             of_strain: ledger.relative_error,
             of_heat: ledger.imbalance.abs() / heat.max(f64::MIN_POSITIVE),
+            of_motion: ledger.imbalance.abs() / ledger.kinetic.max(f64::MIN_POSITIVE),
         }
+    }
+
+    /// Whether the run has come apart. One that turns energy into heat for seconds gathers the error of the time step, one or two
+    /// thousandths of the heat, and in time exceeds any share of what the rings store; under hardly any load they store less than a
+    /// billionth of what is in motion. Neither is a divergence, which exceeds both other shares at once.
+    fn is_divergence(&self, stop_percent: f64) -> bool {
+        let percent = 100.0 * self.of_strain;
+        let apart = percent > stop_percent && self.of_heat > GATHERED && self.of_motion > OF_MOTION;
+        apart || percent.is_nan() || self.of_heat.is_nan()
     }
 }
 
-/// A run that turns energy into heat for seconds gathers the error of the time step, one or two thousandths of the heat, and in time
-/// exceeds any share of what the rings store. That is no divergence, which exceeds this share of the heat at once.
+/// What a run that diverges exceeds: shares of the heat and of the energy of motion.
 const GATHERED: f64 = 0.01;
+const OF_MOTION: f64 = 1e-6;
+
+/// With fewer modes in a seat none may be among them in which the ring bends: two or three are motions of the whole.
+const FEW_MODES: usize = 5;
 
 /// Gain of a loop whose force is extrapolated by a step, from which on it may diverge: z² + g (2z − 1) = 0 at z = −1.
 const SEAT_LOOP_GAIN: f64 = 1.0 / 3.0;
@@ -65,6 +80,8 @@ pub(crate) struct Guards {
     numbers: Vec<usize>,
     /// Nearest and farthest place of a roller's centre from the bearing's [m].
     annulus: [f64; 2],
+    /// How far the cage's centre may be from it [m].
+    pitch_radius: f64,
 }
 
 impl Guards {
@@ -80,6 +97,7 @@ impl Guards {
                 g.inner_race_radius + g.roller_radius - slack,
                 g.outer_race_radius - g.roller_radius + depth + slack,
             ],
+            pitch_radius: 0.5 * (g.inner_race_radius + g.outer_race_radius),
         }
     }
 
@@ -94,6 +112,13 @@ impl Guards {
                  `model.modes_khz` or a smaller `contact.penalty_scale`",
                 100.0 * gain,
                 100.0 * SEAT_LOOP_GAIN
+            ));
+        }
+        let modes = bearing.reduction.modes;
+        if bearing.seat.is_some() && modes < FEW_MODES {
+            warnings.push(format!(
+                "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend in none of them: such a run gains energy \
+                 with steps of any length. Take a larger `model.modes_khz`"
             ));
         }
         if scene.output.frames.is_some() {
@@ -115,16 +140,15 @@ impl Guards {
         let when = When { step: info.steps, time: info.steps as f64 * info.time_step_s };
         let limits = &self.limits;
         let percent = 100.0 * off.of_strain;
-        let apart = percent > limits.energy_stop_percent && (off.of_heat.is_nan() || off.of_heat > GATHERED);
-        if percent.is_nan() || apart {
+        if off.is_divergence(limits.energy_stop_percent) {
             // A bearing without friction and damping makes no heat to speak of.
             let of_heat = match off.of_heat {
                 share if share < 1.0 => format!("{:.1} % of all heat", 100.0 * share),
                 _ => "more than all heat".to_owned(),
             };
             return Some(format!(
-                "energy is off by {percent:.3} % of the peak strain energy and {of_heat} {when}. Take a smaller `model.step_us`, or `model: full` to see \
-                 which of the two is wrong"
+                "energy is off by {percent:.3} % of the peak strain energy and {of_heat} {when}. Take a smaller `model.step_us`, a larger \
+                 `model.modes_khz`, or `model: full` to see which of the two models is wrong"
             ));
         }
         if percent > limits.energy_warning_percent && !info.guards.energy_warned {
@@ -190,6 +214,13 @@ impl Guards {
                 ));
             }
         }
-        None
+        let off = state.cage[0].hypot(state.cage[1]);
+        (off > self.pitch_radius).then(|| {
+            format!(
+                "the cage has left the bearing: its centre is {:.1} mm from that of the bearing {when}. Nothing holds it there: take `cage.pocket: \
+                 corners` with pockets narrower than rollers, more `contact.friction`, or `cage: None`",
+                1e3 * off
+            )
+        })
     }
 }

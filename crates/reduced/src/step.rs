@@ -269,10 +269,11 @@ impl Bearing {
                 [velocity[0] - moving[0] - orbit * tilt[0], velocity[1] - moving[1] - orbit * tilt[1]];
             let mut race = all(0.0);
             if let Some(outer) = outer {
+                // It turns about its own centre, which the load has moved: drive and friction see the same velocity of it.
                 race = all(outer.rate);
-                let along = race * (distance + arm);
-                let [rx, ry] = [along.times_plus(radial[1], relative[0]), relative[1] - along * radial[0]];
-                relative = outer.back(simd, [rx, ry]);
+                let along = race * (Vector::load(simd, &on_outer.distance, at) + arm);
+                let (d, [rx, ry]) = (load(simd, &on_outer.d, at), outer.back(simd, relative));
+                relative = [along.times_plus(d[1], rx), ry - along * d[0]];
             }
             let pace = size(orbit - race) * (distance + arm);
             let rolling = Rolling { relative, spin, race, pace };

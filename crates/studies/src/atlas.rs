@@ -53,9 +53,6 @@ const DEFECTS: [(&str, &str, &[&str]); 8] = [
     ),
 ];
 
-/// Time step of the paper's bearing [µs], whose rollers are ten times as heavy and strike the cage: half of that of the others.
-const PAPER_STEP_US: f64 = 0.25;
-
 /// Bearing time for a spot on one rolling element, which is under the load a part of every turn of the cage only [ms].
 const ROLLER_MS: f64 = 2400.0;
 
@@ -122,9 +119,6 @@ fn variant(host: &dyn Host, bearing: &str, defect: &str, list: &str) -> Result<(
     let mut variant = Variant::new(name_of(bearing, defect), SCENE, &[]);
     if !bearing.is_empty() {
         variant = variant.with(format!("bearing={bearing}"));
-    }
-    if bearing.is_empty() {
-        variant = variant.with(format!("model.step_us={PAPER_STEP_US}"));
     }
     if defect == "roller-spall" {
         variant = variant.with(format!("solver.duration_ms={ROLLER_MS}"));
