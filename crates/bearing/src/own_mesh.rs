@@ -114,8 +114,8 @@ impl<'a> OwnMesh<'a> {
         let further = if more > 0 { format!(" and {more} more") } else { String::new() };
         loose.truncate(MOST_NAMED);
         self.refuse(format!(
-            "not all of {}{further} hangs together with its {what} by common nodes, and nothing would hold it: leave it out of the file, \
-             or join its nodes",
+            "{}{further} hang on nothing: all their elements, or some of them, share no nodes with the body of its {what}. Leave them out of the \
+             file, or join their nodes",
             loose.join(", ")
         ))
     }

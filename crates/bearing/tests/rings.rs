@@ -148,10 +148,9 @@ fn refuses_a_ring_with_bodies_that_hang_on_nothing() {
     let set = format!("outer_ring_mesh=(file: {file:?}, raceway: \"raceway\", fit: \"fit\", unit_mm: 1000)");
     let said = Assembly::new(&scene(&[set])).expect_err("loose bodies").to_string();
     assert!(
-        said.contains("`inner ring`") && said.contains("`roller 1`") && said.contains(" more hangs"),
+        said.contains("`INNER_RING`, `FRAME`, `ROLLER_1`, `ROLLER_2` and 12 more hang on nothing"),
         "{said}"
     );
-    assert!(!said.contains("`outer ring`"), "{said}");
 }
 
 #[test]

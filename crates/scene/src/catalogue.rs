@@ -269,7 +269,7 @@ impl CatalogueBearing {
         let most = bearing.most_elements();
         if let Some(elements) = bearing.elements.filter(|elements| *elements > most) {
             return Err(format!(
-                "`{text}` is no bearing: {elements} rolling elements of {} mm do not fit on a pitch circle of {} mm, {most} do",
+                "`{text}` is no bearing: {elements} rolling elements of {} mm do not fit on a pitch circle of {} mm: {most} at most",
                 bearing.diameter_mm, bearing.pitch_mm
             ));
         }
@@ -409,7 +409,7 @@ mod tests {
             ("6205, elements=2.5", "3 to 200"),
             ("diameter_mm=8, pitch_mm=8", "is no bearing"),
             ("6205, elements=x", "no number"),
-            ("NU 205, elements=200", "16 do"),
+            ("NU 205, elements=200", "16 at most"),
         ] {
             let why = CatalogueBearing::parse(text).unwrap_err();
             assert!(why.contains(says), "{text}: {why}");
