@@ -152,7 +152,7 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     // Another number is the user's.
     if known.elements.is_none() && known.usual_elements() == bearing.rollers {
         notes.push(format!(
-            "makers fit different numbers of rolling elements into {name}; unless `elements` gave it, the usual number of {} is assumed here",
+            "makers fit different numbers of rolling elements into {name}; unless `elements` gave them, {} are assumed here",
             bearing.rollers
         ));
     }
@@ -396,6 +396,19 @@ mod tests {
         let own = CatalogueBearing::parse("elements=9, diameter_mm=7.94, pitch_mm=39.04").unwrap();
         assert!((own.orders().unwrap().bpfo - 3.585).abs() < 1e-3);
         assert!(CatalogueBearing::parse("NU 312").unwrap().orders().unwrap_err().contains("elements=…"));
+    }
+
+    #[test]
+    fn example_a_number_that_was_counted_is_not_assumed() {
+        for (text, assumed) in [("NU 305", true), ("NU 305, elements=12", false)] {
+            let scene = Scene::parse(&format!("(bearing: \"{text}\")"), "mine").unwrap();
+            let notes = assumptions(&scene.bearing);
+            assert_eq!(
+                notes.iter().any(|note| note.contains("are assumed here")),
+                assumed,
+                "{text}: {notes:?}"
+            );
+        }
     }
 
     #[test]
