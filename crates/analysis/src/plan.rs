@@ -7,7 +7,7 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
-    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, RollerCopies, Scene,
+    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies, Scene,
 };
 use stribeck_scene::static_load;
 
@@ -159,11 +159,9 @@ impl Plan {
         }
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
         let audible = points_hz < 0.5 / geometry.interval;
-        if c.method == ContactMethod::Integrated
-            && c.surface != ContactSurface::Facet
-            && audible
-            && geometry.contact_onset < wanted
-        {
+        // The reduced model integrates what overlaps exactly, without points.
+        let in_points = scene.model == ModelScene::Full && c.method == ContactMethod::Integrated;
+        if in_points && c.surface != ContactSurface::Facet && audible && geometry.contact_onset < wanted {
             say(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz unless their pressure \
                  sets in over several of them",
@@ -256,6 +254,8 @@ mod tests {
         scene.contact.points_per_facet = 8;
         let sounding = of(&scene);
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));
+        let reduced = Scene { model: ModelScene::Reduced(Default::default()), ..scene.clone() };
+        assert!(of(&reduced).advice.iter().all(|a| !a.contains("onset_um")), "there are no points");
         scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&Geometry::of(&scene), 8);
         let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);

@@ -5,6 +5,7 @@ use std::{
     ops::Range,
 };
 
+use serde::{Deserialize, Serialize};
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{
     Annulus, ArcBlock, Circle, Disc, FormDeviation, Grading, Groove, Mesh, Part, Placed, Surface,
@@ -49,6 +50,15 @@ pub(crate) const LOADED: &str = "loaded surface";
 
 /// Name of the part of a load that turns with the shaft which acts across the other.
 pub(crate) const ACROSS: &str = "load across";
+
+/// Rings and a roller as they are meshed, which takes time: grooves are in them, deviations from round are not yet, and the roller
+/// lies in the centre, not turned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Parts {
+    outer: Part,
+    inner: Part,
+    disc: Part,
+}
 
 /// A scene made into bodies, in mesh numbers.
 #[derive(Debug)]
@@ -155,28 +165,23 @@ pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
     Geometry::of(scene).roller_angle(i)
 }
 
-impl Assembly {
-    /// Meshes every body of the scene.
+impl Parts {
+    /// Meshes them. They are the same wherever rollers start.
     ///
     /// # Errors
     /// When a dimension or a count cannot be meshed.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
         let (b, g) = (&scene.bearing, Geometry::of(scene));
-        let size = g.element_size;
-        let mut mesh = Mesh::new();
-        let (outer_radius, inner_radius) = (g.outer_race_radius, g.inner_race_radius);
-        let around = |radius: f64| ((TAU * radius / size).round() as usize).max(8);
         let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
             Some(grading) => ring.graded_part(grading),
             None => ring.part(),
         };
 
         let outer_grading = grading::ring(&scene.mesh, b.outer_ring_thickness_mm, Circle::Inner);
-        let outer_facets = scene.mesh.outer_facets.unwrap_or_else(|| around(outer_radius));
         let outer = Annulus {
-            inner_radius: outer_radius,
-            outer_radius: outer_radius + g.outer_ring_thickness,
-            facets: outer_facets,
+            inner_radius: g.outer_race_radius,
+            outer_radius: g.outer_race_radius + g.outer_ring_thickness,
+            facets: facets_around(scene, &g, DefectRing::Outer),
             layers: grading::layers(&scene.mesh, b.outer_ring_thickness_mm),
             start_angle: 0.0,
             grooves: grooves_in(&g, DefectRing::Outer),
@@ -185,15 +190,12 @@ impl Assembly {
             Some(own) => own_mesh::ring(own, DefectRing::Outer, &g)?,
             None => made(&outer, &outer_grading)?,
         };
-        let outer = formed(outer, "inner", Circle::Inner, g.outer_relief.as_ref())?;
-        let (outer_area, outer) = (outer.area(), mesh.add("outer ring", &outer));
 
         let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
-        let inner_facets = scene.mesh.inner_facets.unwrap_or_else(|| around(inner_radius));
         let inner = Annulus {
-            inner_radius: inner_radius - g.inner_ring_thickness,
-            outer_radius: inner_radius,
-            facets: inner_facets,
+            inner_radius: g.inner_race_radius - g.inner_ring_thickness,
+            outer_radius: g.inner_race_radius,
+            facets: facets_around(scene, &g, DefectRing::Inner),
             layers: grading::layers(&scene.mesh, b.inner_ring_thickness_mm),
             start_angle: 0.0,
             grooves: grooves_in(&g, DefectRing::Inner),
@@ -202,7 +204,38 @@ impl Assembly {
             Some(own) => own_mesh::ring(own, DefectRing::Inner, &g)?,
             None => made(&inner, &inner_grading)?,
         };
-        let inner = formed(inner, "outer", Circle::Outer, g.inner_relief.as_ref())?;
+
+        let facets = scene.mesh.roller_facets;
+        let facet_mm = PI * b.roller_diameter_mm / facets as f64;
+        let core = 1e-3 * grading::roller_core_mm(&scene.mesh, facet_mm);
+        let disc = Disc { radius: g.roller_radius, facets, size: core, rotation: 0.0 };
+        let disc = match &scene.mesh.grading {
+            None => disc.part()?,
+            Some(scene) => disc.part_with_layers(grading::roller_layers(scene).min(disc.most_layers()))?,
+        };
+        Ok(Self { outer, inner, disc })
+    }
+}
+
+impl Assembly {
+    /// Meshes every body of the scene.
+    ///
+    /// # Errors
+    /// When a dimension or a count cannot be meshed.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        Self::of(scene, &Parts::new(scene)?)
+    }
+
+    /// The same of rings and a roller that have been meshed already.
+    ///
+    /// # Errors
+    /// When the rest cannot be meshed.
+    pub fn of(scene: &Scene, parts: &Parts) -> Result<Self, Error> {
+        let g = Geometry::of(scene);
+        let mut mesh = Mesh::new();
+        let outer = formed(parts.outer.clone(), "inner", Circle::Inner, g.outer_relief.as_ref())?;
+        let (outer_area, outer) = (outer.area(), mesh.add("outer ring", &outer));
+        let inner = formed(parts.inner.clone(), "outer", Circle::Outer, g.inner_relief.as_ref())?;
         let inner = mesh.add("inner ring", &inner);
 
         let made = housing(scene, &g, &mesh, surface(&outer, "outer"))?;
@@ -213,17 +246,9 @@ impl Assembly {
             (PlacedHousing { body, seat, loaded, name: made.name }, made.density)
         });
 
-        let roller_radius = g.roller_radius;
-        let roller_facets = scene.mesh.roller_facets;
-        let facet_mm = PI * b.roller_diameter_mm / roller_facets as f64;
-        let core = 1e-3 * grading::roller_core_mm(&scene.mesh, facet_mm);
-        let disc = Disc { radius: roller_radius, facets: roller_facets, size: core, rotation: 0.0 };
-        let disc = match &scene.mesh.grading {
-            None => disc.part()?,
-            Some(scene) => disc.part_with_layers(grading::roller_layers(scene).min(disc.most_layers()))?,
-        };
+        let disc = &parts.disc;
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
-        let path = outer_radius - roller_radius;
+        let path = g.outer_race_radius - g.roller_radius;
         let rollers: Result<Vec<(usize, Placed)>, Error> = scene
             .rollers_in_place()
             .map(|number| {
@@ -285,14 +310,14 @@ impl Assembly {
         for &n in &surface(&inner, "inner").nodes {
             model.motion[n as usize] = Motion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s };
         }
-        let around = |ring: DefectRing, own: bool, facets: usize, raceway: &Surface| {
-            if own { raceway.facets() as f64 } else { g.facets_around(ring, facets) }
+        let around = |ring: DefectRing, own: bool, raceway: &Surface| {
+            if own { raceway.facets() as f64 } else { g.facets_around(ring, facets_around(scene, &g, ring)) }
         };
         let [own_outer, own_inner] = [&scene.outer_ring_mesh, &scene.inner_ring_mesh].map(Option::is_some);
         let facets = FacetCounts {
             roller: scene.mesh.roller_facets,
-            outer: around(DefectRing::Outer, own_outer, outer_facets, surface(&outer, "inner")),
-            inner: around(DefectRing::Inner, own_inner, inner_facets, surface(&inner, "outer")),
+            outer: around(DefectRing::Outer, own_outer, surface(&outer, "inner")),
+            inner: around(DefectRing::Inner, own_inner, surface(&inner, "outer")),
         };
         Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
@@ -569,6 +594,15 @@ fn smoothing(surface: ContactSurface, centre: [f64; 2], round: bool) -> Smoothin
 
 fn surface<'a>(placed: &'a Placed, name: &str) -> &'a Surface {
     placed.surface(name).expect("the generator of this body names this surface")
+}
+
+/// Facets around the raceway of `ring`, before its grooves.
+fn facets_around(scene: &Scene, g: &Geometry, ring: DefectRing) -> usize {
+    let (chosen, radius) = match ring {
+        DefectRing::Outer => (scene.mesh.outer_facets, g.outer_race_radius),
+        DefectRing::Inner => (scene.mesh.inner_facets, g.inner_race_radius),
+    };
+    chosen.unwrap_or_else(|| ((TAU * radius / g.element_size).round() as usize).max(8))
 }
 
 /// The grooves in the raceway of `ring`.

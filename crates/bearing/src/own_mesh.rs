@@ -21,6 +21,9 @@ const LOOSE: f64 = 0.01;
 /// Half of the nodes of a raceway, and all that rollers may meet, lie within this part of its radius on its circle.
 const ROUND: f64 = 1e-3;
 
+/// Bodies that a message names.
+const MOST_NAMED: usize = 4;
+
 /// The mesh of a file, and who asked for it.
 struct OwnMesh<'a> {
     /// Group of the scene.
@@ -77,6 +80,46 @@ impl<'a> OwnMesh<'a> {
         Ok(pieces.swap_remove(0))
     }
 
+    /// Refuses bodies that do not hang together with the one that has `surface`: nothing would hold them.
+    fn in_one_piece(&self, surface: &Surface, what: &str) -> Result<(), Error> {
+        let mesh = &self.deck.mesh;
+        // Of nodes that elements join, the lowest number stands for all.
+        let mut of: Vec<usize> = (0..mesh.x.len()).collect();
+        fn lowest(of: &mut [usize], mut n: usize) -> usize {
+            while of[n] != n {
+                of[n] = of[of[n]];
+                n = of[n];
+            }
+            n
+        }
+        let corners =
+            mesh.quads.iter().map(|q| q.as_slice()).chain(mesh.triangles.iter().map(|t| t.as_slice()));
+        for pair in corners.flat_map(|corners| corners.windows(2)) {
+            let [a, b] = [pair[0], pair[1]].map(|n| lowest(&mut of, n as usize));
+            of[a.max(b)] = a.min(b);
+        }
+        let held = lowest(&mut of, surface.nodes[0] as usize);
+        let mut loose = Vec::new();
+        for body in &mesh.bodies {
+            let quads = mesh.quads[body.quads.clone()].iter().map(|q| q[0]);
+            let mut first = quads.chain(mesh.triangles[body.triangles.clone()].iter().map(|t| t[0]));
+            if first.any(|n| lowest(&mut of, n as usize) != held) {
+                loose.push(format!("`{}`", body.name));
+            }
+        }
+        if loose.is_empty() {
+            return Ok(());
+        }
+        let more = loose.len().saturating_sub(MOST_NAMED);
+        let further = if more > 0 { format!(" and {more} more") } else { String::new() };
+        loose.truncate(MOST_NAMED);
+        self.refuse(format!(
+            "{}{further} hang on nothing: all their elements, or some of them, share no nodes with the body of its {what}. Leave them out of the \
+             file, or join their nodes",
+            loose.join(", ")
+        ))
+    }
+
     /// Distances of the nodes of a surface from the bearing's centre [m].
     fn radii(&self, surface: &Surface) -> Vec<f64> {
         surface.nodes.iter().map(|&n| self.part.x[n as usize].hypot(self.part.y[n as usize])).collect()
@@ -131,6 +174,7 @@ pub(crate) fn housing(housing: &MeshHousingScene, g: &Geometry) -> Result<Part, 
         return own.misses("bore", "the outer ring", [off, ring]);
     }
     let loaded = own.pieces("loaded", &housing.loaded)?.swap_remove(0);
+    own.in_one_piece(&bore, "bore")?;
     own.part.surfaces.extend([("bore".to_owned(), bore), ("loaded".to_owned(), loaded)]);
     Ok(own.part)
 }
@@ -167,6 +211,7 @@ pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, g: &Geometry) -> Result
     if beyond(half) < -LOOSE {
         return own.misses(side, "the thickness of the ring", [half, wanted]);
     }
+    own.in_one_piece(&raceway, "raceway")?;
     let names = match of {
         DefectRing::Outer => ["inner", "outer"],
         DefectRing::Inner => ["outer", "inner"],

@@ -365,18 +365,19 @@ fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
 /// Writes the mesh at the start of the run: as the preload has left it, and free of stress
 /// ([`stribeck_scene::mesh_file`]).
 fn write_mesh(assembly: &Assembly, machine: &Machine, dir: &RunDir) -> Result<(), Error> {
-    Ok(write_atomic(&dir.mesh(), &mesh_file(assembly, machine)?)?)
+    let file = mesh_file(assembly, &|node| machine.system.position(node))?;
+    Ok(write_atomic(&dir.mesh(), &file)?)
 }
 
-/// The mesh file of the machine as it stands.
+/// The file of a mesh whose nodes stand at these places [m].
 ///
 /// # Errors
 /// When the mesh cannot be written as a file.
-pub fn mesh_file(assembly: &Assembly, machine: &Machine) -> Result<Vec<u8>, Error> {
+pub fn mesh_file(assembly: &Assembly, place: &dyn Fn(u32) -> [f64; 2]) -> Result<Vec<u8>, Error> {
     let mut mesh = assembly.model.mesh.clone();
     let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(&x, &y)| [x, y, 0.0]).collect();
     for n in 0..mesh.x.len() {
-        [mesh.x[n], mesh.y[n]] = machine.system.position(n as u32);
+        [mesh.x[n], mesh.y[n]] = place(n as u32);
     }
     let moved: Vec<[f64; 3]> = reference
         .iter()

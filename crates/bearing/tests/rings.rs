@@ -126,6 +126,33 @@ fn analytic_a_notched_ring_in_a_pedestal_runs_and_carries_its_load() {
     assert!((-carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried} N");
 }
 
+/// A file of a whole bearing would leave rollers and inner ring free to go anywhere.
+#[test]
+fn refuses_a_ring_with_bodies_that_hang_on_nothing() {
+    let plain = scene(&[]);
+    let mesh = Assembly::new(&plain).expect("a mesh").model.mesh;
+    let folder = Scratch::create("loose");
+    let file = folder.join("whole.inp");
+    let body = |name: &str| mesh.bodies.iter().find(|body| body.name == name).expect("a body").nodes.clone();
+    let race = 0.5e-3 * plain.bearing.outer_race_diameter_mm;
+    let back = race + 1e-3 * plain.bearing.outer_ring_thickness_mm;
+    let mut text = Deck::Abaqus.write(&mesh, "whole");
+    for (set, radius) in [("raceway", race), ("fit", back)] {
+        let _ = writeln!(text, "*NSET, NSET={set}");
+        let on = |n: &usize| (mesh.x[*n].hypot(mesh.y[*n]) - radius).abs() < 1e-9;
+        for n in body("outer ring").filter(on) {
+            let _ = writeln!(text, "{},", n + 1);
+        }
+    }
+    std::fs::write(&file, text).expect("writable");
+    let set = format!("outer_ring_mesh=(file: {file:?}, raceway: \"raceway\", fit: \"fit\", unit_mm: 1000)");
+    let said = Assembly::new(&scene(&[set])).expect_err("loose bodies").to_string();
+    assert!(
+        said.contains("`INNER_RING`, `FRAME`, `ROLLER_1`, `ROLLER_2` and 12 more hang on nothing"),
+        "{said}"
+    );
+}
+
 #[test]
 fn refuses_a_mesh_that_is_no_ring_of_the_bearing() {
     let ring = |more: &str| notched(more);

@@ -1,9 +1,11 @@
 //! One body before it is placed, and its oriented boundary.
 
+use serde::{Deserialize, Serialize};
+
 /// An oriented piece of boundary: a polyline through nodes.
 ///
 /// Walking along it, the solid lies on the left and the outward normal points to the right.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Surface {
     /// Nodes in walking order; the first node of a closed surface is not repeated at the end.
     pub nodes: Vec<u32>,
@@ -33,7 +35,7 @@ impl Surface {
 }
 
 /// One body before it is placed in a [`Mesh`](crate::Mesh), with node numbers that start at zero.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// Abscissae of the nodes [m].
     pub x: Vec<f64>,

@@ -7,15 +7,13 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::{
-    assembly::{Assembly, Machine},
-    simulation::mesh_file,
+    assembly::{Assembly, Machine, Parts},
     start::preload,
 };
 use stribeck_mesh::Mesh;
 use stribeck_scene::{
     geometry::{DefectGeometry, Geometry},
     housing::HousingScene,
-    run_info::MeshInfo,
     scene::Scene,
     static_load,
 };
@@ -89,10 +87,10 @@ pub struct Reduction {
     pub seat: Option<[f64; 2]>,
     /// Its springs, which may open and slip.
     pub springs: Option<Seat>,
-    /// Counts of the mesh.
-    pub mesh: MeshInfo,
-    /// The mesh at the preload, as a file.
-    pub picture: Vec<u8>,
+    /// What was meshed: the same for every start.
+    pub parts: Parts,
+    /// Displacements of the nodes of rings and housing at the preload [m].
+    pub moved: Vec<[f64; 2]>,
     /// What the preload left open.
     pub warning: Option<String>,
 }
@@ -134,15 +132,15 @@ impl Reduction {
     /// # Errors
     /// When the scene cannot be meshed or preloaded, or modes are not found.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let assembly = Assembly::new(scene)?;
+        let parts = Parts::new(scene)?;
+        let assembly = Assembly::of(scene, &parts)?;
         let mut machine = assembly.machine(scene, 1)?;
         let warning = preload(&mut machine, scene, &assembly.kinematics)?;
-        let picture = mesh_file(&assembly, &machine)?;
-        let reduced = Self::of(scene, machine, &assembly.model.mesh)?;
-        Ok(Self { mesh: assembly.mesh_info(), picture, warning, ..reduced })
+        let reduced = Self::of(scene, machine, parts, &assembly.model.mesh)?;
+        Ok(Self { warning, ..reduced })
     }
 
-    fn of(scene: &Scene, mut machine: Machine, mesh: &Mesh) -> Result<Self, Error> {
+    fn of(scene: &Scene, mut machine: Machine, meshed: Parts, mesh: &Mesh) -> Result<Self, Error> {
         let g = Geometry::of(scene);
         let forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
@@ -156,6 +154,8 @@ impl Reduction {
         let places: Vec<[f64; 2]> =
             (0..machine.system.node_count() as u32).map(|n| machine.system.position(n)).collect();
         let place = |n: &u32| places[*n as usize];
+        let of_rings = 0..mesh.bodies[machine.rollers[0].body].nodes.start;
+        let moved = of_rings.map(|n| [places[n][0] - mesh.x[n], places[n][1] - mesh.y[n]]).collect();
         let centre = place(&machine.rollers[0].centre);
         let structure_mass: f64 = nodes.structure.iter().map(|&n| machine.system.mass(n)).sum();
 
@@ -306,8 +306,8 @@ impl Reduction {
                 unit
             })
             .collect();
-        let moved = structure.residuals(&units, &on_raceway);
-        let sensors = nodes.sensors.iter().zip(moved.chunks_exact(2)).map(|(&n, moved)| {
+        let heard = structure.residuals(&units, &on_raceway);
+        let sensors = nodes.sensors.iter().zip(heard.chunks_exact(2)).map(|(&n, moved)| {
             let heard = outer.iter().enumerate().map(|(vertex, place)| {
                 let [nx, ny] = direction(*place);
                 [0, 1].map(|component: usize| {
@@ -440,8 +440,8 @@ impl Reduction {
             preload,
             seat,
             springs: seat_springs,
-            mesh: MeshInfo::default(),
-            picture: Vec::new(),
+            parts: meshed,
+            moved,
             warning: None,
         })
     }

@@ -1,10 +1,11 @@
 //! One run of the model that a scene asks for: from a scene to a run directory.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, path::Path};
 
 use stribeck_bearing::{
+    assembly::Assembly,
     checkpoint::Checkpoint,
-    simulation::{self as full, Host, Progress, Setup, read_saved, take_over},
+    simulation::{self as full, Host, Progress, Setup, mesh_file, read_saved, take_over},
     time_loop::Run,
 };
 use stribeck_scene::{
@@ -22,6 +23,7 @@ use crate::{
     guards::Guards,
     motion::{Motion, Saved},
     reduction::Reduction,
+    state::State,
 };
 
 /// Is told about every sample and may break off the run.
@@ -46,25 +48,18 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
         highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / std::f64::consts::TAU,
         from_cache,
     };
-    let (mesh, picture) = (reduction.mesh.clone(), reduction.picture.clone());
+    let assembly = Assembly::of(scene, &reduction.parts)?;
     let [_, up] = scene.load_direction();
     let expected = Duty::of(scene).mean_load_n(Geometry::of(scene).duration)
         - up * scene.operation.gravity_m_s2 * reduction.structure_mass;
-    let interval = Geometry::of(scene).interval;
-    let mut steps = steps_per_sample(scene, 1e-6 * reduced.step_us);
-    let mut bearing = Bearing::new(scene, reduction, interval / steps as f64)?;
-    let most = bearing.critical_time_step();
-    if interval / steps as f64 > most {
-        steps = steps_per_sample(scene, most);
-        bearing = Bearing::new(scene, bearing.reduction, interval / steps as f64)?;
-    }
-    let step = interval / steps as f64;
+    let (bearing, steps) = in_steps(scene, reduced, reduction)?;
+    let (step, most) = (bearing.time_step, bearing.critical_time_step());
     let state = bearing.at_start(scene)?;
     let setup = Setup {
         time_step: step,
-        critical_time_step: bearing.critical_time_step(),
+        critical_time_step: most,
         steps_per_sample: steps,
-        mesh,
+        mesh: assembly.mesh_info(),
         wall_s: (host.wall_s)() - started,
         expected_support: expected,
     };
@@ -82,10 +77,37 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     }
     info.warnings.extend(Guards::before(scene, &bearing));
     dir.start(scene, &info)?;
-    write_atomic(&dir.mesh(), &picture)?;
+    write_mesh(&assembly, scene, &bearing, &state, dir)?;
     let saved = Saved::first(&bearing, state);
     let motion = Motion::new(scene, bearing, saved);
     Ok(Run::start(scene, motion, info, dir)?.finish(dir, &on_one_thread(host), progress, watch)?)
+}
+
+/// Steps in a sample of a run of the scene, which has a reduced model. `runs` is where the folder of the run would lie: a reduction that
+/// earlier runs made is there, and one that must be made is kept there.
+///
+/// # Errors
+/// When the scene cannot be meshed, preloaded or reduced.
+pub fn steps_in_a_sample(scene: &Scene, runs: Option<&Path>) -> Result<usize, Error> {
+    let reduced = match &scene.model {
+        ModelScene::Reduced(reduced) => reduced.clone(),
+        ModelScene::Full => ReducedScene::default(),
+    };
+    let (reduction, _) = cache::reduction(scene, runs)?;
+    Ok(in_steps(scene, &reduced, reduction)?.1)
+}
+
+/// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there are in a sample.
+fn in_steps(scene: &Scene, reduced: &ReducedScene, reduction: Reduction) -> Result<(Bearing, usize), Error> {
+    let interval = Geometry::of(scene).interval;
+    let steps = steps_per_sample(scene, 1e-6 * reduced.step_us);
+    let bearing = Bearing::new(scene, reduction, interval / steps as f64)?;
+    let most = bearing.critical_time_step();
+    if bearing.time_step <= most {
+        return Ok((bearing, steps));
+    }
+    let steps = steps_per_sample(scene, most);
+    Ok((Bearing::new(scene, bearing.reduction, interval / steps as f64)?, steps))
 }
 
 /// Continues the run in `dir` from its checkpoint, as [`stribeck_bearing::simulation::resume`].
@@ -137,7 +159,7 @@ fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Resul
     let progress = Progress::begin();
     let _ = watch(&progress);
     let (reduction, _) = cache::reduction(&scene, dir.path().parent())?;
-    let elsewhere = info.mesh != reduction.mesh;
+    let elsewhere = info.mesh != Assembly::of(&scene, &reduction.parts)?.mesh_info();
     let bearing = Bearing::new(&scene, reduction, info.time_step_s)?;
     if elsewhere || !saved.fits(&bearing) {
         return Err(stribeck_bearing::error::Error::Resume {
@@ -154,6 +176,31 @@ fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Resul
     let run = Run::resume(&scene, motion, info, dir)?;
     dir.go_on(&scene, &run.info)?;
     Ok(run.finish(dir, &on_one_thread(host), progress, watch)?)
+}
+
+/// Writes the mesh at the start of the run: rings and housing as the preload of the reduction has left them, rollers and cage, which do
+/// not deform, where they are ([`stribeck_scene::mesh_file`]).
+fn write_mesh(
+    assembly: &Assembly,
+    scene: &Scene,
+    bearing: &Bearing,
+    state: &State,
+    dir: &RunDir,
+) -> Result<(), Error> {
+    let (g, mesh) = (Geometry::of(scene), &assembly.model.mesh);
+    let mut moved = bearing.reduction.moved.clone();
+    moved.resize(mesh.x.len(), [0.0; 2]);
+    let rollers = mesh.bodies.iter().filter(|body| body.name.starts_with("roller "));
+    for ((body, &pocket), (x, y)) in rollers.zip(&bearing.pockets).zip(state.x.iter().zip(&state.y)) {
+        let path = g.outer_race_radius - g.roller_radius;
+        let (s, c) = g.roller_angle(pocket).sin_cos();
+        moved[body.nodes.clone()].fill([x - path * c, y - path * s]);
+    }
+    let file = mesh_file(assembly, &|node| {
+        let n = node as usize;
+        [mesh.x[n] + moved[n][0], mesh.y[n] + moved[n][1]]
+    })?;
+    Ok(write_atomic(&dir.mesh(), &file)?)
 }
 
 /// A step is too short to share: further threads would wait, and keep their cores busy with it.

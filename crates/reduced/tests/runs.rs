@@ -5,10 +5,11 @@ mod common;
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
 use common::{host, run, trace};
-use stribeck_bearing::simulation::Progress;
+use stribeck_bearing::{assembly::Assembly, simulation::Progress};
 use stribeck_reduced::simulation::{resume, simulate};
 use stribeck_scene::{
     kinematics::Kinematics,
+    mesh_file::RunMesh,
     run_dir::RunDir,
     run_info::Status,
     scene::{
@@ -118,6 +119,39 @@ fn example_a_seat_that_answers_too_much_is_warned_of_with_oil() {
     };
     let oil = || Some(FilmScene::default());
     assert!(warned(3.0, oil()) && !warned(30.0, oil()) && !warned(3.0, None));
+}
+
+/// One reduction serves all starts, and every run has the mesh of its own: as the scene makes it, with rollers, of which one may be missing,
+/// where they begin.
+#[test]
+fn issue_a_reduced_run_writes_its_rollers_where_it_starts() {
+    let folder = Scratch::create("reduced-meshes");
+    for (name, first_deg, missing) in [("a", 106.0, 0), ("b", 101.0, 5)] {
+        let mut scene = coarse(0.1);
+        (scene.bearing.first_roller_deg, scene.mesh.roller_phase_deg) = (first_deg, 1.3);
+        if missing > 0 {
+            let set = format!("defects=[(on: roller({missing}), form: missing)]");
+            scene = scene.with_overrides(&[set]).expect("valid");
+        }
+        let info = run(&scene, &folder, name, 1);
+        assert_eq!(info.reduced.as_ref().map(|kept| kept.from_cache), Some(name == "b"));
+        let kept = RunMesh::read(folder.join(name).join("mesh.vtu")).expect("a mesh");
+        assert_eq!(kept.reference.len(), info.mesh.nodes);
+        let made = Assembly::new(&scene).expect("a mesh").model.mesh;
+        assert!(kept.reference.iter().zip(made.x.iter().zip(&made.y)).all(|([x, y], at)| (x, y) == at));
+        for body in made.bodies.iter().filter(|body| body.name.starts_with("roller ")) {
+            let mean = |axis: usize| {
+                let all = body.nodes.clone();
+                all.clone().map(|n| kept.start[n][axis] - kept.reference[n][axis]).sum::<f64>()
+                    / all.len() as f64
+            };
+            // Pressed against the raceway by tens of micrometres.
+            assert!(mean(0).hypot(mean(1)) < 2e-4, "{name}, {}", body.name);
+        }
+        let rings = kept.start.iter().zip(&kept.reference).take(made.bodies[0].nodes.end);
+        let most = rings.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max);
+        assert!((1e-6..5e-4).contains(&most), "the ring is under load: {most} m");
+    }
 }
 
 /// One of the scenes that come with the program, with some fields of its own.

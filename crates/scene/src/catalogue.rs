@@ -4,6 +4,7 @@
 //! none and the user must give it. Any bearing can be given by its numbers:
 //! `elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0`.
 
+use std::f64::consts::PI;
 use std::fmt;
 
 use crate::scene::{BearingScene, Scene};
@@ -124,7 +125,8 @@ const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
 pub fn all() -> Vec<CatalogueBearing> {
     let cylindrical = FLANGES.iter().flat_map(|flanges| {
         CYLINDRICAL.iter().map(move |&(name, f, e, boundary)| {
-            let [diameter, pitch] = [0.5 * (e - f), 0.5 * (e + f)];
+            // To the micrometre, as they are printed.
+            let [diameter, pitch] = [e - f, e + f].map(|both| (500.0 * both).round() / 1e3);
             let source = if name == IN_PROPORTION { PROPORTION } else { E_TYPE };
             let row = (name, Element::Roller, None, diameter, pitch, 0.0, Some(boundary), source);
             CatalogueBearing { name: name.replace("NU", flanges), ..CatalogueBearing::of(row) }
@@ -147,9 +149,10 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     };
     let (name, length) = (&known.name, bearing.thickness_mm);
     let mut notes = Vec::new();
-    if known.elements.is_none() {
+    // Another number is the user's.
+    if known.elements.is_none() && known.usual_elements() == bearing.rollers {
         notes.push(format!(
-            "makers fit different numbers of rolling elements into {name}; {} are assumed here",
+            "makers fit different numbers of rolling elements into {name}; unless `elements` gave them, {} are assumed here",
             bearing.rollers
         ));
     }
@@ -169,7 +172,21 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     notes
 }
 
+/// Circumference of the pitch circle over the rolling elements side by side, where their number is not known: cages of E
+/// design leave about a quarter.
+const SPACING: f64 = 1.25;
+
 impl CatalogueBearing {
+    /// As many rolling elements as cages usually hold.
+    pub(crate) fn usual_elements(&self) -> usize {
+        (PI * self.pitch_mm / (SPACING * self.diameter_mm)).round() as usize
+    }
+
+    /// The most that find room on the pitch circle.
+    fn most_elements(&self) -> u32 {
+        (PI / (self.diameter_mm / self.pitch_mm).asin() + 1e-9) as u32
+    }
+
     /// The bearing of a scene, as far as its frequencies go.
     pub fn of_scene(scene: &Scene) -> Self {
         let b = &scene.bearing;
@@ -185,7 +202,7 @@ impl CatalogueBearing {
         }
     }
 
-    /// A bearing by its name (spaces, hyphens and suffixes such as `-2RS` or `ECP` do not matter), by its numbers, or both:
+    /// A bearing by its name (spaces, hyphens and suffixes such as `-2RS1/C3` or `ECP` do not matter), by its numbers, or both:
     /// `NU 205, elements=13`.
     ///
     /// # Errors
@@ -249,6 +266,13 @@ impl CatalogueBearing {
             };
             return Err(format!("`{text}` is no bearing: {wanted} and an `angle_deg` from 0 to below 90"));
         }
+        let most = bearing.most_elements();
+        if let Some(elements) = bearing.elements.filter(|elements| *elements > most) {
+            return Err(format!(
+                "`{text}` is no bearing: {elements} rolling elements of {} mm do not fit on a pitch circle of {} mm: {most} at most",
+                bearing.diameter_mm, bearing.pitch_mm
+            ));
+        }
         Ok(bearing)
     }
 
@@ -305,10 +329,16 @@ fn find(name: &str, advice: &str) -> Result<CatalogueBearing, String> {
         |text: &str| text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase();
     let fits = |asked: &str, bearing: &CatalogueBearing| {
         let own = plain(&bearing.name);
-        // `6205-2RS` is a 6205, and 62055 is not.
+        // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have bores of their own, which their
+        // balls do not know of: `UER204-12`.
         asked.strip_prefix(&own).is_some_and(|rest| {
-            !own.is_empty()
-                && (rest.is_empty() || rest == "2RS" || !rest.starts_with(|c: char| c.is_ascii_digit()))
+            let mut letters = rest.chars();
+            match letters.next() {
+                _ if own.is_empty() => false,
+                Some('2') => letters.next().is_some_and(|c| c.is_ascii_alphabetic()),
+                Some('0'..='9') => own.starts_with("UE") && rest.len() == 2,
+                _ => true,
+            }
         })
     };
     // A maker may stand before: `Rexnord ZA-2115`.
@@ -347,6 +377,18 @@ mod tests {
             (roller.name.as_str(), roller.elements, roller.diameter_mm, roller.pitch_mm),
             ("NU 205", Some(13), 7.5, 39.0)
         );
+        for text in
+            ["6205-2Z", "6205 2RSH", "6205.2RSR", "SKF 6205-2RS1/C3", "6205-2rs", "6205 ZZ", "6205 C3"]
+        {
+            assert_eq!(
+                CatalogueBearing::parse(text).map(|known| known.name),
+                Ok("6205".to_owned()),
+                "{text}"
+            );
+        }
+        assert_eq!(CatalogueBearing::parse("UER204-12").unwrap().name, "UER204");
+        let printed = all().iter().map(CatalogueBearing::to_string).collect::<Vec<_>>();
+        assert!(printed.iter().all(|words| !words.contains("999") && !words.contains("000")), "{printed:?}");
         for (text, name) in [("NJ 205", "NJ 205"), ("NUP205-ECP", "NUP 205"), ("N 205", "N 205")] {
             let other = CatalogueBearing::parse(text).unwrap();
             assert_eq!((other.name.as_str(), other.diameter_mm), (name, roller.diameter_mm));
@@ -357,14 +399,30 @@ mod tests {
     }
 
     #[test]
+    fn example_a_number_that_was_counted_is_not_assumed() {
+        for (text, assumed) in [("NU 305", true), ("NU 305, elements=12", false)] {
+            let scene = Scene::parse(&format!("(bearing: \"{text}\")"), "mine").unwrap();
+            let notes = assumptions(&scene.bearing);
+            assert_eq!(
+                notes.iter().any(|note| note.contains("are assumed here")),
+                assumed,
+                "{text}: {notes:?}"
+            );
+        }
+    }
+
+    #[test]
     fn refuses_what_is_no_bearing() {
         for (text, says) in [
             ("62055", "no bearing `62055`"),
+            ("62052", "no bearing `62052`"),
+            ("6205-12", "no bearing `6205-12`"),
             ("", "is no bearing"),
             ("6205, balls=9", "`balls`"),
             ("6205, elements=2.5", "3 to 200"),
             ("diameter_mm=8, pitch_mm=8", "is no bearing"),
             ("6205, elements=x", "no number"),
+            ("NU 205, elements=200", "16 at most"),
         ] {
             let why = CatalogueBearing::parse(text).unwrap_err();
             assert!(why.contains(says), "{text}: {why}");

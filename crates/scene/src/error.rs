@@ -27,7 +27,7 @@ pub enum Error {
 
     /// The rigid-ring load distribution was not found.
     #[error(
-        "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n} N are unbalanced. \
+        "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n:.4} N are unbalanced. \
          Check `load_n` against `thickness_mm`: the approach must stay far below the roller's radius"
     )]
     NoEquilibrium {

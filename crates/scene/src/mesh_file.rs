@@ -11,6 +11,9 @@
 //! | [`reference_m`](REFERENCE) | f64 × 3 a node | positions free of stress [m] |
 //! | `types`, `connectivity` | u8, i32 | cells: quadrilaterals (9) first, then triangles (5), and their nodes |
 //! | `body` | i32 a cell | the body that it belongs to |
+//!
+//! A reduced run keeps no more of rings and housing than their modes: they stand in the file as at the preload of the reduction, whose
+//! rollers stand symmetrically about the defect, so that one serves all starts. Rollers and cage stand where the run starts.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};

@@ -135,8 +135,8 @@ impl RunDir {
             Ok(dir) => Ok(Self { replaces: Some(old), ..dir }),
             Err(Error::FolderHoldsRun { path: new, found, free, .. }) => {
                 let found = format!("{found} and was to replace `{}`", path.display());
-                let ways =
-                    vec![format!("continue it with `--resume {}`", new.display()), "remove it".to_owned()];
+                let way_on = Earlier::of(&new).and_then(|earlier| earlier.way_on(&new));
+                let ways = way_on.into_iter().chain(["remove it".to_owned()]).collect();
                 Err(Error::FolderHoldsRun { path: new, found, ways, free })
             }
             Err(other) => Err(other),

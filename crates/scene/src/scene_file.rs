@@ -96,6 +96,41 @@ impl Scene {
     }
 }
 
+/// A field of a scene file that gave way to the name of another bearing.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Replaced {
+    /// Dotted path.
+    pub field: String,
+    /// What the file says.
+    pub written: String,
+    /// What the scene has.
+    pub now: String,
+}
+
+/// What the scene file at `path` says and `bearing=NAME` among `overrides` replaces: to another bearing than the file's all follows that
+/// surrounds it, but for what further overrides give. Nothing where the scene cannot be read.
+pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<Replaced> {
+    let is_bearing = |text: &&str| text.split('=').next().is_some_and(|path| path.trim() == "bearing");
+    let all: Vec<&str> = overrides.iter().map(AsRef::as_ref).collect();
+    let others: Vec<&str> = all.iter().copied().filter(|text| !is_bearing(text)).collect();
+    let Some(text) = load(path).ok().filter(|_| others.len() < all.len()) else { return Vec::new() };
+    let (text, file) = (without_mark(&text), path.display().to_string());
+    let complete = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.0.to_ron());
+    let (Some(before), Some(after)) = (complete(&others), complete(&all)) else { return Vec::new() };
+    let [in_file, there] = [&before, &after].map(|text| Outline::of(text));
+    let value = |text: &str, outline: &Outline, field: &str| {
+        outline.get(field).map(|entry| text[entry.value.clone()].to_owned())
+    };
+    let fields = named::written(text).into_iter().filter(|field| !field.starts_with("bearing"));
+    fields
+        .filter_map(|field| {
+            let (written, now) = (value(&before, &in_file, &field)?, value(&after, &there, &field)?);
+            let group = written.contains(['(', '[']);
+            (written != now && !group).then_some(Replaced { field, written, now })
+        })
+        .collect()
+}
+
 /// What is wrong with `field` of the scene file at `path`, or of the default scene, under `overrides`: `message`, shown where the
 /// field was written. For what is found in a sound scene later, as in the meshes that it names.
 pub fn refused_at<S: AsRef<str>>(

@@ -12,6 +12,7 @@ use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::scene::Scene;
 
+use crate::out::say;
 use crate::place::{Place, shown};
 
 /// Flags of `analyse`.
@@ -22,7 +23,7 @@ pub struct Options {
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Samples a second [Hz], when the file does not say it
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     rate_hz: Option<f64>,
     /// Channel, or a part of its name that no other has [default: the only one, or the first of the longest]
     #[arg(long)]
@@ -32,13 +33,13 @@ pub struct Options {
     bearing: Option<String>,
     /// Speed of the shaft [1/min], or a range such as 1400..1600: then the line of the shaft that stands out there is followed
     /// over the record, and a record whose speed varies is analysed over the angle
-    #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse)]
+    #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse, allow_hyphen_values = true)]
     speed_rpm: Option<Speed>,
     /// Channel of a tachometer, one pulse a turn, or of the angle of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
     #[arg(long)]
     tacho: Option<String>,
     /// What a sample is multiplied by, for example 1/sensitivity
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     scale: f64,
     /// Unit of the samples after that
     #[arg(long)]
@@ -64,20 +65,21 @@ enum Speed {
 
 impl Speed {
     fn parse(text: &str) -> Result<Self, String> {
+        // A shaft that turns the other way has the same lines.
         let number = |text: &str| {
-            let rpm = text.trim().parse::<f64>().ok().filter(|rpm| rpm.is_finite() && *rpm > 0.0);
-            rpm.ok_or_else(|| {
-                format!("`{text}` is no speed above 0 in 1/min, and no range such as 1400..1600")
-            })
+            let rpm = text.trim().parse::<f64>().ok().filter(|rpm| rpm.is_finite() && *rpm != 0.0);
+            rpm.ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))
         };
         match text.split_once("..") {
-            None => Ok(Self::Of(number(text)?)),
+            None => Ok(Self::Of(number(text)?.abs())),
             Some((low, high)) => {
                 let (low, high) = (number(low)?, number(high)?);
-                if low < high {
-                    Ok(Self::Between(low, high))
-                } else {
-                    Err(format!("`{text}`: speeds must ascend"))
+                match (low.abs().min(high.abs()), low.abs().max(high.abs())) {
+                    _ if low >= high => Err(format!("`{text}`: speeds must ascend")),
+                    _ if low < 0.0 && high > 0.0 => {
+                        Err(format!("`{text}`: a shaft that stops has no lines to follow"))
+                    }
+                    (least, most) => Ok(Self::Between(least, most)),
                 }
             }
         }
@@ -98,11 +100,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         print(&analysis);
         for limit in &options.alarms {
             match limit.judge(&analysis.findings) {
-                Some(judged) => println!("  {}", passed(&judged)),
-                None => println!("  {}: the record does not say it", limit.quantity.name()),
+                Some(judged) => say!("  {}", passed(&judged)),
+                None => say!("  {}: the record does not say it", limit.quantity.name()),
             }
         }
-        println!("report: {}", shown(&out.join("report.html")));
+        say!("report: {}", shown(&out.join("report.html")));
         return Ok(ExitCode::SUCCESS);
     }
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("trend-analysis"));
@@ -118,10 +120,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             Err(why) => (None, Some(format!("{why:#}"))),
         };
         let file = file.display().to_string();
-        println!(
-            "{file}: {}",
-            findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict)
-        );
+        say!("{file}: {}", findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict));
         entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
     }
     let limits = limits(options, &entries);
@@ -134,12 +133,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let Some(findings) = &entry.findings else { continue };
         entry.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
         for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good) {
-            println!("{}: {}", entry.file, passed(judged));
+            say!("{}: {}", entry.file, passed(judged));
         }
     }
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     write_trend(&out, &entries, &limits)?;
-    println!("side by side: {}", shown(&out.join("trend.html")));
+    say!("side by side: {}", shown(&out.join("trend.html")));
     let any = entries.iter().any(|entry| entry.findings.is_some());
     Ok(if any { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
@@ -328,11 +327,11 @@ fn default_folder(file: &Path) -> PathBuf {
 
 fn print(analysis: &Analysis) {
     let findings = &analysis.findings;
-    println!("{}", findings.verdict);
+    say!("{}", findings.verdict);
     for f in &findings.families {
         let measured = f.measured_hz.map_or("        –".to_owned(), |hz| format!("{hz:9.3}"));
         let level = f.level_db.map_or("    –".to_owned(), |db| format!("{db:5.1}"));
-        println!(
+        say!(
             "  {:4} expected {:9.3} Hz, measured {measured} Hz, {level} dB, {} of 5 harmonics, false alarm {}: {}",
             f.name,
             f.expected_hz,
@@ -343,12 +342,14 @@ fn print(analysis: &Analysis) {
     }
     if let Some(spall) = findings.spall_mm {
         let known = if spall.low > 0.0 { "" } else { " if entry and exit both knock" };
-        println!(
+        say!(
             "  spall: {:.2} mm long{known}, 90 % between {:.2} and {:.2} mm",
-            spall.value, spall.low, spall.high
+            spall.value,
+            spall.low,
+            spall.high
         );
     }
     for note in &findings.notes {
-        println!("  note: {note}");
+        say!("  note: {note}");
     }
 }

@@ -5,6 +5,8 @@ use std::process::ExitCode;
 use anyhow::{Result, anyhow};
 use stribeck_scene::catalogue::{self, CatalogueBearing};
 
+use crate::out::say;
+
 /// Flags of `bearings`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
@@ -16,14 +18,23 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     match &options.name {
         Some(name) => one(&CatalogueBearing::parse(name).map_err(|why| anyhow!(why))?),
         None => {
-            println!(
+            say!(
                 "{:<9} {:>5} {:>9} {:>9} {:>6} {:>14} {:>7} {:>7} {:>7} {:>7}",
-                "name", "count", "element", "pitch", "angle", "bore out width", "BPFO", "BPFI", "BSF", "FTF"
+                "name",
+                "count",
+                "element",
+                "pitch",
+                "angle",
+                "bore out width",
+                "BPFO",
+                "BPFI",
+                "BSF",
+                "FTF"
             );
             for bearing in catalogue::all() {
-                println!("{}", row(&bearing));
+                say!("{}", row(&bearing));
             }
-            println!(
+            say!(
                 "Lengths in mm; frequencies in multiples of the shaft\u{2019}s, outer ring at rest. `?`: makers fit different numbers; \
                  a scene assumes one and says so. `stribeck bearings NAME` says where the numbers are from."
             );
@@ -48,16 +59,19 @@ fn row(bearing: &CatalogueBearing) -> String {
 }
 
 fn one(bearing: &CatalogueBearing) {
-    println!("{}: {bearing}", bearing.name);
+    say!("{}: {bearing}", bearing.name);
     if let Some(b) = bearing.boundary {
-        println!("  bore {} mm, outside {} mm, width {} mm", b.bore_mm, b.outside_mm, b.width_mm);
+        say!("  bore {} mm, outside {} mm, width {} mm", b.bore_mm, b.outside_mm, b.width_mm);
     }
     match bearing.orders() {
-        Ok(o) => println!(
+        Ok(o) => say!(
             "  BPFO {:.4}, BPFI {:.4}, BSF {:.4} (a spot strikes twice as often), FTF {:.4} times the shaft\u{2019}s frequency",
-            o.bpfo, o.bpfi, o.bsf, o.ftf
+            o.bpfo,
+            o.bpfi,
+            o.bsf,
+            o.ftf
         ),
-        Err(why) => println!("  {why}"),
+        Err(why) => say!("  {why}"),
     }
-    println!("  source: {}", bearing.source);
+    say!("  source: {}", bearing.source);
 }

@@ -18,6 +18,7 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 
+use crate::out::say;
 use crate::place::{Place, shown};
 
 /// Flags of `export`.
@@ -91,7 +92,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
         _ => signals(&dir, &run, options)?,
     };
-    println!("{}", shown(&written));
+    say!("{}", shown(&written));
     Ok(ExitCode::SUCCESS)
 }
 

@@ -12,6 +12,7 @@ mod bearings;
 mod board;
 mod campaign;
 mod export;
+mod out;
 mod plan;
 mod ranks;
 mod report;
@@ -66,6 +67,10 @@ impl Command {
 
 /// The exit code of a command; says on stderr what went wrong.
 pub fn conclude(done: Result<ExitCode>) -> ExitCode {
+    let done = done.and_then(|code| match out::trouble() {
+        Some(trouble) if code == ExitCode::SUCCESS => Err(anyhow::Error::msg(trouble)),
+        _ => Ok(code),
+    });
     done.unwrap_or_else(|error| {
         eprintln!("error: {error}");
         // Many messages of the crates already contain their cause.

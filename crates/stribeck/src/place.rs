@@ -6,7 +6,7 @@ use std::time::SystemTime;
 use anyhow::{Context, Result, anyhow, bail};
 use stribeck_bearing::{error::Error, own_mesh};
 use stribeck_scene::scene::Scene;
-use stribeck_scene::scene_file::refused_at;
+use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
 
 /// The surroundings of a command.
 #[derive(Debug, Clone)]
@@ -37,6 +37,17 @@ impl Place {
             Some(file) => Scene::read_with(file, overrides)?,
             None => Scene::default().with_overrides(overrides)?,
         };
+        let replaced = file.as_deref().map_or(Vec::new(), |file| replaced_by_bearing(file, overrides));
+        if let (Some(file), false) = (&file, replaced.is_empty()) {
+            let told = replaced
+                .iter()
+                .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
+            let told = told.collect::<Vec<_>>().join(", ");
+            eprintln!(
+                "warning: with another bearing than that of `{}` goes what surrounds it: {told}. Give with --set what is to stay",
+                file.display()
+            );
+        }
         // Before a folder is made for it.
         own_mesh::check(&scene).map_err(|error| match error {
             Error::MeshFile { ref field, .. } => {

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use stribeck_scene::run_dir::{Run, RunDir};
 
+use crate::out::say;
 use crate::place::{Place, shown};
 
 /// Flags of `report`.
@@ -14,10 +15,10 @@ pub struct Options {
     /// Folder of the run, or its name below runs/ [default: the newest run]
     run: Option<PathBuf>,
     /// Look at the record from this time on [s] [default: the last two million samples]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     from_s: Option<f64>,
     /// Look at the record up to this time [s] [default: its end]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     to_s: Option<f64>,
 }
 
@@ -43,7 +44,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         for note in stribeck_analysis::report::write_ensemble(&folder)?.notes {
             eprintln!("warning: {note}");
         }
-        println!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
+        say!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
         return Ok(ExitCode::SUCCESS);
     }
     let dir = RunDir::open(&folder)?;
@@ -51,6 +52,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         eprintln!("warning: {missing}");
     }
     stribeck_analysis::report::write_between(dir.path(), time_s)?;
-    println!("report: {}", shown(&dir.report()));
+    say!("report: {}", shown(&dir.report()));
     Ok(ExitCode::SUCCESS)
 }

@@ -19,6 +19,7 @@ use stribeck_scene::scene::{ModelScene, Scene};
 use crate::conclude;
 use crate::host;
 use crate::interrupt::{self, Interrupt};
+use crate::out::say;
 use crate::place::{Place, shown};
 use crate::progress::Meter;
 use crate::ranks::Processes;
@@ -184,7 +185,7 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     // A run that broke off has a report too: what was computed until then is what shows why.
     if dir.has_started() && !options.no_report {
         match report::write(dir.path()) {
-            Ok(_) => println!("report: {}", shown(&dir.report())),
+            Ok(_) => say!("report: {}", shown(&dir.report())),
             // The run's own error matters more than that of its report.
             Err(error) if finished.is_err() => eprintln!("warning: no report: {error}"),
             Err(error) => {
@@ -281,7 +282,7 @@ fn announce(info: &RunInfo) {
     let heat = info.energy.share_of_heat().map_or(String::new(), |share| {
         format!(" of the peak strain energy, {:.3} % of the heat", 100.0 * share)
     });
-    println!(
+    say!(
         "{how}: {} steps of {step}, {size}, {} (set-up {}), {pace}, energy error {:.3} %{heat}",
         info.steps,
         clock(info.wall_s),

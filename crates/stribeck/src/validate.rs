@@ -12,6 +12,7 @@ use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ModelScene, Scene};
 
 use crate::interrupt::{self, Interrupt};
+use crate::out::say;
 use crate::place::{Place, shown};
 use crate::side_by_side::{Due, Jobs, Shop};
 use crate::simulate::{jobs, threads};
@@ -81,7 +82,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let agreement = Agreement::of(&models[1].1, &pairs)?;
     report::write_agreement(&out, &agreement)?;
     print(&agreement);
-    println!("page: {}", shown(&out.join("report.html")));
+    say!("page: {}", shown(&out.join("report.html")));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -125,9 +126,11 @@ fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Re
 
 fn print(agreement: &Agreement) {
     let [full, reduced] = agreement.cpu_s_per_ms;
-    println!(
+    say!(
         "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval (dB: mean, least and most of the bands)",
-        agreement.scene, agreement.starts, agreement.simulated_ms
+        agreement.scene,
+        agreement.starts,
+        agreement.simulated_ms
     );
     for row in &agreement.rows {
         let verdict = match row.verdict(agreement.starts) {
@@ -135,18 +138,18 @@ fn print(agreement: &Agreement) {
             _ if row.told => "NOT KEPT".to_owned(),
             open => open,
         };
-        println!("  {:<58} {}; {verdict}", row.quantity, words(row));
+        say!("  {:<58} {}; {verdict}", row.quantity, words(row));
     }
     for c in &agreement.correlations {
         let interval = c.value.low.zip(c.value.high);
         let interval = interval.map_or(String::new(), |(low, high)| format!(" ({low:.3} to {high:.3})"));
         let what = format!("correlation at {}, y, below {:.1} kHz", c.sensor, 1e-3 * c.below_hz);
-        println!("  {what:<58} {:.3}{interval}", c.value.mean);
+        say!("  {what:<58} {:.3}{interval}", c.value.mean);
     }
     for note in &agreement.notes {
-        println!("  note: {note}");
+        say!("  note: {note}");
     }
-    println!(
+    say!(
         "  processor time of a simulated millisecond: full {full:.3} s, reduced {reduced:.4} s, {:.0} times less",
         full / reduced
     );

@@ -282,3 +282,74 @@ fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
     ]);
     says(&set, &["bore does not fit the outer ring", "--set housing=mesh(file: \"block.msh\")"]);
 }
+
+/// A reduced run of a scene that names its bearing, as a user begins with: its plan has its steps, its mesh goes to other programs, and
+/// another bearing on the command line says what it has replaced.
+#[test]
+fn example_a_reduced_run_from_its_plan_to_a_deck() {
+    let desk = Desk::new("reduced");
+    let text = "(name: \"mine\", model: reduced(), bearing: \"NU 205\", defect: None, film: None, operation: (load_n: 3000, speed_rpm: 1500),
+        mesh: (size_mm: 1, roller_facets: 48), contact: (penalty_scale: 0.3), solver: (duration_ms: 0.2), output: (frames: None))";
+    fs::write(desk.0.join("mine.ron"), text).expect("writable");
+    let run = desk.run(&["simulate", "mine.ron", "--no-report", "--threads=1"]);
+    assert!(run.status.success(), "{}", said(&run));
+    for (format, has) in [("k", "roller 13"), ("inp", "ROLLER_13"), ("msh", "roller 13")] {
+        let output = desk.run(&["export", "mine", "--to", format]);
+        assert!(output.status.success(), "{format}: {}", said(&output));
+        let deck = fs::read_to_string(desk.0.join(format!("runs/mine/mesh.{format}"))).expect("a deck");
+        assert!(deck.contains(has), "{format}");
+    }
+    // Dampers that allow far shorter steps than the scene has.
+    let stiff = ["mine.ron", "--set=housing=springs(damping_n_s_m: 1e6)", "--no-report", "--out=stiff"];
+    let stiff = desk.run(&[&["simulate"][..], &stiff].concat());
+    assert!(stiff.status.success(), "{}", said(&stiff));
+    let info = fs::read_to_string(desk.0.join("stiff/run.json")).expect("run.json");
+    let steps = info.lines().find_map(|line| line.trim().strip_prefix("\"steps\": ")).expect("steps");
+    let plan = desk.run(&["plan", "mine.ron", "--set=housing=springs(damping_n_s_m: 1e6)"]);
+    says(&plan, &[&format!("reduced model: {} steps of 0.0", steps.trim_end_matches(','))]);
+    let long = desk.run(&[
+        "plan",
+        "mine.ron",
+        "--set=housing=springs(damping_n_s_m: 1e6)",
+        "--set=solver.duration_ms=1e5",
+    ]);
+    says(&long, &["takes hours", "`housing.damping_n_s_m`"]);
+
+    let other = desk.run(&[
+        "plan",
+        "mine.ron",
+        "--set=model=full",
+        "--set=bearing=NU 203, elements=11",
+        "--set=mesh.size_mm=1",
+    ]);
+    assert!(other.status.success(), "{}", said(&other));
+    says(
+        &other,
+        &[
+            "warning: with another bearing than that of `mine.ron`",
+            "instead of 3000",
+            "`name` \"nu-203\" instead of \"mine\"",
+        ],
+    );
+    assert!(!said(&other).contains("`mesh.size_mm`"), "{}", said(&other));
+}
+
+/// What a reader has closed ends quietly, as `| head` leaves it; a full disk is told.
+#[test]
+fn survives_an_output_that_is_closed_or_full() {
+    let desk = Desk::new("closed");
+    let closed = || {
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        writer
+    };
+    for words in [&["bearings"][..], &["bearings", "NU205"], &["plan", "--set=mesh.size_mm=2"]] {
+        let output = desk.stribeck(words).stdout(closed()).output().expect("it starts");
+        assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {}", said(&output));
+    }
+    if let Ok(full) = fs::File::options().write(true).open("/dev/full") {
+        let output = desk.stribeck(&["bearings", "NU205"]).stdout(full).output().expect("it starts");
+        assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+        says(&output, &["error: what the command says could not be written to standard output"]);
+    }
+}

@@ -112,7 +112,19 @@ fn invariant_a_run_is_replaced_when_the_new_one_is_complete() {
     assert_eq!(bytes(&run), before);
     // Interrupted: a second one would destroy the first.
     let error = RunDir::replace(&run).expect_err("one is there").to_string();
+    assert!(error.contains("x.new") && !error.contains("--resume"), "no checkpoint: {error}");
+    std::fs::write(new.join(CHECKPOINT), "there").expect("writable");
+    let error = RunDir::replace(&run).expect_err("one is there").to_string();
     assert!(error.contains("x.new") && error.contains("--resume"), "{error}");
+    // One that diverged would diverge again.
+    let dir = RunDir::reopen(&new).expect("a run");
+    dir.write_info(&info(Status::Diverged)).expect("writable");
+    drop(dir);
+    let error = RunDir::replace(&run).expect_err("one is there").to_string();
+    assert!(
+        error.contains("diverged") && error.contains("remove it") && !error.contains("--resume"),
+        "{error}"
+    );
 
     // Continued, it still knows whose place it takes.
     let dir = RunDir::reopen(&new).expect("a run").take_place().expect("complete");

@@ -53,6 +53,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
         outer_speed_profile,
         load_profile,
         rotating_load,
+        frames,
     ];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
@@ -313,6 +314,25 @@ fn outer_speed_profile(scene: &Scene) -> Option<Finding> {
 fn load_profile(scene: &Scene) -> Option<Finding> {
     let o = &scene.operation;
     profile(LOAD_PROFILE, o.load_profile.as_ref()?, ("operation.load_n", o.load_n))
+}
+
+/// Pictures that begin before they end. Those of a bearing by its name end with the run, however early, and the reduced model has none.
+fn frames(scene: &Scene) -> Option<Finding> {
+    let frames = scene.output.frames.as_ref().filter(|_| scene.model == ModelScene::Full)?;
+    if frames.from_ms <= frames.to_ms || frames.to_ms == scene.solver.duration_ms {
+        return None;
+    }
+    let [from, to] = ["output.frames.from_ms", "output.frames.to_ms"];
+    let message = format!(
+        "pictures end at {} ms, before they begin ({} ms)",
+        number(frames.to_ms),
+        number(frames.from_ms)
+    );
+    let later = Remedy::new(to, format!("{} ms or more", number(frames.from_ms)));
+    let earlier = Remedy::new(from, format!("at most {} ms", number(frames.to_ms)));
+    let remedies =
+        vec![later.number(frames.from_ms + 10.0, "pictures of 10 ms"), earlier.number(0.0, "from the start")];
+    Some(Finding::new(message, remedies))
 }
 
 /// A profile with a beginning, an end and values that its field may have; `field` has the name and the value of the latter.

@@ -53,24 +53,38 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
+/// Digits of the ends of a range, and what rounding has left of them.
+const DIGITS: i32 = 5;
+const DUST: f64 = 1e-12;
+
+/// The lower end of a range: a number within it.
+fn lower(end: f64) -> String {
+    number(round_up(end * (1.0 - DUST), DIGITS))
+}
+
+/// The upper end of one.
+fn upper(end: f64) -> String {
+    number(round_down(end * (1.0 + DUST), DIGITS))
+}
+
 /// `17.1 to 18 mm`, or a word where no value is left.
 fn between(low: f64, high: f64) -> String {
     if high <= low || high <= 0.0 {
         return NOTHING.to_owned();
     }
-    format!("{} to {} mm", number(low.max(0.0)), number(high))
+    format!("{} to {} mm", lower(low.max(0.0)), upper(high))
 }
 
 fn more_than(low: f64, unit: &str) -> String {
-    format!("more than {} {unit}", number(low))
+    format!("more than {} {unit}", lower(low))
 }
 
 fn less_than(high: f64, unit: &str) -> String {
-    if high <= 0.0 { NOTHING.to_owned() } else { format!("less than {} {unit}", number(high)) }
+    if high <= 0.0 { NOTHING.to_owned() } else { format!("less than {} {unit}", upper(high)) }
 }
 
 fn at_most(high: f64, unit: &str) -> String {
-    if high <= 0.0 { NOTHING.to_owned() } else { format!("at most {} {unit}", number(high)) }
+    if high <= 0.0 { NOTHING.to_owned() } else { format!("at most {} {unit}", upper(high)) }
 }
 
 /// What a field may be when it cannot mend matters by itself.
@@ -131,11 +145,14 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
         return None;
     }
     let message = format!(
-        "`{CHANGE}` is {}, which leaves a clearance of {} µm: less than {} % of the roller's diameter either way is expected of fits and \
-         temperature",
+        "`{CHANGE}` is {}, which leaves a clearance of {:.0} µm: between {:.0} µm ({} % of the roller's diameter) and {:.0} µm ({} %) is \
+         expected of fits and temperature",
         number(b.clearance_change_um),
-        number(1e3 * clearance),
-        100.0 * if clearance < 0.0 { MAX_PRELOAD_RATIO } else { MAX_CLEARANCE_RATIO },
+        1e3 * clearance,
+        1e3 * least,
+        -100.0 * MAX_PRELOAD_RATIO,
+        1e3 * most,
+        100.0 * MAX_CLEARANCE_RATIO,
     );
     let [low, high] = [least, most].map(|limit| number((1e3 * (limit - by_diameters)).trunc()));
     Some(Finding::new(
@@ -186,8 +203,8 @@ fn pitch_circle(scene: &Scene) -> Option<Finding> {
         vec![
             fewer_rollers(most),
             Remedy::new(ROLLER, at_most(pitch * chord, "mm")).number(round_down(pitch * chord, 3), ""),
-            Remedy::new(OUTER_RACE, format!("at least {} mm", number(needed - b.inner_race_diameter_mm))),
-            Remedy::new(INNER_RACE, format!("at least {} mm", number(needed - b.outer_race_diameter_mm))),
+            Remedy::new(OUTER_RACE, format!("at least {} mm", lower(needed - b.inner_race_diameter_mm))),
+            Remedy::new(INNER_RACE, format!("at least {} mm", lower(needed - b.outer_race_diameter_mm))),
         ],
     ))
 }
@@ -218,7 +235,7 @@ fn cage(scene: &Scene) -> Option<Finding> {
     let (room_outside, room_inside) = (outer < outer_race, inner > inner_race);
     let if_only = |possible: bool, words: String| if possible { words } else { NOTHING.to_owned() };
     let diameter = if widest < outer_race {
-        format!("more than {} and less than {} mm", number(widest), number(outer_race))
+        format!("more than {} and less than {} mm", lower(widest), number(outer_race))
     } else {
         NOTHING.to_owned()
     };
@@ -322,7 +339,7 @@ fn pockets_miss(cage: &CageScene, roller: f64, pitch: f64) -> Finding {
     let needed = (outer - pitch).abs().max((pitch - inner).abs());
     let (low, high) = (pitch - pocket + 2.0 * cage.thickness_mm, pitch + pocket);
     let diameter = if low < high {
-        format!("more than {} and less than {} mm", number(low), number(high))
+        format!("more than {} and less than {} mm", lower(low), upper(high))
     } else {
         NOTHING.to_owned()
     };
@@ -378,7 +395,7 @@ fn places(scene: &Scene) -> Option<Finding> {
         vec![
             Remedy::new(path, format!("{} to {} µm", number(-clearance), number(clearance)))
                 .number(clearance.copysign(offsets[worst]), "at the wall"),
-            Remedy::new("cage.pocket_clearance_um", format!("at least {} µm", number(offsets[worst].abs())))
+            Remedy::new("cage.pocket_clearance_um", format!("at least {} µm", lower(offsets[worst].abs())))
                 .number(offsets[worst].abs(), ""),
             Remedy::new(OFFSETS, "smaller ones").value("[]", "every roller in the middle of its pocket"),
         ],
@@ -495,7 +512,7 @@ fn defect_length(scene: &Scene) -> Option<Finding> {
                 round_down(spacing / 2.0, 2),
                 "less than the distance of two rollers, to see single impacts",
             ),
-            Remedy::new(field, format!("at least {} mm", number(2.0 * length / PI))),
+            Remedy::new(field, format!("at least {} mm", lower(2.0 * length / PI))),
         ],
     ))
 }
@@ -523,7 +540,7 @@ fn defect_edges(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(SLOPE, format!("at least {}°", number(steep))).number(steep, ""),
+            Remedy::new(SLOPE, format!("at least {}°", lower(steep))).number(steep, ""),
             Remedy::new("defect.depth_mm", at_most(shallow, "mm")).number(shallow, ""),
         ],
     ))
@@ -552,7 +569,7 @@ fn defect_depth(scene: &Scene) -> Option<Finding> {
         vec![
             Remedy::new("defect.depth_mm", at_most(deepest, "mm, 60 % of the ring's thickness"))
                 .number(round_down(ring / 50.0, 2), ""),
-            Remedy::new(field, format!("at least {} mm", number(thinnest))).number(round_up(thinnest, 2), ""),
+            Remedy::new(field, format!("at least {} mm", lower(thinnest))).number(round_up(thinnest, 2), ""),
         ],
     ))
 }

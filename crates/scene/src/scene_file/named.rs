@@ -3,8 +3,6 @@
 //!
 //! What no catalogue prints follows the paper's bearing in proportion: the mesh has as many facets, contact the same pressure.
 
-use std::f64::consts::PI;
-
 use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
 use crate::duty::Duty;
@@ -12,10 +10,6 @@ use crate::geometry::Geometry;
 use crate::line_contact::LineContacts;
 use crate::point_contact;
 use crate::scene::{BearingScene, CageScene, DefectScene, FramesScene, GradingScene, PocketWalls, Scene};
-
-/// Circumference of the pitch circle over the rolling elements side by side, where their number is not known: cages of E
-/// design leave about a quarter.
-const SPACING: f64 = 1.25;
 
 /// Length of a roller over the width of its ring, between flanges.
 const ROLLER_LENGTH: f64 = 0.6;
@@ -138,8 +132,9 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         let fastest = if fastest > 0.0 { fastest } else { paper.operation.speed_rpm };
         let slower =
             passing(&paper.bearing, paper.operation.speed_rpm) / passing(&bearing, fastest.max(1e-3));
-        follow("output.frames.from_ms", &mut frames.from_ms, slower * of_paper.from_ms);
-        let to = (slower * of_paper.to_ms).min(scene.solver.duration_ms);
+        let until = scene.solver.duration_ms;
+        follow("output.frames.from_ms", &mut frames.from_ms, (slower * of_paper.from_ms).min(until));
+        let to = (slower * of_paper.to_ms).min(until);
         follow("output.frames.to_ms", &mut frames.to_ms, to);
         let every = (slower * of_paper.every_us).max(scene.output.interval_us);
         follow("output.frames.every_us", &mut frames.every_us, every);
@@ -173,7 +168,7 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         Element::Ball => (ball, pitch + ball + clearance),
     };
     let inner = pitch - ball;
-    let count = known.elements.map_or((PI * pitch / (SPACING * ball)).round() as usize, |n| n as usize);
+    let count = known.elements.map_or(known.usual_elements(), |n| n as usize);
     Ok(BearingScene {
         designation: name.clone(),
         outer_race_diameter_mm: tidy(outer),

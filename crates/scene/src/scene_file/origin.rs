@@ -20,12 +20,13 @@ impl Override {
         command_line(&self.argument, self.value_start(), self.argument.len())
     }
 
-    /// The value of the field `rest` inside this override's value (empty: the whole); `None` where it is left out.
+    /// The value of the field `rest` inside this override's value (empty: the whole); `None` where it is left out. The name
+    /// of a bearing gives all of its fields.
     fn place_of(&self, rest: &str) -> Option<Place> {
-        if rest.is_empty() {
+        let from = self.value_start();
+        if rest.is_empty() || self.path == "bearing" && !self.argument[from..].contains('(') {
             return Some(self.place_of_value());
         }
-        let from = self.value_start();
         let outline = Outline::of(&self.argument[from..]);
         let value = outline.get(rest)?.value.clone();
         Some(command_line(&self.argument, from + value.start, from + value.end))

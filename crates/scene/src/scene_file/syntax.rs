@@ -183,11 +183,14 @@ fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault
         let text = schema.text_with(&entry.path, value);
         text.is_some_and(|text| dialect().from_str::<Scene>(&text).is_ok())
     };
-    fault.proposal = is_word
-        .then(|| match format!("{word}()") {
-            with_brackets if reads(&with_brackets) => (with_brackets, "with brackets for its fields"),
-            _ => (word.to_owned(), "without quotes"),
-        })
+    let ways = [
+        (format!("{word}()"), "with brackets for its fields"),
+        (format!("{word}(1)"), "with its number"),
+        (word.to_owned(), "without quotes"),
+    ];
+    fault.proposal = ways
+        .into_iter()
+        .find(|(written, _)| is_word && written != value && (written == word || reads(written)))
         .or_else(|| of_bearing(&entry.path, word))
         .or_else(|| proposal(value, kind))
         .or_else(|| schema.plain_default(&entry.path).map(|default| (default.to_owned(), "the default")));

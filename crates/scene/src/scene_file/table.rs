@@ -133,7 +133,7 @@ impl Table<'_> {
         let [first, second] = self.columns;
         let fault =
             |range, message: String, allowed: &str| Fault { range, message, allowed: allowed.to_owned() };
-        let mut columns: Option<[usize; 2]> = None;
+        let mut columns: Option<([usize; 2], usize)> = None;
         let mut points: Vec<(f64, f64)> = Vec::new();
         let mut start = 0;
         for line in text.split_inclusive('\n') {
@@ -143,16 +143,23 @@ impl Table<'_> {
             if cells.iter().all(|(_, cell)| cell.is_empty()) {
                 continue;
             }
-            let Some(which) = columns else {
+            let Some((which, named)) = columns else {
                 let find = |name: &str| {
                     let at = cells.iter().position(|(_, cell)| *cell == name);
                     at.ok_or_else(|| {
                         fault(begin..end, format!("the table has no column `{name}`"), &self.form())
                     })
                 };
-                columns = Some([find(first)?, find(second)?]);
+                columns = Some(([find(first)?, find(second)?], cells.len()));
                 continue;
             };
+            // As a decimal comma makes of `0,5`: what follows would be taken for another number.
+            if let Some((at, cell)) = cells.iter().skip(named).find(|(_, cell)| !cell.is_empty()) {
+                let message =
+                    format!("the row has {} columns, and the first line names {named}", cells.len());
+                let allowed = format!("{}, each with a decimal point", self.form());
+                return Err(fault(*at..at + cell.len(), message, &allowed));
+            }
             if points.len() == MAX_ROWS {
                 let message = format!("the table has more than {MAX_ROWS} rows");
                 return Err(fault(begin..end, message, "fewer points: lines run between them"));
@@ -267,6 +274,8 @@ mod tests {
             ("time_ms,value\n0,500\n0,600\n", "`time_ms` is 0, not after 0"),
             ("time_ms,value\n0,1e9\n", "-100000 to 100000 rpm"),
             ("time_ms,value\n0,NaN\n", "is `NaN`"),
+            ("time_ms,value\n0,1500,5\n", "speed.csv:2:8"),
+            ("time_ms,value\n0,1500,5\n", "has 3 columns, and the first line names 2"),
         ] {
             let said = scene(table).expect_err(table);
             assert!(said.contains(words) && !said.contains("x.ron"), "{table}: {said}");

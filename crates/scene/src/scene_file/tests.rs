@@ -202,12 +202,13 @@ fn refuses_a_wrong_word_and_corrects_it() {
     assert_eq!(problem.field, "contact.method");
     assert_eq!(problem.suggestion, "did you mean `collocated`?");
     assert_eq!(problem.allowed, "`collocated`, `integrated`");
-    // What has fields wants brackets, and a bearing's name quotes.
+    // What has fields wants brackets, a roller its number, and a bearing's name quotes.
     for (text, tried) in [
         ("(model: reduced)", "`model: reduced()`"),
         ("(model: \"reduced\")", "`model: reduced()`"),
         ("(model: \"full\")", "`model: full`"),
         ("(bearing: NU205)", "`bearing: \"NU 205\"`"),
+        ("(defect: None, defects: [(on: roller, form: missing)])", "`on: roller(1)`"),
     ] {
         let problem = only(parse(text));
         assert!(problem.to_string().contains(&format!("try: {tried}")), "{problem}");
@@ -489,9 +490,14 @@ fn refuses_housings_that_do_not_fit() {
             "[1]` is at 2 ms: times must ascend",
         ),
         (
+            "output: (frames: (from_ms: 7, to_ms: 3))",
+            "output.frames.to_ms",
+            "pictures end at 3 ms, before they begin (7 ms)",
+        ),
+        (
             "bearing: (clearance_change_um: -200)",
             "bearing.clearance_change_um",
-            "leaves a clearance of -160 µm",
+            "leaves a clearance of -160 µm: between -90 µm (-0.5 % of the roller's diameter) and 1800 µm (10 %)",
         ),
     ] {
         let problem = only(parse(&format!("({scene})")));
@@ -695,6 +701,10 @@ fn refuses_a_bearing_that_nobody_knows() {
     for set in ["bearing=NU 999", "bearing=\"NU 999\""] {
         let why = Scene::default().with_overrides(&[set]).unwrap_err();
         assert!(why.to_string().contains("no bearing `NU 999`"), "{why}");
+    }
+    for set in ["bearing=NU 205, elements=200", "bearing=NU 205, diameter_mm=20"] {
+        let why = Scene::default().with_overrides(&[set]).unwrap_err().to_string();
+        assert!(why.contains(&format!("--set {set}")) && why.contains("^^^^"), "{why}");
     }
     let why = Scene::parse("(\n  bearing: \"NU 999\",\n)", "mine").unwrap_err().to_string();
     assert!(why.contains("mine:2:12"), "{why}");

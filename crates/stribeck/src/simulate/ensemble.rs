@@ -13,6 +13,7 @@ use stribeck_scene::scene::Scene;
 use super::{Options, check_overrides, reserve, take_place};
 use crate::host;
 use crate::interrupt::{self, Interrupt};
+use crate::out::say;
 use crate::place::{Place, shown};
 use crate::side_by_side::{Due, Jobs, Shop};
 
@@ -89,7 +90,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         for note in &summary.notes {
             eprintln!("warning: {note}");
         }
-        println!("report: {}", shown(&dir.report()));
+        say!("report: {}", shown(&dir.report()));
     }
     Ok(if interrupt.is_pressed() && ended < wanted {
         ExitCode::from(interrupt::EXIT_CODE)
