@@ -150,8 +150,16 @@ class Scenes(unittest.TestCase):
                 ["operation.speed_profile=points([(0, 500.0), (20.5, 100)])"],
             ),
             (
-                {"operation": {"outer_speed_profile": {"ramp": {"to": 300.0}}}},
-                ["operation.outer_speed_profile=ramp(to: 300.0)"],
+                {
+                    "model": {"reduced": {"modes_khz": 30}},
+                    "housing": {"rigid": {"mass_kg": 5}},
+                    "operation": {"outer_speed_profile": {"ramp": {"to": 300.0}}},
+                },
+                [
+                    "model=reduced(modes_khz: 30)",
+                    "housing=rigid(mass_kg: 5)",
+                    "operation.outer_speed_profile=ramp(to: 300.0)",
+                ],
             ),
             ({"housing": {"springs": {"stiffness_n_um": 500}}}, ["housing=springs(stiffness_n_um: 500)"]),
             ({"cage": None, "mesh": {"outer_facets": np.int64(400)}}, ["cage=None", "mesh.outer_facets=400"]),
