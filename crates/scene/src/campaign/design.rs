@@ -274,7 +274,7 @@ fn table(path: &Path) -> Result<Rows, String> {
         let row = texts(line);
         if row.len() != fields.len() {
             return Err(format!(
-                "table `{}`, line {}: {} cells where the first line names {} fields",
+                "table `{}`, line {}: {} cells where the first line names {} fields; a value with a comma in it stands in quotes",
                 table.name,
                 number + 1,
                 row.len(),

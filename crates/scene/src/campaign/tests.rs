@@ -243,7 +243,7 @@ fn refuses_cells_that_their_field_cannot_have_in_the_tables_own_lines() {
 fn example_a_table_as_spreadsheets_write_it() {
     let scratch = stribeck_testing::Scratch::create("campaign-quoted");
     let table = "\u{feff}\"operation.load_n\",\"bearing\",\"contact.surface\",name,output.sensors\r\n\
-                 10000,\"NU 205\",\"arc\",\"rig\",\"[(name: \"\"a\"\", angle_deg: 10.0)]\"\r\n20000,6205,facet,b,[(name: \"b\", angle_deg: 5.0)]\r\n";
+                 10000,\"NU 205\",\"arc\",\"rig\",\"[(name: \"\"a\"\", angle_deg: 10.0)]\"\r\n20000,6205,facet,b,\"[(name: \"\"b\"\", angle_deg: 5)]\"\r\n";
     std::fs::write(scratch.join("t.csv"), table).unwrap();
     let text = "(name: \"t\", variants: table(\"t.csv\"))";
     let campaign = Campaign::parse(text, "a.ron", scratch.path()).unwrap();
