@@ -149,6 +149,18 @@ class Scenes(unittest.TestCase):
                 {"operation": {"speed_profile": {"points": [(0, 500.0), [20.5, 100]]}}},
                 ["operation.speed_profile=points([(0, 500.0), (20.5, 100)])"],
             ),
+            (
+                {
+                    "model": {"reduced": {"modes_khz": 30}},
+                    "housing": {"rigid": {"mass_kg": 5}},
+                    "operation": {"outer_speed_profile": {"ramp": {"to": 300.0}}},
+                },
+                [
+                    "model=reduced(modes_khz: 30)",
+                    "housing=rigid(mass_kg: 5)",
+                    "operation.outer_speed_profile=ramp(to: 300.0)",
+                ],
+            ),
             ({"housing": {"springs": {"stiffness_n_um": 500}}}, ["housing=springs(stiffness_n_um: 500)"]),
             ({"cage": None, "mesh": {"outer_facets": np.int64(400)}}, ["cage=None", "mesh.outer_facets=400"]),
         ]:
@@ -162,8 +174,13 @@ class Scenes(unittest.TestCase):
             stribeck.scene({"operation": {"load_n": float("nan")}})
         with self.assertRaisesRegex(ValueError, "load_n is a set"):
             stribeck.scene({"operation": {"load_n": {1}}})
-        with self.assertRaisesRegex(ValueError, "form"):
-            stribeck.scene({"film": None, "defects": [{"form": {"spal": {}}}]})
+        for fields, says in [
+            ({"defects": [{"form": {"spal": {"length_mm": 4}}}]}, "form is spal.*dent.*did you mean spall"),
+            ({"defects": [{"on": {"roler": 3}}]}, "on is roler.*inner, outer, roller.*did you mean roller"),
+            ({"model": {"reducd": {"modes_khz": 30}}}, "model is reducd.*full.*did you mean reduced"),
+        ]:
+            with self.assertRaisesRegex(ValueError, says):
+                stribeck.scene({"film": None, **fields})
 
 
 class Signals(unittest.TestCase):

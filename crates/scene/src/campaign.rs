@@ -27,12 +27,15 @@ use crate::dice::Dice;
 use crate::ensemble::start;
 use crate::run_dir::Keep;
 use crate::scene::Scene;
-use crate::scene_file::{self, Problem, SceneError, dialect};
+use crate::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
 use design::Variants;
 use refusal::File;
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
+
+/// Most starts of a variant.
+const MOST_STARTS: usize = 10_000;
 
 /// Values that no field takes are shown up to this many at once.
 const MOST_PROBLEMS: usize = 10;
@@ -114,7 +117,7 @@ pub struct Variant {
     pub start: usize,
     /// Values of the fields that vary, as they would be written.
     pub values: Vec<String>,
-    /// `train`, `validation` or `test`; the same for all starts of a variant, and for equal values.
+    /// `train`, `validation` or `test`; the same for all starts of a variant, and for variants of equal scenes.
     pub split: &'static str,
     /// The scene, or why there is none.
     pub scene: Result<Scene, String>,
@@ -129,7 +132,7 @@ impl Campaign {
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|e| refusal::unreadable(&shown, &e))?;
-        Self::parse(&text, &shown, path.parent().unwrap_or(Path::new("")))
+        Self::parse(without_mark(&text), &shown, path.parent().unwrap_or(Path::new("")))
     }
 
     fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
@@ -142,20 +145,35 @@ impl Campaign {
                 format!("is `{}`; letters, digits, `-` and `_` make a folder's name", file.name),
             );
         }
-        if file.starts == 0 || file.starts > 10_000 {
-            return refuse("starts", format!("is {}; it is 1 to 10000", file.starts));
+        if file.starts == 0 || file.starts > MOST_STARTS {
+            return refuse("starts", format!("is {}; it is 1 to {MOST_STARTS}", file.starts));
         }
         let Split { train, validation, test } = file.split;
         let sum = train + validation + test;
         if !([train, validation, test].iter().all(|s| *s >= 0.0) && (sum - 1.0).abs() < 1e-9) {
-            return refuse("split", format!("sums to {sum}; its three shares are not negative and sum to 1"));
+            return refuse(
+                "split",
+                format!(
+                    "is {train}, {validation} and {test}, and sums to {sum}; its three shares are from 0 to 1 and sum to 1"
+                ),
+            );
         }
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
         let rows = file.variants.rows(file.seed, folder).map_err(|no| place.refuse(&no.at, no.why))?;
-        for (field, at) in &rows.fields {
+        for (column, (field, _)) in rows.fields.iter().enumerate() {
             if let Some(problem) = scene_file::unknown_field(field) {
-                return Err(place.unknown_field(problem, at));
+                return Err(place.field(problem, &rows, column));
+            }
+            if rows.fields[..column].iter().any(|(before, _)| before == field) {
+                let why = format!(
+                    "`{field}` is named twice: a field varies in one way, and is one column of the tables"
+                );
+                return Err(place.field(
+                    Problem::new(why, Place::Unwritten { file: String::new() }),
+                    &rows,
+                    column,
+                ));
             }
         }
         let count = rows.values.len() * file.starts;
@@ -165,9 +183,10 @@ impl Campaign {
         let mut runs = Vec::with_capacity(count);
         let mut unreadable: Vec<Problem> = Vec::new();
         let mut rows_to_look_at = MOST_LOOKED_AT;
+        // What is wrong with every variant so far, outside of what varies.
+        let mut common: Option<Vec<Problem>> = None;
         for (row, values) in rows.values.iter().enumerate() {
-            let assigned =
-                rows.fields.iter().zip(values).map(|((field, _), value)| format!("{field}={value}"));
+            let assigned = (0..values.len()).map(|column| rows.argument(row, column));
             let set: Vec<String> = file.set.iter().cloned().chain(assigned).collect();
             let scene = match &base {
                 Some(path) => Scene::read_with(path, &set),
@@ -189,11 +208,18 @@ impl Campaign {
                 }
                 continue;
             }
-            let scene = scene.map_err(|why| why.to_string());
-            let split = split_of(&file.split, file.seed, values);
+            let outside = scene.as_ref().err().map_or_else(Vec::new, |why| place.outside(why, &rows, row));
+            match &mut common {
+                None => common = Some(outside),
+                Some(common) => common.retain(|problem| outside.contains(problem)),
+            }
+            // By the scene, however its values are written: equal scenes are in one part and have the same starts, others have not.
+            let drawn = scene.as_ref().map_or_else(|_| fold(values), nameless);
+            let scene = scene.map_err(|why| place.of_variant(&why, &rows, row).to_string());
+            let split = split_of(&file.split, file.seed, drawn);
             for number in 1..=file.starts {
                 let started = |scene: &Scene| {
-                    if file.starts == 1 { scene.clone() } else { start(scene, file.seed, number) }
+                    if file.starts == 1 { scene.clone() } else { start(scene, file.seed ^ drawn, number) }
                 };
                 runs.push(Variant {
                     number: runs.len() + 1,
@@ -209,17 +235,30 @@ impl Campaign {
             unreadable.sort_by_key(Problem::line_and_column);
             return Err(SceneError::new(unreadable));
         }
+        if let Some(common) = common.filter(|common| !common.is_empty()) {
+            return Err(place.of_base(SceneError::new(common)));
+        }
         let fields = rows.fields.into_iter().map(|(field, _)| field).collect();
         Ok(Self { name: file.name, text: text.to_owned(), fields, runs, seed: file.seed, keep: file.keep })
     }
 }
 
-/// Which part of the data a variant belongs to: by its values, so that equal scenes are never on both sides.
-fn split_of(split: &Split, seed: u64, values: &[String]) -> &'static str {
+/// The hash of a scene without its name, as a number.
+fn nameless(scene: &Scene) -> u64 {
+    let scene = Scene { name: String::new(), ..scene.clone() };
+    u64::from_str_radix(&scene.hash(), 16).unwrap_or_default()
+}
+
+/// A number for the values of a variant that has no scene.
+fn fold(values: &[String]) -> u64 {
     const OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
     const PRIME: u64 = 0x0000_0100_0000_01b3;
     let bytes = values.iter().flat_map(|value| value.bytes().chain([0]));
-    let number = bytes.fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME));
+    bytes.fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME))
+}
+
+/// Which part of the data belongs to this number.
+fn split_of(split: &Split, seed: u64, number: u64) -> &'static str {
     let share = Dice::stream(seed, number).share();
     if share < split.train {
         "train"

@@ -57,8 +57,9 @@ impl LineContacts {
         sum
     }
 
-    /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²].
-    pub(crate) fn load(&self, delta: f64) -> (f64, f64) {
+    /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²]; `None` beyond the largest approach that the law
+    /// knows, where contacts as wide as the roller would give way without more load.
+    pub(crate) fn load(&self, delta: f64) -> Option<(f64, f64)> {
         // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real load.
         let mut w = delta / (80.0 * self.softness);
         for _ in 0..100 {
@@ -69,6 +70,7 @@ impl LineContacts {
                 break;
             }
         }
-        (w, 1.0 / self.approach(w).1)
+        let (at, slope) = self.approach(w);
+        (slope > 0.0 && (at - delta).abs() <= 1e-9 * delta).then_some((w, 1.0 / slope))
     }
 }

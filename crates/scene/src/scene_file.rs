@@ -167,7 +167,7 @@ fn compose<S: AsRef<str>>(
 }
 
 /// Some editors put a byte order mark in front; RON knows none.
-fn without_mark(text: &str) -> &str {
+pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 

@@ -15,6 +15,11 @@ use crate::scene::Scene;
 const TOLERANCE: f64 = 1e-10;
 /// The search is a damped Newton iteration on a convex energy; it needs about ten.
 const MAX_ITERATIONS: usize = 200;
+/// A step goes no farther than so many times the clearance and the approach of a roller that carries everything: where few
+/// rollers are touched, or none, a direction has no stiffness that would say how far.
+const REACH: f64 = 10.0;
+/// Shortest part of a step that is tried.
+const SHORTEST: f64 = 1e-9;
 
 /// Load and approach of each roller in static equilibrium.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,7 +82,7 @@ impl RigidRings {
     ///
     /// # Errors
     ///
-    /// [`Error::Input`] for a load that is not positive, or for rollers that all lie below the load;
+    /// [`Error::Input`] for a load that is not positive, or for rollers between which the ring would fall;
     /// [`Error::NoEquilibrium`] when the load is beyond the law of a line contact.
     pub fn distribute(&self, load_n: f64, angles_deg: &[f64]) -> Result<StaticLoad, Error> {
         if !(load_n > 0.0 && load_n.is_finite()) {
@@ -88,17 +93,21 @@ impl RigidRings {
                 suggestion: "A bearing without load has no load distribution",
             });
         }
-        let directions: Vec<[f64; 2]> =
-            angles_deg.iter().map(|angle| [angle.to_radians().cos(), angle.to_radians().sin()]).collect();
-        let upper = directions.iter().filter(|n| n[1] > 1e-9).count();
-        if upper < 2 {
+        // From the load to the nearest roller on either side, one under the load counting as both.
+        let nearest = |side: f64| {
+            angles_deg.iter().map(|angle| (side * (angle - 90.0)).rem_euclid(360.0)).fold(360.0, f64::min)
+        };
+        if nearest(1.0) + nearest(-1.0) > 180.0 - 1e-6 {
             return Err(Error::Input {
-                field: "angles_deg",
-                value: upper as f64,
-                allowed: "at least 2 rollers in the upper half".to_owned(),
-                suggestion: "The ring would fall past the rollers",
+                field: "bearing.rollers",
+                value: angles_deg.len() as f64,
+                allowed: "so many that two that carry stand less than half a turn apart about the load"
+                    .to_owned(),
+                suggestion: "The ring would fall past the rollers: take more of them, or fewer that are missing or over a defect",
             });
         }
+        let directions: Vec<[f64; 2]> =
+            angles_deg.iter().map(|angle| [angle.to_radians().cos(), angle.to_radians().sin()]).collect();
         self.newton(load_n, &directions)
     }
 
@@ -107,26 +116,33 @@ impl RigidRings {
         // Start where every upper roller is pressed a little: the stiffness is then regular.
         let mut shift = [0.0, -2.0 * self.clearance_m - 1e-6];
         let mut residual = self.residual(shift, load_n, directions);
+        let reach = REACH * (self.clearance_m.abs() + 1e-6 + self.approach_m(load_n));
         for _ in 0..MAX_ITERATIONS {
-            if residual.force() <= TOLERANCE * load_n {
+            if residual.force() <= TOLERANCE * load_n || residual.force() <= self.rounding(shift, &residual) {
                 return Ok(self.solution(shift, directions));
             }
-            let step = residual.newton_step();
+            let step = residual.newton_step(reach);
             let mut scale = 1.0;
-            loop {
+            (shift, residual) = loop {
                 let next = [shift[0] + scale * step[0], shift[1] + scale * step[1]];
                 let tried = self.residual(next, load_n, directions);
                 // Armijo on the energy; at the end rounding hides the decrease, so a smaller force is enough.
                 let slope = step[0] * residual.unbalanced[0] + step[1] * residual.unbalanced[1];
                 let enough = tried.energy <= residual.energy - 1e-4 * scale * slope;
-                if enough || tried.force() < residual.force() || scale < 1e-6 {
-                    (shift, residual) = (next, tried);
-                    break;
+                let hidden = tried.energy <= residual.energy + 1e-12 * residual.energy.abs();
+                if enough || hidden && tried.force() < residual.force() || scale < SHORTEST {
+                    break (next, tried);
                 }
                 scale *= 0.5;
-            }
+            };
         }
         Err(Error::NoEquilibrium { iterations: MAX_ITERATIONS, residual_n: residual.force(), load_n })
+    }
+
+    /// Force [N] that rounding of the displacement leaves: a light load cannot be balanced better.
+    fn rounding(&self, shift: [f64; 2], residual: &Residual) -> f64 {
+        let [xx, _, yy] = residual.stiffness;
+        2.0 * f64::EPSILON * (xx + yy) * (shift[0].hypot(shift[1]) + self.clearance_m.abs())
     }
 
     /// Approach at a roller [m]: the outer ring moves against the roller's direction, less the clearance.
@@ -141,7 +157,9 @@ impl RigidRings {
             if approach <= 0.0 {
                 continue;
             }
-            let (w, slope) = self.compliance.load(approach);
+            let Some((w, slope)) = self.compliance.load(approach) else {
+                return Residual { energy: f64::INFINITY, ..out };
+            };
             let (force, k) = (w * self.length_m, slope * self.length_m);
             out.unbalanced[0] += force * n[0];
             out.unbalanced[1] += force * n[1];
@@ -156,8 +174,8 @@ impl RigidRings {
 
     fn solution(&self, shift_m: [f64; 2], directions: &[[f64; 2]]) -> StaticLoad {
         let approach_m: Vec<f64> = directions.iter().map(|n| self.approach(shift_m, *n)).collect();
-        let load =
-            |delta: &f64| if *delta > 0.0 { self.compliance.load(*delta).0 * self.length_m } else { 0.0 };
+        let line_load = |delta: f64| self.compliance.load(delta).map_or(0.0, |(w, _)| w);
+        let load = |delta: &f64| if *delta > 0.0 { line_load(*delta) * self.length_m } else { 0.0 };
         StaticLoad { shift_m, roller_n: approach_m.iter().map(load).collect(), approach_m }
     }
 }
@@ -177,12 +195,19 @@ impl Residual {
         self.unbalanced[0].hypot(self.unbalanced[1])
     }
 
-    /// Displacement that balances the linearised forces [m].
-    fn newton_step(&self) -> [f64; 2] {
-        let [xx, xy, yy] = self.stiffness;
+    /// Displacement that balances the linearised forces [m], no longer than `reach` [m].
+    fn newton_step(&self, reach: f64) -> [f64; 2] {
         // A single loaded roller leaves one direction without stiffness; a trace of it keeps the step finite.
-        let trace = 1e-9 * (xx + yy) + f64::MIN_POSITIVE;
-        let (xx, yy) = (xx + trace, yy + trace);
+        let trace = 1e-9 * (self.stiffness[0] + self.stiffness[2]) + f64::MIN_POSITIVE;
+        let step = self.balanced_with(trace);
+        // Springs of this stiffness alone would let it go as far as that.
+        if step[0].hypot(step[1]) <= reach { step } else { self.balanced_with(trace + self.force() / reach) }
+    }
+
+    /// The same with springs `more` [N/m] in all directions.
+    fn balanced_with(&self, more: f64) -> [f64; 2] {
+        let [xx, xy, yy] = self.stiffness;
+        let (xx, yy) = (xx + more, yy + more);
         let determinant = xx * yy - xy * xy;
         let [fx, fy] = self.unbalanced;
         [(yy * fx - xy * fy) / determinant, (xx * fy - xy * fx) / determinant]
@@ -271,12 +296,44 @@ mod tests {
     }
 
     #[test]
+    fn survives_any_load_that_a_bearing_may_carry() {
+        // Once light loads left the rings without contact on the way, and the search ended far outside the bearing. Few rollers
+        // leave one of them alone under the load.
+        for rollers in [3, 4, 5, 24] {
+            for turned in 0..8 {
+                let first = 90.0 + 45.0 * turned as f64 / rollers as f64;
+                let angles: Vec<f64> =
+                    (0..rollers).map(|n| first - 360.0 * n as f64 / rollers as f64).collect();
+                for inner_race_diameter_mm in [163.8, 163.9, 163.95, 164.0] {
+                    let scene = Scene::default();
+                    let bearing = BearingScene { inner_race_diameter_mm, ..scene.bearing };
+                    let rings = RigidRings::new(&Geometry::of(&Scene { bearing, ..Scene::default() }));
+                    for load_n in (-6..12).map(|power| 10.0_f64.powf(0.5 * f64::from(power))) {
+                        let load = rings
+                            .distribute(load_n, &angles)
+                            .unwrap_or_else(|why| panic!("{rollers}: {why}"));
+                        let up = |(force, angle): (&f64, &f64)| force * angle.to_radians().sin();
+                        let carried: f64 = load.roller_n.iter().zip(&angles).map(up).sum();
+                        assert!(
+                            (carried / load_n - 1.0).abs() < 1e-6,
+                            "{carried} of {load_n} N on {rollers} at {first}°"
+                        );
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn refuses_bad_loads_and_positions() {
         let scene = Scene::default();
         let rings = RigidRings::new(&Geometry::of(&scene));
         assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());
         assert!(rings.distribute(f64::NAN, &[60.0, 90.0, 120.0]).is_err());
-        assert!(rings.distribute(1.0, &[270.0]).is_err());
+        for fallen in [&[270.0][..], &[30.0, 60.0], &[80.0, 260.1], &[]] {
+            let why = rings.distribute(1.0, fallen).unwrap_err().to_string();
+            assert!(why.contains("`bearing.rollers` is") && why.contains("about the load"), "{why}");
+        }
         // 10^12 N squeeze the bearing flat: an answer or an error, never a hang.
         assert!(rings.distribute(1e15, &[60.0, 90.0, 120.0]).is_err());
     }

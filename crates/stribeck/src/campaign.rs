@@ -8,6 +8,7 @@ mod emit;
 mod memory;
 mod tables;
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -104,6 +105,11 @@ impl Folder {
         self.0.join("campaign.ron")
     }
 
+    /// Hashes of the scenes of all runs, by which a table or a scene file that was changed is known.
+    fn scenes(&self) -> PathBuf {
+        self.0.join("scenes.txt")
+    }
+
     /// Waits until no other part writes the files of the campaign itself, for as long as what is returned lives, and removes what a
     /// part that was killed has left half written.
     fn take_turn(&self) -> Result<File> {
@@ -140,7 +146,7 @@ enum Stage {
     /// At its end; it may have diverged.
     Done,
     /// To be run or continued.
-    Due(State),
+    Due,
 }
 
 fn stage(folder: &Folder, keep: Keep, variant: &Variant) -> Result<Stage> {
@@ -156,7 +162,7 @@ fn stage(folder: &Folder, keep: Keep, variant: &Variant) -> Result<Stage> {
         State::Done if is_settled(&path, keep)? => Stage::Done,
         State::Done => Stage::Ended,
         State::Other => bail!("`{}` holds a run of another scene: move it away", shown(&path)),
-        state => Stage::Due(state),
+        State::New | State::Begun => Stage::Due,
     })
 }
 
@@ -176,12 +182,16 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         options.shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1)
     };
     let mut due = Vec::new();
+    // Equal scenes are run once.
+    let mut seen = HashSet::new();
     for variant in campaign.runs.iter().filter(mine) {
         let Ok(scene) = &variant.scene else { continue };
         match stage(&folder, campaign.keep, variant)? {
-            Stage::Due(state) => {
-                let (number, scene) = (variant.number, scene.clone());
-                due.push(Due { number, folder: folder.run(&scene), scene, state });
+            Stage::Due => {
+                let (number, scene, folder) = (variant.number, scene.clone(), folder.run(scene));
+                if seen.insert(folder.clone()) {
+                    due.push(Due { number, scene, folder });
+                }
             }
             // What a kill has left; it may free the space that others need.
             Stage::Ended if !interrupt.is_pressed() => {
@@ -231,22 +241,42 @@ fn replace(path: &Path, text: &str) -> Result<()> {
 
 /// Makes the folder, or finds the same campaign in it.
 fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
-    let path = folder.file();
-    match std::fs::read_to_string(&path) {
-        Ok(there) => ensure!(
-            there == campaign.text,
+    let (path, scenes) = (folder.file(), scenes(campaign));
+    let there = std::fs::read_to_string(&path).ok();
+    if let Some(there) = &there {
+        ensure!(
+            *there == campaign.text,
             "`{}` holds another campaign, or an earlier text of this one: give a folder with `--out`, or compare `{}`",
             shown(&folder.0),
             shown(&path)
-        ),
-        Err(_) => {
-            std::fs::create_dir_all(folder.0.join("runs"))
-                .with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
-            let _turn = folder.take_turn()?;
-            replace(&path, &campaign.text)?;
+        );
+        // Folders of earlier versions have no such list.
+        if let Ok(before) = std::fs::read_to_string(folder.scenes()) {
+            let same = before.lines().zip(scenes.lines()).take_while(|(before, now)| before == now).count();
+            ensure!(
+                before == scenes,
+                "`{}` holds runs of other scenes, beginning with run {}: the table or the scene that this campaign names was changed \
+                 since. Give a folder with `--out`, or put it back",
+                shown(&folder.0),
+                same + 1
+            );
+            return Ok(());
         }
     }
+    std::fs::create_dir_all(folder.0.join("runs"))
+        .with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
+    let _turn = folder.take_turn()?;
+    replace(&folder.scenes(), &scenes)?;
+    if there.is_none() {
+        replace(&path, &campaign.text)?;
+    }
     Ok(())
+}
+
+/// A line for each run: its number and the hash of its scene.
+fn scenes(campaign: &Campaign) -> String {
+    let hash = |run: &Variant| run.scene.as_ref().map_or_else(|_| "refused".to_owned(), Scene::hash);
+    campaign.runs.iter().map(|run| format!("{} {}\n", run.number, hash(run))).collect()
 }
 
 /// Makes the tables when every run has come to an end, and says how matters stand. A part of a campaign has done what it was
@@ -261,7 +291,7 @@ fn conclude(
     let (mut left, mut left_here) = (0, 0);
     for variant in &campaign.runs {
         let stage = stage(folder, campaign.keep, variant)?;
-        let due = matches!(stage, Stage::Due(_) | Stage::Ended);
+        let due = matches!(stage, Stage::Due | Stage::Ended);
         left += usize::from(due);
         left_here += usize::from(due && mine(&variant));
         stages.push(stage);
@@ -284,10 +314,12 @@ fn conclude(
     let written = tables::write(folder, campaign, &rows)?;
     replace(&folder.0.join("DATASHEET.md"), &datasheet::text(campaign, &rows, &written))?;
     drop(turn);
-    let complete = rows.iter().filter(|row| row.status == "complete").count();
-    for row in rows.iter().filter(|row| row.status != "complete").take(3) {
+    let complete = rows.iter().filter(|row| row.is_complete()).count();
+    for row in rows.iter().filter(|row| !row.is_complete()).take(3) {
         let why = row.reason.as_deref().unwrap_or_default();
-        eprintln!("run {}: {}: {}", row.number, row.status, why.lines().next().unwrap_or_default());
+        let allowed = why.lines().find_map(|line| line.trim_start().strip_prefix("= allowed: "));
+        let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed: {allowed}"));
+        eprintln!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
     }
     println!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.0.join(tables::RUNS)));
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })

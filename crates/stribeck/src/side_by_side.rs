@@ -7,6 +7,7 @@ use stribeck_bearing::error::Error as BearingError;
 use stribeck_bearing::simulation::Progress;
 use stribeck_reduced::error::Error;
 use stribeck_reduced::simulation;
+use stribeck_scene::Error as SceneError;
 use stribeck_scene::run_dir::{RunDir, State};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
@@ -20,7 +21,6 @@ pub(crate) struct Due {
     pub(crate) number: usize,
     pub(crate) scene: Scene,
     pub(crate) folder: PathBuf,
-    pub(crate) state: State,
 }
 
 /// How many jobs there are, and how many threads each has.
@@ -72,7 +72,7 @@ impl<'a> Shop<'a> {
     }
 
     /// Runs what is due until nothing is left, Ctrl-C is pressed or the disk refuses. `ended` is told of each run, with why it
-    /// could not be made; what the disk refused can follow when there is space again, and is not told.
+    /// could not be made; what the disk or the folder refused can follow when that has changed, and is not told.
     pub(crate) fn run(&self, ended: &(dyn Fn(&Due, Option<&Error>) + Sync)) {
         std::thread::scope(|scope| {
             (1..self.jobs.count).for_each(|_| drop(scope.spawn(|| self.work(ended))));
@@ -95,14 +95,13 @@ impl<'a> Shop<'a> {
                 self.board.show(due.number, progress);
                 self.interrupt.flow()
             };
-            let done = self.clock.with(self.jobs.threads, due.number, |host| match due.state {
-                State::Begun => {
-                    let dir = RunDir::reopen(&due.folder)?;
-                    simulation::extend(&dir, due.scene.solver.duration_ms, host, &mut watch)
-                }
-                _ => {
-                    let dir = RunDir::create_over(&due.folder)?;
-                    simulation::simulate(&due.scene, &dir, host, &mut watch)
+            let done = self.clock.with(self.jobs.threads, due.number, |host| {
+                let dir = RunDir::create_over(&due.folder)?;
+                // Only while the folder is held: another program may have run it since it was found to be due.
+                match State::of(&due.folder, &due.scene) {
+                    State::New => simulation::simulate(&due.scene, &dir, host, &mut watch),
+                    State::Begun => simulation::extend(&dir, due.scene.solver.duration_ms, host, &mut watch),
+                    State::Done | State::Other => Ok(dir.read_info()?),
                 }
             });
             match &done {
@@ -110,15 +109,24 @@ impl<'a> Shop<'a> {
                     self.board.done(due.number, &words(info));
                     ended(due, None);
                 }
-                Err(Error::Bearing(BearingError::Scene(stribeck_scene::Error::FolderInUse { .. }))) => {
+                Err(Error::Bearing(BearingError::Scene(SceneError::FolderInUse { .. }))) => {
                     self.board.done(due.number, "is being run by another program");
                 }
                 Err(error) => {
                     self.board.done(due.number, &format!("failed: {error}"));
-                    if matches!(error, Error::Bearing(BearingError::Scene(_))) {
-                        self.disk_refuses.store(true, Ordering::Relaxed);
-                    } else {
-                        ended(due, Some(error));
+                    match error {
+                        Error::Bearing(BearingError::Scene(SceneError::Io { .. })) => {
+                            self.disk_refuses.store(true, Ordering::Relaxed);
+                        }
+                        // What lies in the scene fails again wherever it is run.
+                        Error::Bearing(BearingError::Scene(
+                            SceneError::Scene(_)
+                            | SceneError::Input { .. }
+                            | SceneError::NoEquilibrium { .. },
+                        )) => ended(due, Some(error)),
+                        // What lies in its folder.
+                        Error::Bearing(BearingError::Scene(_)) => {}
+                        _ => ended(due, Some(error)),
                     }
                 }
             }

@@ -117,7 +117,7 @@ fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Re
                     "`{}` holds a run of another scene, seed or duration: give another folder with `--out`, or move it away",
                     shown(&folder)
                 ),
-                state => due.push(Due { number: due.len() + 1, scene, folder, state }),
+                State::New | State::Begun => due.push(Due { number: due.len() + 1, scene, folder }),
             }
         }
     }

@@ -284,6 +284,95 @@ fn example_variants_that_cannot_be_are_rows_with_their_reason() {
     says(&other, &["holds another campaign", "--out"]);
 }
 
+/// The numbers of a table's column.
+fn column(table: &Path, name: &str) -> Vec<f64> {
+    let table = Recording::open(table).expect("a table");
+    table.channel(name).unwrap_or_else(|why| panic!("{why}")).read().expect("numbers")
+}
+
+#[test]
+fn example_a_run_that_fails_at_set_up_is_a_row_and_the_others_go_on() {
+    // Beyond the law of a line contact: there is no static distribution for the film to be made from.
+    let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
+        "(field: \"operation.load_n\", from: 5000, to: 50000),",
+        "(field: \"operation.load_n\", values: [1e9, 10000]),",
+    );
+    let desk = desk("campaign-set-up", &text);
+    let done = run(&desk, &["--out=A", "--jobs=1"]);
+    assert!(done.status.success(), "{}", said(&done));
+    says(&done, &["run 1", "failed", "no static load distribution", "2 of 4 runs are complete"]);
+    // Once more, nothing is tried again.
+    says(&run(&desk, &["--out=A"]), &["0 of them to be run", "2 of 4 runs are complete"]);
+}
+
+#[test]
+fn example_equal_scenes_are_run_once_and_what_two_programs_have_run_stays() {
+    let text = keeping("numbers").replace("from: 5000, to: 50000", "values: [10000, 1e4, 20000]");
+    let desk = desk("campaign-equal", &text.replace("count: 8", "count: 24"));
+    // Programs that find the same runs due, and take them up at their own pace.
+    let programs: Vec<_> =
+        (0..2).map(|_| campaign(&desk, &["--out=A", "--jobs=1"]).spawn().expect("it starts")).collect();
+    let whole = run(&desk, &["--out=B", "--jobs=2"]);
+    says(&whole, &["24 runs, 4 of them to be run here", "24 of 24 runs are complete"]);
+    assert!(!said(&whole).contains("another program"), "{}", said(&whole));
+    for mut program in programs {
+        // The first to end may have left runs to the other.
+        program.wait().expect("it ends");
+    }
+    let times = |folder: &str| -> Vec<Vec<u8>> {
+        runs(&desk.join(folder)).iter().map(|run| fs::read(run.join("run.json")).expect("a run")).collect()
+    };
+    let before = times("A");
+    assert!(run(&desk, &["--out=A"]).status.success());
+    assert_eq!((times("A"), before.len()), (before, 4));
+    assert_eq!(
+        fs::read(desk.join("A/runs.parquet")).expect("a table"),
+        fs::read(desk.join("B/runs.parquet")).expect("a table")
+    );
+}
+
+#[test]
+fn refuses_a_folder_whose_table_or_scene_was_changed() {
+    let text = "(name: \"x\", scene: \"quick.ron\", set: [\"mesh.size_mm=4.0\", \"mesh.roller_facets=40\",
+        \"solver.start=sudden\", \"solver.duration_ms=0.1\", \"output.frames=None\"], variants: table(\"t.csv\"))";
+    let desk = desk("campaign-changed", text);
+    fs::write(desk.join("t.csv"), "operation.load_n\n10000\n20000\n").expect("a table");
+    assert!(run(&desk, &["--out=A"]).status.success());
+    let before = tables(&desk.join("A"));
+    fs::write(desk.join("t.csv"), "operation.load_n\n10000\n30000\n").expect("a table");
+    let changed = run(&desk, &["--out=A"]);
+    assert!(!changed.status.success());
+    says(&changed, &["other scenes", "run 2", "--out"]);
+    assert_eq!(before, tables(&desk.join("A")));
+    // The same values, written in another way, are the same campaign.
+    fs::write(desk.join("t.csv"), "operation.load_n\n1e4\n20000.0\n").expect("a table");
+    assert!(run(&desk, &["--out=A"]).status.success());
+    // A folder of an earlier version has no list, and gets one.
+    fs::remove_file(desk.join("A/scenes.txt")).expect("it is there");
+    assert!(run(&desk, &["--out=A"]).status.success() && desk.join("A/scenes.txt").exists());
+}
+
+#[test]
+fn example_a_run_that_diverges_has_a_row_and_no_signals() {
+    let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
+        "(field: \"operation.load_n\", from: 5000, to: 50000),",
+        "(field: \"guards.energy_stop_percent\", values: [25, 0.00001]),",
+    );
+    let desk = desk("campaign-diverged", &text);
+    let done = run(&desk, &["--out=A"]);
+    says(&done, &["diverged", "(limit 0.00001 %)", "2 of 4 runs are complete"]);
+    let of = column(&desk.join("A/signals.parquet"), "run");
+    assert!(!of.is_empty() && of.iter().all(|run| *run <= 2.0), "{of:?}");
+    let sheet = fs::read_to_string(desk.join("A/DATASHEET.md")).expect("a page");
+    let columns = sheet.split("## Columns of `signals.parquet`").nth(1).expect("its columns");
+    for words in ["| `run` |  |", "| `split` |  |", "| `time_s` | s |"] {
+        assert!(columns.contains(words), "`{words}` is not in\n{columns}");
+    }
+    for words in ["| runs with warnings | ", "one that diverged has no signals", "| `warnings` |  |"] {
+        assert!(sheet.contains(words), "`{words}` is not in\n{sheet}");
+    }
+}
+
 #[test]
 fn example_scripts_for_engines_name_every_part() {
     let desk = desk("campaign-emit", CAMPAIGN);
@@ -306,6 +395,13 @@ fn example_scripts_for_engines_name_every_part() {
     says(&told("hq"), &["--array=1-8", "--cpus=4", to_program]);
     says(&run(&desk, &["--emit=hq", "--jobs=2"]), &["--jobs 2 --threads 2", "--cpus=2"]);
     says(&run(&desk, &["--shards=3"]), &["--emit"]);
+    // Whatever a folder is called, a shell takes its name and runs nothing of it.
+    let out = "--out=it's `touch ran` $(touch ran)";
+    let script = String::from_utf8(run(&desk, &["--emit=slurm", out]).stdout).expect("a text");
+    let line = script.lines().last().expect("a command").replace(env!("CARGO_BIN_EXE_stribeck"), "echo");
+    let echoed = Command::new("sh").current_dir(desk.path()).args(["-c", &line]).output().expect("a shell");
+    says(&echoed, &["it's `touch ran` $(touch ran) --shard /8"]);
+    assert!(!desk.join("ran").exists());
     says(&run(&desk, &["--shard=4/3"]), &["I from 1 to N"]);
 }
 

@@ -183,9 +183,8 @@ impl System {
         if error > stop {
             let what = if error.is_finite() {
                 format!(
-                    "energy is out of balance by {:.1} % of the {over} (limit {:.0} %)",
-                    100.0 * error,
-                    100.0 * stop
+                    "energy is out of balance by {:.1} % of the {over} (limit {energy_stop_percent} %)",
+                    100.0 * error
                 )
             } else {
                 "a position or a velocity is no number any more".to_owned()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import json
 import math
 import os
@@ -13,17 +14,27 @@ _WORDS = {
     "model": {"full", "reduced"},
     "housing": {"adapter", "pedestal", "mesh", "rigid", "springs"},
     "speed_profile": {"ramp", "harmonic", "points", "table"},
+    "outer_speed_profile": {"ramp", "harmonic", "points", "table"},
     "load_profile": {"ramp", "harmonic", "points", "table"},
     "on": {"outer", "inner", "roller"},
     "form": {"spall", "dent", "profile", "waviness", "roughness", "diameter", "missing"},
 }
 
 # Fields whose value is a text, which stands in quotes; all other strings are words of their own.
-_TEXTS = {"name", "designation", "file", "table", "text", "bore", "loaded"}
+_TEXTS = {"name", "designation", "file", "table", "text", "bore", "loaded", "raceway", "fit"}
 
 
 def _is_word(key: str, value: Any) -> bool:
     return isinstance(value, Mapping) and len(value) == 1 and next(iter(value)) in _WORDS.get(key, ())
+
+
+def _no_word(key: str, given: Mapping[str, Any]) -> ValueError:
+    found, words = ", ".join(map(str, given)), sorted(_WORDS[key])
+    near = difflib.get_close_matches(found, words, 1)
+    return ValueError(
+        f"{key} is {found or 'empty'}, which is not one of its words: {', '.join(words)}"
+        + (f"; did you mean {near[0]}?" if near else "")
+    )
 
 
 def value(key: str, given: Any) -> str:
@@ -46,6 +57,8 @@ def value(key: str, given: Any) -> str:
         ((word, inner),) = given.items()
         written = value(word, inner)
         return word + (written if written.startswith("(") else f"({written})")
+    if isinstance(given, Mapping) and key in _WORDS:
+        raise _no_word(key, given)
     if isinstance(given, Mapping):
         return "(" + ", ".join(f"{name}: {value(str(name), inner)}" for name, inner in given.items()) + ")"
     if isinstance(given, (list, tuple)):
@@ -69,6 +82,10 @@ def overrides(fields: Mapping[str, Any], above: str = "") -> list[str]:
     for key, given in fields.items():
         path = f"{above}.{key}" if above else str(key)
         name = path.rsplit(".", 1)[-1]
+        if name in _WORDS and isinstance(given, Mapping) and not _is_word(name, given):
+            # What belongs to a word are numbers and texts: a dict among them is a word that is misspelt, or one too many.
+            if any(isinstance(inner, Mapping) for inner in given.values()):
+                raise _no_word(name, given)
         if isinstance(given, Mapping) and given and not _is_word(name, given):
             found += overrides(given, path)
         elif isinstance(given, str):

@@ -8,6 +8,7 @@ use serde::Deserialize;
 
 use super::MOST_RUNS;
 use crate::dice::Dice;
+use crate::scene_file::without_mark;
 
 /// Most runs of a Sobol sequence.
 const MOST_OF_SOBOL: usize = 1 << 16;
@@ -56,6 +57,13 @@ pub(super) struct Table {
     pub(super) text: String,
 }
 
+impl Rows {
+    /// What puts the value of a variant and a field, both from 0, into a scene.
+    pub(super) fn argument(&self, row: usize, column: usize) -> String {
+        format!("{}={}", self.fields[column].0, self.values[row][column])
+    }
+}
+
 impl Table {
     /// Lines that are not empty, each with its number from 0 and with where it begins.
     fn lines(&self) -> impl Iterator<Item = (usize, usize, &str)> {
@@ -66,11 +74,54 @@ impl Table {
 
     /// Byte range of the cell of a variant and a field, both from 0.
     pub(super) fn cell(&self, row: usize, column: usize) -> Option<Range<usize>> {
-        let (_, begin, line) = self.lines().nth(row + 1)?;
-        let before: usize = line.split(',').take(column).map(|cell| cell.len() + 1).sum();
-        let cell = line.split(',').nth(column)?;
-        let start = begin + before + (cell.len() - cell.trim_start().len());
-        Some(start..start + cell.trim().len())
+        self.written(row + 1, column)
+    }
+
+    /// The same of the name of a field.
+    pub(super) fn head(&self, column: usize) -> Range<usize> {
+        self.written(0, column).unwrap_or(0..0)
+    }
+
+    fn written(&self, line: usize, column: usize) -> Option<Range<usize>> {
+        let (_, begin, line) = self.lines().nth(line)?;
+        let (within, _) = cells(line).into_iter().nth(column)?;
+        Some(begin + within.start..begin + within.end)
+    }
+}
+
+/// Cells of a line: where each is written, and what is in it. One in quotes may hold commas, and quotes written twice.
+fn cells(line: &str) -> Vec<(Range<usize>, String)> {
+    let mut cells = Vec::new();
+    let mut begin = 0;
+    loop {
+        let rest = &line[begin..];
+        let start = begin + (rest.len() - rest.trim_start().len());
+        let quoted = line[start..].starts_with('"').then(|| closed(&line[start..])).flatten();
+        let behind = start + quoted.unwrap_or(0);
+        let end = line[behind..].find(',').map_or(line.len(), |comma| behind + comma);
+        let written = line[start.min(end)..end].trim();
+        let within = start.min(end)..start.min(end) + written.len();
+        let text = match quoted {
+            Some(length) if length == written.len() => written[1..length - 1].replace("\"\"", "\""),
+            _ => written.to_owned(),
+        };
+        cells.push((within, text.trim().to_owned()));
+        if end == line.len() {
+            return cells;
+        }
+        begin = end + 1;
+    }
+}
+
+/// How long a text in quotes is that stands at the beginning.
+fn closed(text: &str) -> Option<usize> {
+    let mut at = 1;
+    loop {
+        at += text[at..].find('"')? + 1;
+        if !text[at..].starts_with('"') {
+            return Some(at);
+        }
+        at += 1;
     }
 }
 
@@ -92,14 +143,16 @@ impl Variants {
         match self {
             Self::Grid(axes) => grid(axes),
             Self::LatinHypercube { count, over } => {
+                possible(*count, MOST_RUNS, over)?;
                 let places = latin_hypercube(seed, *count, over.len());
-                drawn(over, *count, MOST_RUNS, &|row, axis| places[axis][row])
+                drawn(over, *count, &|row, axis| places[axis][row])
             }
             Self::Sobol { count, over } => {
+                possible(*count, MOST_OF_SOBOL, over)?;
                 let seed = (seed ^ (seed >> 32)) as u32;
                 let place =
                     |row: usize, axis: usize| f64::from(sobol_burley::sample(row as u32, axis as u32, seed));
-                drawn(over, *count, MOST_OF_SOBOL, &place)
+                drawn(over, *count, &place)
             }
             Self::Table(path) => table(&folder.join(path)).map_err(|why| Refused::new("variants", why)),
         }
@@ -131,17 +184,21 @@ impl Axis {
                 // Seven digits: short to read in a scene, and finer than anything that is measured.
                 Ok(format!("{}", format!("{value:.6e}").parse::<f64>().unwrap_or(value)))
             }
-            _ => Err(format!("`{field}` takes either `values: […]` or both `from` and `to`")),
+            _ => Err(format!("`{field}` takes either `values: […]`, one at least, or both `from` and `to`")),
         }
     }
 }
 
 fn grid(axes: &[Axis]) -> Result<Rows, Refused> {
+    if axes.is_empty() {
+        let why = "the grid names no field; `(field: \"operation.load_n\", values: [10000, 20000])` is one";
+        return Err(Refused::new("variants", why.to_owned()));
+    }
     let mut rows = vec![Vec::new()];
     for (n, axis) in axes.iter().enumerate() {
         let values = axis.listed();
         if values.is_empty() || axis.from.is_some() || axis.to.is_some() {
-            let why = "a grid takes `values: […]`; `latin_hypercube` and `sobol` take ranges";
+            let why = "a grid takes `values: […]`, one at least; `latin_hypercube` and `sobol` take ranges";
             return Err(Refused::new(format!("variants[{n}]"), format!("`{}`: {why}", axis.field)));
         }
         if rows.len().saturating_mul(values.len()) > MOST_RUNS {
@@ -158,17 +215,17 @@ fn grid(axes: &[Axis]) -> Result<Rows, Refused> {
     Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: rows, table: None })
 }
 
-fn drawn(
-    axes: &[Axis],
-    count: usize,
-    most: usize,
-    place: &dyn Fn(usize, usize) -> f64,
-) -> Result<Rows, Refused> {
+/// Whether so many points over these fields can be drawn.
+fn possible(count: usize, most: usize, axes: &[Axis]) -> Result<(), Refused> {
     if count == 0 || count > most || axes.is_empty() || axes.len() > 256 {
         let why =
             format!("`variants` draws {count} points over {} fields; 1 to {most} over 1 to 256", axes.len());
         return Err(Refused::new("variants", why));
     }
+    Ok(())
+}
+
+fn drawn(axes: &[Axis], count: usize, place: &dyn Fn(usize, usize) -> f64) -> Result<Rows, Refused> {
     let value = |row, (n, axis): (usize, &Axis)| {
         axis.at(place(row, n)).map_err(|why| Refused::new(format!("variants.over[{n}]"), why))
     };
@@ -194,17 +251,30 @@ fn latin_hypercube(seed: u64, count: usize, axes: usize) -> Vec<Vec<f64>> {
 fn table(path: &Path) -> Result<Rows, String> {
     let text =
         std::fs::read_to_string(path).map_err(|e| format!("cannot read table `{}`: {e}", path.display()))?;
-    let table = Table { name: path.display().to_string(), text };
-    let cells = |line: &str| line.split(',').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let table = Table { name: path.display().to_string(), text: without_mark(&text).to_owned() };
+    let texts = |line: &str| cells(line).into_iter().map(|(_, text)| text).collect::<Vec<_>>();
     let mut lines = table.lines();
     let Some((_, _, head)) = lines.next() else { return Err(format!("table `{}` is empty", table.name)) };
-    let fields = cells(head);
+    let fields = texts(head);
+    if fields.len() == 1 && head.contains(';') {
+        return Err(format!(
+            "table `{}`, line 1: cells are parted by semicolons; save it with commas, and numbers with points",
+            table.name
+        ));
+    }
+    if let Some(empty) = fields.iter().position(String::is_empty) {
+        return Err(format!(
+            "table `{}`, line 1: column {} has no name; it is that of a field, and R leaves row numbers out with `row.names = FALSE`",
+            table.name,
+            empty + 1
+        ));
+    }
     let mut rows = Vec::new();
     for (number, _, line) in lines {
-        let row = cells(line);
+        let row = texts(line);
         if row.len() != fields.len() {
             return Err(format!(
-                "table `{}`, line {}: {} cells where the first line names {} fields",
+                "table `{}`, line {}: {} cells where the first line names {} fields; a value with a comma in it stands in quotes",
                 table.name,
                 number + 1,
                 row.len(),

@@ -3,7 +3,8 @@
 use ron::error::SpannedError;
 
 use super::design::Rows;
-use crate::scene_file::outline::Outline;
+use super::{MOST_RUNS, MOST_STARTS};
+use crate::scene_file::outline::{Entry, Outline};
 use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_file};
 use crate::scene_file::wording::{list, shown};
 use crate::scene_file::{self, suggest};
@@ -43,10 +44,29 @@ impl<'a> File<'a> {
         problem.into()
     }
 
-    /// A field that no scene has, named at a path.
-    pub(super) fn unknown_field(&self, mut problem: Problem, path: &str) -> SceneError {
-        problem.place = self.place(path);
+    /// What is wrong with a field that varies, where it is named.
+    pub(super) fn field(&self, mut problem: Problem, rows: &Rows, column: usize) -> SceneError {
+        problem.place = match &rows.table {
+            Some(table) => place_in_file(&table.name, &table.text, table.head(column)),
+            None => self.place(&rows.fields[column].1),
+        };
         problem.into()
+    }
+
+    /// What is wrong with the scene of a variant, each value shown where it is written.
+    pub(super) fn of_variant(&self, error: &SceneError, rows: &Rows, row: usize) -> SceneError {
+        let placed = error.problems().iter().cloned().map(|problem| match varies(&problem, rows, row) {
+            Some(column) => self.value(problem, rows, row, column),
+            None => self.in_set(problem),
+        });
+        SceneError::new(placed.collect())
+    }
+
+    /// What is wrong with it in what all variants have in common, as far as somebody wrote that.
+    pub(super) fn outside(&self, error: &SceneError, rows: &Rows, row: usize) -> Vec<Problem> {
+        let written = |problem: &&Problem| !matches!(problem.place, Place::Unwritten { .. });
+        let problems = error.problems().iter().filter(written);
+        problems.filter(|problem| varies(problem, rows, row).is_none()).cloned().collect()
     }
 
     /// A value that its field cannot have, of a variant's row and a field's column: in the list or the range that it is from, or
@@ -68,20 +88,23 @@ impl<'a> File<'a> {
 
     /// The scene that variants start from; what is wrong with an item of `set` is shown there.
     pub(super) fn of_base(&self, error: SceneError) -> SceneError {
-        let in_set = |argument: &str| {
+        SceneError::new(error.problems().iter().cloned().map(|problem| self.in_set(problem)).collect())
+    }
+
+    /// The same problem in the item of `set` that is to blame.
+    fn in_set(&self, mut problem: Problem) -> Problem {
+        if let Place::CommandLine { argument, .. } = &problem.place {
             let items = self.outline.entries.iter().filter(|entry| entry.path.starts_with("set["));
-            items.map(|entry| &entry.value).find(|at| self.text[(*at).clone()].trim_matches('"') == argument)
-        };
-        let placed = error.problems().iter().cloned().map(|mut problem| {
-            if let Place::CommandLine { argument, .. } = &problem.place {
-                problem.place = match in_set(argument) {
-                    Some(at) => place_in_file(self.name, self.text, at.clone()),
-                    None => self.place("set"),
-                };
-            }
-            problem
-        });
-        SceneError::new(placed.collect())
+            let item = items
+                .map(|entry| &entry.value)
+                .find(|at| self.text[(*at).clone()].trim_matches('"') == argument.as_str());
+            problem.place = match item {
+                Some(at) => place_in_file(self.name, self.text, at.clone()),
+                None => self.place("set"),
+            };
+            problem.suggestion = problem.suggestion.replacen("--set ", "", 1);
+        }
+        problem
     }
 
     /// A text that is no campaign.
@@ -136,14 +159,41 @@ impl<'a> File<'a> {
                 problem.message = format!("field `{field}` is given twice");
                 problem.suggestion = "keep one of the two".to_owned();
             }
-            code => {
-                problem.message = format!("the campaign cannot be read: {code}");
-                problem.suggestion = EXAMPLE.to_owned();
-            }
+            code => match self.no_whole_number(start) {
+                Some((entry, most)) => {
+                    problem.field = entry.path.clone();
+                    let value = shown(&self.text[entry.value.clone()]);
+                    problem.message = format!("`{}` is `{value}`", entry.path);
+                    problem.allowed = format!("a whole number, at most {most}");
+                    range = entry.value.clone();
+                }
+                None => {
+                    problem.message = format!("the campaign cannot be read: {code}");
+                    problem.suggestion = EXAMPLE.to_owned();
+                }
+            },
         }
         problem.place = place_in_file(self.name, self.text, range);
         problem.into()
     }
+
+    /// The number at a byte of the text that is to be a whole one and is not, and how large it may be.
+    fn no_whole_number(&self, at: usize) -> Option<(&Entry, u64)> {
+        let entry = self.outline.at(at)?;
+        let most = match entry.path.rsplit('.').next()? {
+            "seed" => u64::MAX,
+            "starts" => MOST_STARTS as u64,
+            "count" => MOST_RUNS as u64,
+            _ => return None,
+        };
+        self.text[entry.value.clone()].parse::<u64>().is_err().then_some((entry, most))
+    }
+}
+
+/// The column of the value that is to blame for what is wrong with the scene of a variant.
+fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
+    let Place::CommandLine { argument, .. } = &problem.place else { return None };
+    (0..rows.fields.len()).find(|column| rows.argument(row, *column) == *argument)
 }
 
 const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, `split` and `keep`; \

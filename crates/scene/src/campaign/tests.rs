@@ -54,7 +54,46 @@ fn example_a_scene_that_cannot_be_is_a_row_with_its_reason() {
     let text = "(name: \"x\", variants: grid([(field: \"defect.depth_mm\", values: [0.2, 9])]))";
     let campaign = parse(text).unwrap();
     assert!(campaign.runs[0].scene.is_ok());
-    assert!(campaign.runs[1].scene.as_ref().unwrap_err().contains("defect.depth_mm"));
+    let why = campaign.runs[1].scene.as_ref().unwrap_err();
+    for word in ["defect.depth_mm", "a.ron:1:70"] {
+        assert!(why.contains(word) && !why.contains("--set"), "{word} is not in\n{why}");
+    }
+}
+
+#[test]
+fn refuses_what_no_variant_repairs() {
+    let text = "(name: \"x\", set: [\"mesh.size_mm=2.0\", \"solver.duration_ms=-1\"],
+        variants: grid([(field: \"operation.load_n\", values: [10000, 20000, -3])]))";
+    let why = parse(text).unwrap_err();
+    for word in ["a.ron:1:39", "`solver.duration_ms` is -1", "= allowed: more than 0"] {
+        assert!(why.contains(word) && !why.contains("--set"), "{word} is not in\n{why}");
+    }
+}
+
+#[test]
+fn invariant_equal_scenes_are_in_one_part_however_they_are_written() {
+    let text = |loads: &str, bearings: &str| {
+        format!(
+            "(name: \"x\", starts: 2, variants: grid([(field: \"operation.load_n\", values: {loads}),
+             (field: \"bearing\", values: {bearings})]))"
+        )
+    };
+    let [a, b] = [("[10000, 2e4]", "[\"NU 205\", \"6205\"]"), ("[1e4, 20000.0]", "[\"nu 205\", \"6205\"]")]
+        .map(|(loads, bearings)| parse(&text(loads, bearings)).unwrap());
+    for (a, b) in a.runs.iter().zip(&b.runs) {
+        assert_eq!((a.split, a.scene.as_ref().unwrap()), (b.split, b.scene.as_ref().unwrap()));
+    }
+}
+
+#[test]
+fn invariant_variants_share_no_start() {
+    let text = "(name: \"x\", starts: 3, variants: grid([(field: \"operation.load_n\", values: [10000, 20000, 30000])]))";
+    let campaign = parse(text).unwrap();
+    let angle = |run: &Variant| run.scene.as_ref().unwrap().bearing.first_roller_deg;
+    let mut angles: Vec<f64> = campaign.runs.iter().map(angle).collect();
+    angles.sort_by(f64::total_cmp);
+    angles.dedup();
+    assert_eq!(angles.len(), 9);
 }
 
 #[test]
@@ -76,8 +115,33 @@ fn refuses_campaigns_that_cannot_be() {
         (with("variants: sobol(count: 2, over: [], scramble: true)"), &["a.ron:2:", "`scramble`", "`over`"]),
         (with("variants: sobl(count: 2, over: [])"), &["`sobl`", "did you mean `sobol`?"]),
         (with("variants: table(\"none.csv\")"), &["none.csv"]),
+        (with("variants: grid([])"), &["a.ron:2:11", "names no field"]),
+        (with("variants: grid([(field: \"mesh.size_mm\", values: [])])"), &["a.ron:2:17", "one at least"]),
+        // Refused before so many places are made.
+        (
+            with(
+                "variants: latin_hypercube(count: 1000000000000000, over: [(field: \"seed\", from: 1, to: 2)])",
+            ),
+            &["a.ron:2:11", "1000000000000000 points", "1 to 1000000"],
+        ),
+        (
+            with("variants: latin_hypercube(count: 4.5, over: [])"),
+            &["a.ron:2:34", "`variants.count` is `4.5`", "a whole number, at most 1000000"],
+        ),
+        (with("seed: 1.5, variants: grid([])"), &["a.ron:2:7", "`seed` is `1.5`", "a whole number"]),
+        (with("starts: -1, variants: grid([])"), &["a.ron:2:9", "`starts` is `-1`", "at most 10000"]),
         (with("starts: 0, variants: grid([])"), &["a.ron:2:9", "`starts`"]),
         (with("split: (train: 1, validation: 1, test: 1), variants: grid([])"), &["a.ron:2:8", "sums to 3"]),
+        (
+            with("split: (train: 1.5, validation: -0.5, test: 0), variants: grid([])"),
+            &["a.ron:2:8", "1.5, -0.5 and 0", "from 0 to 1"],
+        ),
+        (
+            with(
+                "variants: grid([(field: \"operation.load_n\", values: [1]),\n(field: \"operation.load_n\", values: [2])])",
+            ),
+            &["a.ron:3:9", "`operation.load_n` is named twice"],
+        ),
         (
             with("split: (train: 0.8, test: 0.2), variants: grid([])"),
             &["a.ron:2:", "`split` lacks `validation`", "`validation: 0`"],
@@ -161,6 +225,32 @@ fn refuses_cells_that_their_field_cannot_have_in_the_tables_own_lines() {
     for word in ["t.csv:4:9", "did you mean `arc`?", "t.csv:5:1", "`much`", "not a number"] {
         assert!(why.contains(word), "{word} is not in\n{why}");
     }
+    for (head, says) in [
+        ("operation.load_n, contact.surfac", &["t.csv:1:19", "did you mean `contact.surface`?"][..]),
+        ("operation.load_n,\"operation.load_n\"", &["t.csv:1:18", "named twice"]),
+        ("\"\",\"operation.load_n\"", &["t.csv", "line 1", "column 1", "row.names"]),
+        ("operation.load_n;operation.speed_rpm", &["t.csv", "line 1", "semicolons"]),
+    ] {
+        std::fs::write(scratch.join("t.csv"), format!("{head}\n1,2\n")).unwrap();
+        let why = Campaign::parse(text, "a.ron", scratch.path()).unwrap_err().to_string();
+        for word in says {
+            assert!(why.contains(word), "{word} is not in\n{why}");
+        }
+    }
+}
+
+#[test]
+fn example_a_table_as_spreadsheets_write_it() {
+    let scratch = stribeck_testing::Scratch::create("campaign-quoted");
+    let table = "\u{feff}\"operation.load_n\",\"bearing\",\"contact.surface\",name,output.sensors\r\n\
+                 10000,\"NU 205\",\"arc\",\"rig\",\"[(name: \"\"a\"\", angle_deg: 10.0)]\"\r\n20000,6205,facet,b,\"[(name: \"\"b\"\", angle_deg: 5)]\"\r\n";
+    std::fs::write(scratch.join("t.csv"), table).unwrap();
+    let text = "(name: \"t\", variants: table(\"t.csv\"))";
+    let campaign = Campaign::parse(text, "a.ron", scratch.path()).unwrap();
+    assert_eq!(campaign.fields[0], "operation.load_n");
+    let scenes: Vec<&Scene> = campaign.runs.iter().map(|run| run.scene.as_ref().unwrap()).collect();
+    assert_eq!(scenes.iter().map(|s| &*s.bearing.designation).collect::<Vec<_>>(), ["NU 205", "6205"]);
+    assert_eq!((&*scenes[0].name, &*scenes[0].output.sensors[0].name), ("rig", "a"));
 }
 
 #[test]

@@ -208,8 +208,8 @@ fn thickness_of_balls(scene: &Scene) -> f64 {
         .iter()
         .map(|&race| point_contact::approach(g.roller_radius, race, groove, load, modulus))
         .sum();
-    // The line load that makes as much, and how long a line has it.
-    let (line_load, _) = LineContacts::of(&g).load(wanted);
+    // The line load that makes as much, and how long a line has it; none does where balls are pressed flat.
+    let line_load = LineContacts::of(&g).load(wanted).map_or(f64::INFINITY, |(w, _)| w);
     1e3 * load / line_load
 }
 

@@ -203,7 +203,8 @@ fn with_section(text: String, section: &str, names: &[&str]) -> String {
 /// Quotes a bare word for a text field: the shell has already eaten the user's quotes.
 fn quoted(value: &str, default: Option<&str>) -> String {
     let wants_text = default.is_some_and(|default| default.starts_with('"'));
-    if wants_text && !value.starts_with('"') && !value.starts_with('r') {
+    let is_quoted = ["\"", "r\"", "r#"].iter().any(|quote| value.starts_with(quote));
+    if wants_text && !is_quoted {
         return format!("{value:?}");
     }
     value.to_owned()

@@ -59,8 +59,9 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     }
     page += &format!(
         "\n## Tables\n\n\
-         `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why. `{EVENTS}` has a row for each \
-         passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the values of a variant, so no scene \
+         `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why, and `warnings` what the guards of \
+         a run have warned of, a line each. `{EVENTS}` has a row for each \
+         passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene of a variant, so no scene \
          and no start of it stands in two parts.\n\n\
          Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`, which a profile may vary. A fault strikes \
          once a passage; waves, roughness and other diameters are deviations. Size, depth and angle at the start are those of the first \
@@ -71,7 +72,10 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
         if written.signals.is_empty() {
             String::new()
         } else {
-            format!(", `{SIGNALS}` one for each sample of the accelerations, a group of rows a run")
+            format!(
+                ", `{SIGNALS}` one for each sample of the accelerations, a group of rows a run, of the runs that are complete: one that \
+                 diverged has no signals there"
+            )
         },
     );
     for limit in limits(&scenes) {
@@ -93,6 +97,7 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
 fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'static str, String)> {
     let of_scenes = |of: &dyn Fn(&Scene) -> String| counted(scenes.iter().map(|scene| of(scene)));
     let range = |of: &dyn Fn(&Scene) -> f64, unit: &str| span(scenes.iter().map(|scene| of(scene)), unit);
+    let complete = rows.iter().filter(|row| row.is_complete()).filter_map(|row| row.scene.as_ref());
     let fault = |scene: &Scene| {
         let truth = Truth::of(scene);
         truth.form.map_or(truth.location.clone(), |form| format!("{} ({form})", truth.location))
@@ -104,6 +109,7 @@ fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'stat
     vec![
         ("runs", rows.len().to_string()),
         ("ended as", counted(rows.iter().map(|row| row.status.to_owned()))),
+        ("runs with warnings", rows.iter().filter(|row| row.warnings.is_some()).count().to_string()),
         ("split", counted(rows.iter().map(|row| row.split.to_owned()))),
         ("seed", campaign.seed.to_string()),
         ("model", of_scenes(&|scene| model(scene).to_owned())),
@@ -126,7 +132,7 @@ fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'stat
         ),
         ("speed of the shaft", range(&|scene| scene.operation.speed_rpm, "rpm")),
         ("load", range(&|scene| scene.operation.load_n, "N")),
-        ("length of a record", range(&|scene| scene.solver.duration_ms, "ms")),
+        ("length of a record", span(complete.map(|scene| scene.solver.duration_ms), "ms")),
         ("sampling rate", range(&sampling_rate_hz, "Hz")),
         ("sensors on the outer ring", sensors.into_iter().collect::<Vec<_>>().join(", ")),
     ]

@@ -79,6 +79,7 @@ fn quoted(path: &Path) -> String {
     if plain {
         text
     } else {
-        format!("\"{}\"", text.replace('\\', "\\\\").replace('"', "\\\"").replace('$', "\\$"))
+        // Nothing means anything between single quotes but their end.
+        format!("'{}'", text.replace('\'', "'\\''"))
     }
 }

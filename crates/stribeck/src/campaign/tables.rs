@@ -31,6 +31,8 @@ pub(super) struct Row {
     pub(super) split: &'static str,
     pub(super) status: &'static str,
     pub(super) reason: Option<String>,
+    /// What its guards have warned of, a line each.
+    pub(super) warnings: Option<String>,
     variant: usize,
     start: usize,
     values: Vec<String>,
@@ -41,6 +43,12 @@ pub(super) struct Row {
     /// Numbers of the summary by their path.
     numbers: BTreeMap<String, f64>,
     samples: Option<i64>,
+}
+
+impl Row {
+    pub(super) fn is_complete(&self) -> bool {
+        self.status == "complete"
+    }
 }
 
 /// Columns of the tables, by their names; of a table that is not written none.
@@ -58,6 +66,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
             split: variant.split,
             status: "complete",
             reason: None,
+            warnings: None,
             variant: variant.variant,
             start: variant.start,
             values: variant.values.clone(),
@@ -78,6 +87,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
                 // An overflow is no number, and a column without numbers is none.
                 row.numbers.retain(|_, number| number.is_finite());
+                row.warnings = Some(info.warnings.join("\n")).filter(|text| !text.is_empty());
                 row.program = Some(format!("{} ({})", info.version, info.commit));
                 row.samples = i64::try_from(info.samples).ok();
                 row.folder = Some(path);
@@ -120,7 +130,7 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
     if campaign.keep != Keep::Numbers {
         let signals = signals::names(rows)?;
         replace(&folder.0.join(SIGNALS), |path| signals::write(path, rows, &signals, &notes))?;
-        written.signals = signals.into_iter().collect();
+        written.signals = signals::columns(&signals);
     }
     Ok(written)
 }
@@ -174,6 +184,7 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
         text("split", &|row| Some(row.split.to_owned())),
         text("status", &|row| Some(row.status.to_owned())),
         text("reason", &|row| row.reason.clone()),
+        text("warnings", &|row| row.warnings.clone()),
         text("scene_hash", &|row| row.scene.as_ref().map(Scene::hash)),
         text("bearing", &|row| row.scene.as_ref().map(|s| s.bearing.designation.clone())),
         text("model", &|row| row.scene.as_ref().map(|s| model(s).to_owned())),

@@ -158,7 +158,7 @@ fn due_starts(dir: &RunDir, scene: &Scene, ensemble: &Ensemble) -> Result<Vec<Du
                 "`{}` holds a run of another scene: move it away, and its start can be run anew",
                 shown(&folder)
             ),
-            state => due.push(Due { number, scene, folder, state }),
+            State::New | State::Begun => due.push(Due { number, scene, folder }),
         }
     }
     Ok(due)

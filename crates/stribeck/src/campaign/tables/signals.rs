@@ -10,9 +10,9 @@ use stribeck_scene::trace::{Trace, TraceFile};
 
 use super::Row;
 
-/// Runs that have signals, and the file of each.
+/// Runs that have signals to their end, and the file of each: what a run that broke down has recorded is no signal of a bearing.
 fn recorded(rows: &[Row]) -> impl Iterator<Item = (&Row, PathBuf)> {
-    rows.iter().filter_map(|row| {
+    rows.iter().filter(|row| row.is_complete()).filter_map(|row| {
         let dir = RunDir::open(row.folder.as_ref()?).ok()?;
         Some((row, if dir.signals().exists() { dir.signals() } else { dir.trace() }))
     })
@@ -43,6 +43,11 @@ pub(super) fn write(
     }
     writer.finish()?;
     Ok(())
+}
+
+/// Names of all columns.
+pub(super) fn columns(names: &BTreeSet<String>) -> Vec<String> {
+    group(None, names, Trace::default()).map(|column| column.name).collect()
 }
 
 /// The columns of a run's signals; one that it has not recorded is empty.
