@@ -23,6 +23,7 @@ use stribeck_scene::run_dir::{Keep, Run, RunDir, State, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::interrupt::{self, Interrupt};
+use crate::out::say;
 use crate::place::{Place, shown};
 use crate::side_by_side::{Due, Jobs, Shop};
 use crate::simulate::{jobs, threads};
@@ -172,7 +173,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
         let part = emit::Part::of(options, campaign.runs.len());
-        print!("{}", emit::script(engine, &file, &out, part)?);
+        say!("{}", emit::script(engine, &file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
     let folder = Folder(out);
@@ -321,7 +322,7 @@ fn conclude(
         let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed: {allowed}"));
         eprintln!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
     }
-    println!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.0.join(tables::RUNS)));
+    say!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.0.join(tables::RUNS)));
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
