@@ -78,7 +78,7 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     if sum.is_empty() {
         return None;
     }
-    let supported = record.run().info.expected_support_n;
+    let supported = findings.summary.load.expected_n;
     let off = |n: f64| 100.0 * (n / supported - 1.0);
     let count = sum.len() as f64;
     let mean = sum.iter().sum::<f64>() / count;
@@ -95,11 +95,12 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     .with(Series::sampled("sum, each sample", Colour::Blue, time[0], record.interval_s(), sum.clone()))
     .caption(format!(
         "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by {:.1} % (RMS), between \
-         {:+.0} and {:+.0} %, because ring and housing have mass.",
+         {:+.0} and {:+.0} %, because {}ring and housing have mass.",
         off(mean),
         100.0 * rms / supported,
         off(low),
-        off(high)
+        off(high),
+        if record.run().scene.operation.load_varies() { "the load changes and " } else { "" }
     ).replace('-', "−"))
     .note("The difference accelerates the outer ring and its housing. Load plus their weight is the dashed line.");
     figure.levels = vec![Level { y: supported, label: "load and weight".into(), colour: Colour::Orange }];
