@@ -158,7 +158,7 @@ pub(super) fn kinematics(summary: &Summary) -> Markup {
                         td { (name) }
                         (cell(hertz(measured, digits)))
                         td class="n" { (format!("{expected:.digits$} Hz")) }
-                        (cell(measured.map(|hz| format!("{:+.2} %", 100.0 * (hz / expected - 1.0)).replace('-', "−"))))
+                        (cell(measured.filter(|_| expected > 0.0).map(|hz| format!("{:+.2} %", 100.0 * (hz / expected - 1.0)).replace('-', "−"))))
                     }
                 }
             }

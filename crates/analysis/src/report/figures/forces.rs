@@ -9,6 +9,9 @@ use crate::summary::Event;
 /// Rollers whose force is drawn: the paper's three. All others are in the table.
 pub(in crate::report) const DRAWN: usize = 3;
 
+/// A roller that carries so many times as much as before carried next to nothing.
+const MOST_GAIN: f64 = 10.0;
+
 /// A record of more roller spacings is drawn about each passage only.
 const LONG_SPACINGS: f64 = 6.0;
 
@@ -60,8 +63,14 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
     let floor = event.floor_ms.zip(event.floor_n).map_or("does not touch the floor (#2)".into(), |(t, n)| {
         format!("strikes the floor at {t:.2} ms with {n:.0} N (#2)")
     });
-    let help = event.compensation_gain.map_or(String::new(), |gain| {
-        format!(" While a neighbour is in the defect it carries {:.0} % more (#3).", 100.0 * (gain - 1.0))
+    let help = event.compensation_gain.zip(event.compensation_n).map_or(String::new(), |(gain, force_n)| {
+        // Over next to nothing a share says nothing.
+        let more = if gain < MOST_GAIN {
+            format!("{:.0} % more", 100.0 * (gain - 1.0))
+        } else {
+            format!("{force_n:.0} N, and next to nothing before")
+        };
+        format!(" While a neighbour is in the defect it carries {more} (#3).")
     });
     figure
         .caption(format!(

@@ -135,8 +135,15 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let raw = findings.fine.as_ref().unwrap_or(raw);
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
     let drawn = (top / raw.resolution().grid_hz) as usize + 2;
-    let mut figure = over_frequency("spectrum-low", "Low frequencies: the defect and the ring", (0.0, top))
-        .with(decibels("raw", Colour::Blue, raw, drawn));
+    let shown =
+        [(findings.prediction.family.is_some(), "the defect"), (!findings.modes.is_empty(), "the ring")];
+    let shown: Vec<&str> = shown.into_iter().filter(|(shown, _)| *shown).map(|(_, what)| what).collect();
+    let title = match shown.join(" and ") {
+        none if none.is_empty() => "Low frequencies".to_owned(),
+        shown => format!("Low frequencies: {shown}"),
+    };
+    let mut figure =
+        over_frequency("spectrum-low", &title, (0.0, top)).with(decibels("raw", Colour::Blue, raw, drawn));
     let unsteady = unsteady(findings);
     let caption = match findings.prediction.family {
         None if unsteady => {
@@ -171,11 +178,15 @@ fn envelope(findings: &Findings) -> Option<Figure> {
         .filter(|l| l.measured_hz.is_some())
         .map(|l| format!("×{}", l.harmonic))
         .collect();
-    let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
     figure = figure
-        .caption(format!(
-            "Knocks come at {name}: of its multiples {seen} stand 10 dB above their surroundings."
-        ))
+        .caption(if seen.is_empty() {
+            format!("No multiple of {name} stands 10 dB above its surroundings.")
+        } else {
+            format!(
+                "Knocks come at {name}: of its multiples {} stand 10 dB above their surroundings.",
+                seen.join(", ")
+            )
+        })
         .note(format!(
             "Envelope of {:.0} to {:.0} Hz, {:.1} periods of {name} on record. {}",
             finding.band_hz.0,
