@@ -395,9 +395,20 @@ fn alike(below_hz: f64, sides: &[[Side; 2]]) -> Option<Correlation> {
         let len = a.len().min(b.len()).min(WAVEFORM);
         correlation(&a[..len], &b[..len], below_hz, *rate_hz)
     };
-    let value = statistic(sides.iter().map(of), sides.len())?;
+    let values: Vec<f64> = sides.iter().filter_map(of).filter(|v| v.is_finite()).collect();
+    let value = of_correlations(&values, sides.len())?;
     let (sensor, ..) = sides.first()?[0].waveform.as_ref()?;
     Some(Correlation { sensor: sensor.clone(), below_hz, value })
+}
+
+/// Of correlations, with the interval of Fisher's z = artanh r, which leaves no correlation above 1. Source: R. A. Fisher, On the
+/// "probable error" of a coefficient of correlation deduced from a small sample, Metron 1 (1921) 3–32.
+fn of_correlations(values: &[f64], of: usize) -> Option<Statistic> {
+    /// Beyond it z is not finite.
+    const MOST: f64 = 1.0 - 1e-12;
+    let z: Vec<f64> = values.iter().map(|r| r.clamp(-MOST, MOST).atanh()).collect();
+    let (plain, z) = (Statistic::of(values, of)?, Statistic::of(&z, of)?);
+    Some(Statistic { low: z.low.map(f64::tanh), high: z.high.map(f64::tanh), ..plain })
 }
 
 fn octaves(sides: &[[Side; 2]]) -> Vec<Octaves> {
@@ -450,5 +461,25 @@ impl Octaves {
             difference,
             limit: LIMIT_DB,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Four correlations whose mean is 0.922: an interval about it by Student's t reaches 1.018.
+    #[test]
+    fn issue_the_interval_of_a_correlation_ends_below_one() {
+        let values = [0.99, 0.85, 0.89, 0.958];
+        let plain = Statistic::of(&values, 4).expect("four");
+        let of = of_correlations(&values, 4).expect("four");
+        assert!(plain.high > Some(1.0), "{plain:?}");
+        let (low, high) = of.low.zip(of.high).expect("four");
+        assert!(low < of.mean && of.mean < high && high < 1.0, "{of:?}");
+        assert_eq!((of.mean, of.median), (plain.mean, plain.median));
+        // The same thing twice is one.
+        let same = of_correlations(&[1.0, 1.0], 2).expect("two");
+        assert!(same.low > Some(0.999) && same.high <= Some(1.0), "{same:?}");
     }
 }

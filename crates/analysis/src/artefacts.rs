@@ -64,6 +64,8 @@ pub struct Seen<'a> {
     pub sensor: &'a str,
     /// Its spectrum [g²/Hz].
     pub density: &'a Spectrum,
+    /// That of the whole record, where only this shows the defect's family.
+    pub fine: Option<&'a Spectrum>,
 }
 
 /// All lines at the leading sensor.
@@ -80,7 +82,7 @@ pub fn ledger(
     let here = seen.tones.iter().filter(|t| t.sensor == seen.sensor);
     let mut all: Vec<Artefact> = here.map(|tone| Artefact::of_mesh(tone, comb.as_ref(), seen)).collect();
     all.extend(beats(prediction, motion, seen.density));
-    all.extend(defect(prediction, motion, seen.sensor, seen.density)?);
+    all.extend(defect(prediction, motion, seen.sensor, seen.fine.unwrap_or(seen.density))?);
     let modes = ring::outer_ring_modes(scene, LAST_MODE).into_iter();
     all.extend(modes.map(|(n, hz)| mode(n, hz, motion, seen, comb.as_ref())));
     Ok(all)
@@ -117,7 +119,7 @@ fn beats(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum
                 "no motion, no beat".to_owned()
             } else if apart < resolution.width_6db_hz {
                 format!(
-                    "slower than this record can show: the lines lie {apart:.0} Hz apart, it splits {:.0} Hz; one beat lasts {:.0} ms",
+                    "slower than this spectrum can show: the lines lie {apart:.0} Hz apart, it splits {:.0} Hz; one beat lasts {:.0} ms",
                     resolution.width_6db_hz,
                     1e3 / apart.max(1e-3)
                 )

@@ -130,7 +130,7 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
         DiagnosedFamily {
             name: family.name.to_owned(),
             expected_hz: family.expected_hz,
-            from_motion_hz: from_motion(family, motion, &present),
+            from_motion_hz: from_motion(family.name, family.in_passages, motion, &present),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
@@ -158,20 +158,26 @@ pub fn family_of(on: RollingSurface) -> &'static str {
 }
 
 /// Frequency of a family by the recorded motion [Hz], with what is `present`.
-fn from_motion(family: &Family, motion: &KinematicsFinding, present: &[RollingSurface]) -> Option<f64> {
-    match family.name {
+fn from_motion(
+    name: &str,
+    in_passages: bool,
+    motion: &KinematicsFinding,
+    present: &[RollingSurface],
+) -> Option<f64> {
+    match name {
         "BPFO" => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
         "BPFI" => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
         // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of the cage to the next its phase goes
         // on by all that its roller has turned, outside the load zone as well: lines stand at the mean spin.
-        "BSF" if family.in_passages => motion.roller_spin_hz,
+        "BSF" if in_passages => motion.roller_spin_hz,
         "BSF" => {
             let damaged = |roller: &&RollerMotion| present.contains(&RollingSurface::Roller(roller.roller));
             let own = mean(motion.rollers.iter().filter(damaged).map(|roller| roller.spin_hz));
-            own.or(motion.roller_spin_all_hz)
+            own.or(motion.roller_spin_hz)
         }
-        _ => motion.cage_hz,
+        // Families are those beside an outer ring that stands still.
+        _ => motion.cage_on_outer_hz[0].or(motion.cage_hz),
     }
 }
 
@@ -186,4 +192,27 @@ fn sidebands(family: &Family, band: &BandEnvelope, of: &str, spacing_hz: f64) ->
         spacing_hz,
         seen: sidebands_seen(&spectrum, fundamental_hz, spacing_hz),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn issue_motion_is_that_beside_the_outer_ring_and_of_rollers_under_load() {
+        let spins =
+            |roller: usize, spin_hz: f64| RollerMotion { roller, orbit_hz: 5.3, spin_hz, loaded: true };
+        let motion = KinematicsFinding {
+            cage_hz: Some(5.3),
+            cage_on_outer_hz: [Some(15.3), Some(15.27)],
+            roller_spin_hz: Some(79.7),
+            roller_spin_all_hz: Some(58.2),
+            rollers: vec![spins(1, 79.7), spins(2, 36.7)],
+            ..KinematicsFinding::default()
+        };
+        let of = |name: &str, present: &[RollingSurface]| from_motion(name, false, &motion, present);
+        assert_eq!((of("FTF", &[]), of("BSF", &[])), (Some(15.3), Some(79.7)));
+        // Lines of a damaged roller stand at all that it turns.
+        assert_eq!(of("BSF", &[RollingSurface::Roller(2)]), Some(36.7));
+    }
 }

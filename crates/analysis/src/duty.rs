@@ -16,12 +16,14 @@ use stribeck_dsp::{
 };
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::duty::Duty;
+use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::enveloping::band_hz;
-use crate::kinematics::KinematicsFinding;
+use crate::kinematics::{KinematicsFinding, mean};
 use crate::record::Record;
 use crate::tones;
 
@@ -35,6 +37,9 @@ const HARMONICS: usize = 6;
 const FINER: usize = 4;
 /// Fewest steps of which a spectrum is made.
 const LEAST_STEPS: usize = 256;
+
+/// Load on the housing along its direction, recorded where it changes.
+pub(crate) const LOAD: &str = "adapter.load_n";
 
 /// What a run whose speed or load changes says of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -91,17 +96,21 @@ impl DutyFinding {
     /// Of a scene and its record; `None` where nothing changes.
     pub fn of(scene: &Scene, record: &Record<'_>) -> Option<Self> {
         let duty = Duty::varying(scene)?;
-        let until_s = record.time_s().last().copied().unwrap_or(0.0);
+        let [from_s, until_s] = record.stretch_s();
+        let recorded = record.channel(LOAD).filter(|load| !load.is_empty()).map(|load| {
+            load.iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], n| [least.min(*n), most.max(*n)])
+        });
         let k = Kinematics::new(&scene.bearing, 60.0);
         // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference of speeds.
         let cage = if scene.operation.outer_turns() { "FTF against the outer ring" } else { "FTF" };
         let families =
             [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), (cage, k.cage_hz)];
         Some(Self {
-            speed_rpm: duty.speed_range_rpm(until_s).into(),
-            outer_speed_rpm: duty.outer_speed_range_rpm(until_s).into(),
-            relative_speed_rpm: duty.relative_range_rpm(until_s).into(),
-            load_n: duty.load_range_n(until_s).into(),
+            speed_rpm: duty.speed_range_rpm(from_s, until_s).into(),
+            outer_speed_rpm: duty.outer_speed_range_rpm(from_s, until_s).into(),
+            relative_speed_rpm: duty.relative_range_rpm(from_s, until_s).into(),
+            load_n: recorded.unwrap_or_else(|| duty.load_range_n(until_s)).into(),
             turns: turns(record)
                 .map_or(0.0, |turns| turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum::<f64>()),
             orders: families.map(|(name, order)| (name.to_owned(), order)).to_vec(),
@@ -123,6 +132,16 @@ impl DutyFinding {
     pub fn over(&self) -> &'static str {
         if self.outer_turns() { "shaft against the outer ring" } else { "shaft" }
     }
+}
+
+/// What the rollers must carry along the load in the mean over the record [N]: what the run says, with a load that changes as it was while
+/// the record lasts.
+pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
+    let of_run = run.info.expected_support_n;
+    let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
+    recorded.map_or(of_run, |load_n| {
+        of_run - Duty::of(&run.scene).mean_load_n(Geometry::of(&run.scene).duration) + load_n
+    })
 }
 
 /// Why orders are not those of the shaft; `None` where they are.

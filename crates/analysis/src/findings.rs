@@ -2,7 +2,7 @@
 
 mod passages;
 
-use stribeck_dsp::{PeriodCount, Spectrum, Welch};
+use stribeck_dsp::{PeriodCount, Spectrum, Welch, WelchOptions};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
@@ -64,6 +64,9 @@ pub struct Findings {
     pub support_n: Vec<f64>,
     /// Mean roller force by angle.
     pub distribution: Distribution,
+    /// Density of the leading sensor over the whole record [g²/Hz], where the segments of its other spectrum hold too few periods of the
+    /// defect's family and the record enough.
+    pub fine: Option<Spectrum>,
     /// Squared envelope spectrum of the leading sensor [g⁴]; `None` when the record is too short.
     pub envelope: Option<Spectrum>,
     /// Squared envelope spectrum of the leading sensor over the angle of the shaft [g⁴], its frequencies orders; `None` for a
@@ -142,7 +145,8 @@ impl Findings {
 
         // Where the speed changes no line of the mesh or of the defect has a frequency.
         let steady = !run.scene.operation.speed_varies();
-        let span = time.last().copied().unwrap_or(0.0);
+        let [begin_s, end_s] = record.stretch_s();
+        let span = end_s - begin_s;
         // Ten periods, or nothing could be said of a record.
         let long = span * prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
         let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
@@ -196,20 +200,25 @@ impl Findings {
             filter_sensors(filter, record, &mut sensors)?;
         }
 
-        let mut events = passages.events(record, &mut notes)?;
-        let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
-        let of_paper = paper::is_scene_of(&run.scene) && !run.scene.operation.varies();
-        let notch = filter.as_ref().zip(sensors.first());
-        let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, of_paper));
-        let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
-        let mut load = carried.finding(record, run.info.expected_support_n);
-        let static_curve = match prediction.static_curve(&run.scene, run.info.expected_support_n) {
+        let expected_n = duty::expected_support_n(run, record);
+        let static_curve = match prediction.static_curve(&run.scene, expected_n) {
             Ok(curve) => Some(curve),
             Err(why) => {
                 notes.push(format!("no static load distribution: {why}"));
                 None
             }
         };
+        let fullest_n = static_curve.as_ref().map_or(0.0, |curve| curve.largest_sound_n);
+        let mut events = passages.events(record, fullest_n, &mut notes)?;
+        let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
+        if !sensors.is_empty() && levels.impulse_g.is_none() && !prediction.spalls.is_empty() {
+            notes.push("no impulse level: no roller leaves a spall under load within the record".into());
+        }
+        let of_paper = paper::is_scene_of(&run.scene) && !run.scene.operation.varies();
+        let notch = filter.as_ref().zip(sensors.first());
+        let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, of_paper));
+        let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
+        let mut load = carried.finding(record, expected_n);
         load.static_max_roller_n = static_curve.as_ref().map(|c| c.largest_sound_n);
         load.static_max_roller_defect_n = static_curve.as_ref().map(|c| c.largest_n);
         load.static_loaded_rollers = static_curve.as_ref().map(|c| c.loaded_rollers);
@@ -218,10 +227,19 @@ impl Findings {
         notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let cage = record.channel("cage.x_m").zip(record.channel("cage.y_m"));
         notes.extend(cage.and_then(|(x, y)| rolling::straying(&run.scene, x, y)));
+        let fine = match (prediction.family, sensors.first().zip(spectrum)) {
+            (Some((_, hz)), Some((sensor, density))) => fine_density(&sensor.raw_g, density, hz)?,
+            _ => None,
+        };
         let artefacts = match sensors.first().zip(spectrum).filter(|_| steady) {
             Some((sensor, density)) => {
-                let seen =
-                    artefacts::Seen { tones: &measured, families: &families, sensor: &sensor.name, density };
+                let seen = artefacts::Seen {
+                    tones: &measured,
+                    families: &families,
+                    sensor: &sensor.name,
+                    density,
+                    fine: fine.as_ref(),
+                };
                 artefacts::ledger(&run.scene, &prediction, &motion, &seen)?
             }
             None => Vec::new(),
@@ -270,7 +288,10 @@ impl Findings {
             tones: measured,
             levels,
             notch,
-            spectrum: spectrum.map(|s| SpectrumFinding::of(s.resolution())),
+            spectrum: spectrum.map(|s| SpectrumFinding {
+                fine_resolution_hz: fine.as_ref().map(|fine| fine.resolution().resolution_hz),
+                ..SpectrumFinding::of(s.resolution())
+            }),
             artefacts,
             envelope: enveloped,
             diagnosis,
@@ -293,6 +314,7 @@ impl Findings {
             crossings: Vec::new(),
             distribution: carried.distribution(),
             support_n: carried.into_support(),
+            fine,
             envelope,
             orders,
             static_curve,
@@ -392,6 +414,20 @@ fn sensor_signals(
     Ok(signals)
 }
 
+/// The spectrum of all of a signal, in which a family of `fundamental_hz` is looked for where the segments of its `density` do not show it
+/// and the whole does.
+fn fine_density(signal: &[f64], density: &Spectrum, fundamental_hz: f64) -> Result<Option<Spectrum>, Error> {
+    let periods = density.resolution().record_s * fundamental_hz;
+    if artefacts::shows_family(density, fundamental_hz) || periods < PeriodCount::ENOUGH {
+        return Ok(None);
+    }
+    let samples = signal.len();
+    // A line has room beside its prediction.
+    let options = WelchOptions { nfft: (2 * samples).next_power_of_two(), ..WelchOptions::new(samples) };
+    let mut welch = Welch::new(density.sample_rate_hz(), samples, &options).map_err(Error::Signal)?;
+    welch.estimate(signal).map(Some).map_err(Error::Signal)
+}
+
 /// Motion and accelerations of the part of a record in which families of facet lines are sought, and the sample where it begins.
 fn heard(
     record: &Record<'_>,
@@ -443,7 +479,7 @@ fn measured_tones(
     }
     if let Some(merged) = all.first().filter(|t| !t.unresolved_from.is_empty()) {
         notes.push(format!(
-            "this record cannot tell {} ×1 from {}: they are searched as one line",
+            "the spectra cannot tell {} ×1 from {}: they are searched as one line",
             merged.name,
             merged.unresolved_from.join(" and ")
         ));
@@ -508,7 +544,7 @@ fn filter(
     };
     if centre_hz >= 0.5 * record.sample_rate_hz() {
         notes.push(format!(
-            "no notch: {centre_hz} Hz is not below half the sampling rate, {} Hz",
+            "no notch: {centre_hz:.0} Hz is not below half the sampling rate, {:.0} Hz",
             0.5 * record.sample_rate_hz()
         ));
         return Ok(None);
@@ -571,4 +607,28 @@ fn envelope(
     signal_g.iter_mut().for_each(|a| *a /= STANDARD_GRAVITY);
     let lines = artefacts::defect_lines(prediction, motion);
     enveloping::analyse(&signal_g, record.sample_rate_hz(), &lines).map(Some)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Knocks 19.8 times a second in 5 s, each of a few milliseconds: segments of a third of a second hold 6.6 of them.
+    #[test]
+    fn issue_lines_of_a_slow_bearing_stand_in_the_spectrum_of_the_whole_record() {
+        const RATE_HZ: f64 = 2000.0;
+        let knock = |t: f64| (-(t.rem_euclid(1.0 / 19.8)) / 4e-3).exp();
+        let signal: Vec<f64> = (0..10_000).map(|n| knock(f64::from(n) / RATE_HZ)).collect();
+        let density = Welch::for_grid(RATE_HZ, signal.len(), GRID_HZ).unwrap().estimate(&signal).unwrap();
+        assert!(!artefacts::shows_family(&density, 19.8));
+        let fine = fine_density(&signal, &density, 19.8).unwrap().expect("99 periods");
+        assert!((fine.resolution().resolution_hz - 0.2).abs() < 1e-9);
+        let lines = tones::harmonics(&[("BPFO".into(), 19.8)], HARMONICS, 0.5 * RATE_HZ);
+        for tone in tones::measure("side", &lines, &fine).unwrap() {
+            assert!((tone.measured_hz.expect("a line") - tone.predicted_hz).abs() < 0.1, "{tone:?}");
+        }
+        // Of what is fast enough the segments tell, and of what is too slow nothing does.
+        assert!(fine_density(&signal, &density, 40.0).unwrap().is_none());
+        assert!(fine_density(&signal, &density, 1.0).unwrap().is_none());
+    }
 }

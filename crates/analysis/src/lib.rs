@@ -90,6 +90,7 @@ pub mod plot;
 pub mod report;
 
 mod error;
+mod words;
 
 pub use error::Error;
 

@@ -227,6 +227,12 @@ impl Analysis {
                 notes.join("; ")
             )));
         }
+        if let Some(reach) = screening.out_of_range() {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` moves by {reach:.1e}, whose powers lie beyond the range of numbers: bring it near 1 with `--scale`",
+                channel.name
+            )));
+        }
         let density = density.finish();
         let Some(health) = screening.health(&density.1) else {
             return Err(Error::NoSignal(format!(

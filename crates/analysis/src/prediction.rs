@@ -55,16 +55,18 @@ pub struct DefectEdges {
     pub trailing_deg: f64,
 }
 
-/// Roller force by angle between rigid rings, gathered over one roller spacing of cage positions.
+/// Roller force by angle between rigid rings, gathered over one roller spacing of cage positions, or over a turn of the cage where a
+/// roller is missing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticCurve {
     /// Angles [°], 0 to 360, ascending.
     pub angle_deg: Vec<f64>,
-    /// Radial force on a roller that stands there [N]; zero over the defect.
+    /// Radial force on a roller that stands there [N], the mean over the positions of the cage that put one there; zero over the
+    /// defect.
     pub force_n: Vec<f64>,
-    /// Largest of them [N].
+    /// Largest force on a roller [N].
     pub largest_n: f64,
-    /// Largest of them without a defect [N].
+    /// The same without a defect [N].
     pub largest_sound_n: f64,
     /// Loaded rollers at the start.
     pub loaded_rollers: usize,
@@ -207,13 +209,13 @@ impl Prediction {
             points.extend(carrying.into_iter().zip(load.roller_n));
             points.extend(inside.into_iter().map(|a| (a, 0.0)));
         }
+        let largest_n = points.iter().map(|point| point.1).fold(0.0, f64::max);
         if turned_by != 0.0 {
             points.iter_mut().for_each(|point| point.0 = (point.0 + turned_by).rem_euclid(360.0));
         }
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (angle_deg, force_n): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
+        let (angle_deg, force_n) = by_place(points).into_iter().unzip();
         Ok(StaticCurve {
-            largest_n: force_n.iter().copied().fold(0.0, f64::max),
+            largest_n,
             largest_sound_n,
             loaded_rollers: rings.distribute(support_n, &start)?.loaded_rollers(),
             angle_deg,
@@ -233,6 +235,20 @@ impl Prediction {
             from_middle.abs() < (d.leading_deg - d.middle_deg).abs()
         })
     }
+}
+
+/// Points (angle [°], force) in the order of their angles, those of one place as their mean: where a roller is missing, others carry
+/// there more or less by how near to the gap they are.
+fn by_place(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+    /// Angles of one place differ by their rounding [°].
+    const ROUNDING_DEG: f64 = 1e-6;
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let same = |a: &(f64, f64), b: &(f64, f64)| b.0 - a.0 < ROUNDING_DEG;
+    let mean = |place: &[(f64, f64)]| {
+        let sum: f64 = place.iter().map(|point| point.1).sum();
+        (place[0].0, sum / place.len() as f64)
+    };
+    points.chunk_by(same).map(mean).collect()
 }
 
 /// Passages over a defect where a speed changes: they follow the angle of the rings against each other. None where these turn back
@@ -258,6 +274,8 @@ fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_scene::deviation::{DeviationScene, FormScene};
+
     use super::*;
 
     fn mesh(outer_facets: usize, inner_facets: usize) -> MeshInfo {
@@ -300,6 +318,26 @@ mod tests {
         // Over the defect's middle its neighbours stand at 75° and 105°, by symmetry equally loaded.
         assert!((at(75.0) / at(105.0) - 1.0).abs() < 0.02, "{} {}", at(75.0), at(105.0));
         assert!(at(105.0) > 0.97 * curve.largest_sound_n, "{}", at(105.0));
+    }
+
+    /// Every roller comes to every place, whoever is missing beside it: the curve is as smooth as that of a full bearing.
+    #[test]
+    fn issue_a_missing_roller_makes_no_sawtooth_of_the_static_curve() {
+        let full = Scene { defect: None, ..Scene::default() };
+        let missing = DeviationScene {
+            on: RollingSurface::Roller(5),
+            form: FormScene::Missing,
+            ..DeviationScene::default()
+        };
+        let curve =
+            |scene: &Scene| Prediction::of(scene, &mesh(1257, 1030)).static_curve(scene, 50_000.0).unwrap();
+        let steepest = |curve: &StaticCurve| {
+            curve.force_n.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
+        };
+        let (sound, gap) = (curve(&full), curve(&Scene { defects: vec![missing], ..full.clone() }));
+        assert!(gap.angle_deg.len() <= sound.angle_deg.len() + 1, "{}", gap.angle_deg.len());
+        assert!(steepest(&gap) < 2.0 * steepest(&sound), "{} {}", steepest(&gap), steepest(&sound));
+        assert!(gap.largest_n > 1.05 * sound.largest_n, "neighbours of the gap carry more");
     }
 
     #[test]

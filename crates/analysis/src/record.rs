@@ -9,6 +9,7 @@ use stribeck_scene::trace::Trace;
 
 use crate::Error;
 use crate::levels::STANDARD_GRAVITY;
+use crate::words::significant;
 
 /// Channels of rollers that are in memory at once, at most [bytes]; one roller always is.
 const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;
@@ -83,7 +84,7 @@ impl<'a> Record<'a> {
     /// The same of a stretch of time [s].
     ///
     /// # Errors
-    /// As [`Record::new`].
+    /// As [`Record::new`], and [`Error::NoSignal`] for a stretch that holds nothing of the record.
     pub fn between(run: &'a Run, time_s: Range<f64>) -> Result<Self, Error> {
         let start_s = run.trace.read(0..1, |name| name == "time_s")?;
         let start_s = start_s.get("time_s").and_then(|time| time.first().copied()).unwrap_or(0.0);
@@ -91,6 +92,18 @@ impl<'a> Record<'a> {
         let row = |at_s: f64| ((at_s - start_s) / run.info.interval_s - 1e-6).ceil().max(0.0) as usize;
         let end = row(time_s.end).min(run.trace.len());
         let first = row(time_s.start).max(end.saturating_sub(LONGEST));
+        if first >= end && !run.trace.is_empty() {
+            let whole_s = start_s + (run.trace.len() - 1) as f64 * run.info.interval_s;
+            return Err(Error::NoSignal(format!(
+                "the record is {} s long and holds nothing {}",
+                significant(whole_s, 6),
+                match (time_s.start.is_finite(), time_s.end.is_finite()) {
+                    (true, true) => format!("from {} to {} s", time_s.start, time_s.end),
+                    (true, false) => format!("from {} s on", time_s.start),
+                    _ => format!("up to {} s", time_s.end),
+                }
+            )));
+        }
         let held = |name: &str| !name.starts_with("roller.") && !name.starts_with("sensor.");
         Self::with(run, first.min(end)..end, held)
     }
@@ -189,6 +202,12 @@ impl<'a> Record<'a> {
             [first, .., last] if last > first => (last - first) / (self.len - 1) as f64,
             _ => self.run.info.interval_s,
         }
+    }
+
+    /// When it begins and ends [s]: with the run, or a sampling interval before its first sample, and with its last one.
+    pub fn stretch_s(&self) -> [f64; 2] {
+        let [first, last] = [self.time_s().first(), self.time_s().last()].map(|t| t.copied().unwrap_or(0.0));
+        [if self.first == 0 { 0.0 } else { first - self.interval_s() }, last]
     }
 
     /// Sampling rate [Hz].

@@ -22,7 +22,6 @@ use std::thread;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 use stribeck_scene::deviation::DeviationScene;
-use stribeck_scene::duty::Duty;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::ring_mesh::RingMeshScene;
 use stribeck_scene::run_dir::{Run, write_atomic};
@@ -34,10 +33,12 @@ pub use ensemble::write_ensemble;
 pub use measured::write_measured;
 pub use trend::{TrendEntry, write_trend};
 
+use crate::duty::DutyFinding;
 use crate::findings::Findings;
 use crate::plot;
 use crate::record::Record;
 use crate::summary::Summary;
+use crate::words::{kilonewtons, significant};
 use crate::{
     Error,
     report::{
@@ -128,7 +129,7 @@ fn page(
             (head(&summary.scene))
             body {
                 h1 { (summary.scene) }
-                p class="lead" { (lead(&run.scene, summary.run.simulated_ms)) }
+                p class="lead" { (lead(&run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
                 (banner(run))
                 (answer::paragraphs(run, summary))
                 (contents(findings.of_paper, run.scene.model != ModelScene::Full, summary.duty.is_some()))
@@ -136,7 +137,7 @@ fn page(
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
-                (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary), "No roller was recorded.")?)
+                (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary, findings.prediction.standing_spalls().next().is_some()), "No roller was recorded.")?)
                 (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
                 (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
                 h2 #artefacts { "All lines of the leading sensor" }
@@ -212,7 +213,7 @@ fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
 }
 
 /// The sentence under the title.
-fn lead(scene: &Scene, simulated_ms: f64) -> String {
+fn lead(scene: &Scene, duty: Option<&DutyFinding>, simulated_ms: f64) -> String {
     let of_defect = scene.defect.as_ref().map(|d| {
         let ring = match d.ring {
             DefectRing::Outer => "outer",
@@ -235,8 +236,8 @@ fn lead(scene: &Scene, simulated_ms: f64) -> String {
         "{name}{} rollers{} under {} at {}, {defect}; {:.1} ms on record.",
         scene.rollers_in_place().count(),
         own_rings(scene) + &housing(scene),
-        load(scene, simulated_ms),
-        speed(scene, simulated_ms),
+        load(scene, duty),
+        speed(scene, duty),
         simulated_ms
     )
 }
@@ -266,30 +267,37 @@ fn housing(scene: &Scene) -> String {
     }
 }
 
-/// The load in words, with its range where it changes.
-fn load(scene: &Scene, simulated_ms: f64) -> String {
-    let kilo = |n: f64| (1e-3 * n * 1e6).round() / 1e6;
-    if !scene.operation.load_varies() {
-        return format!("{} kN", 1e-3 * scene.operation.load_n);
+/// The load in words, with its range on record where it changes.
+fn load(scene: &Scene, duty: Option<&DutyFinding>) -> String {
+    match duty {
+        Some(duty) if duty.load_n.0 != duty.load_n.1 => {
+            format!("{} to {}", significant(1e-3 * duty.load_n.0, 4), kilonewtons(duty.load_n.1))
+        }
+        _ => kilonewtons(scene.operation.load_n),
     }
-    let [least, most] = Duty::of(scene).load_range_n(1e-3 * simulated_ms);
-    format!("{} to {} kN", kilo(least), kilo(most))
 }
 
-/// The speed in words, with its range where it changes, and the sense where it is not the usual one.
-fn speed(scene: &Scene, simulated_ms: f64) -> String {
-    let (duty, until_s) = (Duty::of(scene), 1e-3 * simulated_ms);
-    let inner = of_ring(duty.speed_range_rpm(until_s));
-    if !scene.operation.outer_turns() {
+/// The speed in words, with its range on record where it changes, and the sense where it is not the usual one.
+fn speed(scene: &Scene, duty: Option<&DutyFinding>) -> String {
+    let o = &scene.operation;
+    let [inner, outer] = match duty {
+        Some(duty) if o.speed_varies() => [duty.speed_rpm, duty.outer_speed_rpm],
+        _ => [(o.speed_rpm, o.speed_rpm), (o.outer_speed_rpm, o.outer_speed_rpm)],
+    };
+    let inner = of_ring(inner);
+    if !o.outer_turns() {
         return inner;
     }
-    format!("{inner} of the inner and {} of the outer ring", of_ring(duty.outer_speed_range_rpm(until_s)))
+    format!("{inner} of the inner and {} of the outer ring", of_ring(outer))
 }
 
 /// Least and largest speed of one ring in words.
-fn of_ring(range_rpm: [f64; 2]) -> String {
-    let [least, most] = range_rpm.map(|rpm| (rpm * 1e3).round() / 1e3);
-    let span = |a: f64, b: f64| if a == b { format!("{a} rpm") } else { format!("{a} to {b} rpm") };
+fn of_ring((least, most): (f64, f64)) -> String {
+    let varies = least != most;
+    let rpm = |rpm: f64| if varies { significant(rpm, 4) } else { rpm.to_string() };
+    let span = |a: f64, b: f64| {
+        if varies { format!("{} to {} rpm", rpm(a), rpm(b)) } else { format!("{} rpm", rpm(a)) }
+    };
     if most <= 0.0 && least < 0.0 {
         format!("{} counter-clockwise", span(-most, -least))
     } else if least < 0.0 {

@@ -18,9 +18,12 @@ pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisso
     n * (n * n - 1.0) / (2.0 * PI * radius * radius) * (stiffness / (density * (n * n + 1.0))).sqrt()
 }
 
-/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz].
+/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; none of one that does not deform.
 pub fn outer_ring_modes(scene: &Scene, last: u32) -> Vec<(u32, f64)> {
     let g = Geometry::of(scene);
+    if g.outer_ring_rigid {
+        return Vec::new();
+    }
     let (thickness, m) = (g.outer_ring_thickness, &g.material);
     let radius = g.outer_race_radius + 0.5 * thickness;
     let mode = |n| (n, bending_mode_hz(n, radius, thickness, m.youngs_modulus, m.poissons_ratio, m.density));
@@ -39,6 +42,8 @@ pub fn elements_per_wavelength(scene: &Scene, frequency_hz: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_scene::housing::{HousingScene, RigidHousingScene};
+
     use super::*;
 
     #[test]
@@ -50,6 +55,8 @@ mod tests {
         {
             assert!((hz / expected - 1.0).abs() < 1e-3, "n = {n}: {hz}");
         }
+        let rigid = Scene { housing: HousingScene::Rigid(RigidHousingScene::default()), ..scene.clone() };
+        assert_eq!(outer_ring_modes(&rigid, 5), []);
         // The paper says 97.
         let waves = elements_per_wavelength(&scene, 40_000.0);
         assert!((waves - 97.6).abs() < 0.1, "{waves}");

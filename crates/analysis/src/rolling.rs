@@ -3,13 +3,14 @@
 use std::f64::consts::PI;
 
 use stribeck_scene::deviation::{FormScene, RollingSurface, SpallScene};
-use stribeck_scene::geometry::Geometry;
+use stribeck_scene::geometry::{Geometry, pocket_half_width};
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{PocketWalls, Scene};
 use stribeck_scene::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::StaticCurve;
+use crate::words::significant;
 
 /// Loaded rollers or a cage that are slower than rolling by more than this slide; at full load they lose some tenths of a
 /// per cent.
@@ -113,10 +114,43 @@ pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
     let far_um = 1e6 * far;
     (room_um > 0.0 && far_um > STRAYS * room_um).then(|| {
         format!(
-            "the cage strays by {far_um:.0} µm, where its pockets leave {room_um:.0} µm: straight walls do not hold it across, and rollers bunch. \
-             `cage.pocket: corners`, on a cage outside of the pitch circle, holds it"
+            "the cage strays by {}, where its pockets leave {room_um:.0} µm: {}",
+            if far_um < 1e4 {
+                format!("{far_um:.0} µm")
+            } else {
+                format!("{} mm", significant(1e-3 * far_um, 3))
+            },
+            why_it_strays(scene)
         )
     })
+}
+
+/// What lets a cage stray, and what holds it.
+fn why_it_strays(scene: &Scene) -> String {
+    let g = Geometry::of(scene);
+    let corners = g.cage.as_ref().filter(|cage| cage.pocket == PocketWalls::Corners);
+    let Some(cage) = corners else {
+        return "straight walls do not hold it across, and rollers bunch. `cage.pocket: corners`, on a cage outside of the pitch circle, \
+                holds it"
+            .to_owned();
+    };
+    let [inner, outer] = cage.radii();
+    let path = g.path_radius();
+    let wide = 2.0 * pocket_half_width(inner, outer, path, g.roller_radius + cage.pocket_clearance);
+    let (wide_mm, roller_mm) = (1e3 * wide, 2e3 * g.roller_radius);
+    if wide_mm < roller_mm {
+        return format!(
+            "the corners of its pockets, {wide_mm:.2} mm wide, hold rollers of {roller_mm:.2} mm from one side only, and it has left them, so \
+             that they bunch. A smaller `cage.pocket_clearance_um`, or a cage farther from the pitch circle of {:.2} mm, holds it better",
+            2e3 * path
+        );
+    }
+    format!(
+        "they are {wide_mm:.2} mm wide between their corners, and rollers of {roller_mm:.2} mm go through, so that nothing holds it across, and \
+         rollers bunch. A cage that lies farther outside of the pitch circle of {:.2} mm, by `cage.outer_diameter_mm` and `cage.thickness_mm`, \
+         holds it",
+        2e3 * path
+    )
 }
 
 #[cfg(test)]
@@ -126,6 +160,7 @@ mod tests {
     use crate::prediction::Prediction;
     use stribeck_scene::deviation::DeviationScene;
     use stribeck_scene::run_info::MeshInfo;
+    use stribeck_scene::scene::CageScene;
 
     /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 · 16/6000) = 0.037 to turn over the
     /// edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and no more than a quarter of 0.3 mm over 6 mm, 0.0125, over a
@@ -191,6 +226,20 @@ mod tests {
                 .expect("twelve clearances")
                 .contains("strays by 1200 µm, where its pockets leave 100 µm")
         );
+        // Rollers of 18 mm on a pitch circle of 182 mm: corners on a diameter of 184 mm are 18.2 mm apart, those on 188 mm 17.5 mm.
+        for (inner_mm, words) in [(184.0, "go through"), (188.0, "from one side only")] {
+            let cage = CageScene {
+                pocket: PocketWalls::Corners,
+                outer_diameter_mm: inner_mm + 8.0,
+                thickness_mm: 4.0,
+                ..CageScene::default()
+            };
+            let said = straying(&Scene { cage: Some(cage), ..scene.clone() }, &[0.0, 0.9], &[0.0, 0.0]);
+            assert!(
+                said.as_ref().is_some_and(|said| said.contains(words) && said.contains("900 mm")),
+                "{said:?}"
+            );
+        }
         assert!(straying(&Scene { cage: None, ..scene.clone() }, &[0.0, 1.0], &[0.0, 0.0]).is_none());
     }
 

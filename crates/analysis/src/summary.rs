@@ -170,7 +170,8 @@ pub struct Event {
     pub path_exit_ms: Option<f64>,
     /// Force before the defect [N].
     pub level_n: Option<f64>,
-    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g].
+    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or of the recorded centre over the
+    /// trailing edge where the roller never came free.
     pub impulse_g: Option<f64>,
     /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch it.
     pub floor_ms: Option<f64>,
@@ -302,12 +303,20 @@ pub struct SpectrumFinding {
     pub grid_hz: f64,
     /// True when the grid is finer than the resolution.
     pub zero_padded: bool,
+    /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz], where that is another one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fine_resolution_hz: Option<f64>,
 }
 
 impl Event {
     /// Unloading after the centre would stand over the leading edge without slip [ms].
     pub fn entry_off_ms(&self) -> Option<f64> {
         Some(self.entry_ms? - self.expected_entry_ms)
+    }
+
+    /// When its roller left the spall [ms]: by its force, or else by its path.
+    pub fn left_ms(&self) -> Option<f64> {
+        self.exit_ms.or(self.path_exit_ms)
     }
 
     /// Re-stressing after the centre would stand over the trailing edge without slip [ms].
@@ -350,6 +359,7 @@ impl SpectrumFinding {
             noise_bandwidth_hz: resolution.noise_bandwidth_hz,
             grid_hz: resolution.grid_hz,
             zero_padded: resolution.zero_padded,
+            fine_resolution_hz: None,
         }
     }
 }

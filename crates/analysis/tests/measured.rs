@@ -277,6 +277,10 @@ fn refuses_what_holds_no_signal() {
     };
     assert!(of(vec![1.0; 10], 1e3).contains("1024 are the least"));
     assert!(of(vec![1.0; 5000], 1e3).contains("constant"));
+    for scale in [1e300, 1e-300] {
+        let out_of_range: Vec<f64> = coloured(1, 5000).into_iter().map(|x| scale * x).collect();
+        assert!(of(out_of_range, 1e3).contains("beyond the range of numbers"), "{scale}");
+    }
     assert!(of(vec![1.0; 5000], f64::NAN).contains("sample rate"));
     let unknown =
         Analysis::of(&Channel::held("a", coloured(1, 5000)), RATE_HZ, &Machine::default()).unwrap().findings;

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use stribeck_analysis::report;
 use stribeck_analysis::summary::Summary;
+use stribeck_scene::housing::{HousingScene, RigidHousingScene};
 use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ContactSurface, FilmScene, Scene};
@@ -414,6 +415,76 @@ fn invariant_a_stretch_of_a_record_shows_what_the_whole_shows_there() {
     close(part.kinematics.cage_hz, all.kinematics.cage_hz.expect("a cage"), 1e-6, "cage");
     assert!(part.notes[..].iter().any(|n| n.contains("--from-s")), "{:?}", part.notes);
     assert!(all.notes.iter().all(|n| !n.contains("--from-s")), "{:?}", all.notes);
+    close(Some(part.run.simulated_ms), 1e3 * INTERVAL_S * part.run.samples as f64, 1e-6, "time on record");
+}
+
+#[test]
+fn refuses_a_stretch_that_holds_nothing_and_keeps_the_report() {
+    let (folder, _) = whole("beyond");
+    let before = read(&folder.0, "report.html");
+    for (from_s, to_s, words) in [
+        (5.0, f64::INFINITY, "is 0.02999 s long and holds nothing from 5 s on"),
+        (f64::NEG_INFINITY, -1.0, "up to -1 s"),
+        (5.0, 6.0, "from 5 to 6 s"),
+    ] {
+        let why = report::write_between(&folder.0, from_s..to_s).expect_err("refused").to_string();
+        assert!(why.contains(words), "{why}");
+    }
+    assert!(before == read(&folder.0, "report.html"), "the page changed");
+}
+
+/// A quarter of a turn of a load that turns with the shaft, from where it adds to the other: its mean along that is 2/π of it.
+#[test]
+fn analytic_rollers_carry_what_a_rotating_load_does_over_the_record() {
+    /// The mean over samples of 30 ms is off by half a sampling interval at its ends.
+    const SAMPLED: f64 = 1e-3;
+    let folder = Scratch::new("rotating");
+    let scene = Scene::default()
+        .with_overrides(&["operation.rotating_load=(force_n: 10000, angle_deg: 270)"])
+        .expect("a sound scene");
+    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
+    let load = report::write(&folder.0).expect("a report").load;
+    let wanted = SUPPORT_N + 10e3 * std::f64::consts::FRAC_2_PI;
+    close(Some(load.expected_n), wanted, SAMPLED * wanted, "load and weight");
+    close(load.relative_error, SUPPORT_N / wanted - 1.0, SAMPLED, "difference");
+    assert!(
+        read(&folder.0, "report.html").contains(" rollers under 50.01 to 60 kN at "),
+        "the range on record"
+    );
+}
+
+#[test]
+fn example_a_quiet_sound_bearing_has_digits_and_no_words_on_defects() {
+    let folder = Scratch::new("quiet");
+    let scene = Scene {
+        defect: None,
+        housing: HousingScene::Rigid(RigidHousingScene::default()),
+        ..Scene::default()
+    };
+    let scene = scene.with_overrides(&["operation.load_angle_deg=0"]).expect("a sound scene");
+    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1e-3);
+    let summary = report::write(&folder.0).expect("a report");
+    let page = read(&folder.0, "report.html");
+    let gap = summary.levels.phases.gap_g.expect("a level");
+    assert!(gap > 0.04 && gap < 0.07, "{gap}");
+    for words in ["reaches 0.0", "along the radius there"] {
+        assert!(page.contains(words), "{words}");
+    }
+    for words in [
+        "reaches 0 g",
+        "to 0 g",
+        "over the defect",
+        "over a spall",
+        "no roller leaves",
+        "edges of an adapter",
+        "elastic outer ring",
+        "ring n = 2",
+        "brown: modes",
+        "red: the defect",
+        "rings with the mesh",
+    ] {
+        assert!(!page.contains(words), "{words}");
+    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ use crate::{error::Error, grading, housing::housing, own_mesh, suspension::suspe
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
-    geometry::{CageGeometry, DefectGeometry, Geometry},
+    geometry::{CageGeometry, DefectGeometry, Geometry, pocket_half_width},
     housing::HousingScene,
     kinematics::{FacetCounts, Kinematics},
     lubrication,
@@ -650,15 +650,4 @@ fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: 
         joined.surfaces.push((format!("piece {}", i + 1), boundary));
     }
     Ok(joined)
-}
-
-/// Half width of a pocket whose walls come within `reach` of the centre of a roller on radius `path`.
-pub fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
-    if (inner..=outer).contains(&path) {
-        return reach;
-    }
-    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on `edge`.
-    let edge = if path < inner { inner } else { outer };
-    let height = (edge * edge + path * path - reach * reach) / (2.0 * path);
-    (edge * edge - height * height).max(0.0).sqrt().min(PI * edge)
 }

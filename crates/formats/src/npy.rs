@@ -26,15 +26,48 @@ pub(crate) struct Layout {
     pub(crate) start: usize,
 }
 
+/// Why a header is not followed.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Refusal {
+    /// It cannot be understood, and why.
+    Damaged(String),
+    /// It promises what is no table of real numbers.
+    Foreign(String),
+}
+
+impl Refusal {
+    fn of_file(self, path: &Path) -> Error {
+        match self {
+            Self::Damaged(what) => Error::damaged(path, FORMAT, what),
+            Self::Foreign(what) => {
+                Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice: ADVICE }
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for Refusal {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Damaged(what) => f.write_str(what),
+            Self::Foreign(what) => write!(f, "it holds {what}, and {ADVICE}"),
+        }
+    }
+}
+
+/// What to save instead of what is not read.
+const ADVICE: &str = "vectors, tables and records of real numbers are read: bool, int8 to uint64, float32 and float64; save it as one of them";
+
 /// Opens an array; a vector takes the name of the file.
 ///
 /// # Errors
-/// [`Error::Damaged`] for a header that cannot be understood or data that end early, [`Error::Io`].
+/// [`Error::Damaged`] for a header that cannot be understood or data that end early, [`Error::Unsupported`] for what is no table of real
+/// numbers, [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let mut file = File::open(path).map_err(|e| Error::read(path, e))?;
     let mut head = Vec::new();
     file.by_ref().take(MAX_HEADER as u64).read_to_end(&mut head).map_err(|e| Error::read(path, e))?;
-    let layout = Layout::of(&head).map_err(|what| Error::damaged(path, FORMAT, what))?;
+    let layout = Layout::of(&head).map_err(|why| why.of_file(path))?;
     let size = file.metadata().map_err(|e| Error::read(path, e))?.len();
     let held = size.saturating_sub(layout.start as u64);
     let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
@@ -46,29 +79,30 @@ pub fn open(path: &Path) -> Result<Recording> {
 
 impl Layout {
     /// Reads a header from the first bytes of a file.
-    pub(crate) fn of(head: &[u8]) -> std::result::Result<Self, String> {
-        let cut = || "it ends inside its header".to_owned();
+    pub(crate) fn of(head: &[u8]) -> std::result::Result<Self, Refusal> {
+        let damaged = |what: &str| Refusal::Damaged(what.to_owned());
+        let cut = || damaged("it ends inside its header");
         if !head.starts_with(MAGIC) {
-            return Err("it does not begin like a `.npy` file".to_owned());
+            return Err(damaged("it does not begin like a `.npy` file"));
         }
         let (prefix, length) = match *head.get(6).ok_or_else(cut)? {
             1 => (10, head.get(8..10).ok_or_else(cut)?.iter().rev().fold(0, |n, b| n << 8 | usize::from(*b))),
             2 | 3 => {
                 (12, head.get(8..12).ok_or_else(cut)?.iter().rev().fold(0, |n, b| n << 8 | usize::from(*b)))
             }
-            other => return Err(format!("its version is {other}; 1 to 3 are known")),
+            other => return Err(Refusal::Damaged(format!("its version is {other}; 1 to 3 are known"))),
         };
         let text = head.get(prefix..prefix + length).ok_or_else(cut)?;
-        let text = std::str::from_utf8(text).map_err(|_| "its header is no text".to_owned())?;
+        let text = std::str::from_utf8(text).map_err(|_| damaged("its header is no text"))?;
         let after = |key: &str| text.split_once(key).map(|(_, rest)| rest.trim_start());
         let shape = after("'shape':").and_then(|s| s.strip_prefix('(')).and_then(|s| s.split_once(')'));
-        let shape = shape.ok_or("its header has no shape")?.0;
+        let shape = shape.ok_or_else(|| damaged("its header has no shape"))?.0;
         let sizes = shape.split(',').map(str::trim).filter(|s| !s.is_empty()).map(str::parse);
         let shape = sizes
             .collect::<std::result::Result<Vec<u64>, _>>()
-            .map_err(|_| "its shape is no list of sizes")?;
+            .map_err(|_| damaged("its shape is no list of sizes"))?;
         let fortran = after("'fortran_order':").is_some_and(|s| s.starts_with("True"));
-        let descr = after("'descr':").ok_or("its header has no `descr`")?;
+        let descr = after("'descr':").ok_or_else(|| damaged("its header has no `descr`"))?;
         let mut fields = Vec::new();
         let mut record = 0;
         if let Some(mut rest) = descr.strip_prefix('[') {
@@ -78,26 +112,25 @@ impl Layout {
                 let mut quoted = field.split('\'');
                 let (name, kind) = (quoted.nth(1), quoted.nth(1));
                 let (Some(name), Some(kind)) = (name, kind) else {
-                    return Err(format!("its record `{field})` is no name with a type"));
+                    return Err(Refusal::Damaged(format!("its record `{field})` is no name with a type")));
                 };
                 let number = number(kind)
-                    .ok_or_else(|| format!("its field `{name}` has the type `{kind}`, no real number"))?;
+                    .ok_or_else(|| Refusal::Foreign(format!("{} in its field `{name}`", spoken(kind))))?;
                 fields.push((name.to_owned(), record, number));
                 record += number.kind.bytes();
                 rest = behind.trim_start_matches([',', ' ']);
             }
         } else {
             let kind = descr.split('\'').nth(1).unwrap_or_default();
-            let number = number(kind).ok_or_else(|| format!("its type is `{kind}`, no real number"))?;
+            let number = number(kind).ok_or_else(|| Refusal::Foreign(spoken(kind)))?;
             fields.push((String::new(), 0, number));
             record = number.kind.bytes();
         }
-        if fields.is_empty() || shape.len() > 2 {
-            return Err(format!(
-                "it has {} fields and {} dimensions; vectors, tables and records are read",
-                fields.len(),
-                shape.len()
-            ));
+        if fields.is_empty() {
+            return Err(damaged("its header names no field"));
+        }
+        if shape.len() > 2 {
+            return Err(Refusal::Foreign(format!("an array of {} dimensions", shape.len())));
         }
         Ok(Self { fields, record, shape, fortran, start: prefix + length })
     }
@@ -185,6 +218,18 @@ fn number(descr: &str) -> Option<Number> {
     Some(Number { kind, big_endian: order == ">" })
 }
 
+/// A type that is no real number, in words.
+fn spoken(descr: &str) -> String {
+    let what = match descr.trim_start_matches(['<', '>', '|', '=']).chars().next() {
+        Some('c') => "complex numbers",
+        Some('U' | 'S') => "text",
+        Some('M' | 'm') => "dates or times",
+        Some('O') => "objects of Python",
+        _ => "values",
+    };
+    format!("{what} (`{descr}`)")
+}
+
 /// A vector of doubles as the bytes of a `.npy` file.
 pub(crate) fn encode(samples: &[f64]) -> Vec<u8> {
     const ALIGNMENT: usize = 64;
@@ -198,4 +243,36 @@ pub(crate) fn encode(samples: &[f64]) -> Vec<u8> {
     bytes.push(b'\n');
     bytes.extend(samples.iter().flat_map(|x| x.to_le_bytes()));
     bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(header: &str) -> Vec<u8> {
+        [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat()
+    }
+
+    #[test]
+    fn refuses_what_is_no_real_number_and_does_not_call_it_damaged() {
+        let path = Path::new("a.npy");
+        let why = |descr: &str, shape: &str| {
+            let header = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}");
+            Layout::of(&file(&header)).expect_err("refused").of_file(path).to_string()
+        };
+        for (descr, shape, words) in [
+            ("'<c16'", "(9,)", "holds complex numbers (`<c16`)"),
+            ("'<U7'", "(9,)", "holds text (`<U7`)"),
+            (
+                "[('t', '<f8'), ('when', '<M8[ns]')]",
+                "(9,)",
+                "holds dates or times (`<M8[ns]`) in its field `when`",
+            ),
+            ("'<f8'", "(2, 3, 4)", "holds an array of 3 dimensions"),
+        ] {
+            let said = why(descr, shape);
+            assert!(said.contains(words) && said.contains("float64") && !said.contains("damaged"), "{said}");
+        }
+        assert!(why("'<f8'", "(x,)").contains("damaged"));
+    }
 }

@@ -415,7 +415,7 @@ impl Cage {
         let cage = g.cage.as_ref()?;
         let path = g.outer_race_radius - g.roller_radius;
         let [inner, outer] = cage.walls(path, g.roller_radius);
-        let half = stribeck_bearing::assembly::pocket_half_width(
+        let half = stribeck_scene::geometry::pocket_half_width(
             inner,
             outer,
             path,

@@ -130,23 +130,23 @@ impl Duty {
         self.load.mean(0.0, until_s)
     }
 
-    /// Least and largest speed until a time [s], clockwise positive [rpm].
-    pub fn speed_range_rpm(&self, until_s: f64) -> [f64; 2] {
-        self.speed.range(until_s)
+    /// Least and largest speed between two times [s], clockwise positive [rpm].
+    pub fn speed_range_rpm(&self, from_s: f64, until_s: f64) -> [f64; 2] {
+        self.speed.range(from_s, until_s)
     }
 
     /// The same of the outer ring.
-    pub fn outer_speed_range_rpm(&self, until_s: f64) -> [f64; 2] {
-        self.outer.range(until_s)
+    pub fn outer_speed_range_rpm(&self, from_s: f64, until_s: f64) -> [f64; 2] {
+        self.outer.range(from_s, until_s)
     }
 
     /// The same of the inner ring against the outer one.
-    pub fn relative_range_rpm(&self, until_s: f64) -> [f64; 2] {
-        let mut at = self.speed.extremes(until_s);
-        at.extend(self.outer.extremes(until_s));
+    pub fn relative_range_rpm(&self, from_s: f64, until_s: f64) -> [f64; 2] {
+        let mut at = self.speed.extremes(from_s, until_s);
+        at.extend(self.outer.extremes(from_s, until_s));
         if ![&self.speed, &self.outer].iter().any(|course| matches!(course, Course::Constant(_))) {
             // Where both change, their difference may have its extremes anywhere.
-            at.extend(samples(until_s));
+            at.extend(samples(from_s, until_s));
         }
         least_and_largest(at.into_iter().map(|t| self.relative_rpm(t)))
     }
@@ -163,14 +163,14 @@ impl Duty {
 
     /// Least and largest load until a time [s] [N]; what rotates is taken as if it stood along the load once.
     pub fn load_range_n(&self, until_s: f64) -> [f64; 2] {
-        let [least, most] = self.load.range(until_s);
+        let [least, most] = self.load.range(0.0, until_s);
         let rotating = self.rotating.map_or(0.0, |(force, _)| force);
         [least - rotating, most + rotating]
     }
 
     /// Whether the rings turn one way against each other all the time until a time [s].
     pub fn is_one_way(&self, until_s: f64) -> bool {
-        let [least, most] = self.relative_range_rpm(until_s);
+        let [least, most] = self.relative_range_rpm(0.0, until_s);
         least * most >= 0.0
     }
 
@@ -181,7 +181,7 @@ impl Duty {
         if self.is_one_way(until_s) {
             return [inner, outer];
         }
-        let sum: f64 = samples(until_s).map(|t| self.relative_rpm(t).abs()).sum();
+        let sum: f64 = samples(0.0, until_s).map(|t| self.relative_rpm(t).abs()).sum();
         [outer + (sum / f64::from(SAMPLES)).copysign(inner - outer), outer]
     }
 
@@ -206,7 +206,7 @@ impl Duty {
 
     /// Slowest magnitude of the speed of the rings against each other until a time [s] [rpm].
     pub fn slowest_rpm(&self, until_s: f64) -> f64 {
-        let [least, most] = self.relative_range_rpm(until_s);
+        let [least, most] = self.relative_range_rpm(0.0, until_s);
         if least * most <= 0.0 { 0.0 } else { least.abs().min(most.abs()) }
     }
 }
@@ -359,31 +359,33 @@ impl Course {
         }
     }
 
-    /// Least and largest value from 0 to a time.
-    fn range(&self, until: f64) -> [f64; 2] {
-        least_and_largest(self.extremes(until).into_iter().map(|t| self.value(t)))
+    /// Least and largest value between two times.
+    fn range(&self, from: f64, until: f64) -> [f64; 2] {
+        least_and_largest(self.extremes(from, until).into_iter().map(|t| self.value(t)))
     }
 
-    /// Times from 0 to another among which it is least and largest.
-    fn extremes(&self, until: f64) -> Vec<f64> {
-        let mut at = vec![0.0, until];
+    /// Times from one to another among which it is least and largest.
+    fn extremes(&self, from: f64, until: f64) -> Vec<f64> {
+        let mut at = vec![from, until];
         match self {
             Self::Constant(_) => {}
             Self::Harmonic { omega, phase, .. } => {
                 // The first four of its extremes hold both kinds.
-                let first = ((phase / std::f64::consts::PI - 0.5).ceil()) as i64;
+                let first = (((omega * from + phase) / std::f64::consts::PI - 0.5).ceil()) as i64;
                 let extreme = |n: i64| ((n as f64 + 0.5) * std::f64::consts::PI - phase) / omega;
-                at.extend((first..first + 4).map(extreme).filter(|t| (0.0..=until).contains(t)));
+                at.extend((first..first + 4).map(extreme).filter(|t| (from..=until).contains(t)));
             }
-            Self::Lines { time, .. } => at.extend(time.iter().copied().filter(|t| (0.0..=until).contains(t))),
+            Self::Lines { time, .. } => {
+                at.extend(time.iter().copied().filter(|t| (from..=until).contains(t)))
+            }
         }
         at
     }
 }
 
-/// Times all over a span from 0 on.
-fn samples(until_s: f64) -> impl Iterator<Item = f64> {
-    (0..SAMPLES).map(move |n| until_s * (f64::from(n) + 0.5) / f64::from(SAMPLES))
+/// Times all over a span.
+fn samples(from_s: f64, until_s: f64) -> impl Iterator<Item = f64> {
+    (0..SAMPLES).map(move |n| from_s + (until_s - from_s) * (f64::from(n) + 0.5) / f64::from(SAMPLES))
 }
 
 fn least_and_largest(values: impl Iterator<Item = f64>) -> [f64; 2] {
@@ -421,8 +423,11 @@ mod tests {
         let way = 500.0 * t + 100.0 / omega * (phase.cos() - (omega * t + phase).cos());
         close(sine.shaft_rad(t), -TAU * way / 60.0);
         close(sine.speed_rpm(0.0), 550.0);
-        assert_eq!(sine.speed_range_rpm(1.0).map(f64::round), [400.0, 600.0]);
-        close(sine.speed_range_rpm(0.01)[0], 550.0);
+        assert_eq!(sine.speed_range_rpm(0.0, 1.0).map(f64::round), [400.0, 600.0]);
+        close(sine.speed_range_rpm(0.0, 0.01)[0], 550.0);
+        // Of a stretch behind its crest at 1/30 s.
+        close(sine.speed_range_rpm(0.05, 0.1)[1], sine.speed_rpm(0.05));
+        close(ramp.speed_range_rpm(0.02, 0.025)[0], 1000.0);
     }
 
     #[test]
@@ -471,7 +476,7 @@ mod tests {
         // The shaft from 500 to 1500 rpm in 20 ms, the outer ring at −100 rpm: turns against it are the area between the two.
         let ramp = "operation.speed_profile=ramp(from_ms: 0, to_ms: 20, to: 1500)";
         let beside = with(&[RIGID, ramp, "operation.outer_speed_rpm=-100"]);
-        assert_eq!(beside.relative_range_rpm(0.02), [600.0, 1600.0]);
+        assert_eq!(beside.relative_range_rpm(0.0, 0.02), [600.0, 1600.0]);
         assert_eq!(beside.slowest_rpm(0.02), 600.0);
         let turns = (0.02 * 1100.0 + 0.004 * 1600.0) / 60.0;
         close(beside.relative_turns(0.024), turns);
@@ -486,7 +491,7 @@ mod tests {
             "operation.speed_profile=harmonic(amplitude: 100, hz: 5)",
             "operation.outer_speed_profile=ramp(to_ms: 200, to: 1000)",
         ]);
-        close(both.relative_range_rpm(0.2)[0], -500.0);
+        close(both.relative_range_rpm(0.0, 0.2)[0], -500.0);
         assert!(!both.is_one_way(0.2) && both.is_one_way(0.05));
         // At 2000 rpm/s the derivative vanishes where cos(10πt) = 2/π.
         let both = with(&[
@@ -496,6 +501,6 @@ mod tests {
         ]);
         let at = (2.0 / std::f64::consts::PI).acos() / (10.0 * std::f64::consts::PI);
         let largest = 500.0 + 100.0 * (TAU * 5.0 * at).sin() - 2000.0 * at;
-        assert!((both.relative_range_rpm(0.2)[1] - largest).abs() < 1e-4, "{largest}");
+        assert!((both.relative_range_rpm(0.0, 0.2)[1] - largest).abs() < 1e-4, "{largest}");
     }
 }

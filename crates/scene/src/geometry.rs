@@ -4,7 +4,7 @@
 //! Where a bit of a result may hang on the rounding of a quotient, it is taken of the numbers as written instead: the
 //! ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are written.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use crate::contact_formula::ContactNumbers;
 use crate::deviation::{Relief, RollingSurface};
@@ -271,6 +271,17 @@ impl CageGeometry {
             }
         }
     }
+}
+
+/// Half width of a pocket whose walls come within `reach` of the centre of a roller on radius `path`.
+pub fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
+    if (inner..=outer).contains(&path) {
+        return reach;
+    }
+    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on `edge`.
+    let edge = if path < inner { inner } else { outer };
+    let height = (edge * edge + path * path - reach * reach) / (2.0 * path);
+    (edge * edge - height * height).max(0.0).sqrt().min(PI * edge)
 }
 
 impl DefectGeometry {

@@ -170,6 +170,9 @@ fn passed(judged: &Judged) -> String {
     }
 }
 
+/// Rates that differ by less than this part are one: files round theirs.
+const SAME_RATE: f64 = 1e-3;
+
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
     let mut file = place.locate(asked);
@@ -189,6 +192,15 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
         bail!("`{}` does not say how fast it was sampled: give `--rate-hz`", file.display());
     };
+    if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
+        ensure!(
+            (given / said - 1.0).abs() <= SAME_RATE,
+            "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave the option out, or mend the file if \
+             it is wrong",
+            file.display(),
+            channel.name
+        );
+    }
     let mut notes = recording.notes.clone();
     let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
@@ -301,8 +313,8 @@ fn machine(
             .with_context(|| format!("the speed of `{}` changes", scene.name))?;
         notes.push(format!(
             "the speed varies by {:.1} % over the record, by the recorded angle of the shaft{}",
-            if scene.operation.outer_turns() { " against the outer ring" } else { "" },
-            100.0 * turns.variation
+            100.0 * turns.variation,
+            if scene.operation.outer_turns() { " against the outer ring" } else { "" }
         ));
         pulses = Some(turns.pulses);
         Some(turns.rpm)

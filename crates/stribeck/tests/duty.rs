@@ -1,6 +1,6 @@
 //! Runs whose speed changes, from the scene to the report: the defect's family follows the shaft.
 
-use std::{f64::consts::TAU, path::Path};
+use std::{f64::consts::TAU, path::Path, process::Command};
 
 use stribeck_analysis::{duty, enveloping, record::Record, report, summary::Summary, tones};
 use stribeck_bearing::simulation::Host;
@@ -12,7 +12,7 @@ use stribeck_scene::{
     run_info::Status,
     scene::{DefectRing, Scene},
 };
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, said};
 
 fn scene(file: &str, set: &[&str]) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes").join(file);
@@ -199,6 +199,22 @@ fn analytic_bpfo_follows_the_difference_of_two_speeds() {
     ] {
         assert!(page.contains(words), "`{words}` is not in the report");
     }
+    let stribeck = |words: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_stribeck"))
+            .current_dir(folder.path())
+            .args(words)
+            .output()
+            .expect("runs")
+    };
+    let analysed = stribeck(&["analyse", "run"]);
+    let words = " % over the record, by the recorded angle of the shaft against the outer ring";
+    assert!(said(&analysed).contains(words), "{}", said(&analysed));
+    // A stretch has speeds of its own.
+    let part = report::write_between(&folder.join("run"), 0.3..0.4).expect("a report");
+    let duty = part.duty.expect("a speed that changes");
+    let [least, most] = [duty.speed_rpm.0 - 900.0, duty.speed_rpm.1 - 1100.0];
+    assert!(least.abs() < 0.1 && most.abs() < 0.1, "{:?}", duty.speed_rpm);
+    assert!((part.run.simulated_ms - 100.0).abs() < 0.05, "{} ms", part.run.simulated_ms);
 }
 
 /// Counter-clockwise the same report comes of the mirror image, but for the words.

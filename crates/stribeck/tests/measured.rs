@@ -58,7 +58,16 @@ fn refuses_a_record_with_what_to_give() {
     let table: String = (0..2000).map(|n| format!("{},{}\n", f64::from(n).sin(), n % 7)).collect();
     std::fs::write(desk.join("a.csv"), format!("x,y\n{table}")).unwrap();
     std::fs::write(desk.join("b.csv"), "x,y\n1,2\n3,oops\n").unwrap();
+    let timed: String =
+        (0..2000).map(|n| format!("{},{}\n", f64::from(n) / 25_600.0, f64::from(n).sin())).collect();
+    std::fs::write(desk.join("t.csv"), format!("time_s,x\n{timed}")).unwrap();
+    let agrees = stribeck(desk.path(), &["analyse", "t.csv", "--rate-hz", "25600"]);
+    assert!(agrees.status.success(), "{}", said(&agrees));
     for (words, says) in [
+        (
+            vec!["analyse", "t.csv", "--rate-hz", "12000"],
+            "was sampled at 25600 Hz, and `--rate-hz` says 12000 Hz",
+        ),
         (vec!["analyse", "a.csv"], "give `--rate-hz`"),
         (vec!["analyse", "a.csv", "--channel", "z"], "it has `x` (2000 samples), `y` (2000 samples)"),
         (vec!["analyse", "a.csv", "--rate-hz", "100", "--bearing", "6999"], "no bearing `6999` is known"),

@@ -16,8 +16,7 @@ use crate::record::{Record, Roller};
 use crate::spall::Edge;
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
 
-/// Of a spall on a raceway that turns, passages of rollers that carry less than this part of the largest load are left out: they
-/// lie outside the load zone.
+/// Passages of rollers that carry less than this part of the largest load are left out: they lie outside the load zone.
 const LOADED: f64 = 0.05;
 
 /// Traverses before and behind a passage in which it is looked for.
@@ -53,13 +52,17 @@ impl<'a> Passages<'a> {
         }
     }
 
-    /// One event for every passage that begins within the record, in order of expected entry.
+    /// One event for every passage that begins within the record, in order of expected entry, where rollers carry; at rest the fullest has
+    /// `fullest_n`.
     pub(super) fn events(
         mut self,
         record: &Record<'_>,
+        fullest_n: f64,
         notes: &mut Vec<String>,
     ) -> Result<Vec<Event>, Error> {
         let recorded = record.roller_numbers();
+        let levels = self.seen.iter().flat_map(BTreeMap::values).filter_map(|(event, _)| event.level_n);
+        let least_n = LOADED * levels.fold(fullest_n, f64::max);
         let mut events = Vec::new();
         for (number, (course, seen)) in self.prediction.spalls.iter().zip(&mut self.seen).enumerate() {
             for (at, passage) in course.passages.iter().enumerate() {
@@ -69,7 +72,7 @@ impl<'a> Passages<'a> {
                 }
             }
             let seen = std::mem::take(seen).into_values().collect();
-            let mut of_spall = events_of(record, self.prediction, course, seen, notes)?;
+            let mut of_spall = events_of(record, self.prediction, course, seen, least_n, notes)?;
             of_spall.iter_mut().for_each(|event| event.spall = number + 1);
             events.extend(of_spall);
         }
@@ -209,25 +212,23 @@ fn passages_of(
     events
 }
 
-/// Events of one spall, from those `seen` over it in the order of its passages.
+/// Events of one spall, from those `seen` over it in the order of its passages, of rollers that carry at least `least_n`.
 fn events_of(
     record: &Record<'_>,
     prediction: &Prediction,
     course: &SpallCourse,
     mut events: Vec<(Event, Vec<String>)>,
+    least_n: f64,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Event>, Error> {
-    if course.turns {
-        let all = events.len();
-        let most = events.iter().filter_map(|(event, _)| event.level_n).fold(0.0, f64::max);
-        events.retain(|(event, _)| event.level_n.is_none_or(|level| level > LOADED * most));
-        if events.len() < all {
-            notes.push(format!(
-                "{} of {all} passages over the spall of the {} raceway lie outside the load zone and are no events",
-                all - events.len(),
-                course.spall.ring.name()
-            ));
-        }
+    let all = events.len();
+    events.retain(|(event, _)| event.level_n.is_none_or(|level| level > least_n));
+    if events.len() < all {
+        notes.push(format!(
+            "{} of {all} passages over the spall of the {} raceway lie outside the load zone and are no events",
+            all - events.len(),
+            course.spall.ring.name()
+        ));
     }
     let mut of_spall = Vec::new();
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
@@ -312,7 +313,7 @@ pub(super) fn level_finding(
     let phases = levels::phases(time, &visits);
     let start = time.first().copied().unwrap_or(0.0);
     let settled = start + filter.map_or(0.0, Filter::transient_s);
-    let exits: Vec<f64> = events.iter().filter_map(|e| e.exit_ms).map(|t| 1e-3 * t).collect();
+    let exits: Vec<f64> = events.iter().filter_map(Event::left_ms).map(|t| 1e-3 * t).collect();
     let impulses: Vec<_> = exits.iter().map(|&t| levels::impulse_span(time, t)).collect();
     let quiet = levels::gap_spans(time, &phases, start);
     let quiet_settled = levels::gap_spans(time, &phases, settled);
@@ -334,7 +335,7 @@ pub(super) fn level_finding(
             finding.between_filtered_p99_g = filtered.map(|l| l.p99);
             finding.between_filtered_rms_g = filtered.map(|l| l.rms);
             for event in events.iter_mut() {
-                let span = event.exit_ms.map(|t| levels::impulse_span(time, 1e-3 * t));
+                let span = event.left_ms().map(|t| levels::impulse_span(time, 1e-3 * t));
                 event.impulse_g = span.and_then(|s| levels::level(&sensor.raw_g, &[s])).map(|l| l.peak);
             }
         }
@@ -349,9 +350,6 @@ pub(super) fn level_finding(
             between_filtered_g: filtered.map(|l| l.peak),
             between_filtered_rms_g: filtered.map(|l| l.rms),
         });
-    }
-    if !sensors.is_empty() && finding.impulse_g.is_none() {
-        notes.push("no impulse level: no roller leaves the defect within the record".into());
     }
     if filter.is_some() && !sensors.is_empty() && finding.between_filtered_g.is_none() {
         notes.push(format!(

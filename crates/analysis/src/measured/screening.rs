@@ -102,6 +102,13 @@ impl Screening {
         notes
     }
 
+    /// The largest distance from the first value, where its fourth power lies beyond the range of numbers.
+    pub(super) fn out_of_range(&self) -> Option<f64> {
+        let reach = self.highest.value.max(self.lowest.value);
+        let fourth = reach.powi(4);
+        (reach > 0.0 && (!self.sums[3].is_finite() || fourth < f64::MIN_POSITIVE)).then_some(reach)
+    }
+
     /// With the power spectral density of the same signal; `None` for a constant one.
     pub(super) fn health(&self, density: &[f64]) -> Option<Health> {
         let n = (self.count - self.bad) as f64;

@@ -32,7 +32,10 @@ pub(super) fn tell(
         .collect();
     let asked = families.iter().enumerate().filter(|(at, family)| {
         // A family that was not looked for is not there, either.
-        *at != first.at && family.name != "FTF" && family.band_hz.is_some()
+        *at != first.at
+            && family.name != "FTF"
+            && family.band_hz.is_some()
+            && family.not_told_apart_from.is_none()
     });
     let told = asked.filter_map(|(at, family)| beside(at, family, first, whole, &whitened));
     let Some(second) = told.max_by(|a, b| a.comb.height.total_cmp(&b.comb.height)) else { return };

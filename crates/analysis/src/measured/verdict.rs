@@ -44,6 +44,9 @@ pub struct Family {
     /// The family that stands higher, over whose period everything that is said of this one is taken
     /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
     pub over: Option<&'static str>,
+    /// The family whose lines stand at the same places, so that the record does not tell which of both it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub not_told_apart_from: Option<&'static str>,
     /// Whether this is called a defect.
     pub claimed: bool,
     /// Why, or why not.
@@ -203,6 +206,7 @@ fn look(
         band_hz: None,
         in_passages: false,
         over: None,
+        not_told_apart_from: None,
         claimed: false,
         reason: String::new(),
         height_db: f64::NEG_INFINITY,
@@ -275,7 +279,7 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
 }
 
 /// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage is
-/// heard in them: `modulated`.
+/// heard in them: `modulated`. Where both have their places within a resolution, neither is told from the other.
 fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     let cannot_be = |family: &Family| family.name == "BSF" && !modulated;
     let comb = |family: &Family| {
@@ -285,10 +289,20 @@ fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
         ))
     };
     let combs: Vec<Option<(f64, f64)>> = families.iter().map(comb).collect();
+    let places: Vec<f64> = families.iter().map(|family| times_of(family.name) * family.expected_hz).collect();
     for (at, own) in combs.iter().enumerate() {
         let Some((hz, off)) = own else { continue };
         let shares =
             |other: &Option<(f64, f64)>| other.is_some_and(|(there, _)| (there - hz).abs() < resolution_hz);
+        let alike = |n: usize| {
+            let told = [at, n].iter().any(|of| cannot_be(&families[*of]));
+            n != at && shares(&combs[n]) && (places[n] - places[at]).abs() < resolution_hz && !told
+        };
+        if let Some(other) = (0..families.len()).find(|n| alike(*n)) {
+            families[at].not_told_apart_from = Some(families[other].name);
+            families[at].height_db = families[at].height_db.max(families[other].height_db);
+            continue;
+        }
         let other = combs.iter().enumerate().find_map(|(n, other)| {
             let (_, less) = (*other).filter(|_| n != at && shares(other))?;
             let gives_way = match [at, n].map(|n| cannot_be(&families[n])) {
@@ -341,7 +355,10 @@ fn decide(families: &mut [Family]) {
             "it is there, but another family stands higher, of which it may be sidebands".to_owned()
         } else {
             family.claimed = true;
-            format!("{} harmonics stand, the power swings by {:.0} %", family.harmonics, 100.0 * depth)
+            let other = family.not_told_apart_from.map_or(String::new(), |name| {
+                format!("; the lines of {name} have their places within a resolution of these, and the record does not tell which it is")
+            });
+            format!("{} harmonics stand, the power swings by {:.0} %{other}", family.harmonics, 100.0 * depth)
         };
     }
 }
@@ -381,17 +398,30 @@ fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
 
 fn conclude(families: &[Family]) -> String {
     let part = |family: &Family| FAMILIES.iter().find(|f| f.0 == family.name).map_or("", |f| f.1);
+    // Of two that are not told apart the first speaks for both.
+    let spoken_for = |at: usize, family: &Family| {
+        families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))
+    };
     let claimed: Vec<String> = families
         .iter()
-        .filter(|f| f.claimed)
-        .map(|f| {
+        .enumerate()
+        .filter(|(at, f)| f.claimed && !spoken_for(*at, f))
+        .map(|(_, f)| {
             let hz = f.measured_hz.unwrap_or(f.expected_hz);
-            format!(
-                "a defect of {} ({} at {hz:.2} Hz, {:+.1} % from its place)",
-                part(f),
-                f.name,
-                100.0 * (hz / f.expected_hz - 1.0)
-            )
+            let off = 100.0 * (hz / f.expected_hz - 1.0);
+            let other = families.iter().find(|other| f.not_told_apart_from == Some(other.name));
+            match other {
+                None => format!("a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its place)", part(f), f.name),
+                Some(other) => format!(
+                    "a defect of {} or of {}, which it does not tell apart ({} at {hz:.2} Hz, {off:+.1} % from its place, and {} times {} \
+                     stand within a resolution)",
+                    part(f),
+                    part(other),
+                    f.name,
+                    times_of(other.name) / times_of(f.name),
+                    other.name
+                ),
+            }
         })
         .collect();
     if !claimed.is_empty() {
@@ -466,6 +496,7 @@ mod tests {
             band_hz: None,
             in_passages: false,
             over: None,
+            not_told_apart_from: None,
             claimed: false,
             reason: String::new(),
             height_db: 25.0,
@@ -487,6 +518,24 @@ mod tests {
             decide(&mut families);
             let names: Vec<&str> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
+        }
+        // Diameters of 1 to 5 put twice BSF on BPFO: whatever is measured, the record does not tell.
+        for measured_hz in [94.404, 96.3] {
+            let mut families =
+                [found("BPFO", 96.0048, measured_hz), found("BSF", 48.0104, 0.5 * measured_hz + 0.02)];
+            families[0].height_db = 24.9;
+            share_out(&mut families, 1.0, true);
+            decide(&mut families);
+            let verdict = conclude(&families);
+            assert!(families.iter().all(|family| family.claimed), "{families:?}");
+            assert!(verdict.contains("of the outer raceway or of a rolling element"), "{verdict}");
+            assert!(verdict.contains("2 times BSF") && !verdict.contains(" and a defect"), "{verdict}");
+            // Without the cage in them, they are the raceway's.
+            let mut families =
+                [found("BPFO", 96.0048, measured_hz), found("BSF", 48.0104, 0.5 * measured_hz)];
+            share_out(&mut families, 1.0, false);
+            decide(&mut families);
+            assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         }
         // Lines of their own are not shared.
         let mut apart = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 52.2)];

@@ -1,6 +1,7 @@
 //! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to trust it.
 
 use maud::{Markup, html};
+use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::DefectRing;
@@ -9,7 +10,8 @@ use crate::artefacts::{Artefact, Family};
 use crate::duty::DutyFinding;
 use crate::families::FamilyFinding;
 use crate::rolling;
-use crate::summary::Summary;
+use crate::summary::{PhaseLevels, Summary};
+use crate::words::{gravities, significant};
 
 /// Rollers that are named one by one, at most.
 const NAMED: usize = 6;
@@ -20,17 +22,13 @@ pub(super) fn paragraphs(run: &Run, summary: &Summary) -> Markup {
         div #summary class="answer" {
             p { strong { "The defect. " } (defect(run, summary)) }
             p { strong { "The mesh. " } (mesh(summary)) }
-            p { strong { "The physics. " } (physics(summary)) }
+            p { strong { "The physics. " } (physics(run, summary)) }
             p { strong { "How far to trust it. " } (trust(summary)) }
             @for warning in rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, &summary.kinematics) {
                 p { strong { "Warning. " } (super::sentence(&warning)) }
             }
         }
     }
-}
-
-fn gravities(level: Option<f64>) -> Option<String> {
-    level.map(|g| format!("{g:.0} g"))
 }
 
 /// Number and noun.
@@ -41,9 +39,16 @@ fn count(number: usize, noun: &str) -> String {
 fn defect(run: &Run, summary: &Summary) -> String {
     let faults = run.scene.faults();
     if faults.is_empty() {
-        let gap = gravities(summary.levels.phases.gap_g);
-        let level =
-            gap.map_or(String::new(), |g| format!(" The acceleration reaches {g} after the start-up."));
+        let level = summary.levels.phases.gap_g.map_or(String::new(), |g| {
+            let along = across_the_load(run).then(|| radial(summary)?.gap_g).flatten();
+            let along =
+                along.map_or(String::new(), |g| format!(", and {} along the radius there", gravities(g)));
+            format!(
+                " The acceleration a_y at sensor “{}” reaches {} after the start-up{along}.",
+                sensor(summary),
+                gravities(g)
+            )
+        });
         let deviations: Vec<String> = run.scene.defects.iter().map(DeviationScene::spoken).collect();
         return match deviations.len() {
             0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
@@ -87,7 +92,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
             .into();
     }
     if events.is_empty() {
-        return format!("No roller reaches {it} on this record.{others}");
+        return format!("No roller reaches {it} under load on this record.{others}");
     }
     let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
@@ -105,22 +110,43 @@ fn defect(run: &Run, summary: &Summary) -> String {
         many if many > NAMED => format!("{many} times one touches the floor"),
         _ => format!("rollers {} touch the floor", floors.join(", ")),
     };
-    let levels = &summary.levels.phases;
-    let heard = match (gravities(levels.exit_g), gravities(levels.gap_g)) {
-        (Some(exit), Some(gap)) => {
-            let entry = gravities(levels.entry_g).map_or(String::new(), |g| format!(", {g} at entries"));
-            format!(
-                " Sensor “{}” reads {exit} at exits{entry} and {gap} in the gaps (a_y, peak).",
-                sensor(summary)
-            )
+    let floor = match (entries + exits, floors.len()) {
+        (0, 1..) => format!("{floor}: it carries them, and none comes free of half its load"),
+        _ => floor,
+    };
+    let heard = match reads(&summary.levels.phases) {
+        Some(all) => {
+            let along = across_the_load(run).then(|| radial(summary).and_then(reads)).flatten();
+            let along =
+                along.map_or(String::new(), |reads| format!(" Along the radius there it reads {reads}."));
+            format!(" Sensor “{}” reads {all} (a_y, peak).{along}", sensor(summary))
         }
-        _ => " The record is too short to set exits beside gaps.".into(),
+        None => " The record is too short to set exits beside gaps.".into(),
     };
     format!(
         "{crossed}; the contact forces show {} and {}, and {floor}.{heard}{others}",
         if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
         count(exits, "exit"),
     )
+}
+
+/// Peaks at exits, entries and in the gaps, in words; `None` without the first or the last of them.
+fn reads(levels: &PhaseLevels) -> Option<String> {
+    let (exit, gap) = levels.exit_g.zip(levels.gap_g)?;
+    let entry = levels.entry_g.map_or(String::new(), |g| format!(", {} at entries", gravities(g)));
+    Some(format!("{} at exits{entry} and {} in the gaps", gravities(exit), gravities(gap)))
+}
+
+/// Whether the load acts more along x than along y, so that a_y has little of it.
+fn across_the_load(run: &Run) -> bool {
+    let [x, y] = run.scene.load_direction();
+    x.abs() > y.abs()
+}
+
+/// Levels along the radius at the leading sensor.
+fn radial(summary: &Summary) -> Option<&PhaseLevels> {
+    let sensor = summary.levels.sensors.first()?;
+    sensor.components.iter().find(|c| c.component == "radial").map(|c| &c.phases)
 }
 
 fn mesh(summary: &Summary) -> String {
@@ -133,13 +159,16 @@ fn mesh(summary: &Summary) -> String {
         .replace('-', "−");
     }
     let families = &summary.families;
+    if summary.kinematics.relative_hz == 0.0 {
+        return "Nothing turns, so that no facets pass a contact.".into();
+    }
     if families.iter().all(|f| f.lead.is_none()) {
         return "This record is too short to tell a family of facet lines from anything else.".into();
     }
     let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
     let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
     let place = |f: &FamilyFinding| {
-        let level = f.level_g.map_or(String::new(), |g| format!(", up to {g:.0} g"));
+        let level = f.level_g.map_or(String::new(), |g| format!(", up to {}", gravities(g)));
         let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
         format!(
             "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands every {spacing_hz:.1} Hz{level}",
@@ -199,7 +228,7 @@ fn orders(duty: &DutyFinding) -> String {
     )
 }
 
-fn physics(summary: &Summary) -> String {
+fn physics(run: &Run, summary: &Summary) -> String {
     if let Some(duty) = unsteady(summary) {
         return format!(
             "Bursts at entries and exits and the forces of the rollers follow from load and geometry. {}",
@@ -211,18 +240,32 @@ fn physics(summary: &Summary) -> String {
         of_defect.iter().filter(|a| a.measured_hz.is_some()).map(|a| format!("×{}", a.harmonic)).collect();
     let lines = of_defect.iter().find(|a| a.harmonic == 1).map(|first| {
         let (name, hz) = (&first.name, first.from_motion_hz.unwrap_or(first.predicted_hz));
-        if seen.is_empty() {
-            let periods = 1e-3 * summary.run.simulated_ms * hz;
-            format!(" {name} ({hz:.1} Hz) does not stand as a line of the spectrum: the record holds {periods:.1} of its periods.")
-        } else {
+        let periods = 1e-3 * summary.run.simulated_ms * hz;
+        if hz == 0.0 {
+            String::new()
+        } else if !seen.is_empty() {
             format!(" {name} ({hz:.1} Hz) stands in the spectrum with its multiples {}.", seen.join(", "))
+        } else if periods < PeriodCount::ENOUGH {
+            format!(
+                " {name} ({hz:.1} Hz) cannot stand as a line of the spectrum: the record holds {periods:.1} of its periods, {:.0} are needed.",
+                PeriodCount::ENOUGH
+            )
+        } else {
+            format!(
+                " {name} ({hz:.1} Hz) does not stand as a line of the spectrum, though the record holds {periods:.1} of its periods: look at the \
+                 envelope."
+            )
         }
     });
     let bursts = if summary.events.is_empty() { "The" } else { "Bursts at entries and exits and the" };
     format!(
-        "{bursts} forces of the rollers follow from load and geometry.{} No line is booked as a natural frequency of the ring, because a place near \
-         one proves nothing.",
-        lines.unwrap_or_default()
+        "{bursts} forces of the rollers follow from load and geometry.{} {}",
+        lines.unwrap_or_default(),
+        if run.scene.housing.is_rigid() {
+            "The outer ring is rigid and has no natural frequency of its own."
+        } else {
+            "No line is booked as a natural frequency of the ring, because a place near one proves nothing."
+        }
     )
 }
 
@@ -240,7 +283,17 @@ fn trust(summary: &Summary) -> String {
         .relative_error
         .map_or(String::new(), |e| format!(", the mean load to {:.2} %", 100.0 * e.abs()));
     let spectrum = summary.spectrum.as_ref().map_or(String::new(), |s| {
-        format!(" Frequencies are good to {:.0} Hz, one over the record.", s.resolution_hz)
+        let good = format!(" Frequencies are good to {} Hz, one over", significant(s.resolution_hz, 2));
+        let defect = s.fine_resolution_hz.map_or(String::new(), |hz| {
+            format!("; those of the defect\u{2019}s family to {} Hz, one over the record", significant(hz, 2))
+        });
+        match s.segments {
+            1 => format!("{good} the record{defect}."),
+            n => format!(
+                "{good} each of the {n} segments of {} s that the spectra average{defect}.",
+                significant(s.segment_s, 3)
+            ),
+        }
     });
     format!(
         "{energy}{load}.{spectrum} Peaks are those of one start: another start angle moves them by tens of per cent. They also \

@@ -39,14 +39,16 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Pa
     let summary = &findings.summary;
     let (complete, asked) = (summary.count(Ended::Complete), summary.starts.len());
     let simulated_ms = findings.scene.solver.duration_ms;
-    let of_paper = findings.complete.first().is_some_and(|(_, first)| first.of_paper);
+    let first = findings.complete.first().map(|(_, first)| first);
+    let of_paper = first.is_some_and(|first| first.of_paper);
+    let duty = first.and_then(|first| first.summary.duty.as_ref());
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
             (head(&summary.scene))
             body {
                 h1 { (summary.scene) ", " (asked) " starts" }
-                p class="lead" { (lead(&findings.scene, simulated_ms)) }
+                p class="lead" { (lead(&findings.scene, duty, simulated_ms)) }
                 @if complete < asked { (banner(summary, complete)) }
                 (answer::paragraphs(findings))
                 (contents(of_paper))

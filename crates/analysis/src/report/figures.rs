@@ -9,6 +9,7 @@ mod spectra;
 
 use maud::Markup;
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::scene::Scene;
 
 pub(super) use self::forces::DRAWN as CROSSINGS;
 use super::course;
@@ -93,7 +94,7 @@ impl Figures {
                 .collect(),
             forces: charts(forces::crossings(findings)).collect(),
             bearing: drawn(pictures.load)
-                .chain(charts(load(findings)))
+                .chain(charts(load(&record.run().scene, findings)))
                 .chain(charts(forces::sums(record, findings)))
                 .chain(charts(motion::figures(record, findings)?))
                 .collect(),
@@ -142,11 +143,12 @@ fn drawn(pictures: Vec<Picture>) -> impl Iterator<Item = Item> {
     pictures.into_iter().map(Item::Picture)
 }
 
-fn load(findings: &Findings) -> Vec<Figure> {
+fn load(scene: &Scene, findings: &Findings) -> Vec<Figure> {
     let dynamic = &findings.distribution;
     if dynamic.mean_n.iter().all(|f| f.is_nan()) {
         return Vec::new();
     }
+    let spalled = findings.prediction.standing_spalls().next().is_some();
     let mut figure = Figure::new(
         "load-distribution",
         "Load distribution",
@@ -159,14 +161,21 @@ fn load(findings: &Findings) -> Vec<Figure> {
         dynamic.angle_deg.clone(),
         dynamic.mean_n.clone(),
     ))
-    .caption(
-        "Mean force on a roller by its place: over the defect it carries nothing, its neighbours take over, and elsewhere it \
-         can be set beside rigid rings at rest.",
-    )
-    .note(
-        "Dynamic: mean over all rollers and samples in bins of one degree. Static: rigid rings over one roller spacing of \
-         cage positions; a roller over the defect is left out. An elastic outer ring differs by 10 to 20 %.",
-    );
+    .caption(format!(
+        "Mean force on a roller by its place{} beside rigid rings at rest.",
+        if spalled {
+            ": over the defect it carries less, its neighbours take over, and elsewhere it can be set"
+        } else {
+            ","
+        }
+    ))
+    .note(format!(
+        "Dynamic: mean over all rollers and samples in bins of one degree. Static: rigid rings{}, mean over {} of cage positions{}.{}",
+        if scene.operation.load_varies() { " under the mean load" } else { "" },
+        if scene.rollers_in_place().count() < scene.bearing.rollers { "a whole turn" } else { "one roller spacing" },
+        if spalled { "; a roller over the defect is left out" } else { "" },
+        if scene.housing.is_rigid() { "" } else { " An elastic outer ring differs by 10 to 20 %." }
+    ));
     if let Some(curve) = &findings.static_curve {
         let (angle_deg, force_n) = (curve.angle_deg.clone(), curve.force_n.clone());
         figure = figure.with(Series::listed("static, rigid rings", Colour::Orange, angle_deg, force_n));

@@ -32,7 +32,8 @@ impl Pictures {
     /// Draws them. `run_dir` is the folder of the run, for its mesh and its frames.
     pub(super) fn of(record: &Record<'_>, findings: &Findings, run_dir: &Path) -> Result<Self, Error> {
         let run = record.run();
-        let mut pictures = Self { load: polar::picture(findings).into_iter().collect(), ..Self::default() };
+        let mut pictures =
+            Self { load: polar::picture(&run.scene, findings).into_iter().collect(), ..Self::default() };
         let dir = RunDir::open(run_dir)?;
         let mesh = match mesh_of(run, &dir) {
             Ok(mesh) => mesh,
@@ -57,7 +58,16 @@ impl Pictures {
         }
         let frames = frames::read_all(&dir.frames())?;
         match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
-            Some(window) => pictures.stress = stress::pictures(record, findings, &mesh, &window, &frames)?,
+            Some(window) => {
+                pictures.stress = stress::pictures(record, findings, &mesh, &window, &frames)?;
+                if pictures.stress.iter().all(|picture| picture.id != "stress") {
+                    pictures.notes.push(
+                        "no picture of the stress under a roller: none that crosses the spall stands in the window while frames are kept \
+                         (`output.frames`)"
+                            .into(),
+                    );
+                }
+            }
             None => pictures
                 .notes
                 .push("no picture of the stress: the run kept no frames (`output.frames`)".into()),

@@ -8,6 +8,7 @@ use super::tables::{cell, folded};
 use crate::artefacts::Family;
 use crate::duty::DutyFinding;
 use crate::summary::{Event, Summary};
+use crate::words::significant;
 
 /// Quantity, paper, ours, difference, why.
 pub(super) fn paper(summary: &Summary) -> Markup {
@@ -133,7 +134,7 @@ pub(super) fn families(summary: &Summary) -> Markup {
                             (cell(hz(f.carrier_hz)))
                             (cell(signed(f.offset_resolutions)))
                             (cell(f.offset_scatter_resolutions.map(|v| format!("{v:.1}"))))
-                            (cell(f.level_g.map(|g| format!("{g:.1}"))))
+                            (cell(f.level_g.map(|g| significant(g, 3))))
                             td class="why" { (f.verdict) }
                         }
                     }
@@ -157,7 +158,7 @@ pub(super) fn families(summary: &Summary) -> Markup {
                                 td class="n" { (format!("{:+}", l.sideband).replace('-', "−")) }
                                 td class="n" { (format!("{:.1}", l.predicted_hz)) }
                                 (cell(hz(l.measured_hz)))
-                                (cell(l.level_g.map(|g| format!("{g:.2}"))))
+                                (cell(l.level_g.map(|g| significant(g, 3))))
                             }
                         }
                     }
@@ -207,7 +208,7 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
                             td class="n" { (format!("{:.1}", a.predicted_hz)) }
                             (cell(hz(a.from_motion_hz)))
                             (cell(hz(a.measured_hz)))
-                            (cell(a.level_g.map(|g| format!("{g:.2}"))))
+                            (cell(a.level_g.map(|g| significant(g, 3))))
                             td class="why" { (a.verdict) }
                         }
                     }
@@ -324,6 +325,7 @@ pub(super) fn diagnosis(summary: &Summary) -> Markup {
         p class="hint" {
             "The envelope spectra resolve " (format!("{:.2} Hz", diagnosis.resolution_hz)) ". BSF is the spin of a rolling element, which strikes \
              twice a turn; sidebands are those of the first three harmonics."
+            @if summary.kinematics.outer_ring_hz > 0.0 { " FTF is the cage as seen from the outer ring." }
         }
     }
 }

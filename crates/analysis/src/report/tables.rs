@@ -5,6 +5,7 @@ use stribeck_scene::run_info::RunInfo;
 
 use crate::film::FilmFinding;
 use crate::summary::{PhaseLevels, Summary};
+use crate::words::{level, significant};
 
 /// Measured events of every passage.
 pub(super) fn events(summary: &Summary) -> Markup {
@@ -40,7 +41,7 @@ pub(super) fn events(summary: &Summary) -> Markup {
                             (cell(kilo(event.compensation_n)))
                             (cell(ms(event.exit_ms)))
                             td class="n" { (format!("{:.2}", event.expected_exit_ms)) }
-                            (cell(event.impulse_g.map(|g| format!("{g:.0}"))))
+                            (cell(event.impulse_g.map(level)))
                         }
                     }
                 }
@@ -82,8 +83,11 @@ pub(super) fn notch(summary: &Summary) -> Markup {
     }
 }
 
-/// Forces in numbers.
-pub(super) fn loads(summary: &Summary) -> Markup {
+/// What the neighbours of a roller in a spall carry.
+const LEFT_OUT: &str = "Static, rigid rings, roller over the defect left out";
+
+/// Forces in numbers; `over_spall` where a spall stands that rollers come over.
+pub(super) fn loads(summary: &Summary, over_spall: bool) -> Markup {
     let load = &summary.load;
     let kilo = |n: Option<f64>| n.map(|n| format!("{:.3} kN", 1e-3 * n));
     let rows = [
@@ -95,11 +99,11 @@ pub(super) fn loads(summary: &Summary) -> Markup {
         ("Largest roller force, mean over a facet period", kilo(load.max_roller_n)),
         ("Largest roller force, single sample", kilo(load.max_roller_peak_n)),
         ("Static, rigid rings, sound raceway", kilo(load.static_max_roller_n)),
-        ("Static, rigid rings, roller over the defect left out", kilo(load.static_max_roller_defect_n)),
+        (LEFT_OUT, kilo(load.static_max_roller_defect_n)),
         ("Rollers loaded at rest", load.static_loaded_rollers.map(|n| n.to_string())),
     ];
     let oil = summary.film.iter().flat_map(films);
-    let rows = rows.into_iter().chain(oil);
+    let rows = rows.into_iter().filter(|(name, _)| over_spall || *name != LEFT_OUT).chain(oil);
     html! { table class="pairs" { tbody { @for (name, value) in rows { tr { td { (name) } (cell(value)) } } } } }
 }
 
@@ -154,7 +158,7 @@ pub(super) fn kinematics(summary: &Summary) -> Markup {
                         td { (name) }
                         (cell(hertz(measured, digits)))
                         td class="n" { (format!("{expected:.digits$} Hz")) }
-                        (cell(measured.map(|hz| format!("{:+.2} %", 100.0 * (hz / expected - 1.0)).replace('-', "−"))))
+                        (cell(measured.filter(|_| expected > 0.0).map(|hz| format!("{:+.2} %", 100.0 * (hz / expected - 1.0)).replace('-', "−"))))
                     }
                 }
             }
@@ -180,7 +184,9 @@ pub(super) fn kinematics(summary: &Summary) -> Markup {
 
 /// Levels by phase at every sensor, as the paper takes them and along and across the radius.
 pub(super) fn levels(summary: &Summary) -> Markup {
-    let both = |peak: Option<f64>, rms: Option<f64>| peak.zip(rms).map(|(p, r)| format!("{p:.0} / {r:.1}"));
+    let both = |peak: Option<f64>, rms: Option<f64>| {
+        peak.zip(rms).map(|(p, r)| format!("{} / {}", level(p), significant(r, 3)))
+    };
     let row = |sensor: &str, component: &str, l: &PhaseLevels| {
         html! {
             tr {

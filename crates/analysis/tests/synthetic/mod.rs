@@ -6,6 +6,7 @@ mod mesh;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
+use stribeck_scene::duty::Duty;
 use stribeck_scene::ensemble::{Ensemble, start};
 use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
 use stribeck_scene::lubrication::loaded_films;
@@ -141,8 +142,8 @@ pub(crate) fn write_scene(path: &Path, scene: &Scene, status: Status, samples: u
 }
 
 fn crossings(scene: &Scene) -> Vec<Crossing> {
-    let defect = scene.defect.as_ref().expect("the default has one");
-    Kinematics::of(scene).crossings(defect, &roller_angles_deg(scene), 40e-3)
+    let of = |defect| Kinematics::of(scene).crossings(defect, &roller_angles_deg(scene), 40e-3);
+    scene.defect.as_ref().map_or(Vec::new(), of)
 }
 
 fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
@@ -167,6 +168,8 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
         names.extend(per_roller.iter().map(|what| format!("roller.{roller}.{what}")));
     }
     names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad", "seat.fx_n", "seat.fy_n"].map(str::to_owned));
+    let duty = Duty::of(scene);
+    names.extend(scene.operation.load_varies().then(|| "adapter.load_n".to_owned()));
     let (films, oiled) = (loaded_films(scene).expect("a load"), roller_angles_deg(scene));
     if films.is_some() {
         for roller in 1..=scene.bearing.rollers {
@@ -187,6 +190,7 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
         rollers(scene, t, &crossings, &mut row);
         let cage = -TAU * Kinematics::of(scene).cage_hz * (1.0 - SLIP) * t;
         row.extend([0.0, 0.0, cage, 0.0, -SUPPORT_N + 60.0]);
+        row.extend(scene.operation.load_varies().then(|| duty.load_n(t)));
         if let Some(films) = &films {
             for angle in &oiled {
                 // The lowest ones stay below the axis of the bearing, without load.

@@ -7,6 +7,7 @@ use crate::paper;
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
 use crate::record::Record;
 use crate::summary::{Event, PhaseLevels};
+use crate::words::gravities;
 
 /// Most exits that are named in full.
 const NAMED: usize = 6;
@@ -42,13 +43,21 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
     let mut figure = over_time("acceleration-notched", "The same with the tone filtered out")
         .with(sampled(findings, "raw", Colour::Grey, &leading.raw_g))
         .with(sampled(findings, "notched", Colour::Orange, &leading.filtered_g))
-        .caption(match levels.between_g {
-            None => "No gap between passages is long enough for a level.".to_owned(),
-            raw => format!(
-                "In the gaps the peak falls from {} to {}; the impulses stay.",
+        .caption(match (levels.between_g, levels.between_filtered_g) {
+            (None, _) => "No gap between passages is long enough for a level.".to_owned(),
+            (Some(raw), Some(filtered)) if filtered < raw => format!(
+                "In the gaps the peak falls from {} to {}{}.",
                 gravities(raw),
-                gravities(levels.between_filtered_g),
+                gravities(filtered),
+                if levels.impulse_g.is_some() { "; the impulses stay" } else { "" }
             ),
+            (Some(raw), filtered) => {
+                format!(
+                    "In the gaps the peak is {} before the notch and {} behind it.",
+                    gravities(raw),
+                    known(filtered)
+                )
+            }
         })
         .note(transient_note(findings));
     figure.marks = passages(&findings.summary.events);
@@ -97,8 +106,8 @@ fn instantaneous(
     Ok(Some(
         figure
             .caption(
-                "A node rings with the mesh far above half the sampling rate; its instantaneous acceleration aliases, so \
-                 every other figure uses the mean over each sampling interval.",
+                "The sensor\u{2019}s acceleration changes within a sampling interval, with every contact that opens or closes; an instantaneous one \
+                 aliases what is faster than half the sampling rate, so every other figure uses the mean over each interval.",
             )
             .note("The mean is the change of velocity over one interval divided by the interval."),
     ))
@@ -167,11 +176,11 @@ fn transient_note(findings: &Findings) -> String {
 fn peaks(phases: Option<&PhaseLevels>) -> String {
     let [exit, entry, gap] = phases.map_or([None; 3], |p| [p.exit_g, p.entry_g, p.gap_g]);
     if exit.or(entry).is_none() && gap.is_some() {
-        return gravities(gap);
+        return known(gap);
     }
-    format!("{} at exits, {} at entries, {} in the gaps", gravities(exit), gravities(entry), gravities(gap))
+    format!("{} at exits, {} at entries, {} in the gaps", known(exit), known(entry), known(gap))
 }
 
-fn gravities(level: Option<f64>) -> String {
-    level.map_or("not measurable".into(), |g| format!("{g:.0} g"))
+fn known(level: Option<f64>) -> String {
+    level.map_or("not measurable".into(), gravities)
 }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::duty::LOAD;
 use crate::findings::Findings;
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use crate::record::Record;
@@ -40,7 +41,7 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Vec<Figure> {
             duty.over()
         )));
     }
-    if let Some(load) = record.channel("adapter.load_n").filter(|load| load.len() > 1) {
+    if let Some(load) = record.channel(LOAD).filter(|load| load.len() > 1) {
         let kilo = load.iter().map(|n| 1e-3 * n).collect();
         figures.push(
             Figure::new(

@@ -9,6 +9,9 @@ use crate::summary::Event;
 /// Rollers whose force is drawn: the paper's three. All others are in the table.
 pub(in crate::report) const DRAWN: usize = 3;
 
+/// A roller that carries so many times as much as before carried next to nothing.
+const MOST_GAIN: f64 = 10.0;
+
 /// A record of more roller spacings is drawn about each passage only.
 const LONG_SPACINGS: f64 = 6.0;
 
@@ -60,8 +63,14 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
     let floor = event.floor_ms.zip(event.floor_n).map_or("does not touch the floor (#2)".into(), |(t, n)| {
         format!("strikes the floor at {t:.2} ms with {n:.0} N (#2)")
     });
-    let help = event.compensation_gain.map_or(String::new(), |gain| {
-        format!(" While a neighbour is in the defect it carries {:.0} % more (#3).", 100.0 * (gain - 1.0))
+    let help = event.compensation_gain.zip(event.compensation_n).map_or(String::new(), |(gain, force_n)| {
+        // Over next to nothing a share says nothing.
+        let more = if gain < MOST_GAIN {
+            format!("{:.0} % more", 100.0 * (gain - 1.0))
+        } else {
+            format!("{force_n:.0} N, and next to nothing before")
+        };
+        format!(" While a neighbour is in the defect it carries {more} (#3).")
     });
     figure
         .caption(format!(
@@ -78,7 +87,7 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     if sum.is_empty() {
         return None;
     }
-    let supported = record.run().info.expected_support_n;
+    let supported = findings.summary.load.expected_n;
     let off = |n: f64| 100.0 * (n / supported - 1.0);
     let count = sum.len() as f64;
     let mean = sum.iter().sum::<f64>() / count;
@@ -95,11 +104,12 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     .with(Series::sampled("sum, each sample", Colour::Blue, time[0], record.interval_s(), sum.clone()))
     .caption(format!(
         "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by {:.1} % (RMS), between \
-         {:+.0} and {:+.0} %, because ring and housing have mass.",
+         {:+.0} and {:+.0} %, because {}ring and housing have mass.",
         off(mean),
         100.0 * rms / supported,
         off(low),
-        off(high)
+        off(high),
+        if record.run().scene.operation.load_varies() { "the load changes and " } else { "" }
     ).replace('-', "−"))
     .note("The difference accelerates the outer ring and its housing. Load plus their weight is the dashed line.");
     figure.levels = vec![Level { y: supported, label: "load and weight".into(), colour: Colour::Orange }];

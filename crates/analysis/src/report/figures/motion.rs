@@ -47,8 +47,9 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     };
     let mut spin =
         chart("spin", "Spin of the rollers that cross the defect", "Spin against rolling without slip");
-    let mut orbit =
-        chart("orbit", "Speed of the cage and of these rollers", "Orbit against rolling without slip");
+    let of_orbit =
+        if crossing.is_empty() { "Speed of the cage" } else { "Speed of the cage and of these rollers" };
+    let mut orbit = chart("orbit", of_orbit, "Orbit against rolling without slip");
     let rollers = record.with_rollers(&crossing, 0..record.len())?;
     for (&number, colour) in crossing.iter().zip(colours) {
         let Some(roller) = rollers.roller(number) else { continue };
@@ -59,18 +60,16 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     if let Some(angle) = record.channel("cage.angle_rad") {
         orbit = orbit.with(percent("cage", Colour::Black, angle, cage_rad_s));
     }
-    if spin.series.is_empty() && orbit.series.is_empty() {
-        return Ok(Vec::new());
-    }
     let motion = &findings.summary.kinematics;
     let slip = motion
         .cage_hz
+        .filter(|_| motion.expected_cage_hz > 0.0)
         .map_or("–".into(), |hz| format!("{:+.2} %", 100.0 * (hz / motion.expected_cage_hz - 1.0)));
     let note = format!(
         "Mean over {:.2} ms. Measured rates of every roller stand in the table of kinematics.",
         1e3 * width as f64 * record.interval_s()
     );
-    Ok(vec![
+    let figures = [
         spin.caption(
             "A loaded roller rolls; in the defect and outside the load zone nothing drives it at the outer raceway, and where its \
              speed then differs from rolling it slips until the contact has it again.",
@@ -79,7 +78,8 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
         orbit
             .caption(format!("The cage turns {slip} of its speed without slip, over the whole record.").replace('-', "−"))
             .note(note),
-    ])
+    ];
+    Ok(figures.into_iter().filter(|figure| !figure.series.is_empty()).collect())
 }
 
 fn chart(id: &str, title: &str, quantity: &str) -> Figure {

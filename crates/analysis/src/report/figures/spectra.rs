@@ -18,9 +18,18 @@ const DEPTH_DB: f64 = 120.0;
 const LOW_HZ: f64 = 2_500.0;
 /// Multiples of the defect's frequency that are marked.
 const FAMILY: usize = 10;
-/// Where each colour of the marks comes from.
-const LEGEND: &str = "Upright: families of facet lines that were found (full) and absent (dashed); green roller vertices, purple \
-                      nodes of the outer and teal of the inner raceway. Red: the defect. Brown: modes of the free outer ring.";
+/// Where each colour of the marks comes from, of those that are drawn.
+fn legend(findings: &Findings) -> String {
+    let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, purple nodes of the outer and \
+                teal of the inner raceway";
+    let kinds = [
+        (!unsteady(findings), mesh),
+        (findings.prediction.family.is_some(), "red: the defect"),
+        (!findings.modes.is_empty(), "brown: modes of the free outer ring"),
+    ];
+    let drawn: Vec<&str> = kinds.into_iter().filter(|(drawn, _)| *drawn).map(|(_, words)| words).collect();
+    if drawn.is_empty() { String::new() } else { format!("Upright: {}. ", drawn.join("; ")) }
+}
 
 /// The leading sensor, as recorded (the paper's Fig. 3).
 pub(super) fn raw(findings: &Findings) -> Option<Figure> {
@@ -30,7 +39,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     let mut figure = over_frequency("spectrum", &title, (0.0, 0.5 * raw.sample_rate_hz()))
         .with(density("raw", Colour::Blue, raw))
         .caption(found(findings))
-        .note(format!("{LEGEND} {}", stated(raw)));
+        .note(legend(findings) + &stated(raw));
     figure.marks = harmonic_marks(findings);
     Some(figure)
 }
@@ -78,7 +87,8 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
             _ => "The notch stands where a tone is predicted; none stands out at this sensor.".into(),
         })
         .note(format!(
-            "{LEGEND} {} Lines closer than {:.0} Hz merge.",
+            "{}{} Lines closer than {:.0} Hz merge.",
+            legend(findings),
             stated(raw),
             raw.resolution().width_6db_hz
         ));
@@ -121,9 +131,19 @@ fn stated(spectrum: &Spectrum) -> String {
 }
 
 fn low(findings: &Findings, raw: &Spectrum) -> Figure {
+    // The lines of a slow bearing stand in the spectrum of the whole record alone.
+    let raw = findings.fine.as_ref().unwrap_or(raw);
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
-    let mut figure = over_frequency("spectrum-low", "Low frequencies: the defect and the ring", (0.0, top))
-        .with(density("raw", Colour::Blue, raw));
+    let drawn = (top / raw.resolution().grid_hz) as usize + 2;
+    let shown =
+        [(findings.prediction.family.is_some(), "the defect"), (!findings.modes.is_empty(), "the ring")];
+    let shown: Vec<&str> = shown.into_iter().filter(|(shown, _)| *shown).map(|(_, what)| what).collect();
+    let title = match shown.join(" and ") {
+        none if none.is_empty() => "Low frequencies".to_owned(),
+        shown => format!("Low frequencies: {shown}"),
+    };
+    let mut figure =
+        over_frequency("spectrum-low", &title, (0.0, top)).with(decibels("raw", Colour::Blue, raw, drawn));
     let unsteady = unsteady(findings);
     let caption = match findings.prediction.family {
         None if unsteady => {
@@ -134,11 +154,12 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
         Some((name, hz)) if artefacts::shows_family(raw, hz) => {
             format!("The record is long enough to separate the multiples of {name}.")
         }
-        Some((name, _)) => format!(
-            "{name} and its multiples belong at the red lines; this record is too short to show them."
+        Some((name, hz)) => format!(
+            "{name} and its multiples belong at the red lines; this record holds {:.1} of its periods, too few to show them.",
+            raw.resolution().record_s * hz
         ),
     };
-    figure = figure.caption(caption).note(format!("{LEGEND} {}", stated(raw)));
+    figure = figure.caption(caption).note(legend(findings) + &stated(raw));
     figure.marks = physics_marks(findings, top);
     figure
 }
@@ -157,11 +178,15 @@ fn envelope(findings: &Findings) -> Option<Figure> {
         .filter(|l| l.measured_hz.is_some())
         .map(|l| format!("×{}", l.harmonic))
         .collect();
-    let seen = if seen.is_empty() { "none".to_owned() } else { seen.join(", ") };
     figure = figure
-        .caption(format!(
-            "Knocks come at {name}: of its multiples {seen} stand 10 dB above their surroundings."
-        ))
+        .caption(if seen.is_empty() {
+            format!("No multiple of {name} stands 10 dB above its surroundings.")
+        } else {
+            format!(
+                "Knocks come at {name}: of its multiples {} stand 10 dB above their surroundings.",
+                seen.join(", ")
+            )
+        })
         .note(format!(
             "Envelope of {:.0} to {:.0} Hz, {:.1} periods of {name} on record. {}",
             finding.band_hz.0,
@@ -196,7 +221,7 @@ fn all_sensors(findings: &Findings, zoom: (f64, f64), raw: &Spectrum) -> Figure 
         .caption(
             "The comb has the same spacing everywhere; which of its lines is strongest depends on the place.",
         )
-        .note(format!("{LEGEND} {}", stated(raw)));
+        .note(legend(findings) + &stated(raw));
     for (sensor, colour) in findings.sensors.iter().zip(colours.into_iter().cycle()) {
         if let Some(spectrum) = &sensor.raw_density {
             figure = figure.with(density(&sensor.name, colour, spectrum));
@@ -213,7 +238,12 @@ fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {
 
 /// A spectrum in decibels, cut [`DEPTH_DB`] below its highest value.
 fn density(name: &str, colour: Colour, spectrum: &Spectrum) -> Series {
-    let decibels: Vec<f64> = spectrum.values().iter().map(|p| 10.0 * p.log10()).collect();
+    decibels(name, colour, spectrum, spectrum.values().len())
+}
+
+/// Its first `most` values.
+fn decibels(name: &str, colour: Colour, spectrum: &Spectrum, most: usize) -> Series {
+    let decibels: Vec<f64> = spectrum.values().iter().take(most).map(|p| 10.0 * p.log10()).collect();
     let highest = decibels.iter().copied().filter(|d| d.is_finite()).fold(f64::NEG_INFINITY, f64::max);
     let floored = decibels.iter().map(|d| d.max(highest - DEPTH_DB)).collect();
     Series::sampled(name, colour, 0.0, spectrum.resolution().grid_hz, floored)

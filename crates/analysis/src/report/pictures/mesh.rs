@@ -8,6 +8,7 @@ use stribeck_scene::scene::{DefectRing, Scene};
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
+use crate::words::significant;
 
 /// Width of the pictures [px].
 const WIDTH: f64 = 900.0;
@@ -143,11 +144,19 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let offset = (scene.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
     let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
     sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
-    let words =
-        format!("roller 1 stands {} ° from the middle of the defect", (100.0 * offset.abs()).round() / 100.0);
+    let middle = if spall.is_some() {
+        "the middle of the defect".to_owned()
+    } else {
+        format!("{} °", significant(angle.to_degrees(), 4))
+    };
+    let words = format!("roller 1 stands {} ° from {middle}", (100.0 * offset.abs()).round() / 100.0);
     sheet.text([WIDTH - 14.0, 23.0], 13.0, Anchor::End, Colour::Red.css(), &words);
     scale_bar(&mut sheet, [20.0, view.height - 16.0], 0.002, view.scale, "2 mm");
-    let mut picture = Picture::new("mesh-defect", "The mesh about the defect", sheet);
+    let mut picture = Picture::new(
+        "mesh-defect",
+        if spall.is_some() { "The mesh about the defect" } else { "The mesh between the rings" },
+        sheet,
+    );
     picture.caption = match &scene.leading_spall() {
         Some(d) => format!(
             "The defect, {} mm long and {} mm deep, is made by nodes that are moved {}; no element is left out.",
@@ -158,6 +167,6 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
         None => "No spall lies on a raceway.".into(),
     };
     picture.note =
-        "Undeformed, before the load. Dashed: middle of the defect and roller 1, or its empty pocket.".into();
+        format!("Undeformed, before the load. Dashed: {middle} and roller 1, or its empty pocket.");
     picture
 }

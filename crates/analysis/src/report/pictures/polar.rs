@@ -1,7 +1,11 @@
 //! The load zone as a polar plot: what each place of the outer raceway carries, at rest and in motion.
 
+use stribeck_scene::housing::HousingScene;
+use stribeck_scene::scene::Scene;
+
 use crate::findings::Findings;
 use crate::plot::{Anchor, Colour, Picture, Sheet};
+use crate::words::kilonewtons;
 
 const SIZE: f64 = 620.0;
 /// Radius of the raceway and of the largest force above it [px].
@@ -9,11 +13,12 @@ const RACE: f64 = 90.0;
 const REACH: f64 = 180.0;
 
 /// Static beside dynamic; `None` without recorded rollers.
-pub(super) fn picture(findings: &Findings) -> Option<Picture> {
+pub(super) fn picture(scene: &Scene, findings: &Findings) -> Option<Picture> {
     let dynamic = &findings.distribution;
     let finite = |values: &[f64]| values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
     let static_curve = findings.static_curve.as_ref();
-    let largest = finite(&dynamic.mean_n).max(static_curve.map_or(0.0, |c| c.largest_n));
+    let at_rest = static_curve.map(|c| finite(&c.force_n));
+    let largest = finite(&dynamic.mean_n).max(at_rest.unwrap_or(0.0));
     if largest <= 0.0 {
         return None;
     }
@@ -28,7 +33,7 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
     let mut level = 0.0;
     while level <= largest {
         sheet.circle(middle, RACE + REACH * level / largest, "fill:none;stroke:#d8dde2");
-        let words = format!("{:.0} kN", 1e-3 * level);
+        let words = kilonewtons(level);
         sheet.text(
             [middle[0] + 4.0, middle[1] + RACE + REACH * level / largest - 3.0],
             11.0,
@@ -58,11 +63,13 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
     let known = dynamic.angle_deg.iter().zip(&dynamic.mean_n).filter(|(_, f)| f.is_finite());
     let points: Vec<[f64; 2]> = known.map(|(a, f)| at(*a, f.max(0.0))).collect();
     sheet.path(&points, true, &format!("fill:none;stroke:{};stroke-width:2", Colour::Blue.css()));
-    for (n, (words, colour)) in
-        [("in motion, mean", Colour::Blue), ("at rest, rigid rings", Colour::Orange), ("defect", Colour::Red)]
-            .into_iter()
-            .enumerate()
-    {
+    let spalled = findings.prediction.standing_spalls().next().is_some();
+    let names = [
+        ("in motion, mean", Colour::Blue),
+        ("at rest, rigid rings", Colour::Orange),
+        ("defect", Colour::Red),
+    ];
+    for (n, (words, colour)) in names.into_iter().take(if spalled { 3 } else { 2 }).enumerate() {
         let y = 20.0 + 18.0 * n as f64;
         sheet.path(
             &[[14.0, y], [38.0, y]],
@@ -73,11 +80,21 @@ pub(super) fn picture(findings: &Findings) -> Option<Picture> {
     }
     let mut picture = Picture::new("load-polar", "Load zone", sheet);
     picture.caption = format!(
-        "The side towards the load carries it; over a spall nothing is carried, and the neighbours take it over. Largest mean in motion {:.1} kN, at rest {} kN.",
-        1e-3 * finite(&dynamic.mean_n),
-        static_curve.map_or("–".into(), |c| format!("{:.1}", 1e-3 * c.largest_n))
+        "The side towards the load carries it{}. Largest mean in motion {}, at rest {}.",
+        if spalled { "; over a spall less is carried, and the neighbours take it over" } else { "" },
+        kilonewtons(finite(&dynamic.mean_n)),
+        at_rest.map_or("–".into(), kilonewtons)
     );
-    picture.note = "In motion: mean over all rollers and samples in bins of 1°. At rest: Stribeck and Sjövall, rigid rings with clearance; an elastic ring, which bears on the edges of an adapter, spreads the load otherwise.".into();
+    let elastic = match &scene.housing {
+        HousingScene::Rigid(_) => "",
+        HousingScene::Adapter => {
+            "; an elastic ring, which bears on the edges of an adapter, spreads the load otherwise"
+        }
+        _ => "; an elastic ring spreads the load otherwise",
+    };
+    picture.note = format!(
+        "In motion: mean over all rollers and samples in bins of 1°. At rest: Stribeck and Sjövall, rigid rings with clearance{elastic}."
+    );
     Some(picture)
 }
 

@@ -1,6 +1,7 @@
 //! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
 
 use std::f64::consts::PI;
+use std::ops::RangeInclusive;
 
 use stribeck_scene::frames::{Frame, Window};
 use stribeck_scene::geometry::Geometry;
@@ -11,11 +12,15 @@ use crate::findings::Findings;
 use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};
 use crate::record::Record;
 use crate::stress::{Cell, Lame, cells};
+use crate::summary::Event;
+use crate::words::{kilonewtons, pascals};
 
 /// Part of the cells whose stress the scale leaves above its end: single corners would take all colours.
 const ABOVE: f64 = 0.002;
 /// Side of an animated picture [px].
 const SIDE: u16 = 480;
+/// Half the side of what a picture of a moment shows [m].
+const HALF: f64 = 3e-3;
 /// Time for one animated picture [1/100 s].
 const HUNDREDTHS: u16 = 9;
 
@@ -77,16 +82,16 @@ pub(super) fn pictures(
     let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
     let mut pictures = Vec::new();
     let moments = moments(record, &geometry, findings, window, &all)?;
-    if !moments.is_empty() {
+    if moments.iter().any(|moment| moment.cells.iter().any(|cell| is_near(moment, cell, window))) {
         pictures.push(still(&moments, window));
     }
     if all.len() > 2 {
-        pictures.push(moving(findings, window, &all)?);
+        pictures.push(moving(record, findings, window, &all)?);
     }
     Ok(pictures)
 }
 
-/// The first frame, seen where its roller touches the outer raceway, and the frame with the highest stress near the
+/// The first frame with the roller that crosses first, seen where it touches the outer raceway, and the frame with the highest stress near the
 /// trailing edge while the roller climbs out.
 fn moments(
     record: &Record<'_>,
@@ -98,24 +103,30 @@ fn moments(
     let radius = geometry.outer_race_radius;
     let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
     let mut moments = Vec::new();
-    let first = all.first().zip(findings.summary.events.first());
-    let at = first.map_or(0, |((time, _), _)| record.time_s().partition_point(|t| t < time));
-    let at = at.min(record.len().saturating_sub(1));
-    let rollers =
-        record.with_rollers(&first.map_or(Vec::new(), |(_, event)| vec![event.roller]), at..at + 1)?;
-    let loaded = first.and_then(|((time, cells), event)| {
-        let roller = rollers.roller(event.roller)?;
-        let angle = roller.y.first()?.atan2(*roller.x.first()?).to_degrees();
-        let force = *roller.outer_normal().first()?;
-        let title = format!("roller {} carries {:.1} kN", event.roller, 1e-3 * force);
-        let hertz = (force > 0.0).then(|| Hertz::of(geometry, force));
-        Some(Moment {
-            title,
-            at: "the contact",
-            time_s: *time,
-            cells: cells.clone(),
-            focus: on_race(angle),
-            hertz,
+    let number = findings.summary.events.first().map(|event| event.roller);
+    let sample =
+        |time: f64| record.time_s().partition_point(|t| *t < time).min(record.len().saturating_sub(1));
+    let [from, to] = [all.first(), all.last()].map(|frame| frame.map_or(0, |(time, _)| sample(*time)));
+    let rollers = record.with_rollers(&number.into_iter().collect::<Vec<_>>(), from..to + 1)?;
+    let roller = number.and_then(|number| rollers.roller(number));
+    let loaded = roller.and_then(|roller| {
+        let normal = roller.outer_normal();
+        all.iter().find_map(|(time, cells)| {
+            let n = sample(*time) - from;
+            let focus = on_race(roller.y.get(n)?.atan2(*roller.x.get(n)?).to_degrees());
+            // Frames may be over before a roller comes.
+            if focus.iter().any(|away| away.abs() > window.half) {
+                return None;
+            }
+            let force = *normal.get(n)?;
+            Some(Moment {
+                title: format!("roller {} carries {}", roller.number, kilonewtons(force)),
+                at: "the contact",
+                time_s: *time,
+                cells: cells.clone(),
+                focus,
+                hertz: (force > 0.0).then(|| Hertz::of(geometry, force)),
+            })
         })
     });
     moments.extend(loaded);
@@ -156,12 +167,15 @@ fn end_of_scale<'a>(cells: impl Iterator<Item = &'a Cell>) -> f64 {
     stress.get(at.min(stress.len().saturating_sub(1))).copied().unwrap_or(1.0).max(1.0)
 }
 
+/// Whether a picture of the moment shows a cell.
+fn is_near(moment: &Moment, cell: &Cell, window: &Window) -> bool {
+    let at = centre(cell, window);
+    (0..2).all(|axis| (at[axis] - moment.focus[axis]).abs() < 1.2 * HALF)
+}
+
 fn still(moments: &[Moment], window: &Window) -> Picture {
-    let (side, half, top) = (430.0, 3e-3, 34.0);
-    let near = |m: &Moment, c: &Cell| {
-        let at = centre(c, window);
-        (at[0] - m.focus[0]).abs() < 1.2 * half && (at[1] - m.focus[1]).abs() < 1.2 * half
-    };
+    let (side, half, top) = (430.0, HALF, 34.0);
+    let near = |m: &Moment, c: &Cell| is_near(m, c, window);
     let shown = moments.iter().flat_map(|m| m.cells.iter().filter(move |c| near(m, c)));
     let end = end_of_scale(shown);
     let mut sheet = Sheet::new(20.0 + (side + 10.0) * moments.len() as f64, side + top + 60.0);
@@ -199,9 +213,9 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
         let cells = m.cells.iter().filter(|c| near(m, c));
         let Some(cell) = cells.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises)) else { continue };
         let away = distance(centre(cell, window), m.focus);
-        let stress = 1e-9 * cell.von_mises;
         places.push(format!(
-            "{stress:.2} GPa at {:.2} ms, {:.2} mm from {}",
+            "{} at {:.2} ms, {:.2} mm from {}",
+            pascals(cell.von_mises),
             1e3 * m.time_s,
             1e3 * away,
             m.at
@@ -224,11 +238,42 @@ fn scale_of_colours(sheet: &mut Sheet, at: [f64; 2], end: f64) {
         sheet.path(&cell, true, &format!("fill:#{r:02x}{g:02x}{b:02x}"));
     }
     sheet.text([at[0], at[1] + 27.0], 12.0, Anchor::Start, "#000", "0");
-    let words = format!("{:.2} GPa and more, von Mises", 1e-9 * end);
+    let words = format!("{} and more, von Mises", pascals(end));
     sheet.text([at[0] + 246.0, at[1] + 11.0], 12.0, Anchor::Start, "#000", &words);
 }
 
-fn moving(findings: &Findings, window: &Window, all: &[(f64, Vec<Cell>)]) -> Result<Picture, Error> {
+/// The first passage that frames of these times show from its entry to its exit, its roller in the window half-way.
+fn crossing<'a>(
+    record: &Record<'_>,
+    findings: &'a Findings,
+    window: &Window,
+    frames_s: RangeInclusive<f64>,
+) -> Result<Option<&'a Event>, Error> {
+    for event in &findings.summary.events {
+        let Some([entry_s, exit_s]) = event.entry_ms.zip(event.exit_ms).map(|(a, b)| [1e-3 * a, 1e-3 * b])
+        else {
+            continue;
+        };
+        if !frames_s.contains(&entry_s) || !frames_s.contains(&exit_s) {
+            continue;
+        }
+        let middle = record.time_s().partition_point(|t| *t < 0.5 * (entry_s + exit_s));
+        let part = record.with_rollers(&[event.roller], middle..middle + 1)?;
+        let roller = part.roller(event.roller);
+        let centre = roller.and_then(|roller| Some([*roller.x.first()?, *roller.y.first()?]));
+        if centre.is_some_and(|[x, y]| window.holds(x, y)) {
+            return Ok(Some(event));
+        }
+    }
+    Ok(None)
+}
+
+fn moving(
+    record: &Record<'_>,
+    findings: &Findings,
+    window: &Window,
+    all: &[(f64, Vec<Cell>)],
+) -> Result<Picture, Error> {
     let end = end_of_scale(all.iter().flat_map(|f| &f.1));
     let half = 0.97 * window.half;
     let scale = 0.5 * f64::from(SIDE) / half;
@@ -266,20 +311,26 @@ fn moving(findings: &Findings, window: &Window, all: &[(f64, Vec<Cell>)]) -> Res
         }
     });
     scale_of_colours(&mut sheet, [8.0, f64::from(SIDE) + 8.0], end);
-    let mut picture = Picture::new("crossing", "A roller crosses the defect", sheet);
+    let crossing = crossing(record, findings, window, first..=last)?;
+    let title = if crossing.is_some() { "A roller crosses the defect" } else { "Stress about the defect" };
+    let mut picture = Picture::new("crossing", title, sheet);
     picture.dense = true;
     picture.animation = Some(bytes);
-    let roller = findings.summary.events.first().map_or(String::new(), |e| format!(" {}", e.roller));
-    picture.caption = format!(
-        "Roller{roller} unloads over the leading edge, its neighbours take its load, and it is caught again by the trailing edge; watch the stress run into the rings."
-    );
+    picture.caption = match crossing {
+        Some(event) => format!(
+            "Roller {} unloads over the leading edge, its neighbours take its load, and it is caught again by the trailing edge; watch the \
+             stress run into the rings.",
+            event.roller
+        ),
+        None => "No roller unloads over the spall and is loaded again here while frames are kept.".to_owned(),
+    };
     picture.note = format!(
-        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {:.2} GPa von Mises and more. On paper: {:.1} ms.",
+        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {} von Mises and more. On paper: {:.1} ms.",
         all.len(),
         1e3 * first,
         1e3 * last,
         0.01 * f64::from(HUNDREDTHS) * (all.len() - 1) as f64 / (last - first).max(f64::MIN_POSITIVE),
-        1e-9 * end,
+        pascals(end),
         1e3 * time
     );
     Ok(picture)
