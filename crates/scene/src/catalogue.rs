@@ -125,8 +125,7 @@ const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
 pub fn all() -> Vec<CatalogueBearing> {
     let cylindrical = FLANGES.iter().flat_map(|flanges| {
         CYLINDRICAL.iter().map(move |&(name, f, e, boundary)| {
-            // To the micrometre, as they are printed.
-            let [diameter, pitch] = [e - f, e + f].map(|both| (500.0 * both).round() / 1e3);
+            let [diameter, pitch] = [0.5 * (e - f), 0.5 * (e + f)];
             let source = if name == IN_PROPORTION { PROPORTION } else { E_TYPE };
             let row = (name, Element::Roller, None, diameter, pitch, 0.0, Some(boundary), source);
             CatalogueBearing { name: name.replace("NU", flanges), ..CatalogueBearing::of(row) }
@@ -177,6 +176,12 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
 const SPACING: f64 = 1.25;
 
 impl CatalogueBearing {
+    /// Diameter of a rolling element and of the pitch circle as they are read [mm]: to the micrometre, which differences of raceways
+    /// miss by their last digits.
+    pub fn shown_mm(&self) -> [f64; 2] {
+        [self.diameter_mm, self.pitch_mm].map(|mm| (1e3 * mm).round() / 1e3)
+    }
+
     /// As many rolling elements as cages usually hold.
     pub(crate) fn usual_elements(&self) -> usize {
         (PI * self.pitch_mm / (SPACING * self.diameter_mm)).round() as usize
@@ -266,11 +271,10 @@ impl CatalogueBearing {
             };
             return Err(format!("`{text}` is no bearing: {wanted} and an `angle_deg` from 0 to below 90"));
         }
-        let most = bearing.most_elements();
+        let ([diameter, pitch], most) = (bearing.shown_mm(), bearing.most_elements());
         if let Some(elements) = bearing.elements.filter(|elements| *elements > most) {
             return Err(format!(
-                "`{text}` is no bearing: {elements} rolling elements of {} mm do not fit on a pitch circle of {} mm: {most} at most",
-                bearing.diameter_mm, bearing.pitch_mm
+                "`{text}` is no bearing: {elements} rolling elements of {diameter} mm do not fit on a pitch circle of {pitch} mm: {most} at most"
             ));
         }
         Ok(bearing)
@@ -315,11 +319,8 @@ impl fmt::Display for CatalogueBearing {
             Element::Ball => "balls",
             Element::Roller => "rollers",
         };
-        write!(
-            f,
-            "{what} of {} mm, pitch {} mm, contact angle {}°",
-            self.diameter_mm, self.pitch_mm, self.angle_deg
-        )
+        let [diameter, pitch] = self.shown_mm();
+        write!(f, "{what} of {diameter} mm, pitch {pitch} mm, contact angle {}°", self.angle_deg)
     }
 }
 

@@ -52,9 +52,10 @@ fn row(bearing: &CatalogueBearing) -> String {
         |_| String::new(),
         |o| format!(" {:>7.4} {:>7.4} {:>7.4} {:>7.4}", o.bpfo, o.bpfi, o.bsf, o.ftf),
     );
+    let [diameter, pitch] = bearing.shown_mm();
     format!(
-        "{:<9} {count:>5} {:>9} {:>9} {:>5}° {boundary:>14}{orders}",
-        bearing.name, bearing.diameter_mm, bearing.pitch_mm, bearing.angle_deg
+        "{:<9} {count:>5} {diameter:>9} {pitch:>9} {:>5}° {boundary:>14}{orders}",
+        bearing.name, bearing.angle_deg
     )
 }
 

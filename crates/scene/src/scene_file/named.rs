@@ -9,7 +9,9 @@ use crate::duty::Duty;
 use crate::geometry::Geometry;
 use crate::line_contact::LineContacts;
 use crate::point_contact;
-use crate::scene::{BearingScene, CageScene, DefectScene, FramesScene, GradingScene, PocketWalls, Scene};
+use crate::scene::{
+    BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, Scene,
+};
 
 /// Length of a roller over the width of its ring, between flanges.
 const ROLLER_LENGTH: f64 = 0.6;
@@ -133,7 +135,9 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         let slower =
             passing(&paper.bearing, paper.operation.speed_rpm) / passing(&bearing, fastest.max(1e-3));
         let until = scene.solver.duration_ms;
-        follow("output.frames.from_ms", &mut frames.from_ms, (slower * of_paper.from_ms).min(until));
+        // The reduced model has none, whenever they would begin.
+        let latest = if scene.model == ModelScene::Full { until } else { f64::INFINITY };
+        follow("output.frames.from_ms", &mut frames.from_ms, (slower * of_paper.from_ms).min(latest));
         let to = (slower * of_paper.to_ms).min(until);
         follow("output.frames.to_ms", &mut frames.to_ms, to);
         let every = (slower * of_paper.every_us).max(scene.output.interval_us);
