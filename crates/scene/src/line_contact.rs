@@ -6,7 +6,7 @@ use crate::geometry::Geometry;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LineContacts {
     /// (1 − ν²)/(π E) [m²/N].
-    pub(crate) softness: f64,
+    softness: f64,
     /// E* = E/(2(1 − ν²)) [Pa].
     modulus: f64,
     /// Poisson's ratio [-].
@@ -51,8 +51,7 @@ impl LineContacts {
             let ring = depth.map_or(0.0, of_ring);
             sum.0 += w * self.softness * (roller + ring);
             // b grows with the root of w, so each logarithm loses 1/(2w).
-            let logarithms = if depth.is_some() { 2.0 } else { 1.0 };
-            sum.1 += self.softness * (roller + ring - logarithms);
+            sum.1 += self.softness * (roller + ring - logarithms(depth));
         }
         sum
     }
@@ -73,4 +72,16 @@ impl LineContacts {
         let (at, slope) = self.approach(w);
         (slope > 0.0 && (at - delta).abs() <= 1e-9 * delta).then_some((w, 1.0 / slope))
     }
+
+    /// Energy of the contacts under the line load `w` at the approach `delta` that it makes [J/m]: ∫ w dδ, by parts w δ less ∫ δ dw, in
+    /// which each logarithm of w leaves w²/4.
+    pub(crate) fn energy(&self, w: f64, delta: f64) -> f64 {
+        let all: f64 = self.sides.iter().map(|(_, depth)| logarithms(*depth)).sum();
+        0.5 * w * delta - 0.25 * all * self.softness * w * w
+    }
+}
+
+/// Logarithms of the load in the approach of one contact, whose ring may be rigid.
+fn logarithms(depth: Option<f64>) -> f64 {
+    if depth.is_some() { 2.0 } else { 1.0 }
 }
