@@ -434,6 +434,7 @@ fn refuses_a_stretch_that_holds_nothing_and_keeps_the_report() {
 }
 
 /// A quarter of a turn of a load that turns with the shaft, from where it adds to the other: its mean along that is 2/π of it.
+/// Source: mean of a cosine; the load, THEORY §6.3.
 #[test]
 fn analytic_rollers_carry_what_a_rotating_load_does_over_the_record() {
     /// The mean over samples of 30 ms is off by half a sampling interval at its ends.
