@@ -54,7 +54,7 @@ pub(crate) const ACROSS: &str = "load across";
 /// Rings and a roller as they are meshed, which takes time: grooves are in them, deviations from round are not yet, and the roller
 /// lies in the centre, not turned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Parts {
+pub struct MeshedParts {
     outer: Part,
     inner: Part,
     disc: Part,
@@ -165,7 +165,7 @@ pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
     Geometry::of(scene).roller_angle(i)
 }
 
-impl Parts {
+impl MeshedParts {
     /// Meshes them. They are the same wherever rollers start.
     ///
     /// # Errors
@@ -223,14 +223,14 @@ impl Assembly {
     /// # Errors
     /// When a dimension or a count cannot be meshed.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        Self::of(scene, &Parts::new(scene)?)
+        Self::of(scene, &MeshedParts::new(scene)?)
     }
 
     /// The same of rings and a roller that have been meshed already.
     ///
     /// # Errors
     /// When the rest cannot be meshed.
-    pub fn of(scene: &Scene, parts: &Parts) -> Result<Self, Error> {
+    pub fn of(scene: &Scene, parts: &MeshedParts) -> Result<Self, Error> {
         let g = Geometry::of(scene);
         let mut mesh = Mesh::new();
         let outer = formed(parts.outer.clone(), "inner", Circle::Inner, g.outer_relief.as_ref())?;

@@ -33,8 +33,8 @@ impl LedgerError {
     }
 
     /// Whether the run has come apart. One that turns energy into heat for seconds gathers the error of the time step, one or two
-    /// thousandths of the heat, and in time exceeds any share of what the rings store; under hardly any load they store less than a
-    /// billionth of what is in motion. Neither is a divergence, which exceeds both other shares at once.
+    /// thousandths of the heat, and in time exceeds any share of what the rings store; under hardly any load they store some
+    /// billionths of what is in motion. Neither is a divergence, which exceeds both other shares at once.
     fn is_divergence(&self, stop_percent: f64) -> bool {
         let percent = 100.0 * self.of_strain;
         let apart = percent > stop_percent && self.of_heat > GATHERED && self.of_motion > OF_MOTION;
@@ -117,8 +117,8 @@ impl Guards {
         let modes = bearing.reduction.modes;
         if bearing.seat.is_some() && modes < FEW_MODES {
             warnings.push(format!(
-                "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend in none of them: such a run gains energy \
-                 with steps of any length. Take a larger `model.modes_khz`"
+                "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend in none of them: such runs find no \
+                 start or gain energy with steps of any length. Take a larger `model.modes_khz`"
             ));
         }
         if scene.output.frames.is_some() {
@@ -222,5 +222,36 @@ impl Guards {
                 1e3 * off
             )
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ledger that is off by so many joules, beside the peak strain energy, heat and energy of motion.
+    fn off([imbalance, strain, heat, kinetic]: [f64; 4]) -> LedgerError {
+        LedgerError::of(&Ledger {
+            imbalance,
+            kinetic,
+            friction: heat,
+            relative_error: imbalance / strain,
+            ..Ledger::default()
+        })
+    }
+
+    #[test]
+    fn issue_what_gathers_and_what_hardly_any_load_leaves_is_no_divergence() {
+        for (numbers, apart) in [
+            // A ledger that runs away, before there is any heat to speak of.
+            ([0.05, 0.1, 1e-3, 0.1], true),
+            // Seconds at a light load: a thousandth of the heat, many times what the rings store.
+            ([0.37, 5e-3, 100.0, 0.1], false),
+            // 1 N, 0.03 ms: half of what the rings store, hardly any heat yet.
+            ([4e-10, 7e-10, 1e-11, 0.11], false),
+            ([f64::NAN, 1.0, 1.0, 1.0], true),
+        ] {
+            assert_eq!(off(numbers).is_divergence(25.0), apart, "{numbers:?}");
+        }
     }
 }

@@ -7,7 +7,7 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::{
-    assembly::{Assembly, Machine, Parts},
+    assembly::{Assembly, Machine, MeshedParts},
     start::preload,
 };
 use stribeck_mesh::Mesh;
@@ -88,7 +88,7 @@ pub struct Reduction {
     /// Its springs, which may open and slip.
     pub springs: Option<Seat>,
     /// What was meshed: the same for every start.
-    pub parts: Parts,
+    pub parts: MeshedParts,
     /// Displacements of the nodes of rings and housing at the preload [m].
     pub moved: Vec<[f64; 2]>,
     /// What the preload left open.
@@ -132,7 +132,7 @@ impl Reduction {
     /// # Errors
     /// When the scene cannot be meshed or preloaded, or modes are not found.
     pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let parts = Parts::new(scene)?;
+        let parts = MeshedParts::new(scene)?;
         let assembly = Assembly::of(scene, &parts)?;
         let mut machine = assembly.machine(scene, 1)?;
         let warning = preload(&mut machine, scene, &assembly.kinematics)?;
@@ -140,7 +140,7 @@ impl Reduction {
         Ok(Self { warning, ..reduced })
     }
 
-    fn of(scene: &Scene, mut machine: Machine, meshed: Parts, mesh: &Mesh) -> Result<Self, Error> {
+    fn of(scene: &Scene, mut machine: Machine, meshed: MeshedParts, mesh: &Mesh) -> Result<Self, Error> {
         let g = Geometry::of(scene);
         let forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();

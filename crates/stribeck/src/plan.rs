@@ -102,6 +102,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         ModelScene::Reduced(reduced) => {
             // The modes are worth keeping for the run where there are runs.
             let runs = Some(place.runs()).filter(|runs| runs.is_dir());
+            eprintln!("modes …");
             let per_sample = steps_in_a_sample(&scene, runs.as_deref())?;
             let steps =
                 (per_sample as f64 * 1e3 * scene.solver.duration_ms / scene.output.interval_us).round();
