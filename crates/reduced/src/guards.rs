@@ -52,6 +52,13 @@ const FEW_MODES: usize = 5;
 /// Gain of a loop whose force is extrapolated by a step, from which on it may diverge: z² + g (2z − 1) = 0 at z = −1.
 const SEAT_LOOP_GAIN: f64 = 1.0 / 3.0;
 
+/// A cage that strays by more than this share of a roller's radius is not held by its pockets.
+const ASTRAY: f64 = 0.1;
+
+/// What holds a cage.
+const HOLD_IT: &str = "Nothing holds it there: take `cage.pocket: corners` with pockets narrower than rollers, more `contact.friction`, or \
+                       `cage: None`";
+
 /// Rollers may leave their annulus by this share of a roller's radius.
 const OUT_OF_PLACE: f64 = 0.5;
 
@@ -82,6 +89,7 @@ pub(crate) struct Guards {
     annulus: [f64; 2],
     /// How far the cage's centre may be from it [m].
     pitch_radius: f64,
+    roller_radius: f64,
 }
 
 impl Guards {
@@ -98,6 +106,7 @@ impl Guards {
                 g.outer_race_radius - g.roller_radius + depth + slack,
             ],
             pitch_radius: 0.5 * (g.inner_race_radius + g.outer_race_radius),
+            roller_radius: g.roller_radius,
         }
     }
 
@@ -147,8 +156,8 @@ impl Guards {
                 _ => "more than all heat".to_owned(),
             };
             return Some(format!(
-                "energy is off by {percent:.3} % of the peak strain energy and {of_heat} {when}. Take a smaller `model.step_us`, a larger \
-                 `model.modes_khz`, or `model: full` to see which of the two models is wrong"
+                "energy is off by {percent:.3} % of the peak strain energy and {of_heat} {when}. {}",
+                self.advice(state)
             ));
         }
         if percent > limits.energy_warning_percent && !info.guards.energy_warned {
@@ -161,6 +170,19 @@ impl Guards {
             self.support(info, state, &when);
             self.places(state, &when)
         })
+    }
+
+    /// What may help a run that has come apart.
+    fn advice(&self, state: &State) -> String {
+        let astray = state.cage[0].hypot(state.cage[1]);
+        if astray > ASTRAY * self.roller_radius {
+            return format!(
+                "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its roller lets go of it all at once. \
+                 {HOLD_IT}",
+                1e3 * astray
+            );
+        }
+        "Take a smaller `model.step_us`, a larger `model.modes_khz`, or `model: full` to see which of the two models is wrong".to_owned()
     }
 
     fn penetration(&self, info: &mut RunInfo, deepest: f64, when: &When) -> Option<String> {
@@ -217,8 +239,7 @@ impl Guards {
         let off = state.cage[0].hypot(state.cage[1]);
         (off > self.pitch_radius).then(|| {
             format!(
-                "the cage has left the bearing: its centre is {:.1} mm from that of the bearing {when}. Nothing holds it there: take `cage.pocket: \
-                 corners` with pockets narrower than rollers, more `contact.friction`, or `cage: None`",
+                "the cage has left the bearing: its centre is {:.1} mm from that of the bearing {when}. {HOLD_IT}",
                 1e3 * off
             )
         })
