@@ -354,6 +354,7 @@ impl Bearing {
             vx: vec![0.0; n],
             vy: vec![0.0; n],
             angle: vec![0.0; n],
+            turned: self.vertex_angle.iter().map(|angle| [angle.cos(), angle.sin()]).collect(),
             spin: vec![k.roller_rad_s; n],
             slip: [vec![0.0; n], vec![0.0; n]],
             wall_slip: vec![[0.0; 2]; n],

@@ -5,7 +5,7 @@ use stribeck_simd::lanes::LANES;
 use crate::{
     bearing::Bearing,
     overlap::Overlap,
-    row::{Row, Rows},
+    row::{Row, Rows, lanes, of_one},
     seam::Seam,
     state::State,
 };
@@ -126,21 +126,19 @@ impl Block {
         block
     }
 
-    /// Takes the rollers' motion from a state. Directions are taken from the angles, because turning them step by step rounds.
-    pub(crate) fn load(&mut self, bearing: &Bearing, state: &State) {
-        self.placed = 0;
+    /// Takes the rollers from a state.
+    pub(crate) fn load(&mut self, state: &State) {
         for lane in 0..self.count {
             let i = self.first + lane;
             let of = |column: &mut Row, value: f64| column[lane] = value;
-            let (s, c) = (state.angle[i] + bearing.vertex_angle[i]).sin_cos();
             of(&mut self.centre[0], state.x[i]);
             of(&mut self.centre[1], state.y[i]);
             of(&mut self.velocity[0], state.vx[i]);
             of(&mut self.velocity[1], state.vy[i]);
             of(&mut self.angle, state.angle[i]);
             of(&mut self.spin, state.spin[i]);
-            of(&mut self.turned[0], c);
-            of(&mut self.turned[1], s);
+            of(&mut self.turned[0], state.turned[i][0]);
+            of(&mut self.turned[1], state.turned[i][1]);
             for (k, contacts) in self.contacts.iter_mut().enumerate() {
                 of(&mut contacts.force, state.force[k][i]);
                 of(&mut contacts.growth, state.growth[k][i]);
@@ -160,21 +158,49 @@ impl Block {
         }
     }
 
-    /// Writes it back.
+    /// Begins a sample, of which `anew` is a roller: its direction is taken from its angle, because turning it step by step rounds.
+    pub(crate) fn begin(&mut self, bearing: &Bearing, anew: usize) {
+        self.sums = Default::default();
+        // A roller that is clear of the outer raceway goes along it nevertheless.
+        let on_outer = &mut self.contacts[0];
+        for lane in lanes(self.bits & !on_outer.near) {
+            on_outer.hints[lane][1] = self.facet[lane];
+        }
+        if (self.first..self.first + self.count).contains(&anew) {
+            let lane = anew - self.first;
+            let (s, c) = (self.angle[lane] + bearing.vertex_angle[anew]).sin_cos();
+            (self.turned[0][lane], self.turned[1][lane]) = (c, s);
+        }
+    }
+
+    /// Shows the state what is sampled and looked at: places, angles and normal forces.
+    pub(crate) fn show(&self, state: &mut State) {
+        let (of, n) = (self.first..self.first + self.count, self.count);
+        let columns = [
+            (&mut state.x, &self.centre[0]),
+            (&mut state.y, &self.centre[1]),
+            (&mut state.angle, &self.angle),
+        ];
+        let forces = state.force.iter_mut().zip(self.contacts.iter().map(|contacts| &contacts.force));
+        for (column, row) in columns.into_iter().chain(forces) {
+            column[of.clone()].copy_from_slice(&row[..n]);
+        }
+    }
+
+    /// Leaves the rollers to a state.
     pub(crate) fn store(&self, state: &mut State) {
+        self.show(state);
         for lane in 0..self.count {
             let i = self.first + lane;
-            [state.x[i], state.y[i]] = [self.centre[0][lane], self.centre[1][lane]];
             [state.vx[i], state.vy[i]] = [self.velocity[0][lane], self.velocity[1][lane]];
-            [state.angle[i], state.spin[i]] = [self.angle[lane], self.spin[lane]];
+            state.spin[i] = self.spin[lane];
+            state.turned[i] = of_one(&self.turned, lane);
             for (k, contacts) in self.contacts.iter().enumerate() {
-                state.force[k][i] = contacts.force[lane];
                 state.growth[k][i] = contacts.growth[lane];
                 state.slip[k][i] = contacts.slip[lane];
                 state.passive[k][i] = contacts.passive.map(|column| column[lane]);
                 state.hints[k][i] = contacts.hints[lane];
             }
-            // A roller that is clear of the outer raceway goes along it nevertheless.
             if (self.contacts[0].near >> lane) & 1 == 0 {
                 state.hints[0][i][1] = self.facet[lane];
             }

@@ -43,8 +43,6 @@ pub(crate) struct Modes {
     pub(crate) drag: Vec<Row>,
     /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
     pub(crate) tension: Vec<Row>,
-    /// By how much these have opened and slipped [m].
-    pub(crate) opened: Vec<Row>,
     /// What rollers do to the seat.
     pub(crate) answers: Answers,
 }
@@ -55,15 +53,7 @@ impl Modes {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
         let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
         let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self {
-            q: rows.clone(),
-            v: rows.clone(),
-            push: rows,
-            drag,
-            opened: tension.clone(),
-            tension,
-            answers: Answers::default(),
-        }
+        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension, answers: Answers::default() }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.

@@ -57,6 +57,7 @@ impl Saved {
             &s.growth[1],
         ];
         of_rollers.iter().all(|v| v.len() == n)
+            && s.turned.len() == n
             && s.wall_slip.len() == n
             && s.wall_passive.len() == n
             && s.passive.iter().all(|p| p.len() == n)
@@ -79,7 +80,8 @@ impl Saved {
 impl Motion {
     /// A bearing that goes on from `saved`.
     pub fn new(scene: &Scene, bearing: Bearing, saved: Saved) -> Self {
-        let scratch = Scratch::new(&bearing);
+        let mut scratch = Scratch::new(&bearing);
+        scratch.load(&saved.state);
         Self {
             bearing,
             saved,
@@ -88,11 +90,6 @@ impl Motion {
             row: Vec::new(),
             off: LedgerError::default(),
         }
-    }
-
-    /// Positions and velocities.
-    pub fn state(&self) -> &State {
-        &self.saved.state
     }
 
     fn ledger(&self) -> Ledger {
@@ -118,7 +115,7 @@ impl time_loop::Motion for Motion {
 
     fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
         let Self { bearing, saved: Saved { state, memory, .. }, scratch, row, .. } = self;
-        scratch.begin(bearing, state);
+        scratch.begin(bearing, state.steps / steps as u64);
         bearing.advance(state, scratch, steps - 1, false);
         let before = bearing.before_last_step(state);
         bearing.advance(state, scratch, 1, true);
@@ -151,6 +148,8 @@ impl time_loop::Motion for Motion {
     }
 
     fn saved(&self) -> Saved {
-        self.saved.clone()
+        let mut saved = self.saved.clone();
+        self.scratch.store(&mut saved.state);
+        saved
     }
 }

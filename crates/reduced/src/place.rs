@@ -8,6 +8,7 @@ use crate::{
     block::Block,
     modes::{Modes, Moved},
     row::{lanes, load, of_one, store},
+    seat::Hold,
     step::Turning,
 };
 
@@ -28,14 +29,15 @@ impl Bearing {
         &self,
         simd: S,
         modes: &Modes,
+        hold: Option<&Hold>,
         block: &mut Block,
         [outer, inner]: [Option<Turning>; 2],
     ) {
         for lane in lanes(block.bits) {
             let (facet, share) = (block.facet[lane] as usize, block.share[lane]);
             let Moved { mut by, velocity, mut tilt } = self.moved(simd, &self.place(facet, share), modes);
-            if let Some(seat) = &self.seat {
-                let [first, second] = seat.under(simd, &modes.opened, facet);
+            if let (Some(seat), Some(hold)) = (&self.seat, hold) {
+                let [first, second] = seat.under(simd, hold, facet);
                 let outwards = first + share * (second - first);
                 let slope = (second - first) * self.outer.angle[facet];
                 // It points outwards at every place, so that it turns along the raceway.

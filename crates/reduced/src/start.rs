@@ -185,7 +185,7 @@ impl Bearing {
         let sum = |from: usize| (0..r).map(|n| under[from + n] * state.q[n]).sum();
         let mut moved = [sum(0), sum(r)];
         if let (Some(seat), Some(hold)) = (&self.seat, &state.seat) {
-            let [a, b] = seat.under(Scalar::new(), &hold.opened(), facet);
+            let [a, b] = seat.under(Scalar::new(), hold, facet);
             let further = a + share * (b - a);
             moved = [moved[0] + further * radial[0], moved[1] + further * radial[1]];
         }

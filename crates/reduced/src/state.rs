@@ -21,8 +21,10 @@ pub struct State {
     pub vx: Vec<f64>,
     /// Their velocities [m/s].
     pub vy: Vec<f64>,
-    /// By how much rollers have turned since the start [rad].
+    /// By how much rollers have turned since the start [rad], and the directions of their vertices 0, turned step by step.
     pub angle: Vec<f64>,
+    /// Cosines and sines of these.
+    pub turned: Vec<[f64; 2]>,
     /// Their angular velocities [rad/s].
     pub spin: Vec<f64>,
     /// Elastic slip at the outer and the inner raceway [m].

@@ -51,20 +51,28 @@ impl Scratch {
         }
     }
 
-    /// Begins a sample with the rollers of a state.
-    pub(crate) fn begin(&mut self, bearing: &Bearing, state: &State) {
-        for block in &mut self.blocks {
-            block.load(bearing, state);
-            block.sums = Default::default();
-        }
-        (self.summed, self.deepest) = (0, 0.0);
+    /// Takes the rollers from a state, before the first step here.
+    pub(crate) fn load(&mut self, state: &State) {
+        self.blocks.iter_mut().for_each(|block| block.load(state));
         if let Some(hold) = &state.seat {
             self.heard.clone_from(&hold.pressed);
         }
     }
 
-    /// Leaves the rollers to the state.
+    /// Begins a sample, the number of which is known.
+    pub(crate) fn begin(&mut self, bearing: &Bearing, sample: u64) {
+        let anew = (sample % bearing.rollers as u64) as usize;
+        self.blocks.iter_mut().for_each(|block| block.begin(bearing, anew));
+        (self.summed, self.deepest) = (0, 0.0);
+    }
+
+    /// Shows the state what is sampled and looked at.
     pub(crate) fn end(&self, state: &mut State) {
+        self.blocks.iter().for_each(|block| block.show(state));
+    }
+
+    /// Leaves the rollers to a state.
+    pub(crate) fn store(&self, state: &mut State) {
         self.blocks.iter().for_each(|block| block.store(state));
         if let Some(hold) = &mut state.seat {
             hold.pressed.clone_from(&self.heard);
@@ -141,9 +149,9 @@ impl Bearing {
                 scratch.seated.clear();
                 scratch.seated.extend(self.heard_from_the_seat(hold, &scratch.modes.tension));
             }
-            let Modes { push, tension, opened, answers, .. } = &mut scratch.modes;
+            let Modes { push, tension, answers, .. } = &mut scratch.modes;
             let [heat, stored] =
-                seat.hold(simd, hold, &state.q, &scratch.heard, answers, [push, tension, opened], last);
+                seat.hold(simd, hold, &state.q, &scratch.heard, answers, [push, tension], last);
             spent.heat[0] += 2.0 * heat / dt;
             energy.strain += stored;
         }
@@ -155,7 +163,7 @@ impl Bearing {
         let mut sums = Sums::<S>::new(simd);
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
-            self.place_rollers(simd, &scratch.modes, block, [outer, Some(inner)]);
+            self.place_rollers(simd, &scratch.modes, state.seat.as_ref(), block, [outer, Some(inner)]);
             let Block { first, top, bits, contacts: [on_outer, on_inner], .. } = block;
             self.press_together(simd, &self.outer, *first, top, *bits, on_outer);
             self.press_together(simd, &self.inner, *first, top, *bits, on_inner);

@@ -10,7 +10,7 @@ use crate::{heard::Heard, row::Row, seat::Seat};
 const PASSES: usize = 200;
 const PASSES_AT_REST: usize = 1000;
 
-/// Passes end when no tension changes by more than this share of the mean force on a panel.
+/// Passes end when no tension would change by more than this share of the mean force on a panel.
 const STILL: f64 = 1e-4;
 
 /// A roller answers to the seat where that takes more than this part of its force if all panels let go. Where less, its force of the
@@ -30,14 +30,14 @@ pub(crate) struct Springs {
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
     stiffness: Vec<Row>,
-    /// The same of each by its own [N/m].
-    own: Vec<f64>,
-    /// One over it, zero where there is no spring.
-    per_own: Vec<f64>,
-    /// What the raceway gives way by at each vertex under a unit force there if the whole seat lets go [m/N].
+    /// The same of each by its own [N/m], and one over it, zero where there is no spring.
+    own: Vec<Row>,
+    per_own: Vec<Row>,
+    /// What the raceway gives way by on each facet, at the vertex where that is more, under a unit force there if the whole seat lets go
+    /// [m/N].
     give: Vec<f64>,
     /// Force that presses each panel at the preload [N].
-    pressed: Vec<f64>,
+    pressed: Vec<Row>,
     friction: f64,
     still: f64,
 }
@@ -55,19 +55,6 @@ pub struct Hold {
     pub(crate) push: Vec<f64>,
     /// What rollers press in the last step.
     pub(crate) pressed: Vec<Heard>,
-}
-
-impl Hold {
-    /// Gaps and slips in rows [m].
-    pub(crate) fn opened(&self) -> Vec<Row> {
-        self.open.as_chunks().0.iter().copied().map(Row).collect()
-    }
-}
-
-/// A spring that opens or slips further [m].
-struct Change {
-    spring: usize,
-    more: f64,
 }
 
 /// What rollers press in a step, and how they answer to a seat that gives way.
@@ -104,14 +91,51 @@ fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
     }
 }
 
-/// Sum of the products of two rows.
+/// Adds a multiple of the rows of each of some springs to sums, four rows at a time, which stay in registers meanwhile.
 #[inline(always)]
-fn dot<'a, S: Simd>(simd: S, rows: &[Row], values: impl IntoIterator<Item = &'a [f64; LANES]>) -> f64 {
-    let mut sum = Vector::all(simd, 0.0);
-    for (row, values) in rows.iter().zip(values) {
+fn add_all<S: Simd>(simd: S, sums: &mut [f64], rows: &[Row], springs: &[(usize, f64)]) {
+    const TOGETHER: usize = 4;
+    let count = sums.len() / LANES;
+    let mut first = 0;
+    while first < count {
+        let here = TOGETHER.min(count - first);
         let mut at = 0;
         while at < LANES {
-            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, values, at), sum);
+            let mut held = [Vector::all(simd, 0.0); TOGETHER];
+            for (n, held) in held.iter_mut().enumerate().take(here) {
+                *held = Vector::load(simd, sums, LANES * (first + n) + at);
+            }
+            for (spring, times) in springs {
+                let times = Vector::all(simd, *times);
+                let of_spring = &rows[count * spring + first..][..here];
+                if let [a, b, c, d] = of_spring {
+                    held[0] = Vector::load(simd, a, at).times_plus(times, held[0]);
+                    held[1] = Vector::load(simd, b, at).times_plus(times, held[1]);
+                    held[2] = Vector::load(simd, c, at).times_plus(times, held[2]);
+                    held[3] = Vector::load(simd, d, at).times_plus(times, held[3]);
+                    continue;
+                }
+                for (row, held) in of_spring.iter().zip(&mut held) {
+                    *held = Vector::load(simd, row, at).times_plus(times, *held);
+                }
+            }
+            for (n, held) in held.iter().enumerate().take(here) {
+                held.store(sums, LANES * (first + n) + at);
+            }
+            at += Vector::<S>::LEN;
+        }
+        first += TOGETHER;
+    }
+}
+
+/// Sum of the products of some rows with others.
+#[inline(always)]
+fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
+    let mut sum = Vector::all(simd, 0.0);
+    for (row, other) in rows.iter().zip(others) {
+        let mut at = 0;
+        while at < LANES {
+            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, other, at), sum);
             at += Vector::<S>::LEN;
         }
     }
@@ -131,6 +155,7 @@ impl Springs {
         let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
         let per_own: Vec<f64> =
             own.iter().map(|stiffness| if *stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }).collect();
+        let give = seat.give(0);
         Self {
             panels: seat.panels,
             padded: seat.padded,
@@ -138,11 +163,11 @@ impl Springs {
             by_spring: rows(&by_spring),
             by_rollers: rows(&seat.by_rollers),
             at_preload: rows(&seat.at_preload),
-            per_own,
-            give: seat.give(0),
-            own,
+            per_own: rows(&per_own),
+            give: give.iter().zip(give.iter().cycle().skip(1)).map(|(a, b)| a.max(*b)).collect(),
+            own: rows(&own),
             stiffness: rows(&seat.stiffness),
-            pressed: seat.pressed.clone(),
+            pressed: rows(&seat.pressed),
             friction,
             still: STILL * seat.pressed.iter().sum::<f64>() / seat.panels as f64,
         }
@@ -182,8 +207,8 @@ impl Springs {
         self.settle(simd, hold, &mut tension, &mut answers, PASSES_AT_REST);
     }
 
-    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`; `opened` becomes gaps and
-    /// slips. Returns the heat of this step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
+    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`. Returns the heat of this
+    /// step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one seat, with all that it reads and adds to")]
     pub(crate) fn hold<S: Simd>(
@@ -193,15 +218,12 @@ impl Springs {
         q: &[f64],
         rollers: &[Heard],
         answers: &mut Answers,
-        [push, tension, opened]: [&mut [Row]; 3],
+        [push, tension]: [&mut [Row]; 2],
         last: bool,
     ) -> [f64; 2] {
         self.answer(simd, hold, rollers, answers);
         self.pull(simd, hold, q, answers, tension);
         let heat = self.settle(simd, hold, tension, answers, PASSES);
-        for (row, open) in opened.iter_mut().zip(hold.open.as_chunks().0) {
-            *row = Row(*open);
-        }
         for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
             for (push, more) in push.iter_mut().zip(more) {
                 *push += more;
@@ -218,15 +240,30 @@ impl Springs {
         [heat, self.stored(hold, tension) + by_rollers]
     }
 
-    /// Displacement of the raceway to the outside by what has `opened` and slipped, at both vertices of a facet [m].
+    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m].
     #[inline(always)]
-    pub(crate) fn under<S: Simd>(&self, simd: S, open: &[Row], facet: usize) -> [f64; 2] {
+    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [f64; 2] {
+        let groups = self.rows();
+        let ends = self.ends(facet);
+        let mut sums = [Vector::all(simd, 0.0); 2];
+        for (n, open) in hold.open.as_chunks::<LANES>().0.iter().enumerate().take(groups) {
+            let mut at = 0;
+            while at < LANES {
+                let open = Vector::load(simd, open, at);
+                sums[0] = Vector::load(simd, &ends[0][n], at).times_plus(open, sums[0]);
+                sums[1] = Vector::load(simd, &ends[1][n], at).times_plus(open, sums[1]);
+                at += Vector::<S>::LEN;
+            }
+        }
+        [sums[0].sum(), sums[1].sum()]
+    }
+
+    /// Tensions by a unit force at both vertices of a facet.
+    #[inline(always)]
+    fn ends(&self, facet: usize) -> [&[Row]; 2] {
         let groups = self.rows();
         let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
-        // Not `map`: what a closure does over an array is compiled without the vectors' instruction set.
-        let [first, second] = [&self.by_rollers[groups * facet..], &self.by_rollers[groups * second..]];
-        let open = || open.iter().map(|row| &row.0);
-        [dot(simd, &first[..groups], open()), dot(simd, &second[..groups], open())]
+        [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]]
     }
 
     /// What rollers do to the tensions, each by itself: a unit force at its place, the force if the seat stays as it is, and how much less it
@@ -234,35 +271,33 @@ impl Springs {
     #[inline(always)]
     fn answer<S: Simd>(&self, simd: S, hold: &Hold, rollers: &[Heard], answers: &mut Answers) {
         let groups = self.rows();
-        let vertices = self.by_rollers.len() / groups;
         answers.rollers.clear();
         answers.by.clear();
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
-            let facet = roller.facet as usize;
-            let second = if facet + 1 == vertices { 0 } else { facet + 1 };
-            let ends =
-                [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]];
+            let ends = self.ends(roller.facet as usize);
             let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
+            let [mut now, mut before] = [Vector::all(simd, 0.0); 2];
             let first = answers.by.len();
             answers.by.resize(first + groups, Row::default());
-            for (n, by) in answers.by[first..].iter_mut().enumerate() {
+            let gaps = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
+            for ((n, by), gaps) in answers.by[first..].iter_mut().enumerate().zip(gaps) {
                 let mut at = 0;
                 while at < LANES {
                     let (ahead, behind) =
                         (Vector::load(simd, &ends[0][n], at), Vector::load(simd, &ends[1][n], at));
-                    ahead.times_plus(a, behind * b).store(by, at);
+                    let between = ahead.times_plus(a, behind * b);
+                    now = Vector::load(simd, gaps.0, at).times_plus(between, now);
+                    before = Vector::load(simd, gaps.1, at).times_plus(between, before);
+                    between.store(by, at);
                     at += Vector::<S>::LEN;
                 }
             }
             let force = roller.next();
             let mut answer = Answer { force, expected: force, given: 0.0, stiffness: 0.0 };
-            if roller.stiffness * self.give[facet].max(self.give[second]) > FELT {
-                let by = &answers.by[first..];
-                let [now, before] =
-                    [dot(simd, by, hold.open.as_chunks().0), dot(simd, by, hold.before.as_chunks().0)];
-                let expected = force + roller.stiffness * (now - before);
-                answer =
-                    Answer { force: expected.max(0.0), expected, given: now, stiffness: roller.stiffness };
+            if roller.stiffness * self.give[roller.facet as usize] > FELT {
+                let expected = force + roller.stiffness * (now - before).sum();
+                let (force, given) = (expected.max(0.0), now.sum());
+                answer = Answer { force, expected, given, stiffness: roller.stiffness };
             }
             answers.rollers.push(answer);
         }
@@ -312,7 +347,7 @@ impl Springs {
         }
     }
 
-    /// Passes over the panels until no tension changes any more; returns the heat [J].
+    /// Passes over the panels until no tension would change any more; returns the heat [J].
     #[inline(always)]
     fn settle<S: Simd>(
         &self,
@@ -323,45 +358,39 @@ impl Springs {
         passes: usize,
     ) -> f64 {
         hold.before.copy_from_slice(&hold.open);
-        let mut last = Change { spring: 0, more: 0.0 };
+        let of = |rows: &[Row], spring: usize| rows[spring / LANES][spring % LANES];
         let mut moved = 0_u128;
-        for _ in 0..passes {
-            let mut most: f64 = 0.0;
-            for panel in 0..self.panels {
-                if self.own[panel] <= 0.0 {
-                    continue;
-                }
+        for pass in 0..passes {
+            let (mut left, far) = self.restless(simd, hold, tension);
+            if !far && pass > 0 {
+                break;
+            }
+            while left != 0 {
+                let panel = left.trailing_zeros() as usize;
+                left &= left - 1;
                 let had = hold.open[panel];
-                let mut pulls = self.tension(tension, &last, panel) - self.pressed[panel];
+                let mut pulls = of(tension, panel) - of(&self.pressed, panel);
                 // It pulls and opens, or was open and closes.
                 if pulls > 0.0 || had > 0.0 {
-                    let has = (had + pulls * self.per_own[panel]).max(0.0);
+                    let has = (had + pulls * of(&self.per_own, panel)).max(0.0);
                     moved |= 1 << panel;
-                    most =
-                        most.max(self.own[panel] * self.change(simd, hold, tension, &mut last, panel, has));
-                    pulls -= self.own[panel] * (has - had);
+                    self.change(simd, hold, tension, panel, has);
+                    pulls -= of(&self.own, panel) * (has - had);
                 }
                 let at = self.padded + panel;
-                if self.own[at] <= 0.0 {
-                    continue;
-                }
                 let limit = self.friction * (-pulls).max(0.0);
                 // Held where it was before, and let go by what friction cannot hold: what slips first must not slip too far.
                 let [had, before] = [hold.open[at], hold.before[at]];
-                let holding = self.tension(tension, &last, at) + self.own[at] * (had - before);
+                let holding = of(tension, at) + of(&self.own, at) * (had - before);
                 let excess = (holding.abs() - limit).max(0.0).copysign(holding);
-                let has = before + excess * self.per_own[at];
+                let has = before + excess * of(&self.per_own, at);
                 if has != had {
                     moved |= 1 << at;
-                    most = most.max(self.own[at] * self.change(simd, hold, tension, &mut last, at, has));
+                    self.change(simd, hold, tension, at, has);
                 }
-            }
-            if most <= self.still {
-                break;
             }
             self.press_again(simd, hold, tension, answers);
         }
-        self.pass_on(simd, tension, &last);
         self.take_along(simd, hold, moved);
         let along = self.padded..self.padded + self.panels;
         let slipped = hold.open[along.clone()].iter().zip(&hold.before[along.clone()]);
@@ -369,65 +398,65 @@ impl Springs {
         slipped.zip(held_by).map(|((open, before), tension)| tension * (open - before)).sum()
     }
 
-    /// Opens or shifts a panel, and passes the change before on; returns by how much [m].
+    /// Panels that would move if all were taken at once, a bit for each, and whether that would change a tension by as much as to take
+    /// another pass.
     #[inline(always)]
-    fn change<S: Simd>(
-        &self,
-        simd: S,
-        hold: &mut Hold,
-        tension: &mut [Row],
-        last: &mut Change,
-        spring: usize,
-        has: f64,
-    ) -> f64 {
-        let more = has - hold.open[spring];
-        hold.open[spring] = has;
-        self.pass_on(simd, tension, last);
-        *last = Change { spring, more };
-        more.abs()
-    }
-
-    /// Tension of a spring after the last change, which has not been passed on yet: the next panel need not wait for all tensions.
-    #[inline(always)]
-    fn tension(&self, tension: &[Row], last: &Change, spring: usize) -> f64 {
-        let (group, lane) = (spring / LANES, spring % LANES);
-        (-last.more).mul_add(self.stiffness[tension.len() * last.spring + group][lane], tension[group][lane])
-    }
-
-    /// Changes all tensions.
-    #[inline(always)]
-    fn pass_on<S: Simd>(&self, simd: S, tension: &mut [Row], change: &Change) {
-        let groups = tension.len();
-        add(
-            simd,
-            tension,
-            &self.stiffness[groups * change.spring..groups * (change.spring + 1)],
-            -change.more,
-        );
-    }
-
-    /// What all tensions have lost, and what is done to the modes, by the springs that have opened and slipped in this step: a bit for each.
-    #[inline(always)]
-    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moved: u128) {
-        let sums = [(&self.stiffness, &mut hold.lost), (&self.by_spring, &mut hold.push)];
-        for (all, sums) in sums {
-            let rows = sums.len() / LANES;
-            for (row, sum) in sums.as_chunks_mut::<LANES>().0.iter_mut().enumerate() {
-                let mut at = 0;
-                while at < LANES {
-                    let mut number = Vector::load(simd, sum, at);
-                    let mut left = moved;
-                    while left != 0 {
-                        let spring = left.trailing_zeros() as usize;
-                        let more = Vector::all(simd, hold.open[spring] - hold.before[spring]);
-                        number = Vector::load(simd, &all[rows * spring + row], at).times_plus(more, number);
-                        left &= left - 1;
-                    }
-                    number.store(sum, at);
-                    at += Vector::<S>::LEN;
-                }
+    fn restless<S: Simd>(&self, simd: S, hold: &Hold, tension: &[Row]) -> (u64, bool) {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, friction) = (all(0.0), all(1.0), all(self.friction));
+        let groups = self.padded / LANES;
+        let (mut would, mut far) = (0, 0);
+        for across in 0..groups {
+            let along = groups + across;
+            let mut at = 0;
+            while at < LANES {
+                let of = |rows: &[Row], n: usize| Vector::load(simd, &rows[n], at);
+                let gap = |of: &[f64], n: usize| Vector::load(simd, of, LANES * n + at);
+                let pulls = of(tension, across) - of(&self.pressed, across);
+                let had = gap(&hold.open, across);
+                let opens = pulls.times_plus(of(&self.per_own, across), had).max(zero) - had;
+                let opens = opens * of(&self.own, across);
+                let limit = friction * (opens - pulls).max(zero);
+                let further = gap(&hold.open, along) - gap(&hold.before, along);
+                let held = further * of(&self.own, along);
+                let holding = of(tension, along) + held;
+                let slips = holding - holding.min(limit).max(-limit) - held;
+                let most = opens.max(-opens).max(slips.max(-slips));
+                let panels = LANES * across + at;
+                would |= zero.choose_below(most, one, zero).bits() << panels;
+                far |= all(self.still).choose_below(most, one, zero).bits() << panels;
+                at += Vector::<S>::LEN;
             }
         }
+        (would, far != 0)
+    }
+
+    /// Opens or shifts a panel, which changes all tensions.
+    #[inline(always)]
+    fn change<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], spring: usize, has: f64) {
+        let more = has - hold.open[spring];
+        hold.open[spring] = has;
+        let groups = tension.len();
+        add(simd, tension, &self.stiffness[groups * spring..groups * (spring + 1)], -more);
+    }
+
+    /// What follows from the springs that have opened and slipped in this step, a bit for each: what all tensions have lost, and what is done
+    /// to the modes.
+    #[inline(always)]
+    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moved: u128) {
+        let Hold { open, before, lost, push, .. } = hold;
+        let mut changes = [(0, 0.0); 2 * u64::BITS as usize];
+        let mut count = 0;
+        let mut left = moved;
+        while left != 0 {
+            let spring = left.trailing_zeros() as usize;
+            left &= left - 1;
+            changes[count] = (spring, open[spring] - before[spring]);
+            count += 1;
+        }
+        let changes = &changes[..count];
+        add_all(simd, lost, &self.stiffness, changes);
+        add_all(simd, push, &self.by_spring, changes);
     }
 
     /// Energy of the seat beyond that of one that holds, less the work of rollers [J].
@@ -435,7 +464,12 @@ impl Springs {
         let tensions = tension.iter().flat_map(|row| row.iter());
         let each = hold.open.iter().zip(&hold.lost).zip(tensions);
         -each.map(|((open, lost), tension)| open * (0.5 * lost + tension)).sum::<f64>()
-            + hold.open.iter().zip(&self.pressed).map(|(open, pressed)| open * pressed).sum::<f64>()
+            + hold
+                .open
+                .iter()
+                .zip(self.pressed.iter().flat_map(|row| row.iter()))
+                .map(|(open, pressed)| open * pressed)
+                .sum::<f64>()
     }
 }
 
@@ -478,7 +512,7 @@ mod tests {
         let mut answers = Answers::default();
         springs.pull(Scalar::new(), hold, &all, &answers, &mut tension);
         let heat = springs.settle(Scalar::new(), hold, &mut tension, &mut answers, PASSES);
-        [heat, springs.stored(hold, &tension), tension[0][0] - springs.pressed[0], tension[1][0]]
+        [heat, springs.stored(hold, &tension), tension[0][0] - springs.pressed[0][0], tension[1][0]]
     }
 
     /// A spring and a slider in series: 4 µN (A − µN/k) of heat in a cycle of the amplitude A.
