@@ -3,7 +3,12 @@
 use faer::{
     Conj, MatMut, Par, Side, Spec,
     dyn_stack::{MemBuffer, MemStack, StackReq},
-    sparse::linalg::cholesky::{LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky},
+    sparse::linalg::{
+        SupernodalThreshold,
+        cholesky::{
+            CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+        },
+    },
 };
 
 use super::matrix::Matrix;
@@ -29,8 +34,13 @@ impl Factor {
         // Without an ordering the analysis wants the upper triangle and the numbers the lower one.
         let upper = matrix.pattern().transpose().to_col_major().map_err(failed)?;
         let order = SymmetricOrdering::Identity;
-        let symbolic = factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, order, Default::default())
-            .map_err(failed)?;
+        // By dense blocks, whatever the size: one column after the other takes longer on graded meshes, too.
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..Default::default()
+        };
+        let symbolic =
+            factorize_symbolic_cholesky(upper.as_ref(), Side::Upper, order, params).map_err(failed)?;
         let scratch = StackReq::any_of(&[
             symbolic.factorize_numeric_llt_scratch::<f64>(PAR, Spec::default()),
             symbolic.solve_in_place_scratch::<f64>(COLUMNS, PAR),
