@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use stribeck_bearing::simulation::Progress;
-use stribeck_scene::run_info::clock;
+use stribeck_scene::run_info::{RunInfo, clock};
 
 /// A bar is redrawn this often.
 const REDRAW: Duration = Duration::from_millis(100);
@@ -89,14 +89,30 @@ impl Meter {
             0 => format!("{:.0} ms/s", 1e3 * progress.time_s * (done / progress.step as f64) / elapsed),
             elements => format!("{:.1} M element-steps/s", 1e-6 * done * elements as f64 / elapsed),
         };
+        // What a long run is off by grows with its heat, and says nothing beside the strain energy.
+        let error = match progress.share_of_heat {
+            Some(share) => format!("{:.3} % of the heat", 100.0 * share),
+            None => format!("{:.3} %", 100.0 * progress.energy_error),
+        };
         format!(
-            "{:5.1} %  {:.2} of {} ms  ETA {}  energy error {:.3} %  {pace}",
+            "{:5.1} %  {:.2} of {} ms  ETA {}  energy error {error}  {pace}",
             100.0 * part(progress),
             progress.time_s * 1e3,
             self.duration_ms,
-            clock(elapsed * left / done),
-            progress.energy_error * 100.0
+            clock(elapsed * left / done)
         )
+    }
+}
+
+/// What the energy of a run was off by at most, in words.
+pub(crate) fn energy_error(info: &RunInfo) -> String {
+    let percent = 100.0 * info.energy.max_relative_error;
+    match info.energy.share_of_heat() {
+        Some(share) => format!(
+            "energy error {percent:.3} % of the peak strain energy, {:.3} % of the heat",
+            100.0 * share
+        ),
+        None => format!("energy error {percent:.3} %"),
     }
 }
 
@@ -117,6 +133,7 @@ mod tests {
             steps: 1000,
             time_s: 7.5e-3,
             energy_error: 1.25e-3,
+            share_of_heat: None,
             elements: 100_000,
             phase: "run",
         };
@@ -125,6 +142,9 @@ mod tests {
         assert_eq!(meter.line(&progress, 10.0), expected);
         let reduced = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.125 %  1 ms/s";
         assert_eq!(meter.line(&Progress { elements: 0, ..progress }, 10.0), reduced);
+        let warm = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.022 % of the heat  1 ms/s";
+        let hot = Progress { elements: 0, energy_error: 2.1, share_of_heat: Some(2.2e-4), ..progress };
+        assert_eq!(meter.line(&hot, 10.0), warm);
         assert_eq!(meter.line(&Progress { step: 0, phase: "preload", ..progress }, 0.0), "preload …");
     }
 }

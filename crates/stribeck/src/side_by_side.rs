@@ -15,6 +15,7 @@ use stribeck_scene::scene::Scene;
 use crate::board::Board;
 use crate::host::{self, SharedClock};
 use crate::interrupt::Interrupt;
+use crate::progress::energy_error;
 
 /// A run that is to be made or continued.
 pub(crate) struct Due {
@@ -136,9 +137,10 @@ impl<'a> Shop<'a> {
 
 /// How a run ended, in a line.
 fn words(info: &RunInfo) -> String {
-    let (time, error) = (clock(info.setup_s + info.wall_s), 100.0 * info.energy.max_relative_error);
     match (info.status, &info.stop_reason) {
-        (Status::Complete, _) => format!("complete after {time}, energy error {error:.3} %"),
+        (Status::Complete, _) => {
+            format!("complete after {}, {}", clock(info.setup_s + info.wall_s), energy_error(info))
+        }
         (Status::Diverged, Some(why)) => format!("diverged: {why}"),
         (_, Some(why)) => why.clone(),
         (_, None) => "ended early".to_owned(),

@@ -21,7 +21,7 @@ use crate::host;
 use crate::interrupt::{self, Interrupt};
 use crate::out::say;
 use crate::place::{Place, shown};
-use crate::progress::Meter;
+use crate::progress::{Meter, energy_error};
 use crate::ranks::Processes;
 
 /// Flags of `simulate`.
@@ -279,15 +279,12 @@ fn announce(info: &RunInfo) {
             )
         }
     };
-    let heat = info.energy.share_of_heat().map_or(String::new(), |share| {
-        format!(" of the peak strain energy, {:.3} % of the heat", 100.0 * share)
-    });
     say!(
-        "{how}: {} steps of {step}, {size}, {} (set-up {}), {pace}, energy error {:.3} %{heat}",
+        "{how}: {} steps of {step}, {size}, {} (set-up {}), {pace}, {}",
         info.steps,
         clock(info.wall_s),
         clock(info.setup_s),
-        info.energy.max_relative_error * 100.0
+        energy_error(info)
     );
     if let Some(reason) = &info.stop_reason {
         eprintln!("stopped: {reason}");
