@@ -119,7 +119,7 @@ impl time_loop::Motion for Motion {
         bearing.advance(state, scratch, steps - 1, false);
         let before = bearing.before_last_step(state);
         bearing.advance(state, scratch, 1, true);
-        scratch.end(state);
+        scratch.show(state);
         bearing.row(state, scratch, &before, memory, row);
         let mut ledger = self.ledger();
         self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);

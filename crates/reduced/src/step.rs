@@ -67,7 +67,7 @@ impl Scratch {
     }
 
     /// Shows the state what is sampled and looked at.
-    pub(crate) fn end(&self, state: &mut State) {
+    pub(crate) fn show(&self, state: &mut State) {
         self.blocks.iter().for_each(|block| block.show(state));
     }
 

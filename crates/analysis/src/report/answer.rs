@@ -163,7 +163,7 @@ fn mesh(summary: &Summary) -> String {
         return "Nothing turns, so that no facets pass a contact.".into();
     }
     if families.iter().all(|f| f.lead.is_none()) {
-        return "This record is too short to tell a family of facet lines from anything else.".into();
+        return "This record is too short, or sampled too slowly, to tell a family of facet lines from anything else.".into();
     }
     let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
     let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);

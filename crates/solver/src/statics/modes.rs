@@ -59,7 +59,7 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
         images.chunks_exact_mut(n).for_each(|image| basis.times_mass(image));
         motions.solve(&mut images);
         basis.take_out_the_last(&mut images);
-        let (m, before) = (basis.len(), basis.blocks.len());
+        let m = basis.len();
         let lengths = basis.extend(images);
         // Of a block that is cut short because hardly any room is left, nothing is known before it has been taken through.
         let all = m == basis.len();
@@ -67,7 +67,7 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
             continue;
         }
         let failed = || Error::Modes { found, iterations: m, hertz };
-        let (values, vectors) = eigen(&basis.projected(before)).ok_or_else(failed)?;
+        let (values, vectors) = eigen(&basis.projected()).ok_or_else(failed)?;
         // Ascending: the last value belongs to the lowest frequency.
         let last = vectors.get(m - lengths.ncols().., ..);
         let converged = |i: usize| {
@@ -214,12 +214,12 @@ impl Basis {
         self.blocks.push(along);
     }
 
-    /// The operator in terms of the first blocks, symmetric.
-    fn projected(&self, blocks: usize) -> Mat<f64> {
-        let size = self.blocks[..blocks].iter().map(Mat::ncols).sum();
+    /// The operator in terms of the blocks whose images are known, symmetric.
+    fn projected(&self) -> Mat<f64> {
+        let size = self.blocks.iter().map(Mat::ncols).sum();
         let mut t = Mat::<f64>::zeros(size, size);
         let mut first = 0;
-        for block in &self.blocks[..blocks] {
+        for block in &self.blocks {
             let own = block.nrows() - block.ncols();
             for j in 0..block.ncols() {
                 for i in 0..own {
