@@ -40,6 +40,16 @@ impl LedgerError {
         let apart = percent > stop_percent && self.of_heat > GATHERED && self.of_motion > OF_MOTION;
         apart || percent.is_nan() || self.of_heat.is_nan()
     }
+
+    /// Its share of the heat, in words.
+    fn share_of_heat(&self) -> String {
+        match 100.0 * self.of_heat {
+            percent if percent < 0.1 => format!("{percent:.3} % of all heat"),
+            percent if percent < 100.0 => format!("{percent:.1} % of all heat"),
+            // A bearing without friction and damping makes no heat to speak of.
+            _ => "more than all heat".to_owned(),
+        }
+    }
 }
 
 /// What a run that diverges exceeds: shares of the heat and of the energy of motion.
@@ -150,20 +160,17 @@ impl Guards {
         let limits = &self.limits;
         let percent = 100.0 * off.of_strain;
         if off.is_divergence(limits.energy_stop_percent) {
-            // A bearing without friction and damping makes no heat to speak of.
-            let of_heat = match off.of_heat {
-                share if share < 1.0 => format!("{:.1} % of all heat", 100.0 * share),
-                _ => "more than all heat".to_owned(),
-            };
             return Some(format!(
-                "energy is off by {percent:.3} % of the peak strain energy and {of_heat} {when}. {}",
+                "energy is off by {percent:.3} % of the peak strain energy and {} {when}. {}",
+                off.share_of_heat(),
                 self.advice(state)
             ));
         }
         if percent > limits.energy_warning_percent && !info.guards.energy_warned {
             info.guards.energy_warned = true;
             info.warnings.push(format!(
-                "energy was off by {percent:.3} % of the peak strain energy {when}: take a smaller `model.step_us`"
+                "energy was off by {percent:.3} % of the peak strain energy and {} {when}: take a smaller `model.step_us`",
+                off.share_of_heat()
             ));
         }
         self.penetration(info, deepest, &when).or_else(|| {

@@ -126,6 +126,22 @@ impl EnergyInfo {
         let share = self.max_relative_error * self.peak_strain_j / self.heat_j;
         (self.heat_j > self.peak_strain_j && share.is_finite()).then_some(share)
     }
+
+    /// What the energy was off by at most, as [`imbalance`] says it.
+    pub fn in_words(&self) -> String {
+        imbalance(self.max_relative_error, self.share_of_heat())
+    }
+}
+
+/// What an energy is off by, over the peak strain energy and, where that is more, over the heat, in words. A rigid housing stores next to
+/// nothing as strain: what exceeds that is told by its share of the heat alone.
+pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
+    let strain = format!("{:.3} % of the peak strain energy", 100.0 * of_strain);
+    match of_heat.map(|share| format!("{:.3} % of the heat", 100.0 * share)) {
+        Some(heat) if of_strain > 1.0 => heat,
+        Some(heat) => format!("{strain}, {heat}"),
+        None => strain,
+    }
 }
 
 /// The worst that the guards have seen (`guards.rs`).
@@ -186,7 +202,23 @@ pub fn clock(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::clock;
+    use super::{EnergyInfo, clock};
+
+    /// A rigid housing stores millionths of what turns into heat.
+    #[test]
+    fn example_what_exceeds_all_strain_is_told_by_its_heat() {
+        let energy = |max_relative_error, peak_strain_j, heat_j| EnergyInfo {
+            max_relative_error,
+            peak_strain_j,
+            heat_j,
+        };
+        assert_eq!(energy(2e-3, 0.5, 0.1).in_words(), "0.200 % of the peak strain energy");
+        assert_eq!(
+            energy(2e-3, 0.5, 5.0).in_words(),
+            "0.200 % of the peak strain energy, 0.020 % of the heat"
+        );
+        assert_eq!(energy(440.0, 1e-3, 100.0).in_words(), "0.440 % of the heat");
+    }
 
     #[test]
     fn example_times_are_written_for_people() {

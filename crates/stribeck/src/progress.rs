@@ -106,14 +106,7 @@ impl Meter {
 
 /// What the energy of a run was off by at most, in words.
 pub(crate) fn energy_error(info: &RunInfo) -> String {
-    let percent = 100.0 * info.energy.max_relative_error;
-    match info.energy.share_of_heat() {
-        Some(share) => format!(
-            "energy error {percent:.3} % of the peak strain energy, {:.3} % of the heat",
-            100.0 * share
-        ),
-        None => format!("energy error {percent:.3} %"),
-    }
+    format!("energy error {}", info.energy.in_words())
 }
 
 /// Part of the steps that is done, 0 to 1.

@@ -4,13 +4,14 @@ use maud::{Markup, html};
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
 use stribeck_scene::run_dir::Run;
+use stribeck_scene::run_info::imbalance;
 use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::{Artefact, Family};
 use crate::duty::DutyFinding;
 use crate::families::FamilyFinding;
 use crate::rolling;
-use crate::summary::{PhaseLevels, Summary};
+use crate::summary::{EnergyFinding, PhaseLevels, Summary};
 use crate::words::{gravities, significant};
 
 /// Rollers that are named one by one, at most.
@@ -270,14 +271,8 @@ fn physics(run: &Run, summary: &Summary) -> String {
 }
 
 fn trust(summary: &Summary) -> String {
-    let heat = summary
-        .energy
-        .share_of_heat
-        .map_or(String::new(), |share| format!(" ({:.3} % of what became heat)", 100.0 * share));
-    let energy = format!(
-        "Energy balances to {:.2} % of the peak strain energy{heat}",
-        100.0 * summary.energy.max_relative_error
-    );
+    let EnergyFinding { max_relative_error, share_of_heat, .. } = summary.energy;
+    let energy = format!("Energy balances to {}", imbalance(max_relative_error, share_of_heat));
     let load = summary
         .load
         .relative_error

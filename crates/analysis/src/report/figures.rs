@@ -211,8 +211,8 @@ fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
     )
     .synced("time")
     .caption(format!(
-        "What load and drive supply is found again as motion, strain and heat, within {:.2} % of the peak strain energy.",
-        100.0 * run.info.energy.max_relative_error
+        "What load and drive supply is found again as motion, strain and heat, within {}.",
+        run.info.energy.in_words()
     ))
     .note("Friction, damping and contact damping only grow; kinetic and strain energy go up and down.");
     for (channel, name, colour) in parts {
@@ -225,11 +225,6 @@ fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
     let mut figures = vec![ledger];
     if let Some(error) = energy.get("relative_error") {
         let percent = error.iter().map(|e| 100.0 * e).collect();
-        let heat = run
-            .info
-            .energy
-            .share_of_heat()
-            .map_or(String::new(), |share| format!(" and {:.3} % of all heat", 100.0 * share));
         figures.push(
             Figure::new(
                 "energy-error",
@@ -240,8 +235,8 @@ fn energy(run: &Run) -> Result<Vec<Figure>, Error> {
             .synced("time")
             .with(Series::listed("imbalance", Colour::Red, time.to_vec(), percent))
             .caption(format!(
-                "The largest imbalance is {:.3} % of the peak strain energy{heat}; a run stops when its limit is passed.",
-                100.0 * run.info.energy.max_relative_error
+                "The largest imbalance is {}; a run stops when its limit is passed.",
+                run.info.energy.in_words()
             )),
         );
     }
