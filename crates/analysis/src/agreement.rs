@@ -4,7 +4,7 @@
 //! same start, so what differs is the model, and what chance makes of a small difference: the waveform of one impact is
 //! chaotic, which is why accelerations are compared by the power of third octaves over all starts.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Welch, WelchOptions};
@@ -24,6 +24,9 @@ pub const FROM_S: f64 = 1e-3;
 pub const MEAN_S: f64 = 0.25e-3;
 /// Third octaves, as steps of a third from 1 kHz: 500 Hz to 10 kHz.
 const THIRDS: std::ops::RangeInclusive<i32> = -3..=10;
+/// Samples of the full model that are no farther apart than this leave its third octaves as they are [s]. Nodes of the seat ring above
+/// 50 kHz, and the mean over an interval of 10 µs folds a part of that down (THEORY §9.1).
+pub const FINE_S: f64 = 2e-6;
 /// Bins that a third octave must hold.
 const LEAST_BINS: f64 = 3.0;
 /// Waveforms are compared below these frequencies [Hz], over so many samples at most.
@@ -169,9 +172,20 @@ impl Agreement {
         };
         let mut sides = Vec::new();
         for [full, reduced] in pairs {
-            sides.push([Side::of(full)?, Side::of(reduced)?]);
+            let interval_s = full.info.interval_s.max(reduced.info.interval_s);
+            sides.push([Side::of(full, interval_s)?, Side::of(reduced, interval_s)?]);
         }
         let mut notes = Vec::new();
+        let sampled_s = pairs[0][0].info.interval_s;
+        if sampled_s > 1.01 * FINE_S {
+            notes.push(format!(
+                "samples of the full model every {:.3} µs fold down what nodes ring with above {:.0} kHz, at the seat above all: its third \
+                 octaves are higher than they should be. A shorter record is sampled every {:.0} µs",
+                1e6 * sampled_s,
+                5e-4 / sampled_s,
+                1e6 * FINE_S
+            ));
+        }
         let mut rows = vec![
             forces(&sides),
             share("load", "mean load on the rollers", 0.1, &sides, |s| Some(s.support_n)),
@@ -219,11 +233,15 @@ impl Agreement {
 }
 
 impl Side {
-    fn of(run: &Run) -> Result<Self, Error> {
+    /// Of a run, whose samples may be closer than `interval_s`, in which both models are compared.
+    fn of(run: &Run, interval_s: f64) -> Result<Self, Error> {
         let record = Record::whole(run)?;
         let summary = Findings::of(&record)?.summary;
-        let from = record.time_s().iter().position(|t| *t >= FROM_S).unwrap_or(record.len());
-        let width = (MEAN_S / record.interval_s()).round().max(1.0) as usize;
+        let together = (interval_s / record.interval_s()).round().max(1.0) as usize;
+        // The first interval that ends there.
+        let from =
+            (together * ((FROM_S / interval_s - 1e-9).ceil() as usize).saturating_sub(1)).min(record.len());
+        let width = together * (MEAN_S / interval_s).round().max(1.0) as usize;
         if record.len() - from < 4 * width {
             return Err(Error::NoSignal(format!(
                 "the record of `{}` ends {:.2} ms after the start; models are compared from {:.0} ms on",
@@ -232,7 +250,10 @@ impl Side {
                 1e3 * FROM_S
             )));
         }
-        let mean = |values: &[f64]| running_mean(&values[from..], width);
+        let mean = |values: &[f64]| -> Vec<f64> {
+            running_mean(&values[from..], width).into_iter().step_by(together).collect()
+        };
+        let centres_hz = centres((record.len() - from) / together, 1.0 / interval_s);
         let forces: Vec<[Vec<f64>; 2]> =
             record.rollers().iter().map(|r| [mean(r.outer_fx), mean(r.outer_fy)]).collect();
         let sizes = forces.iter().flat_map(|[x, y]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)));
@@ -252,8 +273,10 @@ impl Side {
                 });
             }
             let [x, y] = {
-                let powers = [bands(&x, record.sample_rate_hz())?, bands(&y, record.sample_rate_hz())?];
-                waveform.get_or_insert((sensor.name.clone(), y, record.sample_rate_hz()));
+                let rate_hz = record.sample_rate_hz();
+                let powers = [bands(&x, rate_hz, &centres_hz)?, bands(&y, rate_hz, &centres_hz)?];
+                let means = y.chunks_exact(together).map(|part| part.iter().sum::<f64>() / together as f64);
+                waveform.get_or_insert_with(|| (sensor.name.clone(), means.collect(), 1.0 / interval_s));
                 powers
             };
             powers.push((sensor.name.clone(), x.iter().zip(&y).map(|(x, y)| x + y).collect()));
@@ -262,7 +285,7 @@ impl Side {
             largest_n: sizes.fold(0.0, f64::max),
             support_n: support.iter().sum::<f64>() / support.len() as f64,
             cpu_s_per_ms: run.info.loop_cpu_s / summary.run.simulated_ms,
-            centres_hz: centres(record.len() - from, record.sample_rate_hz()),
+            centres_hz,
             forces,
             lines_g,
             waveform,
@@ -309,14 +332,18 @@ fn centres(samples: usize, rate_hz: f64) -> Vec<f64> {
     all.filter(|hz| hz * 0.23 >= LEAST_BINS * grid_hz && 1.13 * hz < 0.5 * rate_hz).collect()
 }
 
-/// Mean square in each third octave.
-fn bands(values: &[f64], rate_hz: f64) -> Result<Vec<f64>, Error> {
+/// Mean square in third octaves, of what the means over a sampling interval were taken of.
+fn bands(values: &[f64], rate_hz: f64, centres_hz: &[f64]) -> Result<Vec<f64>, Error> {
     let options = WelchOptions::new(values.len());
     let mut welch = Welch::new(rate_hz, values.len(), &options).map_err(Error::Signal)?;
     let spectrum = welch.estimate(values).map_err(Error::Signal)?;
     let edge = (1.0_f64 / 6.0).exp2();
-    let power = |hz: f64| Ok(spectrum.band_rms(hz / edge, hz * edge).map_err(Error::Signal)?.powi(2));
-    centres(values.len(), rate_hz).into_iter().map(power).collect()
+    let power = |hz: &f64| {
+        let half_turn = PI * hz / rate_hz;
+        let of_means = half_turn.sin() / half_turn;
+        Ok((spectrum.band_rms(hz / edge, hz * edge).map_err(Error::Signal)? / of_means).powi(2))
+    };
+    centres_hz.iter().map(power).collect()
 }
 
 fn statistic(values: impl Iterator<Item = Option<f64>>, of: usize) -> Option<Statistic> {

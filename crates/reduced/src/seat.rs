@@ -310,18 +310,96 @@ impl Panels {
             }
         }
         let mut pressed = vec![0.0; padded];
-        for (slot, [fx, fy]) in parts.back {
-            let [x, y] = place(*slot);
-            // The seat presses the ring towards its centre.
-            pressed[panel_of(y.atan2(x))] -= (fx * x + fy * y) / x.hypot(y);
+        for ((_, angle), force) in springs.iter().zip(pressing(parts)) {
+            pressed[panel_of(*angle)] += force;
         }
         pressed.iter_mut().for_each(|force| *force = force.max(0.0));
         Some(Self { count, padded, members, stiffness, pressed })
     }
 }
 
+/// Force that presses each spring at the preload [N]: that on each node of the ring goes through the springs that reach the node, by their
+/// parts of the stiffness there. A panel that held whole nodes instead would let go too early or too late where its edges lie between them.
+fn pressing(parts: &Parts<'_>) -> Vec<f64> {
+    let mut inwards = vec![0.0; parts.x.len()];
+    for (slot, [fx, fy]) in parts.back {
+        let [x, y] = [parts.x[*slot as usize], parts.y[*slot as usize]];
+        inwards[*slot as usize] = -(fx * x + fy * y) / x.hypot(y);
+    }
+    let reach = |spring: &Spring| -> Vec<(usize, f64)> {
+        let nodes = spring.slots.iter().zip(spring.direction.chunks_exact(2));
+        let parts = nodes.map(|(slot, d)| (*slot as usize, spring.stiffness * d[0].hypot(d[1])));
+        parts.filter(|(_, stiffness)| *stiffness > 0.0).collect()
+    };
+    let mut held = vec![0.0; parts.x.len()];
+    for (slot, stiffness) in parts.springs.iter().flat_map(reach) {
+        held[slot] += stiffness;
+    }
+    let of = |spring: &Spring| reach(spring).iter().map(|(slot, k)| inwards[*slot] * k / held[*slot]).sum();
+    parts.springs.iter().map(of).collect()
+}
+
 /// The spring across a normal one: the same nodes, directions turned by a right angle.
 fn sticking(normal: &Spring) -> Spring {
     let turned = normal.direction.chunks_exact(2).flat_map(|d| [-d[1], d[0]]).collect();
     Spring { slots: normal.slots.clone(), direction: turned, stiffness: STICKING * normal.stiffness }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    /// A ring's back on springs alike, three points a facet, that a pressure alike presses: wherever the edges of panels lie between
+    /// nodes, all of them are pressed as hard for their stiffness, but for the two at the ends, whose last nodes have half a facet each.
+    #[test]
+    fn invariant_panels_of_a_uniform_seat_are_pressed_alike() {
+        const NODES: usize = 101;
+        let (radius, spacing) = (0.1, 0.0123);
+        let angle = |node: f64| FRAC_PI_2 + spacing * (node - 0.5 * (NODES - 1) as f64);
+        let place = |node: usize| angle(node as f64).sin_cos();
+        let x: Vec<f64> = (0..NODES).map(|n| radius * place(n).1).collect();
+        let y: Vec<f64> = (0..NODES).map(|n| radius * place(n).0).collect();
+        let on_facet = |facet: usize, share: f64| {
+            let (s, c) = angle(facet as f64 + share).sin_cos();
+            let ends = [(facet, 1.0 - share), (facet + 1, share)];
+            Spring {
+                slots: ends.iter().map(|(node, _)| *node as u32).collect(),
+                direction: ends.iter().flat_map(|(_, part)| [part * c, part * s]).collect(),
+                stiffness: 1e8,
+            }
+        };
+        let springs: Vec<Spring> = (0..NODES - 1)
+            .flat_map(|n| [1.0 / 6.0, 0.5, 5.0 / 6.0].map(|share| on_facet(n, share)))
+            .collect();
+        let force = |n: usize| if n == 0 || n == NODES - 1 { 50.0 } else { 100.0 };
+        let back: Vec<(u32, [f64; 2])> =
+            (0..NODES).map(|n| (n as u32, [-force(n) * place(n).1, -force(n) * place(n).0])).collect();
+        for thickness in [0.004, 0.0071, 0.01, 0.0137] {
+            let parts = Parts {
+                springs: &springs,
+                friction: true,
+                x: &x,
+                y: &y,
+                back: &back,
+                raceway: &[],
+                sensors: &[],
+                of_ring: &|_| true,
+                thickness,
+            };
+            let panels = Panels::of(&parts).expect("a seat");
+            let all: f64 = panels.pressed.iter().sum();
+            assert!((all - 100.0 * (NODES - 1) as f64).abs() < 1e-9, "{all} N");
+            let alike = 100.0 / 3e8;
+            for n in 1..panels.count - 1 {
+                let given = panels.pressed[n] / panels.stiffness[n];
+                assert!(
+                    (given / alike - 1.0).abs() < 1e-9,
+                    "{given} m, {alike} m at panel {n} of {}",
+                    panels.count
+                );
+            }
+        }
+    }
 }

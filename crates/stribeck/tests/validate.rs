@@ -82,6 +82,22 @@ fn example_both_models_from_the_same_starts() {
     assert!(
         same.correlations.len() == 2 && same.correlations.iter().all(|c| (c.value.mean - 1.0).abs() < 1e-9)
     );
+    // The full run is sampled five times as often, and agrees with the means of its own samples.
+    let fine = || Run::read(folder.join("full/start-001")).unwrap();
+    let coarse = fivefold(&folder.join("full/start-001"), &desk.join("coarse"));
+    let thinned = Agreement::of(&scene, &[[fine(), coarse]]).unwrap();
+    for name in ["forces_percent", "load_percent"] {
+        let off = thinned.rows.iter().find(|row| row.name == name).unwrap();
+        assert!(off.difference.mean.abs() < 1e-9, "{off:?}");
+    }
+    assert!(
+        thinned.correlations.iter().all(|c| (c.value.mean - 1.0).abs() < 1e-9),
+        "{:?}",
+        thinned.correlations
+    );
+    // Between them third octaves tell what samples fold down, and little else at 500 Hz.
+    let octaves = &thinned.sensors[0];
+    assert!((octaves.reduced_db[0] - octaves.full_db[0]).abs() < 0.5, "{octaves:?}");
     // One start has no scatter, and tells nothing.
     assert!(same.rows.iter().all(|row| !row.told));
     let twice = Agreement::of(&scene, &[[own(), own()], [own(), own()]]).unwrap();
@@ -110,6 +126,30 @@ fn example_both_models_from_the_same_starts() {
     assert!((side.difference.mean - 20.0 * 1.02_f64.log10()).abs() < 1e-9, "{side:?}");
     // 2 % of the root mean square of all forces.
     assert!((0.05..2.0).contains(&of("forces_percent").difference.mean));
+}
+
+/// A copy of a run, sampled a fifth as often.
+fn fivefold(from: &std::path::Path, to: &std::path::Path) -> Run {
+    fs::create_dir(to).unwrap();
+    for name in ["scene.ron", "energy.npy"] {
+        fs::copy(from.join(name), to.join(name)).unwrap();
+    }
+    let mut info: Value = serde_json::from_slice(&fs::read(from.join("run.json")).unwrap()).unwrap();
+    info["interval_s"] = (5.0 * info["interval_s"].as_f64().unwrap()).into();
+    info["samples"] = (info["samples"].as_u64().unwrap() / 5).into();
+    fs::write(to.join("run.json"), info.to_string()).unwrap();
+    let trace = Trace::read(from.join("trace.npy")).unwrap();
+    let mut writer = TraceWriter::create(to.join("trace.npy"), &trace.names).unwrap();
+    for n in 0..trace.len() / 5 {
+        let of = |(name, column): (&String, &Vec<f64>)| {
+            let part = &column[5 * n..5 * (n + 1)];
+            let is_mean = !name.contains("instant") && (name.ends_with("_n") || name.ends_with("_m_s2"));
+            if is_mean { part.iter().sum::<f64>() / 5.0 } else { part[4] }
+        };
+        writer.push(&trace.names.iter().zip(&trace.columns).map(of).collect::<Vec<f64>>()).unwrap();
+    }
+    writer.finish().unwrap();
+    Run::read(to).unwrap()
 }
 
 #[test]
