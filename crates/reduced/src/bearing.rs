@@ -20,8 +20,9 @@ use crate::{
     outline::Outline,
     overlap::Sides,
     reduction::Reduction,
-    row::{Row, Rows},
+    row::{Row, Rows, Single, in_single, largest_of},
     seat::{STICKING, Springs},
+    sensors::Sensors,
     state::State,
 };
 
@@ -37,7 +38,11 @@ pub struct Bearing {
     /// The reduced rings.
     pub reduction: Reduction,
     /// Their shapes at the vertices of the outer raceway again, in rows.
-    pub(crate) shapes: Vec<Row>,
+    pub(crate) shapes: Vec<Single>,
+    /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
+    pub(crate) farthest: Vec<Row>,
+    /// What sensors hear.
+    pub(crate) sensors: Sensors,
     /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
     pub(crate) dampers: Vec<Row>,
     /// Contact with the outer raceway.
@@ -255,7 +260,7 @@ impl Bearing {
         level_walls(&mut reduction.shapes, &angles);
         reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
         let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let shapes = reduction.shapes.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
+        let shapes = in_single(&mut reduction.shapes);
         let bounds = nearest_about(&outer, BESIDE * radius, 1.0 / (kr - ko));
         let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
         let mut outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
@@ -265,7 +270,7 @@ impl Bearing {
         let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
         let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
         let oil = Lubrication::new(scene, raceways, &rounded, penalty)?;
-        let seat = reduction.springs.as_ref();
+        let seat = reduction.springs.as_mut();
         let seat = seat.map(|seat| Springs::new(seat, reduction.padded, scene.contact.seat_friction));
         Ok(Self {
             time_step,
@@ -294,6 +299,8 @@ impl Bearing {
             rims,
             rim_of,
             shapes,
+            farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
+            sensors: Sensors::new(&reduction),
             dampers,
             reduction,
         })

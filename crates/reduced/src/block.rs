@@ -1,6 +1,7 @@
 //! Eight rollers side by side: loaded from the state before some steps, and written back after them.
 
-use stribeck_simd::lanes::LANES;
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Vector};
 
 use crate::{
     bearing::Bearing,
@@ -36,12 +37,20 @@ pub(crate) struct Block {
     pub(crate) along: Rows,
     pub(crate) ends: [Rows; 2],
     pub(crate) placed: u64,
-    /// The place on the outer raceway: facet and share of its second vertex; how that moves, as [`crate::modes::Moved`] says.
+    /// The place on the outer raceway: facet and share of its second vertex; one over the angle that the facet
+    /// takes [1/rad]; displacement there [m], velocity [m/s], and change of the displacement with the angle [m/rad].
     pub(crate) facet: [u32; LANES],
     pub(crate) share: Row,
+    pub(crate) per_angle: Row,
     pub(crate) by: Rows,
     pub(crate) moving: Rows,
     pub(crate) tilt: Rows,
+    /// By how much the raceway may have moved under them at most since these were known [m].
+    pub(crate) drift: Row,
+    /// What these come from: by the modes, as [`Bearing::moved`] says, and by the seat at both vertices, roller by roller in parts, and
+    /// summed.
+    pub(crate) sights: [[Row; 8]; LANES],
+    pub(crate) moved: [Row; 8],
     /// At outer and inner raceway.
     pub(crate) contacts: [Contacts; 2],
     /// At the two walls of each pocket.
@@ -116,6 +125,7 @@ impl Block {
         let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
         // Those that are missing keep clear of both raceways.
         block.centre[0] = Row([bearing.outer.bound; LANES]);
+        block.drift = Row([f64::INFINITY; LANES]);
         for (contacts, track) in block.contacts.iter_mut().zip([&bearing.outer, &bearing.inner]) {
             contacts.bound = Row([track.bound; LANES]);
         }
@@ -124,6 +134,14 @@ impl Block {
             block.top[lane] = bearing.rim(first + lane).top;
         }
         block
+    }
+
+    /// Sums up how the outer raceway moves under each of the rollers.
+    #[inline(always)]
+    pub(crate) fn sum_sights<S: Simd>(&mut self, simd: S) {
+        for (n, to) in self.moved.iter_mut().enumerate() {
+            Vector::store_sums(simd, self.sights.each_ref().map(|sight| &sight[n][..]), &mut to.0);
+        }
     }
 
     /// Takes the rollers from a state.

@@ -232,9 +232,10 @@ impl Guards {
     }
 
     fn places(&self, state: &State, when: &When) -> Option<String> {
+        let squares = self.annulus.map(|radius| radius * radius);
         for (number, (x, y)) in self.numbers.iter().zip(state.x.iter().zip(&state.y)) {
-            let radius = x.hypot(*y);
-            if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
+            if !(squares[0]..=squares[1]).contains(&(x * x + y * y)) {
+                let radius = x.hypot(*y);
                 let through = if radius < self.annulus[0] { "inner" } else { "outer" };
                 return Some(format!(
                     "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from that of the bearing {when}. Take a larger \

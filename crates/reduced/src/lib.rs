@@ -43,6 +43,7 @@ mod raceway;
 mod row;
 mod seam;
 pub mod seat;
+mod sensors;
 pub mod step;
 mod touch;
 

@@ -8,29 +8,17 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{
     bearing::Bearing,
     heard::Heard,
-    row::Row,
+    row::{Numbers, Row, Single},
     seat::{Answers, Springs},
     state::{Spent, State, Stored},
 };
 
-/// A place on the outer raceway: a facet, the share of its second vertex, and the shapes at both of them.
+/// A place on a facet of the outer raceway: the share of its second vertex, and the shapes at both of them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Place<'a> {
-    pub(crate) facet: usize,
     pub(crate) share: f64,
     /// Of x and of y, in groups of modes.
-    shapes: [[&'a [Row]; 2]; 2],
-}
-
-/// How the outer raceway moves at a place.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Moved {
-    /// Displacement [m].
-    pub(crate) by: [f64; 2],
-    /// Velocity [m/s].
-    pub(crate) velocity: [f64; 2],
-    /// Change of the displacement with the angle [m/rad].
-    pub(crate) tilt: [f64; 2],
+    shapes: [[&'a [Single]; 2]; 2],
 }
 
 /// Coordinates and velocities of the modes, and the forces on them, in rows.
@@ -84,12 +72,13 @@ impl Bearing {
             let both = &self.shapes[2 * groups * vertex..2 * groups * (vertex + 1)];
             [&both[..groups], &both[groups..2 * groups]]
         };
-        Place { facet, share, shapes: [shapes(facet), shapes(second)] }
+        Place { share, shapes: [shapes(facet), shapes(second)] }
     }
 
-    /// How the raceway moves at a place. Both vertices are summed over all modes, and what lies between follows from the sums.
+    /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity [m/s], and by how much more the
+    /// second vertex of its facet is displaced than the first [m]. Both vertices are summed over all modes, and what lies between follows.
     #[inline(always)]
-    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, modes: &Modes) -> Moved {
+    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, modes: &Modes) -> [Vector<S>; 6] {
         let groups = self.reduction.padded / LANES;
         let [[ax, ay], [bx, by]] = place.shapes;
         let (q, v) = (&modes.q[..groups], &modes.v[..groups]);
@@ -99,12 +88,12 @@ impl Bearing {
             let mut at = 0;
             while at < LANES {
                 let (q, v) = (Vector::load(simd, &q[n], at), Vector::load(simd, &v[n], at));
-                let (x, y) = (Vector::load(simd, &ax[n], at), Vector::load(simd, &ay[n], at));
+                let (x, y) = (ax[n].load(simd, at), ay[n].load(simd, at));
                 first[0] = x.times_plus(q, first[0]);
                 first[1] = y.times_plus(q, first[1]);
                 first[2] = x.times_plus(v, first[2]);
                 first[3] = y.times_plus(v, first[3]);
-                let (x, y) = (Vector::load(simd, &bx[n], at), Vector::load(simd, &by[n], at));
+                let (x, y) = (bx[n].load(simd, at), by[n].load(simd, at));
                 second[0] = x.times_plus(q, second[0]);
                 second[1] = y.times_plus(q, second[1]);
                 second[2] = x.times_plus(v, second[2]);
@@ -113,14 +102,16 @@ impl Bearing {
             }
         }
         let share = Vector::all(simd, place.share);
-        let (dx, dy) = (second[0] - first[0], second[1] - first[1]);
-        let by = [share.times_plus(dx, first[0]).sum(), share.times_plus(dy, first[1]).sum()];
-        let velocity = [
-            share.times_plus(second[2] - first[2], first[2]).sum(),
-            share.times_plus(second[3] - first[3], first[3]).sum(),
-        ];
-        let angle = self.outer.angle[place.facet];
-        Moved { by, velocity, tilt: [dx.sum() * angle, dy.sum() * angle] }
+        let [dx, dy] = [second[0] - first[0], second[1] - first[1]];
+        let [vx, vy] = [second[2] - first[2], second[3] - first[3]];
+        [
+            share.times_plus(dx, first[0]),
+            share.times_plus(dy, first[1]),
+            share.times_plus(vx, first[2]),
+            share.times_plus(vy, first[3]),
+            dx,
+            dy,
+        ]
     }
 
     /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
@@ -135,10 +126,10 @@ impl Bearing {
         for n in 0..groups {
             let mut at = 0;
             while at < LANES {
-                let here = Vector::load(simd, &ax[n], at).times_plus(fx, Vector::load(simd, &push[n], at));
-                let here = Vector::load(simd, &ay[n], at).times_plus(fy, here);
-                let there = Vector::load(simd, &bx[n], at) * sx;
-                let there = Vector::load(simd, &by[n], at).times_plus(sy, there);
+                let here = ax[n].load(simd, at).times_plus(fx, Vector::load(simd, &push[n], at));
+                let here = ay[n].load(simd, at).times_plus(fy, here);
+                let there = bx[n].load(simd, at) * sx;
+                let there = by[n].load(simd, at).times_plus(sy, there);
                 (here + there).store(&mut push[n], at);
                 at += Vector::<S>::LEN;
             }

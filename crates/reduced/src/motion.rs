@@ -117,10 +117,9 @@ impl time_loop::Motion for Motion {
         let Self { bearing, saved: Saved { state, memory, .. }, scratch, row, .. } = self;
         scratch.begin(bearing, state.steps / steps as u64);
         bearing.advance(state, scratch, steps - 1, false);
-        let before = bearing.before_last_step(state);
         bearing.advance(state, scratch, 1, true);
         scratch.show(state);
-        bearing.row(state, scratch, &before, memory, row);
+        bearing.row(state, scratch, memory, row);
         let mut ledger = self.ledger();
         self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);
         self.off = LedgerError::of(&ledger);

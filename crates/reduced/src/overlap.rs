@@ -3,7 +3,7 @@
 //! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
     outline::{Facet, Parts, View, Walk},
@@ -136,6 +136,24 @@ impl Overlap<Row> {
         }
     }
 
+    /// Of eight contacts, each from its parts, which lie in the first lanes.
+    #[inline(always)]
+    pub(crate) fn sum_up<S: Simd>(&mut self, simd: S, parts: &[Self; LANES]) {
+        let of = |number: fn(&Self) -> &Row| parts.each_ref().map(|parts| &number(parts)[..]);
+        Vector::store_sums(simd, of(|of| &of.area), &mut self.area.0);
+        Vector::store_sums(simd, of(|of| &of.across), &mut self.across.0);
+        Vector::store_sums(simd, of(|of| &of.moment), &mut self.moment.0);
+        Vector::store_sums(simd, of(|of| &of.square), &mut self.square.0);
+        Vector::store_sums(simd, of(|of| &of.length), &mut self.length.0);
+        Vector::store_sums(simd, of(|of| &of.first), &mut self.first.0);
+        Vector::store_sums(simd, of(|of| &of.second), &mut self.second.0);
+        Vector::store_sums(simd, of(|of| &of.slope), &mut self.slope.0);
+        Vector::store_sums(simd, of(|of| &of.arm), &mut self.arm.0);
+        Vector::store_sums(simd, of(|of| &of.skew), &mut self.skew.0);
+        Vector::store_sums(simd, of(|of| &of.ends), &mut self.ends.0);
+        Vector::store_largest(simd, of(|of| &of.deepest), &mut self.deepest.0);
+    }
+
     /// Replaces one of them.
     pub(crate) fn set(&mut self, lane: usize, by: &Overlap) {
         self.area[lane] = by.area;
@@ -154,25 +172,6 @@ impl Overlap<Row> {
 }
 
 impl<S: Simd> Overlap<Vector<S>> {
-    /// Of all parts together.
-    #[inline(always)]
-    pub(crate) fn total(self) -> Overlap {
-        Overlap {
-            area: self.area.sum(),
-            across: self.across.sum(),
-            moment: self.moment.sum(),
-            square: self.square.sum(),
-            length: self.length.sum(),
-            first: self.first.sum(),
-            second: self.second.sum(),
-            slope: self.slope.sum(),
-            arm: self.arm.sum(),
-            skew: self.skew.sum(),
-            ends: self.ends.sum(),
-            deepest: self.deepest.largest(),
-        }
-    }
-
     /// Writes them to the lanes from `at` on.
     #[inline(always)]
     pub(crate) fn store(self, to: &mut Overlap<Row>, at: usize) {

@@ -6,8 +6,8 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{
     bearing::Bearing,
     block::Block,
-    modes::{Modes, Moved},
-    row::{lanes, load, of_one, store},
+    modes::Modes,
+    row::{Row, lanes, largest_sum, load, of_one, store},
     seat::Hold,
     step::Turning,
 };
@@ -23,34 +23,44 @@ impl Bearing {
         }
     }
 
-    /// Finds the places of eight rollers, whose facets are known, by raceways that may turn.
+    /// How far a vertex of the outer raceway moves at most in a step [m].
+    #[inline(always)]
+    pub(crate) fn farthest<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&Hold>) -> f64 {
+        let with_modes = self.time_step * largest_sum(simd, &self.farthest, &modes.v);
+        match (&self.seat, hold) {
+            (Some(seat), Some(hold)) => with_modes + seat.farthest(simd, hold),
+            _ => with_modes,
+        }
+    }
+
+    /// Finds the places of eight rollers, whose facets are known, by raceways that may turn. No vertex of the outer one has moved by more
+    /// than `farthest` [m] in this step.
     #[inline(always)]
     pub(crate) fn place_rollers<S: Simd>(
         &self,
         simd: S,
         modes: &Modes,
         hold: Option<&Hold>,
+        farthest: f64,
         block: &mut Block,
         [outer, inner]: [Option<Turning>; 2],
     ) {
-        for lane in lanes(block.bits) {
+        let clear = self.clear_of_raceway(simd, farthest, block, outer);
+        for lane in lanes(block.bits & !clear) {
             let (facet, share) = (block.facet[lane] as usize, block.share[lane]);
-            let Moved { mut by, velocity, mut tilt } = self.moved(simd, &self.place(facet, share), modes);
-            if let (Some(seat), Some(hold)) = (&self.seat, hold) {
-                let [first, second] = seat.under(simd, hold, facet);
-                let outwards = first + share * (second - first);
-                let slope = (second - first) * self.outer.angle[facet];
-                // It points outwards at every place, so that it turns along the raceway.
-                let [x, y] = of_one(&block.along, lane);
-                by = [by[0] + x * outwards, by[1] + y * outwards];
-                tilt = [tilt[0] + x * slope - y * outwards, tilt[1] + y * slope + x * outwards];
+            let sights = &mut block.sights[lane];
+            let moved = self.moved(simd, &self.place(facet, share), modes);
+            for (parts, to) in moved.into_iter().zip(&mut sights[..]) {
+                parts.store(to, 0);
             }
-            for c in 0..2 {
-                block.by[c][lane] = by[c];
-                block.moving[c][lane] = velocity[c];
-                block.tilt[c][lane] = tilt[c];
+            if let (Some(seat), Some(hold)) = (&self.seat, hold) {
+                for (parts, to) in seat.under(simd, hold, facet).into_iter().zip(&mut sights[6..]) {
+                    parts.store(to, 0);
+                }
             }
         }
+        block.sum_sights(simd);
+        self.see_moved(simd, block);
         // Where a raceway turns, everything is turned back.
         let [on_outer, on_inner] = &mut block.contacts;
         let mut at = 0;
@@ -70,6 +80,65 @@ impl Bearing {
                 store(turning.back(simd, centre), &mut contacts.centre, at);
                 store(turning.back(simd, spin), &mut contacts.spin, at);
             }
+            at += Vector::<S>::LEN;
+        }
+    }
+
+    /// Rollers that cannot touch the outer raceway, wherever it has moved since they were looked at: where it is under them need not be
+    /// known (THEORY §9.3).
+    #[inline(always)]
+    fn clear_of_raceway<S: Simd>(
+        &self,
+        simd: S,
+        farthest: f64,
+        block: &mut Block,
+        outer: Option<Turning>,
+    ) -> u64 {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, dt) = (all(0.0), all(1.0), all(self.time_step));
+        let race = all(outer.map_or(0.0, |outer| outer.rate.abs()));
+        let mut clear = 0;
+        let mut at = 0;
+        while at < LANES {
+            let [vx, vy] = load(simd, &block.velocity, at);
+            let [tx, ty] = load(simd, &block.tilt, at);
+            let speed = vx.times_plus(vx, vy * vy).sqrt();
+            let steep = tx.times_plus(tx, ty * ty).sqrt();
+            // Both vertices move, and by as much the slope between them may change while the roller goes along.
+            let along = dt * (speed / Vector::load(simd, &block.distance, at) + race);
+            let further = steep.times_plus(along, all(3.0 * farthest));
+            let drift = Vector::load(simd, &block.drift, at) + further;
+            let most = Vector::load(simd, &block.contacts[0].most, at);
+            let is_clear = (speed.times_plus(dt, drift) + most).choose_below(zero, one, zero);
+            all(0.5).choose_below(is_clear, drift, zero).store(&mut block.drift, at);
+            clear |= is_clear.bits() << at;
+            at += Vector::<S>::LEN;
+        }
+        if self.oil.is_some() { 0 } else { clear }
+    }
+
+    /// How the outer raceway moves under eight rollers, by what modes and seat displace.
+    #[inline(always)]
+    fn see_moved<S: Simd>(&self, simd: S, block: &mut Block) {
+        let mut at = 0;
+        while at < LANES {
+            let of = |row: &Row| Vector::load(simd, row, at);
+            let [bx, by, vx, vy, dx, dy, first, second] = &block.moved;
+            let (share, per_angle) = (of(&block.share), of(&block.per_angle));
+            let further = of(second) - of(first);
+            let outwards = share.times_plus(further, of(first));
+            let slope = further * per_angle;
+            // It points outwards at every place, so that it turns along the raceway.
+            let [x, y] = load(simd, &block.along, at);
+            let by = [x.times_plus(outwards, of(bx)), y.times_plus(outwards, of(by))];
+            let tilt = [
+                of(dx).times_plus(per_angle, x.times_plus(slope, -(y * outwards))),
+                of(dy).times_plus(per_angle, y.times_plus(slope, x * outwards)),
+            ];
+            let moving = [of(vx), of(vy)];
+            store(by, &mut block.by, at);
+            store(tilt, &mut block.tilt, at);
+            store(moving, &mut block.moving, at);
             at += Vector::<S>::LEN;
         }
     }
@@ -111,6 +180,8 @@ impl Bearing {
             let along = of_one(&block.along, lane);
             let facet = outline.facet_along([0.0; 2], along, block.facet[lane] as usize, 1.0);
             block.facet[lane] = facet as u32;
+            block.per_angle[lane] = self.outer.angle[facet];
+            block.drift[lane] = f64::INFINITY;
             block.contacts[0].bound[lane] = self.outer.bounds[facet];
             for (end, vertex) in block.ends.iter_mut().zip([facet, outline.next(facet)]) {
                 (end[0][lane], end[1][lane]) = (outline.x[vertex], outline.y[vertex]);

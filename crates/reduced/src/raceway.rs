@@ -106,7 +106,7 @@ impl Bearing {
                 let slip = contacts.slip[lane];
                 let stuck = 0.5 * self.sticking * overlap.length[lane] * slip * slip;
                 energy.contact +=
-                    0.5 * self.penalty * overlap.square[lane] + track.compliance.energy(normal) + stuck;
+                    0.5 * self.penalty * overlap.square[lane] + track.curve.energy(normal) + stuck;
                 energy.sticking += stuck;
             }
         }

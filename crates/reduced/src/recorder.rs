@@ -3,14 +3,7 @@
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::LANES;
 
-use crate::{
-    bearing::Bearing,
-    heard::Heard,
-    row::Row,
-    seat::{Hold, Seat},
-    state::State,
-    step::Scratch,
-};
+use crate::{bearing::Bearing, row::Row, state::State, step::Scratch};
 
 /// What the recorder carries from sample to sample.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -26,93 +19,31 @@ impl Memory {
     }
 }
 
-/// Velocity of each sensor before the last step.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Before {
-    velocity: Vec<[f64; 2]>,
-}
-
 impl Bearing {
     /// Memory before the first step.
     pub(crate) fn first_memory(&self, state: &State) -> Memory {
-        Memory { velocity: self.modal_velocity(state) }
-    }
-
-    /// Velocities of the sensors with the modes alone.
-    fn modal_velocity(&self, state: &State) -> Vec<[f64; 2]> {
-        let r = self.reduction.padded;
-        let of = |shape: &[f64]| product(shape, &state.v);
-        self.reduction.sensors.iter().map(|s| [of(&s.shape[..r]), of(&s.shape[r..])]).collect()
-    }
-
-    /// Displacement of a sensor beyond the modes by what the rollers press.
-    fn residual(&self, sensor: usize, heard: &[Heard]) -> [f64; 2] {
-        let residual = &self.reduction.sensors[sensor].residual;
-        let mut sum = [0.0; 2];
-        for h in heard.iter().filter(|h| h.force != 0.0) {
-            let a = h.facet as usize;
-            let b = if a + 1 == residual.len() { 0 } else { a + 1 };
-            for (c, sum) in sum.iter_mut().enumerate() {
-                *sum += h.force * (residual[a][c] + h.share * (residual[b][c] - residual[a][c]));
-            }
-        }
-        sum
-    }
-
-    /// Displacement of the sensors beyond the modes by the seat [m].
-    pub(crate) fn heard_from_the_seat<'a>(
-        &'a self,
-        hold: &'a Hold,
-        tension: &'a [Row],
-    ) -> impl Iterator<Item = [f64; 2]> + 'a {
-        let of_sensor = move |seat: &'a Seat, heard: &'a Vec<[f64; 2]>| {
-            // Across the seat by what is missing where it is open, along it by what holds.
-            let (across, along) = heard.split_at(seat.padded);
-            let [mut x, mut y] = weighed(&tension[seat.padded / LANES..], along);
-            let open = seat.across.iter().zip(&hold.open).zip(across);
-            for ((stiffness, open), [hx, hy]) in open.filter(|((_, open), _)| **open != 0.0) {
-                [x, y] = [x - stiffness * open * hx, y - stiffness * open * hy];
-            }
-            [x, y]
-        };
-        let seat = self.reduction.springs.iter();
-        seat.flat_map(move |seat| seat.heard.iter().map(move |heard| of_sensor(seat, heard)))
-    }
-
-    /// Where the sensors are before the last step of a sample.
-    pub(crate) fn before_last_step(&self, state: &State) -> Before {
-        Before { velocity: self.modal_velocity(state) }
+        let mut velocity = Vec::new();
+        self.sensors.velocities(state, &mut velocity);
+        Memory { velocity: velocity.as_chunks().0.to_vec() }
     }
 
     /// The row of one sample.
-    pub(crate) fn row(
-        &self,
-        state: &State,
-        scratch: &Scratch,
-        before: &Before,
-        memory: &mut Memory,
-        row: &mut Vec<f64>,
-    ) {
+    pub(crate) fn row(&self, state: &State, scratch: &mut Scratch, memory: &mut Memory, row: &mut Vec<f64>) {
         let dt = self.time_step;
         let interval = dt * scratch.summed as f64;
         row.clear();
         row.push(state.steps as f64 * dt);
-        let modal = self.modal_velocity(state);
-        let seated: Vec<[f64; 2]> = state
-            .seat
-            .iter()
-            .flat_map(|hold| self.heard_from_the_seat(hold, &scratch.modes.tension))
-            .collect();
-        for (i, now) in modal.iter().enumerate() {
+        self.sensors.hear(state, &scratch.heard, &scratch.modes.tension, &mut scratch.now);
+        let (now, before) = (&scratch.now, &scratch.before);
+        for (sensor, last) in memory.velocity.iter_mut().enumerate() {
+            let of = |all: &[f64], c: usize| all[2 * sensor + c];
             // The velocity beyond the modes is that of the last step.
-            let [new, old] = [&scratch.heard, &scratch.before].map(|heard| self.residual(i, heard));
-            let [seat_now, seat_before] =
-                [&seated, &scratch.seated].map(|of| of.get(i).copied().unwrap_or_default());
-            let now: [f64; 2] =
-                std::array::from_fn(|c| now[c] + (new[c] - old[c] + seat_now[c] - seat_before[c]) / dt);
-            row.extend((0..2).map(|c| (now[c] - memory.velocity[i][c]) / interval));
-            row.extend((0..2).map(|c| (modal[i][c] - before.velocity[i][c]) / dt));
-            memory.velocity[i] = now;
+            let velocity: [f64; 2] = std::array::from_fn(|c| {
+                of(&now.velocity, c) + (of(&now.beyond, c) - of(&before.beyond, c)) / dt
+            });
+            row.extend((0..2).map(|c| (velocity[c] - last[c]) / interval));
+            row.extend((0..2).map(|c| (of(&now.velocity, c) - of(&before.velocity, c)) / dt));
+            *last = velocity;
         }
         let steps = scratch.summed as f64;
         for i in 0..self.rollers {
@@ -138,17 +69,6 @@ impl Bearing {
         let more = self.reduction.springs.as_ref().map_or([0.0; 2], |seat| weighed(tension, &seat.on_ring));
         Some([at_rest[0] + more[0], at_rest[1] + more[1]])
     }
-}
-
-/// Sum of all products of two numbers, in eight sums that need not wait for each other.
-fn product(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; LANES];
-    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
-        for lane in 0..LANES {
-            sums[lane] += a[lane] * b[lane];
-        }
-    }
-    sums.iter().sum()
 }
 
 /// Sum of vectors, each times its number.

@@ -3,7 +3,7 @@
 use std::ops::{Deref, DerefMut};
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 /// A number of each of eight, in one line of cache.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -23,6 +23,53 @@ impl DerefMut for Row {
     #[inline(always)]
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.0
+    }
+}
+
+impl AsMut<[f64]> for Row {
+    #[inline(always)]
+    fn as_mut(&mut self) -> &mut [f64] {
+        &mut self.0
+    }
+}
+
+/// The same in single precision: of a table that is looked up in every step, and has been rounded for all its uses.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(align(32))]
+pub(crate) struct Single([f32; LANES]);
+
+impl Deref for Single {
+    type Target = [f32];
+
+    #[inline(always)]
+    fn deref(&self) -> &[f32] {
+        &self.0
+    }
+}
+
+/// Rounds a table to single precision, and lists it in rows.
+pub(crate) fn in_single(table: &mut [f64]) -> Vec<Single> {
+    table.iter_mut().for_each(|number| *number = f64::from(*number as f32));
+    table.as_chunks::<LANES>().0.iter().map(|row| Single(row.map(|number| number as f32))).collect()
+}
+
+/// Numbers that belong together, in either precision.
+pub(crate) trait Numbers {
+    /// Those in the lanes from `at` on.
+    fn load<S: Simd>(&self, simd: S, at: usize) -> Vector<S>;
+}
+
+impl Numbers for Row {
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, at: usize) -> Vector<S> {
+        Vector::load(simd, self, at)
+    }
+}
+
+impl Numbers for Single {
+    #[inline(always)]
+    fn load<S: Simd>(&self, simd: S, at: usize) -> Vector<S> {
+        Vector::load_single(simd, self, at)
     }
 }
 
@@ -48,6 +95,33 @@ pub(crate) fn of_one(from: &Rows, lane: usize) -> [f64; 2] {
     [from[0][lane], from[1][lane]]
 }
 
+/// What a sum of products cannot exceed in size, when some numbers have these sizes and others are at most so large.
+#[inline(always)]
+pub(crate) fn largest_sum<S: Simd>(simd: S, sizes: &[Row], others: &[Row]) -> f64 {
+    let mut sum = Vector::all(simd, 0.0);
+    for (size, other) in sizes.iter().zip(others) {
+        let mut at = 0;
+        while at < LANES {
+            let other = Vector::load(simd, other, at);
+            sum = Vector::load(simd, size, at).times_plus(other.max(-other), sum);
+            at += Vector::<S>::LEN;
+        }
+    }
+    sum.sum()
+}
+
+/// The largest size of a vector of each kind, of lists of them with the components of all kinds one after the other.
+pub(crate) fn largest_of<const N: usize>(lists: &[f64], kinds: usize) -> Vec<Row> {
+    let mut largest = vec![0.0_f64; kinds];
+    for list in lists.chunks_exact(N * kinds) {
+        for (kind, largest) in largest.iter_mut().enumerate() {
+            let square: f64 = (0..N).map(|c| list[c * kinds + kind].powi(2)).sum();
+            *largest = largest.max(square.sqrt());
+        }
+    }
+    largest.as_chunks::<LANES>().0.iter().copied().map(Row).collect()
+}
+
 /// The lanes whose bits are set.
 #[inline(always)]
 pub(crate) fn lanes(bits: u64) -> Lanes {
@@ -65,5 +139,29 @@ impl Iterator for Lanes {
         let lane = self.0.trailing_zeros() as usize;
         self.0 &= self.0.wrapping_sub(1);
         if lane < LANES { Some(lane) } else { None }
+    }
+}
+
+/// The places of all bits that are set.
+#[inline(always)]
+pub(crate) fn bits(of: u128) -> Bits {
+    Bits(of)
+}
+
+/// See [`bits`].
+#[derive(Clone)]
+pub(crate) struct Bits(u128);
+
+impl Iterator for Bits {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let place = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(place)
     }
 }

@@ -9,6 +9,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{
     outline::{Facet, View},
     overlap::{Overlap, Sides, add_between},
+    row::Row,
 };
 
 /// Most parts of an overlap that are kept.
@@ -39,8 +40,8 @@ pub(crate) struct Sight {
 }
 
 impl Seam {
-    /// The overlap of a roller that is pressed back by `shift` [m]. `None` where the parts are no longer in this order, the middle has
-    /// gone on to other facets, or `reach` [m] goes beyond them.
+    /// The overlap of a roller that is pressed back by `shift` [m], into `found` by parts, in its first lanes. False where the parts are no
+    /// longer in this order, the middle has gone on to other facets, or `reach` [m] goes beyond them.
     #[inline(always)]
     pub(crate) fn overlap<S: Simd>(
         &self,
@@ -49,7 +50,8 @@ impl Seam {
         sight: &Sight,
         shift: f64,
         reach: f64,
-    ) -> Option<Overlap> {
+        found: &mut Overlap<Row>,
+    ) -> bool {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one) = (all(0.0), all(1.0));
         let (shift, near, far) = (all(shift), all(-reach), all(reach));
@@ -64,8 +66,8 @@ impl Seam {
                 let column = |n: usize| Vector::load(simd, &self.columns[n], at);
                 let [x0, y0, x1, y1] = [column(0), column(1), column(2), column(3)];
                 let [a0, b0, a1, b1] = [column(4), column(5), column(6), column(7)];
-                let roller = seen(own, [x0, y0], [x1, y1]);
-                let raceway = seen(d, [a0 - cx, b0 - cy], [a1 - cx, b1 - cy]);
+                let [roller, raceway] =
+                    seen([own, d], [[x0, y0], [a0 - cx, b0 - cy]], [[x1, y1], [a1 - cx, b1 - cy]]);
                 let ends = [roller.from.max(raceway.from), roller.to.min(raceway.to)];
                 let [u1, u2] = ends;
                 wrong |= u2.choose_below(u1, one, zero).bits();
@@ -78,9 +80,8 @@ impl Seam {
             }
             at += Vector::<S>::LEN;
         }
-        let holds = wrong == 0 && before != 0 && behind != 0 && (middle >> self.middle) & 1 == 1;
-        // No closure: it would be compiled without the vectors' instruction set.
-        if holds { Some(sum.total()) } else { None }
+        sum.store(found, 0);
+        wrong == 0 && before != 0 && behind != 0 && (middle >> self.middle) & 1 == 1
     }
 
     /// Lists the parts anew, as far as to `reach` [m] to either side. None are left where a wall is among them or there are too many.
@@ -122,14 +123,38 @@ impl Seam {
     }
 }
 
-/// A facet as it is seen along d, whose ends are given from where it is seen.
+/// A facet between its ends: where they are seen, the height of the first, and by how much the last is higher.
+struct Projected<N> {
+    from: N,
+    to: N,
+    height: N,
+    rise: N,
+}
+
+impl<N: Number> Projected<N> {
+    #[inline(always)]
+    fn of(d: [N; 2], [x0, y0]: [N; 2], [x1, y1]: [N; 2]) -> Self {
+        let minus = -d[1];
+        let (from, to) = (minus.times_plus(x0, d[0] * y0), minus.times_plus(x1, d[0] * y1));
+        let (height, last) = (d[0].times_plus(x0, d[1] * y0), d[0].times_plus(x1, d[1] * y1));
+        Self { from, to, height, rise: last - height }
+    }
+
+    #[inline(always)]
+    fn with(self, slope: N) -> Facet<N> {
+        Facet { from: self.from, to: self.to, slope, base: (-slope).times_plus(self.from, self.height) }
+    }
+}
+
+/// Facets of two bodies as they are seen along d, the first and last ends of which are given from where they are seen.
 #[inline(always)]
-fn seen<N: Number>(d: [N; 2], [x0, y0]: [N; 2], [x1, y1]: [N; 2]) -> Facet<N> {
-    let minus = -d[1];
-    let (from, to) = (minus.times_plus(x0, d[0] * y0), minus.times_plus(x1, d[0] * y1));
-    let (h0, h1) = (d[0].times_plus(x0, d[1] * y0), d[0].times_plus(x1, d[1] * y1));
-    let slope = (h1 - h0) / (to - from);
-    Facet { from, to, slope, base: (-slope).times_plus(from, h0) }
+fn seen<N: Number>(d: [[N; 2]; 2], first: [[N; 2]; 2], last: [[N; 2]; 2]) -> [Facet<N>; 2] {
+    let [r, w] = [Projected::of(d[0], first[0], last[0]), Projected::of(d[1], first[1], last[1])];
+    // One division for both, because dividing takes longer than all the rest.
+    let (of_roller, of_raceway) = (r.to - r.from, w.to - w.from);
+    let per = r.to.constant(1.0) / (of_roller * of_raceway);
+    let (r_slope, w_slope) = (r.rise * of_raceway * per, w.rise * of_roller * per);
+    [r.with(r_slope), w.with(w_slope)]
 }
 
 /// A facet while parts are listed, and where it is seen from and to.
@@ -160,7 +185,7 @@ impl<'a> Edge<'a> {
         if self.along { [a, b] } else { [b, a] }
     }
 
-    /// Sees it by the very numbers that [`seen`] finds.
+    /// Sees it by the very numbers that [`Projected`] has.
     #[inline(always)]
     fn look(&mut self) {
         let View { d, from, .. } = *self.view;

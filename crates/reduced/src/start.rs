@@ -3,6 +3,7 @@
 use faer::{Mat, linalg::solvers::Solve};
 use pulp::Scalar;
 use stribeck_scene::{duty::Duty, scene::Scene};
+use stribeck_simd::lanes::Vector;
 
 use crate::{bearing::Bearing, error::Error, oil::Films, state::State, touch::Near};
 
@@ -185,7 +186,7 @@ impl Bearing {
         let sum = |from: usize| (0..r).map(|n| under[from + n] * state.q[n]).sum();
         let mut moved = [sum(0), sum(r)];
         if let (Some(seat), Some(hold)) = (&self.seat, &state.seat) {
-            let [a, b] = seat.under(Scalar::new(), hold, facet);
+            let [a, b] = seat.under(Scalar::new(), hold, facet).map(Vector::sum);
             let further = a + share * (b - a);
             moved = [moved[0] + further * radial[0], moved[1] + further * radial[1]];
         }

@@ -13,9 +13,11 @@ use crate::{
     heard::Heard,
     modes::Modes,
     oil::Now,
+    overlap::Overlap,
     pocket::PlacedCage,
     raceway::Rolling,
-    row::{load, of_one, store},
+    row::{Row, load, of_one, store},
+    sensors::Sound,
     state::{Spent, State, Stored, count},
 };
 
@@ -24,15 +26,17 @@ use crate::{
 pub struct Scratch {
     /// The rollers during some steps.
     pub(crate) blocks: Vec<Block>,
+    /// Overlaps of eight contacts, each by parts.
+    pub(crate) parts: [Overlap<Row>; LANES],
     /// The modes during a step.
     pub(crate) modes: Modes,
     /// Steps in the sums of the blocks.
     pub(crate) summed: usize,
-    /// Normal forces on the outer raceway in the step before [N], and where they were.
-    pub(crate) before: Vec<Heard>,
+    /// Normal forces on the outer raceway [N], and where they are.
     pub(crate) heard: Vec<Heard>,
-    /// Displacement of the sensors by the seat, beyond the modes, in the step before [m].
-    pub(crate) seated: Vec<[f64; 2]>,
+    /// What sensors hear before the last step of a sample and after it.
+    pub(crate) before: Sound,
+    pub(crate) now: Sound,
     /// Energies at the positions of the last step, when it was asked for.
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
@@ -45,7 +49,6 @@ impl Scratch {
         Self {
             blocks: (0..n).step_by(LANES).map(|first| Block::new(bearing, first)).collect(),
             modes: Modes::new(bearing),
-            before: vec![Heard::default(); n],
             heard: vec![Heard::default(); n],
             ..Self::default()
         }
@@ -131,7 +134,7 @@ impl Bearing {
             self.resist(simd, &mut scratch.modes);
         }
         if last {
-            scratch.before.copy_from_slice(&scratch.heard);
+            self.sensors.hear(state, &scratch.heard, &scratch.modes.tension, &mut scratch.before);
         }
         let inner = Turning { rate, turned: turned(state.shaft) };
         let outer = self.outer_turns.then(|| Turning { rate: outer_rate, turned: turned(outer_angle) });
@@ -145,10 +148,6 @@ impl Bearing {
         }
         let mut spent = Spent::default();
         if let (Some(seat), Some(hold)) = (&self.seat, &mut state.seat) {
-            if last {
-                scratch.seated.clear();
-                scratch.seated.extend(self.heard_from_the_seat(hold, &scratch.modes.tension));
-            }
             let Modes { push, tension, answers, .. } = &mut scratch.modes;
             let [heat, stored] =
                 seat.hold(simd, hold, &state.q, &scratch.heard, answers, [push, tension], last);
@@ -161,12 +160,16 @@ impl Bearing {
         let middle = self.reduction.cage.map_or([0.0; 2], |cage| cage.1);
         let mut on_cage = [0.0; 3];
         let mut sums = Sums::<S>::new(simd);
+        let farthest = self.farthest(simd, &scratch.modes, state.seat.as_ref());
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
-            self.place_rollers(simd, &scratch.modes, state.seat.as_ref(), block, [outer, Some(inner)]);
-            let Block { first, top, bits, contacts: [on_outer, on_inner], .. } = block;
-            self.press_together(simd, &self.outer, *first, top, *bits, on_outer);
-            self.press_together(simd, &self.inner, *first, top, *bits, on_inner);
+            let hold = state.seat.as_ref();
+            self.place_rollers(simd, &scratch.modes, hold, farthest, block, [outer, Some(inner)]);
+            let Block { first, top, bits, contacts, .. } = block;
+            // One code for both raceways: the step's instructions fill the first cache anyway.
+            for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(contacts) {
+                self.press_together(simd, track, *first, top, *bits, contacts, &mut scratch.parts);
+            }
             self.push_rollers(simd, block, outer, inner, &mut sums);
             let mut lifted = [0.0; LANES];
             if let (Some(oil), Some(films)) = (&self.oil, &mut state.films) {

@@ -52,8 +52,9 @@ pub(crate) struct Near<'a> {
 
 impl Bearing {
     /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when centres and directions of vertex 0
-    /// are known in its frame.
+    /// are known in its frame. `parts` is room to compute in.
     #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "one search, with all that it reads and room to compute in")]
     pub(crate) fn press_together<S: Simd>(
         &self,
         simd: S,
@@ -62,6 +63,7 @@ impl Bearing {
         top: &Row,
         present: u64,
         contacts: &mut Contacts,
+        parts: &mut [Overlap<Row>; LANES],
     ) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one) = (all(0.0), all(1.0));
@@ -93,7 +95,7 @@ impl Bearing {
             return;
         }
         self.expect(simd, track, contacts);
-        let alone = self.integrate(simd, track, first, contacts);
+        let alone = self.integrate(simd, track, first, contacts, parts);
         let again = self.search(simd, contacts);
         for lane in lanes(alone) {
             contacts.normal[lane] = contacts.start[lane];
@@ -166,10 +168,17 @@ impl Bearing {
         }
     }
 
-    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then. Returns those that have to be looked at
+    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then; `parts` is room for that. Returns those that have to be looked at
     /// by themselves, because a wall is near.
     #[inline(always)]
-    fn integrate<S: Simd>(&self, simd: S, track: &Track, first: usize, contacts: &mut Contacts) -> u64 {
+    fn integrate<S: Simd>(
+        &self,
+        simd: S,
+        track: &Track,
+        first: usize,
+        contacts: &mut Contacts,
+        parts: &mut [Overlap<Row>; LANES],
+    ) -> u64 {
         let mut alone = 0;
         for lane in lanes(contacts.near) {
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
@@ -177,10 +186,8 @@ impl Bearing {
             let (shift, reach) = (contacts.shift[lane], contacts.reach[lane]);
             let seam = &mut contacts.seams[lane];
             let sight = Sight { own: turned_back(spin, d), d, from: centre };
-            let mut found = Overlap::default();
             for look in 0..2 {
-                if let Some(overlap) = seam.overlap(simd, track.sides, &sight, shift, reach) {
-                    found = overlap;
+                if seam.overlap(simd, track.sides, &sight, shift, reach, &mut parts[lane]) {
                     break;
                 }
                 if look == 0 {
@@ -198,8 +205,8 @@ impl Bearing {
                     alone |= 1 << lane;
                 }
             }
-            contacts.overlap.set(lane, &found);
         }
+        contacts.overlap.sum_up(simd, parts);
         alone
     }
 

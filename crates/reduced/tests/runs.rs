@@ -5,8 +5,13 @@ mod common;
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
 use common::{host, run, trace};
-use stribeck_bearing::{assembly::Assembly, simulation::Progress};
-use stribeck_reduced::simulation::{resume, simulate};
+use stribeck_bearing::{assembly::Assembly, simulation::Progress, time_loop::Motion as _};
+use stribeck_reduced::{
+    bearing::Bearing,
+    motion::{Motion, Saved},
+    reduction::Reduction,
+    simulation::{resume, simulate},
+};
 use stribeck_scene::{
     kinematics::Kinematics,
     mesh_file::RunMesh,
@@ -71,6 +76,28 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
 }
 
 /// Modes up to 100 kHz do not take steps of 5 µs.
+/// Rollers that cannot touch the outer raceway are not looked at for a while. Where all are looked at in every step, all that is computed
+/// is the same.
+#[test]
+fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
+    const BEFORE: usize = 2000;
+    const STEPS: usize = 300;
+    let scene = coarse(10.0);
+    let reduction = Reduction::new(&scene).expect("modes");
+    let bearing = Bearing::new(&scene, reduction, 2e-6).expect("a bearing");
+    let saved = Saved::first(&bearing, bearing.at_start(&scene).expect("an equilibrium"));
+    let mut motion = Motion::new(&scene, bearing.clone(), saved);
+    motion.interval(BEFORE).expect("steps");
+    let mut anew = motion.saved();
+    for step in 0..STEPS {
+        motion.interval(1).expect("a step");
+        let mut one = Motion::new(&scene, bearing.clone(), anew);
+        one.interval(1).expect("a step");
+        anew = one.saved();
+        assert!(motion.saved().state == anew.state, "step {step}");
+    }
+}
+
 #[test]
 fn example_a_step_beyond_the_critical_one_is_shortened() {
     let folder = Scratch::create("reduced-step");

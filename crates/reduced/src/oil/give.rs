@@ -13,7 +13,6 @@ const ENOUGH: f64 = 1e-8;
 pub(crate) struct Give {
     /// Penetration over the force's 2/3rd power [m/N^{2/3}].
     softness: f64,
-    compliance: Compliance,
     curve: Curve,
     stiffest: f64,
 }
@@ -23,7 +22,6 @@ impl Give {
     pub(crate) fn new(penalty: f64, radius: f64, compliance: &Compliance) -> Self {
         Self {
             softness: (4.0 / 3.0 * penalty * (2.0 * radius).sqrt()).powf(-2.0 / 3.0),
-            compliance: compliance.clone(),
             curve: compliance.curve(),
             stiffest: compliance.stiffest(penalty, radius),
         }
@@ -69,6 +67,6 @@ impl Spring for Give {
     fn energy(&self, depth: f64) -> f64 {
         let force = self.force(depth);
         let root = force.cbrt();
-        0.4 * self.softness * force * root * root + self.compliance.energy(force)
+        0.4 * self.softness * force * root * root + self.curve.energy(force)
     }
 }

@@ -4,7 +4,11 @@ use pulp::{Scalar, Simd};
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-use crate::{heard::Heard, row::Row, seat::Seat};
+use crate::{
+    heard::Heard,
+    row::{Numbers, Row, Single, bits, in_single, largest_of},
+    seat::Seat,
+};
 
 /// Passes over the panels in a step at most, and before the first step.
 const PASSES: usize = 200;
@@ -12,6 +16,10 @@ const PASSES_AT_REST: usize = 1000;
 
 /// Passes end when no tension would change by more than this share of the mean force on a panel.
 const STILL: f64 = 1e-4;
+
+/// Every other panel, beginning with the first and with the second. Their number is odd, so that the mirrored seat has mirrored ones.
+const EVERY_OTHER: [Row; 2] =
+    [Row([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]), Row([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0])];
 
 /// A roller answers to the seat where that takes more than this part of its force if all panels let go. Where less, its force of the
 /// step before serves, taken on as it grew, which is stable up to a third.
@@ -23,13 +31,13 @@ pub(crate) struct Springs {
     panels: usize,
     padded: usize,
     /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
-    by_mode: Vec<Row>,
-    by_spring: Vec<Row>,
+    by_mode: Vec<Single>,
+    by_spring: Vec<Single>,
     /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of the preload.
-    by_rollers: Vec<Row>,
+    by_rollers: Vec<Single>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
-    stiffness: Vec<Row>,
+    stiffness: Vec<Single>,
     /// The same of each by its own [N/m], and one over it, zero where there is no spring.
     own: Vec<Row>,
     per_own: Vec<Row>,
@@ -38,6 +46,8 @@ pub(crate) struct Springs {
     give: Vec<f64>,
     /// Force that presses each panel at the preload [N].
     pressed: Vec<Row>,
+    /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
+    farthest: Vec<Row>,
     friction: f64,
     still: f64,
 }
@@ -91,40 +101,52 @@ fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
     }
 }
 
-/// Adds a multiple of the rows of each of some springs to sums, four rows at a time, which stay in registers meanwhile.
+/// Adds multiples of columns of `rows` to sums, four rows at a time, which stay in registers meanwhile.
 #[inline(always)]
-fn add_all<S: Simd>(simd: S, sums: &mut [f64], rows: &[Row], springs: &[(usize, f64)]) {
-    const TOGETHER: usize = 4;
-    let count = sums.len() / LANES;
+fn add_all<S: Simd, R: AsMut<[f64]>, N: Numbers>(
+    simd: S,
+    sums: &mut [R],
+    rows: &[N],
+    times: impl Iterator<Item = (usize, f64)> + Clone,
+) {
+    let count = sums.len();
+    let (fours, rest) = sums.as_chunks_mut::<4>();
     let mut first = 0;
-    while first < count {
-        let here = TOGETHER.min(count - first);
+    for [a, b, c, d] in fours {
+        let [a, b, c, d] = [a.as_mut(), b.as_mut(), c.as_mut(), d.as_mut()];
         let mut at = 0;
         while at < LANES {
-            let mut held = [Vector::all(simd, 0.0); TOGETHER];
-            for (n, held) in held.iter_mut().enumerate().take(here) {
-                *held = Vector::load(simd, sums, LANES * (first + n) + at);
+            let (mut in_a, mut in_b) = (Vector::load(simd, a, at), Vector::load(simd, b, at));
+            let (mut in_c, mut in_d) = (Vector::load(simd, c, at), Vector::load(simd, d, at));
+            for (column, times) in times.clone() {
+                let [of_a, of_b, of_c, of_d] = &rows[count * column + first..].as_chunks::<4>().0[0];
+                let times = Vector::all(simd, times);
+                in_a = of_a.load(simd, at).times_plus(times, in_a);
+                in_b = of_b.load(simd, at).times_plus(times, in_b);
+                in_c = of_c.load(simd, at).times_plus(times, in_c);
+                in_d = of_d.load(simd, at).times_plus(times, in_d);
             }
-            for (spring, times) in springs {
-                let times = Vector::all(simd, *times);
-                let of_spring = &rows[count * spring + first..][..here];
-                if let [a, b, c, d] = of_spring {
-                    held[0] = Vector::load(simd, a, at).times_plus(times, held[0]);
-                    held[1] = Vector::load(simd, b, at).times_plus(times, held[1]);
-                    held[2] = Vector::load(simd, c, at).times_plus(times, held[2]);
-                    held[3] = Vector::load(simd, d, at).times_plus(times, held[3]);
-                    continue;
-                }
-                for (row, held) in of_spring.iter().zip(&mut held) {
-                    *held = Vector::load(simd, row, at).times_plus(times, *held);
-                }
-            }
-            for (n, held) in held.iter().enumerate().take(here) {
-                held.store(sums, LANES * (first + n) + at);
-            }
+            in_a.store(a, at);
+            in_b.store(b, at);
+            in_c.store(c, at);
+            in_d.store(d, at);
             at += Vector::<S>::LEN;
         }
-        first += TOGETHER;
+        first += 4;
+    }
+    for sum in rest {
+        let sum = sum.as_mut();
+        let mut at = 0;
+        while at < LANES {
+            let mut in_sum = Vector::load(simd, sum, at);
+            for (column, times) in times.clone() {
+                let row = &rows[count * column + first];
+                in_sum = row.load(simd, at).times_plus(Vector::all(simd, times), in_sum);
+            }
+            in_sum.store(sum, at);
+            at += Vector::<S>::LEN;
+        }
+        first += 1;
     }
 }
 
@@ -143,14 +165,18 @@ fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
 }
 
 impl Springs {
-    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64) -> Self {
+    /// Of a seat, whose tables are rounded.
+    pub(crate) fn new(seat: &mut Seat, modes: usize, friction: f64) -> Self {
         let n = 2 * seat.padded;
         let rows =
             |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
+        let by_mode = in_single(&mut seat.tension);
+        let by_rollers = in_single(&mut seat.by_rollers);
+        let stiffness = in_single(&mut seat.stiffness);
         let found = seat.tension.len() / n;
         let of =
             |spring: usize, mode: usize| if mode < found { seat.tension[mode * n + spring] } else { 0.0 };
-        let by_spring: Vec<f64> =
+        let mut by_spring: Vec<f64> =
             (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
         let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
         let per_own: Vec<f64> =
@@ -159,15 +185,16 @@ impl Springs {
         Self {
             panels: seat.panels,
             padded: seat.padded,
-            by_mode: rows(&seat.tension),
-            by_spring: rows(&by_spring),
-            by_rollers: rows(&seat.by_rollers),
+            by_mode,
+            by_spring: in_single(&mut by_spring),
+            by_rollers,
             at_preload: rows(&seat.at_preload),
             per_own: rows(&per_own),
             give: give.iter().zip(give.iter().cycle().skip(1)).map(|(a, b)| a.max(*b)).collect(),
             own: rows(&own),
-            stiffness: rows(&seat.stiffness),
+            stiffness,
             pressed: rows(&seat.pressed),
+            farthest: largest_of::<1>(&seat.by_rollers, n),
             friction,
             still: STILL * seat.pressed.iter().sum::<f64>() / seat.panels as f64,
         }
@@ -203,8 +230,9 @@ impl Springs {
         let simd = Scalar::new();
         let (mut tension, mut answers) = (vec![Row::default(); self.rows()], Answers::default());
         self.answer(simd, hold, &hold.pressed, &mut answers);
-        self.pull(simd, hold, q, &answers, &mut tension);
-        self.settle(simd, hold, &mut tension, &mut answers, PASSES_AT_REST);
+        self.pull(simd, hold, 0, q, &answers, &mut tension);
+        self.settle(simd, hold, 0, &mut tension, &mut answers, PASSES_AT_REST);
+        hold.before.copy_from_slice(&hold.open);
     }
 
     /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`. Returns the heat of this
@@ -221,9 +249,10 @@ impl Springs {
         [push, tension]: [&mut [Row]; 2],
         last: bool,
     ) -> [f64; 2] {
+        let moved = self.go_on(simd, hold);
         self.answer(simd, hold, rollers, answers);
-        self.pull(simd, hold, q, answers, tension);
-        let heat = self.settle(simd, hold, tension, answers, PASSES);
+        self.pull(simd, hold, moved, q, answers, tension);
+        let heat = self.settle(simd, hold, moved, tension, answers, PASSES);
         for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
             for (push, more) in push.iter_mut().zip(more) {
                 *push += more;
@@ -240,9 +269,9 @@ impl Springs {
         [heat, self.stored(hold, tension) + by_rollers]
     }
 
-    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m].
+    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m], in parts to be summed.
     #[inline(always)]
-    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [f64; 2] {
+    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [Vector<S>; 2] {
         let groups = self.rows();
         let ends = self.ends(facet);
         let mut sums = [Vector::all(simd, 0.0); 2];
@@ -250,24 +279,60 @@ impl Springs {
             let mut at = 0;
             while at < LANES {
                 let open = Vector::load(simd, open, at);
-                sums[0] = Vector::load(simd, &ends[0][n], at).times_plus(open, sums[0]);
-                sums[1] = Vector::load(simd, &ends[1][n], at).times_plus(open, sums[1]);
+                sums[0] = ends[0][n].load(simd, at).times_plus(open, sums[0]);
+                sums[1] = ends[1][n].load(simd, at).times_plus(open, sums[1]);
                 at += Vector::<S>::LEN;
             }
         }
-        [sums[0].sum(), sums[1].sum()]
+        sums
+    }
+
+    /// How far a vertex of the raceway moves at most by what has opened and slipped in this step [m].
+    #[inline(always)]
+    pub(crate) fn farthest<S: Simd>(&self, simd: S, hold: &Hold) -> f64 {
+        let mut sum = Vector::all(simd, 0.0);
+        let gaps = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
+        for (farthest, (open, before)) in self.farthest.iter().zip(gaps) {
+            let mut at = 0;
+            while at < LANES {
+                let by = Vector::load(simd, open, at) - Vector::load(simd, before, at);
+                sum = by.max(-by).times_plus(Vector::load(simd, farthest, at), sum);
+                at += Vector::<S>::LEN;
+            }
+        }
+        sum.sum()
     }
 
     /// Tensions by a unit force at both vertices of a facet.
     #[inline(always)]
-    fn ends(&self, facet: usize) -> [&[Row]; 2] {
+    fn ends(&self, facet: usize) -> [&[Single]; 2] {
         let groups = self.rows();
         let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
         [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]]
     }
 
-    /// What rollers do to the tensions, each by itself: a unit force at its place, the force if the seat stays as it is, and how much less it
-    /// presses where the seat gives way. That force was expected from the seat going on as in the step before.
+    /// Begins a step: what opened and slipped in the last one is taken to go on alike, which leaves few passes to take. Returns the springs
+    /// that have moved by that, a bit for each.
+    #[inline(always)]
+    fn go_on<S: Simd>(&self, simd: S, hold: &mut Hold) -> u128 {
+        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
+        let mut moved = 0;
+        for at in (0..2 * self.padded).step_by(Vector::<S>::LEN) {
+            let (now, before) = (Vector::load(simd, &hold.open, at), Vector::load(simd, &hold.before, at));
+            let mut next = now + (now - before);
+            if at < self.padded {
+                next = next.max(zero);
+            }
+            let by = next - now;
+            now.store(&mut hold.before, at);
+            next.store(&mut hold.open, at);
+            moved |= u128::from(zero.choose_below(by.max(-by), one, zero).bits()) << at;
+        }
+        moved
+    }
+
+    /// What rollers do to the tensions, each by itself: a unit force at its place, the force that is expected if the seat goes on as in the
+    /// step before, and how much less it presses where the seat gives way by more.
     #[inline(always)]
     fn answer<S: Simd>(&self, simd: S, hold: &Hold, rollers: &[Heard], answers: &mut Answers) {
         let groups = self.rows();
@@ -276,28 +341,24 @@ impl Springs {
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
             let ends = self.ends(roller.facet as usize);
             let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
-            let [mut now, mut before] = [Vector::all(simd, 0.0); 2];
+            let mut given = Vector::all(simd, 0.0);
             let first = answers.by.len();
             answers.by.resize(first + groups, Row::default());
-            let gaps = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
-            for ((n, by), gaps) in answers.by[first..].iter_mut().enumerate().zip(gaps) {
+            let gaps = hold.open.as_chunks::<LANES>().0;
+            for ((n, by), gap) in answers.by[first..].iter_mut().enumerate().zip(gaps) {
                 let mut at = 0;
                 while at < LANES {
-                    let (ahead, behind) =
-                        (Vector::load(simd, &ends[0][n], at), Vector::load(simd, &ends[1][n], at));
+                    let (ahead, behind) = (ends[0][n].load(simd, at), ends[1][n].load(simd, at));
                     let between = ahead.times_plus(a, behind * b);
-                    now = Vector::load(simd, gaps.0, at).times_plus(between, now);
-                    before = Vector::load(simd, gaps.1, at).times_plus(between, before);
+                    given = Vector::load(simd, gap, at).times_plus(between, given);
                     between.store(by, at);
                     at += Vector::<S>::LEN;
                 }
             }
-            let force = roller.next();
-            let mut answer = Answer { force, expected: force, given: 0.0, stiffness: 0.0 };
+            let expected = roller.next();
+            let mut answer = Answer { force: expected, expected, given: 0.0, stiffness: 0.0 };
             if roller.stiffness * self.give[roller.facet as usize] > FELT {
-                let expected = force + roller.stiffness * (now - before).sum();
-                let (force, given) = (expected.max(0.0), now.sum());
-                answer = Answer { force, expected, given, stiffness: roller.stiffness };
+                answer = Answer { given: given.sum(), stiffness: roller.stiffness, ..answer };
             }
             answers.rollers.push(answer);
         }
@@ -317,79 +378,59 @@ impl Springs {
         }
     }
 
-    /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost; across the seat beyond the preload.
+    /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost before this step and by the springs that
+    /// have `moved` since, a bit for each; across the seat beyond the preload.
     #[inline(always)]
-    fn pull<S: Simd>(&self, simd: S, hold: &Hold, q: &[f64], answers: &Answers, tension: &mut [Row]) {
-        let groups = tension.len();
+    fn pull<S: Simd>(
+        &self,
+        simd: S,
+        hold: &Hold,
+        moved: u128,
+        q: &[f64],
+        answers: &Answers,
+        tension: &mut [Row],
+    ) {
         let lost = hold.lost.as_chunks::<LANES>().0;
-        // Two rows at a time, whose sums need not wait for each other.
-        for first in (0..groups).step_by(2) {
+        for ((tension, at_preload), lost) in tension.iter_mut().zip(&self.at_preload).zip(lost) {
             let mut at = 0;
             while at < LANES {
-                let mut one = Vector::load(simd, &self.at_preload[first], at);
-                let mut two = Vector::load(simd, &self.at_preload[first + 1], at);
-                one = -(one + Vector::load(simd, &lost[first], at));
-                two = -(two + Vector::load(simd, &lost[first + 1], at));
-                for (rows, q) in self.by_mode.chunks_exact(groups).zip(q) {
-                    let q = Vector::all(simd, *q);
-                    one = Vector::load(simd, &rows[first], at).times_plus(q, one);
-                    two = Vector::load(simd, &rows[first + 1], at).times_plus(q, two);
-                }
-                for (rows, roller) in answers.by.chunks_exact(groups).zip(&answers.rollers) {
-                    let force = Vector::all(simd, roller.force);
-                    one = Vector::load(simd, &rows[first], at).times_plus(force, one);
-                    two = Vector::load(simd, &rows[first + 1], at).times_plus(force, two);
-                }
-                one.store(&mut tension[first], at);
-                two.store(&mut tension[first + 1], at);
+                let less = Vector::load(simd, at_preload, at) + Vector::load(simd, lost, at);
+                (-less).store(tension, at);
                 at += Vector::<S>::LEN;
             }
         }
+        let modes = q.iter().copied().enumerate().take(self.by_mode.len() / tension.len());
+        add_all(simd, tension, &self.by_mode, modes);
+        let rollers = answers.rollers.iter().map(|roller| roller.force).enumerate();
+        add_all(simd, tension, &answers.by, rollers);
+        let springs = bits(moved).map(|spring| (spring, hold.before[spring] - hold.open[spring]));
+        add_all(simd, tension, &self.stiffness, springs);
     }
 
-    /// Passes over the panels until no tension would change any more; returns the heat [J].
+    /// Passes over the panels until no tension would change any more, some springs having `moved` already, a bit for each; returns the heat
+    /// [J].
     #[inline(always)]
     fn settle<S: Simd>(
         &self,
         simd: S,
         hold: &mut Hold,
+        mut moved: u128,
         tension: &mut [Row],
         answers: &mut Answers,
         passes: usize,
     ) -> f64 {
-        hold.before.copy_from_slice(&hold.open);
-        let of = |rows: &[Row], spring: usize| rows[spring / LANES][spring % LANES];
-        let mut moved = 0_u128;
-        for pass in 0..passes {
-            let (mut left, far) = self.restless(simd, hold, tension);
-            if !far && pass > 0 {
+        // Every other panel at once: neighbours see what those between them have done.
+        let mut quiet = 0;
+        for half in 0..2 * passes {
+            let (these, far) = self.let_go(simd, hold, tension, &EVERY_OTHER[half % 2]);
+            moved |= these;
+            quiet = if far { 0 } else { quiet + 1 };
+            if half % 2 == 1 {
+                self.press_again(simd, hold, tension, answers);
+            }
+            if quiet == 2 {
                 break;
             }
-            while left != 0 {
-                let panel = left.trailing_zeros() as usize;
-                left &= left - 1;
-                let had = hold.open[panel];
-                let mut pulls = of(tension, panel) - of(&self.pressed, panel);
-                // It pulls and opens, or was open and closes.
-                if pulls > 0.0 || had > 0.0 {
-                    let has = (had + pulls * of(&self.per_own, panel)).max(0.0);
-                    moved |= 1 << panel;
-                    self.change(simd, hold, tension, panel, has);
-                    pulls -= of(&self.own, panel) * (has - had);
-                }
-                let at = self.padded + panel;
-                let limit = self.friction * (-pulls).max(0.0);
-                // Held where it was before, and let go by what friction cannot hold: what slips first must not slip too far.
-                let [had, before] = [hold.open[at], hold.before[at]];
-                let holding = of(tension, at) + of(&self.own, at) * (had - before);
-                let excess = (holding.abs() - limit).max(0.0).copysign(holding);
-                let has = before + excess * of(&self.per_own, at);
-                if has != had {
-                    moved |= 1 << at;
-                    self.change(simd, hold, tension, at, has);
-                }
-            }
-            self.press_again(simd, hold, tension, answers);
         }
         self.take_along(simd, hold, moved);
         let along = self.padded..self.padded + self.panels;
@@ -398,46 +439,50 @@ impl Springs {
         slipped.zip(held_by).map(|((open, before), tension)| tension * (open - before)).sum()
     }
 
-    /// Panels that would move if all were taken at once, a bit for each, and whether that would change a tension by as much as to take
-    /// another pass.
+    /// Lets those of some panels that pull open, and those slip that friction does not hold, all at once. Returns which springs have moved,
+    /// a bit for each, and whether that changed a tension by as much as to take another pass.
     #[inline(always)]
-    fn restless<S: Simd>(&self, simd: S, hold: &Hold, tension: &[Row]) -> (u64, bool) {
+    fn let_go<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], these: &Row) -> (u128, bool) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, friction) = (all(0.0), all(1.0), all(self.friction));
         let groups = self.padded / LANES;
-        let (mut would, mut far) = (0, 0);
+        let (mut moved, mut far) = (0_u128, 0);
+        let mut changes = [0.0; u128::BITS as usize];
         for across in 0..groups {
             let along = groups + across;
             let mut at = 0;
             while at < LANES {
                 let of = |rows: &[Row], n: usize| Vector::load(simd, &rows[n], at);
                 let gap = |of: &[f64], n: usize| Vector::load(simd, of, LANES * n + at);
+                let these = Vector::load(simd, these, at);
                 let pulls = of(tension, across) - of(&self.pressed, across);
                 let had = gap(&hold.open, across);
                 let opens = pulls.times_plus(of(&self.per_own, across), had).max(zero) - had;
-                let opens = opens * of(&self.own, across);
-                let limit = friction * (opens - pulls).max(zero);
-                let further = gap(&hold.open, along) - gap(&hold.before, along);
-                let held = further * of(&self.own, along);
+                let loses = opens * of(&self.own, across);
+                // Held where it was before, and let go by what friction cannot hold: what slips first must not slip too far.
+                let limit = friction * (loses - pulls).max(zero);
+                let was = gap(&hold.open, along);
+                let held = (was - gap(&hold.before, along)) * of(&self.own, along);
                 let holding = of(tension, along) + held;
-                let slips = holding - holding.min(limit).max(-limit) - held;
-                let most = opens.max(-opens).max(slips.max(-slips));
-                let panels = LANES * across + at;
-                would |= zero.choose_below(most, one, zero).bits() << panels;
-                far |= all(self.still).choose_below(most, one, zero).bits() << panels;
+                let gives = holding - holding.min(limit).max(-limit) - held;
+                let slips = these * (gives * of(&self.per_own, along));
+                let opens = these * opens;
+                let most = these * loses.max(-loses).max(gives.max(-gives));
+                (had + opens).store(&mut hold.open, LANES * across + at);
+                (was + slips).store(&mut hold.open, LANES * along + at);
+                (-opens).store(&mut changes, LANES * across + at);
+                (-slips).store(&mut changes, LANES * along + at);
+                let opening = zero.choose_below(opens.max(-opens), one, zero).bits();
+                let slipping = zero.choose_below(slips.max(-slips), one, zero).bits();
+                moved |= u128::from(opening) << (LANES * across + at);
+                moved |= u128::from(slipping) << (LANES * along + at);
+                far |= all(self.still).choose_below(most, one, zero).bits();
                 at += Vector::<S>::LEN;
             }
         }
-        (would, far != 0)
-    }
-
-    /// Opens or shifts a panel, which changes all tensions.
-    #[inline(always)]
-    fn change<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], spring: usize, has: f64) {
-        let more = has - hold.open[spring];
-        hold.open[spring] = has;
-        let groups = tension.len();
-        add(simd, tension, &self.stiffness[groups * spring..groups * (spring + 1)], -more);
+        let springs = bits(moved).map(|spring| (spring, changes[spring]));
+        add_all(simd, tension, &self.stiffness, springs);
+        (moved, far != 0)
     }
 
     /// What follows from the springs that have opened and slipped in this step, a bit for each: what all tensions have lost, and what is done
@@ -445,18 +490,9 @@ impl Springs {
     #[inline(always)]
     fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moved: u128) {
         let Hold { open, before, lost, push, .. } = hold;
-        let mut changes = [(0, 0.0); 2 * u64::BITS as usize];
-        let mut count = 0;
-        let mut left = moved;
-        while left != 0 {
-            let spring = left.trailing_zeros() as usize;
-            left &= left - 1;
-            changes[count] = (spring, open[spring] - before[spring]);
-            count += 1;
-        }
-        let changes = &changes[..count];
-        add_all(simd, lost, &self.stiffness, changes);
-        add_all(simd, push, &self.by_spring, changes);
+        let changes = bits(moved).map(|spring| (spring, open[spring] - before[spring]));
+        add_all(simd, lost.as_chunks_mut::<LANES>().0, &self.stiffness, changes.clone());
+        add_all(simd, push.as_chunks_mut::<LANES>().0, &self.by_spring, changes);
     }
 
     /// Energy of the seat beyond that of one that holds, less the work of rollers [J].
@@ -486,7 +522,7 @@ mod tests {
         (stiffness[0], stiffness[padded * n + padded]) = (1e6, 1e6);
         let mut pressed = vec![0.0; padded];
         pressed[0] = 100.0;
-        let seat = Seat {
+        let mut seat = Seat {
             panels: 1,
             padded,
             pressed,
@@ -499,7 +535,7 @@ mod tests {
             taken_back: Vec::new(),
             heard: Vec::new(),
         };
-        let springs = Springs::new(&seat, LANES, friction);
+        let springs = Springs::new(&mut seat, LANES, friction);
         let hold = springs.at_rest(LANES, 0);
         (springs, hold)
     }
@@ -510,8 +546,9 @@ mod tests {
         all[..2].copy_from_slice(&q);
         let mut tension = vec![Row::default(); springs.rows()];
         let mut answers = Answers::default();
-        springs.pull(Scalar::new(), hold, &all, &answers, &mut tension);
-        let heat = springs.settle(Scalar::new(), hold, &mut tension, &mut answers, PASSES);
+        let moved = springs.go_on(Scalar::new(), hold);
+        springs.pull(Scalar::new(), hold, moved, &all, &answers, &mut tension);
+        let heat = springs.settle(Scalar::new(), hold, moved, &mut tension, &mut answers, PASSES);
         [heat, springs.stored(hold, &tension), tension[0][0] - springs.pressed[0][0], tension[1][0]]
     }
 
