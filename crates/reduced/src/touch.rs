@@ -54,7 +54,10 @@ impl Bearing {
     /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when centres and directions of vertex 0
     /// are known in its frame. `parts` is room to compute in.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one search, with all that it reads and room to compute in")]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one search, with all that it reads and room to compute in"
+    )]
     pub(crate) fn press_together<S: Simd>(
         &self,
         simd: S,

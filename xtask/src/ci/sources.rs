@@ -11,8 +11,8 @@ const GENERAL: [&str; 7] = ["mesh", "simd", "solver", "contact", "system", "dsp"
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 
-/// Crates that may print and read the clock: programs, and what only the project's development uses.
-const LOUD: [&str; 3] = ["stribeck", "studies", "testing"];
+/// Crates that may print and read the clock: programs, a module that others are written with, and what only the project's development uses.
+const LOUD: [&str; 4] = ["python", "stribeck", "studies", "testing"];
 /// What prints or reads the clock.
 const NOISES: [&str; 6] =
     ["print!(", "println!(", "eprint!(", "eprintln!(", "Instant::now(", "SystemTime::now("];
