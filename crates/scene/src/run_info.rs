@@ -150,6 +150,8 @@ pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
 pub struct GuardInfo {
     /// The imbalance of energy has been warned of.
     pub energy_warned: bool,
+    /// Largest energy that rings and contacts of a reduced bearing have stored [J].
+    pub stored_j: f64,
     /// Largest hourglass energy over strain energy [-].
     pub hourglass_share: f64,
     /// Deepest penetration over the element size [-].
@@ -169,6 +171,7 @@ impl Default for GuardInfo {
     fn default() -> Self {
         Self {
             energy_warned: false,
+            stored_j: 0.0,
             hourglass_share: 0.0,
             penetration_share: 0.0,
             least_area: f64::INFINITY,

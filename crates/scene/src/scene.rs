@@ -533,7 +533,8 @@ pub struct SensorScene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuardsScene {
-    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%].
+    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%]; of a reduced run, over the most that rings
+    /// and contacts have stored.
     pub energy_warning_percent: f64,
     /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat, too.
     pub energy_stop_percent: f64,

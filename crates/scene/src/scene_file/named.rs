@@ -7,6 +7,7 @@ use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
 use crate::duty::Duty;
 use crate::geometry::Geometry;
+use crate::housing::{HousingScene, PedestalScene};
 use crate::line_contact::LineContacts;
 use crate::point_contact;
 use crate::scene::{
@@ -106,6 +107,12 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     }
     follow("adapter.width_mm", &mut scene.adapter.width_mm, across * paper.adapter.width_mm);
     follow("adapter.height_mm", &mut scene.adapter.height_mm, across * paper.adapter.height_mm);
+    if let HousingScene::Pedestal(pedestal) = &mut scene.housing {
+        let of_paper = PedestalScene::default();
+        follow("housing.width_mm", &mut pedestal.width_mm, across * of_paper.width_mm);
+        follow("housing.base_mm", &mut pedestal.base_mm, across * of_paper.base_mm);
+        follow("housing.top_mm", &mut pedestal.top_mm, across * of_paper.top_mm);
+    }
     if let Some(defect) = &mut scene.defect {
         let of_paper = DefectScene::default();
         follow("defect.length_mm", &mut defect.length_mm, size * of_paper.length_mm);

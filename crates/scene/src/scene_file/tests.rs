@@ -380,6 +380,19 @@ fn refuses_profiles_that_cannot_be_followed() {
     assert!(unread.validate().expect_err("in memory").to_string().contains("was not read"));
 }
 
+/// The paper's would be cut into millions of elements as fine as those of a small bearing.
+#[test]
+fn issue_a_pedestal_is_as_large_as_its_bearing_asks_where_its_sides_are_not_given() {
+    let sides = |text: &str| match parse(text).expect("valid").housing {
+        HousingScene::Pedestal(of) => [of.width_mm, of.base_mm, of.top_mm],
+        other => panic!("{other:?}"),
+    };
+    // 52 mm across instead of 220.
+    assert_eq!(sides("(bearing: \"NU 205\", housing: pedestal())"), [75.6, 37.8, 33.1]);
+    assert_eq!(sides("(bearing: \"NU 205\", housing: pedestal(width_mm: 90))"), [90.0, 37.8, 33.1]);
+    assert_eq!(sides("(housing: pedestal())"), [320.0, 160.0, 140.0]);
+}
+
 #[test]
 fn example_housings_are_written_in_files_and_behind_set() {
     let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid");
