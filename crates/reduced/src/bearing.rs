@@ -271,7 +271,8 @@ impl Bearing {
         let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
         let oil = Lubrication::new(scene, raceways, &rounded, penalty)?;
         let seat = reduction.springs.as_mut();
-        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, scene.contact.seat_friction));
+        let friction = scene.contact.seat_friction;
+        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, friction, time_step));
         Ok(Self {
             time_step,
             seat,

@@ -1,9 +1,10 @@
 //! What is sampled: the channels of the full model, from modes and rigid bodies.
 
+use pulp::Scalar;
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::LANES;
 
-use crate::{bearing::Bearing, row::Row, state::State, step::Scratch};
+use crate::{bearing::Bearing, row::Row, sensors::Sound, state::State, step::Scratch};
 
 /// What the recorder carries from sample to sample.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -22,27 +23,25 @@ impl Memory {
 impl Bearing {
     /// Memory before the first step.
     pub(crate) fn first_memory(&self, state: &State) -> Memory {
-        let mut velocity = Vec::new();
-        self.sensors.velocities(state, &mut velocity);
-        Memory { velocity: velocity.as_chunks().0.to_vec() }
+        let mut sound = Sound::default();
+        self.sensors.hear_modes(Scalar::new(), state, &mut sound);
+        let of = |sensor: usize| [sound.velocity(2 * sensor), sound.velocity(2 * sensor + 1)];
+        Memory { velocity: (0..self.reduction.sensors.len()).map(of).collect() }
     }
 
     /// The row of one sample.
-    pub(crate) fn row(&self, state: &State, scratch: &mut Scratch, memory: &mut Memory, row: &mut Vec<f64>) {
+    pub(crate) fn row(&self, state: &State, scratch: &Scratch, memory: &mut Memory, row: &mut Vec<f64>) {
         let dt = self.time_step;
         let interval = dt * scratch.summed as f64;
         row.clear();
         row.push(state.steps as f64 * dt);
-        self.sensors.hear(state, &scratch.heard, &scratch.modes.tension, &mut scratch.now);
         let (now, before) = (&scratch.now, &scratch.before);
         for (sensor, last) in memory.velocity.iter_mut().enumerate() {
-            let of = |all: &[f64], c: usize| all[2 * sensor + c];
+            let components = [2 * sensor, 2 * sensor + 1];
             // The velocity beyond the modes is that of the last step.
-            let velocity: [f64; 2] = std::array::from_fn(|c| {
-                of(&now.velocity, c) + (of(&now.beyond, c) - of(&before.beyond, c)) / dt
-            });
+            let velocity = components.map(|c| now.velocity(c) + (now.beyond(c) - before.beyond(c)) / dt);
             row.extend((0..2).map(|c| (velocity[c] - last[c]) / interval));
-            row.extend((0..2).map(|c| (of(&now.velocity, c) - of(&before.velocity, c)) / dt));
+            row.extend(components.map(|c| (now.velocity(c) - before.velocity(c)) / dt));
             *last = velocity;
         }
         let steps = scratch.summed as f64;

@@ -1,97 +1,132 @@
 //! What sensors hear: the modes, and beyond them what rollers press and what the seat does (THEORY §9.1).
 
-use stribeck_simd::lanes::LANES;
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{heard::Heard, reduction::Reduction, row::Row, seat::Hold, state::State};
 
-/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of the next one.
+/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of the next one, filled up with
+/// zeros to whole rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensors {
-    components: usize,
+    /// Rows of components.
+    rows: usize,
     /// By a unit of each mode [1/√kg].
-    by_mode: Vec<f64>,
+    by_mode: Vec<Row>,
     /// Beyond the modes by a unit force towards the outside at each vertex of the raceway [m/N].
-    by_vertex: Vec<f64>,
+    by_vertex: Vec<Row>,
     /// The same by a unit gap of each panel of the seat [1], whose tension is missing then, and by a unit tension along it [m/N].
-    by_gap: Vec<f64>,
-    by_tension: Vec<f64>,
+    by_gap: Vec<Row>,
+    by_tension: Vec<Row>,
 }
 
 /// What they hear at a time, all components.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Sound {
     /// Velocity with the modes [m/s].
-    pub(crate) velocity: Vec<f64>,
+    velocity: Vec<Row>,
     /// Displacement beyond them [m].
-    pub(crate) beyond: Vec<f64>,
+    beyond: Vec<Row>,
+}
+
+impl Sound {
+    /// Of a component, velocity with the modes [m/s].
+    #[inline(always)]
+    pub(crate) fn velocity(&self, component: usize) -> f64 {
+        self.velocity[component / LANES][component % LANES]
+    }
+
+    /// Of a component, displacement beyond them [m].
+    #[inline(always)]
+    pub(crate) fn beyond(&self, component: usize) -> f64 {
+        self.beyond[component / LANES][component % LANES]
+    }
 }
 
 impl Sensors {
     pub(crate) fn new(reduction: &Reduction) -> Self {
         let Reduction { sensors, springs, padded, .. } = reduction;
+        let rows = (2 * sensors.len()).div_ceil(LANES);
+        let row_of = |components: &mut dyn Iterator<Item = f64>| {
+            let mut filled = vec![Row::default(); rows];
+            for (at, component) in components.enumerate() {
+                filled[at / LANES][at % LANES] = component;
+            }
+            filled
+        };
         let vertices = sensors.first().map_or(0, |sensor| sensor.residual.len());
-        let by_mode = (0..*padded)
-            .flat_map(|mode| sensors.iter().flat_map(move |s| [s.shape[mode], s.shape[padded + mode]]));
-        let by_vertex = (0..vertices).flat_map(|vertex| sensors.iter().flat_map(move |s| s.residual[vertex]));
+        let by_mode = (0..*padded).flat_map(|mode| {
+            row_of(&mut sensors.iter().flat_map(|s| [s.shape[mode], s.shape[padded + mode]]))
+        });
+        let by_vertex =
+            (0..vertices).flat_map(|vertex| row_of(&mut sensors.iter().flat_map(|s| s.residual[vertex])));
         let (mut by_gap, mut by_tension) = (Vec::new(), Vec::new());
         if let Some(seat) = springs {
             for panel in 0..seat.panels {
                 let of = |spring: usize| seat.heard.iter().flat_map(move |heard| heard[spring]);
-                by_gap.extend(of(panel).map(|heard| -seat.across[panel] * heard));
-                by_tension.extend(of(seat.padded + panel));
+                by_gap.extend(row_of(&mut of(panel).map(|heard| -seat.across[panel] * heard)));
+                by_tension.extend(row_of(&mut of(seat.padded + panel)));
             }
         }
-        Self {
-            components: 2 * sensors.len(),
-            by_mode: by_mode.collect(),
-            by_vertex: by_vertex.collect(),
-            by_gap,
-            by_tension,
+        Self { rows, by_mode: by_mode.collect(), by_vertex: by_vertex.collect(), by_gap, by_tension }
+    }
+
+    /// What they hear at the velocities of a state, while rollers press as `heard` and the seat has these tensions [N].
+    #[inline(always)]
+    pub(crate) fn hear<S: Simd>(
+        &self,
+        simd: S,
+        state: &State,
+        heard: &[Heard],
+        tension: &[Row],
+        sound: &mut Sound,
+    ) {
+        let all = |value: f64| Vector::all(simd, value);
+        self.hear_modes(simd, state, sound);
+        sound.beyond.resize(self.rows, Row::default());
+        for (row, beyond) in sound.beyond.iter_mut().enumerate() {
+            let mut at = 0;
+            while at < LANES {
+                let of = |table: &[Row], n: usize| Vector::load(simd, &table[self.rows * n + row], at);
+                // Four sums, none of which waits for another.
+                let (mut ahead, mut behind, mut open_up, mut hold) = (all(0.0), all(0.0), all(0.0), all(0.0));
+                for roller in heard.iter().filter(|roller| roller.force != 0.0) {
+                    let first = roller.facet as usize;
+                    let second = if self.rows * (first + 1) == self.by_vertex.len() { 0 } else { first + 1 };
+                    let of_second = roller.share * roller.force;
+                    ahead = of(&self.by_vertex, first).times_plus(all(roller.force - of_second), ahead);
+                    behind = of(&self.by_vertex, second).times_plus(all(of_second), behind);
+                }
+                if let Some(Hold { open, .. }) = &state.seat {
+                    let panels = self.by_gap.len() / self.rows;
+                    let along = tension[open.len() / (2 * LANES)..].iter().flat_map(|row| row.iter());
+                    for (panel, (open, along)) in open.iter().zip(along).take(panels).enumerate() {
+                        open_up = of(&self.by_gap, panel).times_plus(all(*open), open_up);
+                        hold = of(&self.by_tension, panel).times_plus(all(*along), hold);
+                    }
+                }
+                ((ahead + behind) + (open_up + hold)).store(beyond, at);
+                at += Vector::<S>::LEN;
+            }
         }
     }
 
-    /// Velocities with the modes [m/s].
-    pub(crate) fn velocities(&self, state: &State, velocity: &mut Vec<f64>) {
-        velocity.clear();
-        velocity.resize(self.components, 0.0);
-        for (mode, v) in self.rows(&self.by_mode).zip(&state.v) {
-            add(velocity, mode, *v);
+    /// Velocities with the modes.
+    #[inline(always)]
+    pub(crate) fn hear_modes<S: Simd>(&self, simd: S, state: &State, sound: &mut Sound) {
+        sound.velocity.resize(self.rows, Row::default());
+        for (row, velocity) in sound.velocity.iter_mut().enumerate() {
+            let mut at = 0;
+            while at < LANES {
+                let of = |mode: usize| Vector::load(simd, &self.by_mode[self.rows * mode + row], at);
+                let (mut even, mut odd) = (Vector::all(simd, 0.0), Vector::all(simd, 0.0));
+                for (pair, [v, w]) in state.v.as_chunks().0.iter().enumerate() {
+                    even = of(2 * pair).times_plus(Vector::all(simd, *v), even);
+                    odd = of(2 * pair + 1).times_plus(Vector::all(simd, *w), odd);
+                }
+                (even + odd).store(velocity, at);
+                at += Vector::<S>::LEN;
+            }
         }
-    }
-
-    /// What they hear while rollers press as `heard` and the seat has these tensions [N].
-    pub(crate) fn hear(&self, state: &State, heard: &[Heard], tension: &[Row], sound: &mut Sound) {
-        self.velocities(state, &mut sound.velocity);
-        let beyond = &mut sound.beyond;
-        beyond.clear();
-        beyond.resize(self.components, 0.0);
-        let n = self.components;
-        for roller in heard.iter().filter(|roller| roller.force != 0.0) {
-            let first = n * roller.facet as usize;
-            let second = if first + n == self.by_vertex.len() { 0 } else { first + n };
-            let of_second = roller.share * roller.force;
-            add(beyond, &self.by_vertex[first..first + n], roller.force - of_second);
-            add(beyond, &self.by_vertex[second..second + n], of_second);
-        }
-        let Some(Hold { open, .. }) = &state.seat else { return };
-        for (row, open) in self.rows(&self.by_gap).zip(open).filter(|(_, open)| **open != 0.0) {
-            add(beyond, row, *open);
-        }
-        let along = tension[open.len() / (2 * LANES)..].iter().flat_map(|row| row.iter());
-        for (row, tension) in self.rows(&self.by_tension).zip(along) {
-            add(beyond, row, *tension);
-        }
-    }
-
-    fn rows<'a>(&self, table: &'a [f64]) -> impl Iterator<Item = &'a [f64]> {
-        table.chunks_exact(self.components.max(1))
-    }
-}
-
-/// Adds a multiple of a row.
-#[inline(always)]
-fn add(sums: &mut [f64], row: &[f64], times: f64) {
-    for (sum, number) in sums.iter_mut().zip(row) {
-        *sum += number * times;
     }
 }

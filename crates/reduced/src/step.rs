@@ -100,6 +100,10 @@ impl WithSimd for Interval<'_> {
         for _ in 0..self.steps {
             self.bearing.step(simd, self.state, self.scratch, self.last);
         }
+        if self.last {
+            let Scratch { heard, modes, now, .. } = self.scratch;
+            self.bearing.sensors.hear(simd, self.state, heard, &modes.tension, now);
+        }
     }
 }
 
@@ -134,7 +138,7 @@ impl Bearing {
             self.resist(simd, &mut scratch.modes);
         }
         if last {
-            self.sensors.hear(state, &scratch.heard, &scratch.modes.tension, &mut scratch.before);
+            self.sensors.hear(simd, state, &scratch.heard, &scratch.modes.tension, &mut scratch.before);
         }
         let inner = Turning { rate, turned: turned(state.shaft) };
         let outer = self.outer_turns.then(|| Turning { rate: outer_rate, turned: turned(outer_angle) });

@@ -10,12 +10,21 @@ use crate::{
     seat::Seat,
 };
 
-/// Passes over the panels in a step at most, and before the first step.
-const PASSES: usize = 200;
-const PASSES_AT_REST: usize = 1000;
+/// When passes over the panels end.
+#[derive(Debug, Clone, Copy)]
+struct Passes {
+    /// After so many at most …
+    most: usize,
+    /// … or when no tension would change by more [N].
+    still: f64,
+}
 
-/// Passes end when no tension would change by more than this share of the mean force on a panel.
+/// A tension that changes by less than this share of the mean force on a panel takes no further pass …
 const STILL: f64 = 1e-4;
+
+/// … nor in a step one that changes by less than this times the square of the step [1/s²], as the error of the step goes: what rollers will
+/// press is not known better.
+const STILL_IN_STEP: f64 = 2.5e8;
 
 /// Every other panel, beginning with the first and with the second. Their number is odd, so that the mirrored seat has mirrored ones.
 const EVERY_OTHER: [Row; 2] =
@@ -49,7 +58,8 @@ pub(crate) struct Springs {
     /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
     farthest: Vec<Row>,
     friction: f64,
-    still: f64,
+    at_rest: Passes,
+    in_step: Passes,
 }
 
 /// By how much the seat has opened and slipped, and what comes of it: part of the checkpoint.
@@ -166,7 +176,7 @@ fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
 
 impl Springs {
     /// Of a seat, whose tables are rounded.
-    pub(crate) fn new(seat: &mut Seat, modes: usize, friction: f64) -> Self {
+    pub(crate) fn new(seat: &mut Seat, modes: usize, friction: f64, time_step: f64) -> Self {
         let n = 2 * seat.padded;
         let rows =
             |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
@@ -182,6 +192,7 @@ impl Springs {
         let per_own: Vec<f64> =
             own.iter().map(|stiffness| if *stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }).collect();
         let give = seat.give(0);
+        let mean = seat.pressed.iter().sum::<f64>() / seat.panels as f64;
         Self {
             panels: seat.panels,
             padded: seat.padded,
@@ -196,7 +207,8 @@ impl Springs {
             pressed: rows(&seat.pressed),
             farthest: largest_of::<1>(&seat.by_rollers, n),
             friction,
-            still: STILL * seat.pressed.iter().sum::<f64>() / seat.panels as f64,
+            at_rest: Passes { most: 1000, still: STILL * mean },
+            in_step: Passes { most: 200, still: STILL.max(STILL_IN_STEP * time_step * time_step) * mean },
         }
     }
 
@@ -231,7 +243,7 @@ impl Springs {
         let (mut tension, mut answers) = (vec![Row::default(); self.rows()], Answers::default());
         self.answer(simd, hold, &hold.pressed, &mut answers);
         self.pull(simd, hold, 0, q, &answers, &mut tension);
-        self.settle(simd, hold, 0, &mut tension, &mut answers, PASSES_AT_REST);
+        self.settle(simd, hold, 0, &mut tension, &mut answers, self.at_rest);
         hold.before.copy_from_slice(&hold.open);
     }
 
@@ -252,7 +264,7 @@ impl Springs {
         let moved = self.go_on(simd, hold);
         self.answer(simd, hold, rollers, answers);
         self.pull(simd, hold, moved, q, answers, tension);
-        let heat = self.settle(simd, hold, moved, tension, answers, PASSES);
+        let heat = self.settle(simd, hold, moved, tension, answers, self.in_step);
         for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
             for (push, more) in push.iter_mut().zip(more) {
                 *push += more;
@@ -266,7 +278,7 @@ impl Springs {
         for (roller, by) in answers.rollers.iter().zip(answers.by.chunks_exact(self.rows())) {
             by_rollers += roller.force * dot(simd, by, hold.open.as_chunks().0);
         }
-        [heat, self.stored(hold, tension) + by_rollers]
+        [heat, self.stored(simd, hold, tension) + by_rollers]
     }
 
     /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m], in parts to be summed.
@@ -417,12 +429,12 @@ impl Springs {
         mut moved: u128,
         tension: &mut [Row],
         answers: &mut Answers,
-        passes: usize,
+        passes: Passes,
     ) -> f64 {
         // Every other panel at once: neighbours see what those between them have done.
         let mut quiet = 0;
-        for half in 0..2 * passes {
-            let (these, far) = self.let_go(simd, hold, tension, &EVERY_OTHER[half % 2]);
+        for half in 0..2 * passes.most {
+            let (these, far) = self.let_go(simd, hold, tension, &EVERY_OTHER[half % 2], passes.still);
             moved |= these;
             quiet = if far { 0 } else { quiet + 1 };
             if half % 2 == 1 {
@@ -440,9 +452,16 @@ impl Springs {
     }
 
     /// Lets those of some panels that pull open, and those slip that friction does not hold, all at once. Returns which springs have moved,
-    /// a bit for each, and whether that changed a tension by as much as to take another pass.
+    /// a bit for each, and whether that changed a tension by more than `still` [N].
     #[inline(always)]
-    fn let_go<S: Simd>(&self, simd: S, hold: &mut Hold, tension: &mut [Row], these: &Row) -> (u128, bool) {
+    fn let_go<S: Simd>(
+        &self,
+        simd: S,
+        hold: &mut Hold,
+        tension: &mut [Row],
+        these: &Row,
+        still: f64,
+    ) -> (u128, bool) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, friction) = (all(0.0), all(1.0), all(self.friction));
         let groups = self.padded / LANES;
@@ -476,7 +495,7 @@ impl Springs {
                 let slipping = zero.choose_below(slips.max(-slips), one, zero).bits();
                 moved |= u128::from(opening) << (LANES * across + at);
                 moved |= u128::from(slipping) << (LANES * along + at);
-                far |= all(self.still).choose_below(most, one, zero).bits();
+                far |= all(still).choose_below(most, one, zero).bits();
                 at += Vector::<S>::LEN;
             }
         }
@@ -496,16 +515,21 @@ impl Springs {
     }
 
     /// Energy of the seat beyond that of one that holds, less the work of rollers [J].
-    fn stored(&self, hold: &Hold, tension: &[Row]) -> f64 {
-        let tensions = tension.iter().flat_map(|row| row.iter());
-        let each = hold.open.iter().zip(&hold.lost).zip(tensions);
-        -each.map(|((open, lost), tension)| open * (0.5 * lost + tension)).sum::<f64>()
-            + hold
-                .open
-                .iter()
-                .zip(self.pressed.iter().flat_map(|row| row.iter()))
-                .map(|(open, pressed)| open * pressed)
-                .sum::<f64>()
+    #[inline(always)]
+    fn stored<S: Simd>(&self, simd: S, hold: &Hold, tension: &[Row]) -> f64 {
+        let (zero, half) = (Vector::all(simd, 0.0), Vector::all(simd, 0.5));
+        let (open, lost) = (hold.open.as_chunks::<LANES>().0, hold.lost.as_chunks::<LANES>().0);
+        let mut sum = zero;
+        for (n, (open, lost)) in open.iter().zip(lost).enumerate() {
+            let mut at = 0;
+            while at < LANES {
+                let pressed = self.pressed.get(n).map_or(zero, |pressed| Vector::load(simd, pressed, at));
+                let held = half.times_plus(Vector::load(simd, lost, at), Vector::load(simd, &tension[n], at));
+                sum = Vector::load(simd, open, at).times_plus(pressed - held, sum);
+                at += Vector::<S>::LEN;
+            }
+        }
+        sum.sum()
     }
 }
 
@@ -535,7 +559,7 @@ mod tests {
             taken_back: Vec::new(),
             heard: Vec::new(),
         };
-        let springs = Springs::new(&mut seat, LANES, friction);
+        let springs = Springs::new(&mut seat, LANES, friction, 1e-6);
         let hold = springs.at_rest(LANES, 0);
         (springs, hold)
     }
@@ -548,8 +572,13 @@ mod tests {
         let mut answers = Answers::default();
         let moved = springs.go_on(Scalar::new(), hold);
         springs.pull(Scalar::new(), hold, moved, &all, &answers, &mut tension);
-        let heat = springs.settle(Scalar::new(), hold, moved, &mut tension, &mut answers, PASSES);
-        [heat, springs.stored(hold, &tension), tension[0][0] - springs.pressed[0][0], tension[1][0]]
+        let heat = springs.settle(Scalar::new(), hold, moved, &mut tension, &mut answers, springs.in_step);
+        [
+            heat,
+            springs.stored(Scalar::new(), hold, &tension),
+            tension[0][0] - springs.pressed[0][0],
+            tension[1][0],
+        ]
     }
 
     /// A spring and a slider in series: 4 µN (A − µN/k) of heat in a cycle of the amplitude A.
