@@ -19,6 +19,7 @@ use crate::{
     oil::Lubrication,
     outline::Outline,
     overlap::Sides,
+    polygon::Polygon,
     reduction::Reduction,
     row::{Row, Rows, Single, in_single, largest_of},
     seat::{STICKING, Springs},
@@ -51,6 +52,8 @@ pub struct Bearing {
     pub(crate) inner: Track,
     /// Rims of rollers: the round one first, then those that are not round.
     pub(crate) rims: Vec<Rim>,
+    /// The round one as the cage meets it.
+    pub(crate) polygon: Polygon,
     /// Which of them each roller has.
     pub(crate) rim_of: Vec<u32>,
     /// Angle of vertex 0 of each roller at the start [rad].
@@ -297,6 +300,7 @@ impl Bearing {
             duty: Duty::varying(scene),
             tacho: Tacho::of(scene),
             cage: cage.flatten(),
+            polygon: Polygon::new(rims[0].outline.len(), rims[0].top),
             rims,
             rim_of,
             shapes,

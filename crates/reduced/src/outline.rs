@@ -111,34 +111,7 @@ impl Outline {
         let [a, b] = [side(facet), side(self.next(facet))];
         if b > a { (-a / (b - a)).clamp(0.0, 1.0) } else { 0.0 }
     }
-
-    /// How deep the point at `distance` from the centre in the direction `d` lies within a regular polygon [m], and by how much a metre
-    /// along d and one across it, counter-clockwise, bring it outwards. Vertices are rounded by a twentieth of a facet to either side.
-    #[inline(always)]
-    pub fn depth(&self, d: [f64; 2], distance: f64) -> (f64, [f64; 2]) {
-        let n = self.x.len();
-        let facet = std::f64::consts::TAU / n as f64;
-        let angle = d[1].atan2(d[0]);
-        let middle = ((angle / facet).floor() + 0.5) * facet;
-        let tilt = middle - angle;
-        let rounded = ROUNDED * facet;
-        let from_vertex = 0.5 * facet - tilt.abs();
-        // Beside a vertex the distance from it is that of a parabola, which is even there and goes on smoothly.
-        let (leaning, part) = if from_vertex < rounded {
-            let smooth = 0.5 * (from_vertex * from_vertex / rounded + rounded);
-            ((0.5 * facet - smooth).copysign(tilt), from_vertex / rounded)
-        } else {
-            (tilt, 1.0)
-        };
-        let (sine, cosine) = leaning.sin_cos();
-        (self.x[0] * (0.5 * facet).cos() - distance * cosine, [cosine, part * sine])
-    }
 }
-
-/// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A corner that passes a sharp vertex
-/// meets another force at once, and the step, which falls on it somewhere, gives or takes energy by its length; over a tenth of a facet,
-/// which takes several steps, that is gone, and a tenth of what vertices stand out by with it.
-const ROUNDED: f64 = 0.05;
 
 /// A roller or a raceway, seen from the roller's centre.
 #[derive(Debug, Clone, Copy)]

@@ -202,7 +202,7 @@ impl Bearing {
         let (depth, [level, tilt]) = if self.outer.sides.are_round() {
             (rim.top - distance, [1.0, 0.0])
         } else {
-            rim.outline.depth(own_d, distance)
+            self.polygon.depth(own_d, distance)
         };
         let parted = depth <= 0.0;
         if parted && *passive == [0.0; 2] {

@@ -1,0 +1,131 @@
+//! The polygon of a roller as walls and corners of the cage meet it (THEORY §9.4).
+
+/// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A corner that passes a sharp vertex
+/// meets another force at once, and the step, which falls on it somewhere, gives or takes energy by its length; over a tenth of a facet,
+/// which takes several steps, that is gone, and a tenth of what vertices stand out by with it.
+const ROUNDED: f64 = 0.05;
+
+/// A regular polygon about the origin with vertex 0 on the x axis, counter-clockwise.
+#[derive(Debug, Clone)]
+pub(crate) struct Polygon {
+    /// Distance of the facets from the centre [m].
+    apothem: f64,
+    /// Half the angle of a facet, and what is rounded of it [rad].
+    half: f64,
+    rounded: f64,
+    /// Directions of the middles of the facets.
+    middles: Vec<[f64; 2]>,
+    /// Sines of half the angle, and of what is not rounded of it.
+    sine_half: f64,
+    sine_sharp: f64,
+}
+
+impl Polygon {
+    /// With so many facets, and vertices on a circle [m].
+    pub(crate) fn new(facets: usize, radius: f64) -> Self {
+        let half = std::f64::consts::PI / facets as f64;
+        let rounded = 2.0 * half * ROUNDED;
+        let middle = |facet: usize| {
+            let (s, c) = (half * (2 * facet + 1) as f64).sin_cos();
+            [c, s]
+        };
+        Self {
+            apothem: radius * half.cos(),
+            half,
+            rounded,
+            middles: (0..facets).map(middle).collect(),
+            sine_half: half.sin(),
+            sine_sharp: (half - rounded).sin(),
+        }
+    }
+
+    /// How deep the point at `distance` from the centre in the direction `d` lies within [m], and by how much a metre along d and one
+    /// across it, counter-clockwise, bring it outwards.
+    #[inline(always)]
+    pub(crate) fn depth(&self, d: [f64; 2], distance: f64) -> (f64, [f64; 2]) {
+        let [cosine, sine] = self.beside_middle(d);
+        // Most places are beside a middle, not beside a vertex: no sine has to be computed there.
+        if sine.abs() <= self.sine_sharp {
+            return (self.apothem - distance * cosine, [cosine, sine]);
+        }
+        // Beside a vertex the distance from it is that of a parabola, which is even there and goes on smoothly.
+        let tilt = sine.asin();
+        let from_vertex = self.half - tilt.abs();
+        let smooth = 0.5 * (from_vertex * from_vertex / self.rounded + self.rounded);
+        let (sine, cosine) = (self.half - smooth).copysign(tilt).sin_cos();
+        (self.apothem - distance * cosine, [cosine, from_vertex / self.rounded * sine])
+    }
+
+    /// Cosine and sine of the angle by which the middle of the facet there is ahead of a direction.
+    #[inline(always)]
+    fn beside_middle(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let count = self.middles.len();
+        let mut facet = (rough_turns(x, y) * count as f64) as usize % count;
+        // A whole turn at most, should nothing fit.
+        for _ in 0..count {
+            let [mx, my] = self.middles[facet];
+            let sine = my * x - mx * y;
+            if sine > self.sine_half {
+                facet = if facet == 0 { count - 1 } else { facet - 1 };
+            } else if sine < -self.sine_half {
+                facet = if facet + 1 == count { 0 } else { facet + 1 };
+            } else {
+                return [mx * x + my * y, sine];
+            }
+        }
+        [1.0, 0.0]
+    }
+}
+
+/// The angle of a direction in turns from the x axis, to a thousandth: enough to begin a search with.
+#[inline(always)]
+fn rough_turns(x: f64, y: f64) -> f64 {
+    let (across, along) = (x.abs().min(y.abs()), x.abs().max(y.abs()));
+    let share = across / along;
+    let eighth = share * (0.154_76 - 0.030_55 * share * share);
+    let quarter = if x.abs() >= y.abs() { eighth } else { 0.25 - eighth };
+    let half = if x >= 0.0 { quarter } else { 0.5 - quarter };
+    if y >= 0.0 { half } else { 1.0 - half }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All around polygons of few and of many facets: beside a middle as deep as below the line through both vertices, beside a vertex less
+    /// deep than that by no more than the vertex stands out by, and everywhere the gradient is that of the depth.
+    /// Source: own, plane geometry.
+    #[test]
+    fn analytic_depths_are_those_below_facets_and_their_gradients_theirs() {
+        let radius = 9e-3;
+        for facets in [3, 7, 56, 112] {
+            let polygon = Polygon::new(facets, radius);
+            let facet = std::f64::consts::TAU / facets as f64;
+            let apothem = radius * (0.5 * facet).cos();
+            for n in 0..5000 {
+                let angle = std::f64::consts::TAU * (n as f64 + 0.37) / 5000.0 - std::f64::consts::PI;
+                let distance = 0.9 * apothem;
+                let at = |angle: f64, distance: f64| polygon.depth([angle.cos(), angle.sin()], distance);
+                let (depth, [along, across]) = at(angle, distance);
+                let tilt = (angle / facet - (angle / facet).floor() - 0.5) * facet;
+                let below = apothem - distance * tilt.cos();
+                if tilt.abs() < (0.5 - ROUNDED) * facet {
+                    assert!((depth - below).abs() < 1e-15, "{facets} facets, {angle}: {depth} and {below} m");
+                } else {
+                    let sagged = distance * ((0.5 - ROUNDED) * facet).cos() - distance * (0.5 * facet).cos();
+                    assert!(
+                        (-1e-15..=sagged).contains(&(below - depth)),
+                        "{facets} facets, {angle}: {depth} m"
+                    );
+                }
+                let step = 1e-6;
+                let outwards =
+                    (at(angle, distance).0 - at(angle, distance + step * radius).0) / (step * radius);
+                assert!((outwards - along).abs() < 1e-9, "{facets} facets, {angle}: {outwards} and {along}");
+                let beside =
+                    (at(angle - step, distance).0 - at(angle + step, distance).0) / (2.0 * step * distance);
+                assert!((beside - across).abs() < 1e-4, "{facets} facets, {angle}: {beside} and {across}");
+            }
+        }
+    }
+}
