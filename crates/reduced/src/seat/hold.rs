@@ -523,7 +523,10 @@ impl Springs {
         for (n, (open, lost)) in open.iter().zip(lost).enumerate() {
             let mut at = 0;
             while at < LANES {
-                let pressed = self.pressed.get(n).map_or(zero, |pressed| Vector::load(simd, pressed, at));
+                let pressed = match self.pressed.get(n) {
+                    Some(pressed) => Vector::load(simd, pressed, at),
+                    None => zero,
+                };
                 let held = half.times_plus(Vector::load(simd, lost, at), Vector::load(simd, &tension[n], at));
                 sum = Vector::load(simd, open, at).times_plus(pressed - held, sum);
                 at += Vector::<S>::LEN;
