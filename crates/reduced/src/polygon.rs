@@ -93,7 +93,8 @@ mod tests {
     use super::*;
 
     /// All around polygons of few and of many facets: beside a middle as deep as below the line through both vertices, beside a vertex less
-    /// deep than that by no more than the vertex stands out by, and everywhere the gradient is that of the depth.
+    /// deep than that by no more than the vertex stands out by, at a vertex as deep as its parabola and even, and everywhere the gradient is that
+    /// of the depth.
     /// Source: own, plane geometry.
     #[test]
     fn analytic_depths_are_those_below_facets_and_their_gradients_theirs() {
@@ -102,6 +103,10 @@ mod tests {
             let polygon = Polygon::new(facets, radius);
             let facet = std::f64::consts::TAU / facets as f64;
             let apothem = radius * (0.5 * facet).cos();
+            // At a vertex the depth is even.
+            let (depth, [_, across]) = polygon.depth([1.0, 0.0], apothem);
+            let parabola = apothem - apothem * (0.5 * (1.0 - ROUNDED) * facet).cos();
+            assert!((depth - parabola).abs() < 1e-15 && across.abs() < 1e-12, "{facets} facets: {depth} m");
             for n in 0..5000 {
                 let angle = std::f64::consts::TAU * (n as f64 + 0.37) / 5000.0 - std::f64::consts::PI;
                 let distance = 0.9 * apothem;

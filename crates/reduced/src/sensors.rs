@@ -89,7 +89,8 @@ impl Sensors {
             while at < LANES {
                 let of = |table: &[Row], n: usize| Vector::load(simd, &table[self.rows * n + row], at);
                 // Four sums, none of which waits for another.
-                let (mut ahead, mut behind, mut open_up, mut hold) = (all(0.0), all(0.0), all(0.0), all(0.0));
+                let (mut ahead, mut behind, mut by_gaps, mut by_tensions) =
+                    (all(0.0), all(0.0), all(0.0), all(0.0));
                 for roller in heard.iter().filter(|roller| roller.force != 0.0) {
                     let first = roller.facet as usize;
                     let second = if self.rows * (first + 1) == self.by_vertex.len() { 0 } else { first + 1 };
@@ -101,11 +102,11 @@ impl Sensors {
                     let panels = self.by_gap.len() / self.rows;
                     let along = tension[open.len() / (2 * LANES)..].iter().flat_map(|row| row.iter());
                     for (panel, (open, along)) in open.iter().zip(along).take(panels).enumerate() {
-                        open_up = of(&self.by_gap, panel).times_plus(all(*open), open_up);
-                        hold = of(&self.by_tension, panel).times_plus(all(*along), hold);
+                        by_gaps = of(&self.by_gap, panel).times_plus(all(*open), by_gaps);
+                        by_tensions = of(&self.by_tension, panel).times_plus(all(*along), by_tensions);
                     }
                 }
-                ((ahead + behind) + (open_up + hold)).store(beyond, at);
+                ((ahead + behind) + (by_gaps + by_tensions)).store(beyond, at);
                 at += Vector::<S>::LEN;
             }
         }

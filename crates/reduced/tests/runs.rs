@@ -557,3 +557,15 @@ fn analytic_rollers_in_a_rigid_housing() {
         assert!((mean / info.expected_support_n - 1.0).abs() < 1e-3, "{bearing}: {mean} N");
     }
 }
+
+/// Rings in a rigid housing store next to nothing: beside what contacts store, what the step leaves is small, and no divergence.
+#[test]
+fn issue_a_light_load_in_a_rigid_housing_is_no_divergence() {
+    let text = "(name: \"light\", housing: rigid(mass_kg: 18.08), model: reduced(step_us: 2.0), film: None, defect: None,
+        defects: [(on: outer, angle_deg: 334.8, form: waviness(order: 7, amplitude_um: 0.79))], cage: (pocket: corners),
+        operation: (load_n: 193, speed_rpm: 535), solver: (duration_ms: 10), output: (interval_us: 50, frames: None))";
+    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let info = run(&scene, &Scratch::create("reduced-rigid-light"), "run", 1);
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    assert!(info.energy.max_relative_error > 0.25, "{}", info.energy.max_relative_error);
+}
