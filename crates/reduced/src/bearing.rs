@@ -14,13 +14,13 @@ use stribeck_simd::lanes::{LANES, Number};
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 
 use crate::{
-    compliance::{Compliance, Curve},
+    compliance::{Compliance, Curve, contact_length},
     error::Error,
     oil::Lubrication,
     outline::Outline,
     overlap::Sides,
     polygon::Polygon,
-    reduction::Reduction,
+    reduction::{OVERLOAD, Reduction},
     row::{Row, Rows, Single, in_single, largest_of},
     seat::{STICKING, Springs},
     sensors::Sensors,
@@ -311,14 +311,20 @@ impl Bearing {
         })
     }
 
-    /// Critical time step [s]: of modes and contacts in series with what a roller weighs, at the compliance of light loads and the
-    /// longest contact that the local problem was solved for (own; THEORY §9.4).
+    /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with raceways as stiff as at the
+    /// largest load that the local problem was solved for, friction over those of the fullest roller, and the cage on corners of all pockets.
     pub fn critical_time_step(&self) -> f64 {
         let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
-        let [mass, _] = self.reduction.roller_inertia;
+        let [mass, inertia] = self.reduction.roller_inertia;
         let r = self.reduction.padded;
-        let stiffness = |track: &Track| track.compliance.stiffest(self.penalty, track.relative);
-        let [outer, inner] = [stiffness(&self.outer), stiffness(&self.inner)];
+        let both = [&self.outer, &self.inner];
+        let [outer, inner] = both.map(|track| track.compliance.stiffest(self.penalty, track.relative));
+        let along = |track: &Track| {
+            let fullest = track.compliance.largest_load() / OVERLOAD;
+            let stiffness = self.sticking * contact_length(fullest, self.penalty, track.relative);
+            if self.friction > 0.0 { stiffness } else { 0.0 }
+        };
+        let [along_outer, along_inner] = both.map(along);
         // A contact pulls on the roller and on the modes under it; (a − b)² ≤ (1 + c) a² + (1 + 1/c) b².
         let under = |vertex: usize| {
             let shape = &self.reduction.shapes[2 * r * vertex..2 * r * (vertex + 1)];
@@ -327,21 +333,27 @@ impl Bearing {
         let modes = (0..self.outer.outline.len()).map(under).fold(0.0, f64::max);
         let c = (modes * mass).sqrt();
         let of_roller = ((1.0 + c) * outer + inner) / mass;
+        // Both raceways hold a roller along the track: one way if it spins, the other if it moves on.
+        let of_friction = 2.0
+            * ((1.0 + c) * along_outer).max(along_inner)
+            * (1.0 / mass).max(self.arm * self.arm / inertia);
         // Few rollers share the modes of highest participation; each adds its own part.
-        let of_modes = highest + (1.0 + 1.0 / c) * outer * modes;
-        let square = of_roller.max(of_modes);
+        let of_modes = highest + (1.0 + 1.0 / c) * outer.max(along_outer) * modes;
+        // All rollers may press on the cage at once.
+        let of_cage = self.cage.as_ref().map_or(0.0, |cage| {
+            let arm = cage
+                .walls
+                .iter()
+                .flatten()
+                .map(|wall| wall.inner[0].hypot(wall.inner[1]))
+                .fold(0.0, f64::max);
+            let of_all = self.rollers as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
+            0.5 * self.penalty * cage.corner * (1.0 / mass + of_all)
+        });
+        let square = of_roller.max(of_friction).max(of_modes).max(of_cage);
         // Dampers act half a step late: ω² Δt²/4 + d Δt/2 < 1, where d is the sum over all modes at most.
-        let r = self.reduction.padded;
         let d: f64 = self.reduction.dampers.iter().step_by(r + 1).sum();
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
-    }
-
-    /// What a single roller's force loses if it lets the whole seat slip, over the force: the gain of a loop whose lag is a step
-    /// (THEORY §9.1).
-    pub fn seat_loop_gain(&self) -> f64 {
-        let gives = self.reduction.springs.as_ref().map_or(Vec::new(), |seat| seat.give(seat.padded));
-        gives.into_iter().fold(0.0, f64::max)
-            * self.outer.compliance.stiffest(self.penalty, self.outer.relative)
     }
 
     /// The rim of a roller, from 0.

@@ -8,8 +8,8 @@ use stribeck_scene::{
     duty::{Duty, LONGEST_RUN_S},
     run_dir::write_atomic,
     scene::{
-        CageScene, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene, ReducedScene, Scene,
-        SolverScene,
+        CageScene, ContactFormula, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene,
+        ReducedScene, Scene, SolverScene,
     },
 };
 
@@ -35,6 +35,11 @@ pub fn reference(scene: &Scene) -> Scene {
         onset_um,
         ..
     } = scene.contact.clone();
+    let mut solver = SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() };
+    if formula == ContactFormula::LsdynaSegment {
+        // Its penalty is that of the full model's step.
+        solver.time_step_factor = scene.solver.time_step_factor;
+    }
     let middle = scene.grooves().first().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
     let mut bearing = scene.bearing.clone();
     bearing.first_roller_deg = middle + 180.0 / bearing.rollers as f64;
@@ -71,7 +76,7 @@ pub fn reference(scene: &Scene) -> Scene {
             ..ContactScene::default()
         },
         film: None,
-        solver: SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() },
+        solver,
         output: OutputScene { sensors: scene.output.sensors.clone(), frames: None, ..OutputScene::default() },
         guards: GuardsScene::default(),
     }

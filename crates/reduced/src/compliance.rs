@@ -67,12 +67,22 @@ impl Compliance {
         Curve { spacing: self.spacing, per_spacing: 1.0 / self.spacing, more: more.collect(), pieces }
     }
 
+    /// The largest load that the curve holds [N].
+    pub fn largest_load(&self) -> f64 {
+        (self.spacing * (self.flexibility.len() - 2) as f64).powi(2)
+    }
+
     /// Stiffness of penalty and compliance in series at the largest load that the curve holds [N/m].
     pub fn stiffest(&self, penalty: f64, radius: f64) -> f64 {
-        let most = (self.spacing * (self.flexibility.len() - 2) as f64).powi(2);
-        let half = (1.5 * most * radius / penalty).cbrt();
-        1.0 / (1.0 / (2.0 * penalty * half) + self.curve().approach(most).0[1].max(0.0))
+        let most = self.largest_load();
+        1.0 / (1.0 / (penalty * contact_length(most, penalty, radius))
+            + self.curve().approach(most).0[1].max(0.0))
     }
+}
+
+/// Length of a round contact with the relative radius R under a load F on a penalty k t [m]: F = ⅔ k t a³/R over 2a.
+pub(crate) fn contact_length(load: f64, penalty: f64, radius: f64) -> f64 {
+    2.0 * (1.5 * load * radius / penalty).cbrt()
 }
 
 /// The curve C(F), piece by piece.

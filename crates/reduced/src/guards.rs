@@ -68,9 +68,6 @@ const OF_MOTION: f64 = 1e-6;
 /// With fewer modes in a seat none may be among them in which the ring bends: two or three are motions of the whole.
 const FEW_MODES: usize = 5;
 
-/// Gain of a loop whose force is extrapolated by a step, from which on it may diverge: z² + g (2z − 1) = 0 at z = −1.
-const SEAT_LOOP_GAIN: f64 = 1.0 / 3.0;
-
 /// A cage that strays by more than this share of a roller's radius is not held by its pockets.
 const ASTRAY: f64 = 0.1;
 
@@ -132,16 +129,6 @@ impl Guards {
     /// What is worth a word before the first step.
     pub(crate) fn before(scene: &Scene, bearing: &Bearing) -> Vec<String> {
         let mut warnings = Vec::new();
-        let gain = bearing.seat_loop_gain();
-        // Films do not answer to the seat, contacts do.
-        if scene.film.is_some() && gain > SEAT_LOOP_GAIN {
-            warnings.push(format!(
-                "the seat may answer a roller on its film with {:.0} % of its force, a step late: above {:.0} % the run may diverge. Take a larger \
-                 `model.modes_khz` or a smaller `contact.penalty_scale`",
-                100.0 * gain,
-                100.0 * SEAT_LOOP_GAIN
-            ));
-        }
         let modes = bearing.reduction.modes;
         if bearing.seat.is_some() && modes < FEW_MODES {
             warnings.push(format!(

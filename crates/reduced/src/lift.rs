@@ -14,8 +14,9 @@ use crate::{
 /// What films do to eight rollers, beside the forces on these.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ByOil {
-    /// What they carry at the outer raceway [N].
+    /// What they carry at the outer raceway [N], and by how much that falls when it gives way [N/m].
     pub(crate) normal: [f64; LANES],
+    pub(crate) stiffness: [f64; LANES],
     /// Moments that the drives of outer and inner ring make good [N m].
     pub(crate) drive: [f64; 2],
     /// What their springs hold beside those of contact [J].
@@ -106,6 +107,7 @@ impl Bearing {
                     velocity: [c * rx + s * ry, c * ry - s * rx],
                     turning: block.spin[lane] - rate,
                 };
+                let now = Now { felt: now.felt && k == 0, ..now };
                 let lifted = race.lift(rim, race.of_roller(&mut films.at[k], i), &seen, now);
                 let [fx, fy] = lifted.force;
                 let [fx, fy] = [c * fx - s * fy, s * fx + c * fy];
@@ -121,7 +123,7 @@ impl Bearing {
                     let [rx, ry] = of_one(&block.radial, lane);
                     block.downhill[0][lane] += uphill * ry;
                     block.downhill[1][lane] -= uphill * rx;
-                    by_oil.normal[lane] = lifted.normal;
+                    (by_oil.normal[lane], by_oil.stiffness[lane]) = (lifted.normal, lifted.stiffness);
                 }
             }
         }

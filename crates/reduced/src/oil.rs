@@ -77,13 +77,17 @@ pub(crate) struct Now {
     pub(crate) dt: f64,
     /// Whether energy is asked for.
     pub(crate) last: bool,
+    /// Whether the seat feels them.
+    pub(crate) felt: bool,
 }
 
 /// What films do to a roller in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Lifted {
-    /// Sum of the sizes of their forces [N].
+    /// Sum of the sizes of their forces [N], and where the seat feels them, by how much they fall when the raceway gives way, the oil
+    /// staying as thick as it is [N/m].
     pub(crate) normal: f64,
+    pub(crate) stiffness: f64,
     /// Force on the roller [N] in the frame of the raceway, and moment about its centre [N m].
     pub(crate) force: [f64; 2],
     pub(crate) moment: f64,
@@ -198,6 +202,12 @@ impl Raceway {
             };
             film.fixed = pushed.fixed;
             lifted.add(&nearest, &pushed);
+            if let (true, Some(layer)) = (now.felt, film.layer) {
+                // What dry contact would carry there answers by itself.
+                let [all, dry] =
+                    [layer.force, layer.force - pushed.force].map(|force| law.spring.stiffness(force));
+                lifted.stiffness += all - dry;
+            }
             if now.last {
                 lifted.stored += law.stored(&pushed);
             }

@@ -67,7 +67,7 @@ impl Bearing {
         let lost = resistance * (part * closing).times_plus(length, -(turning * o.first));
         let damping = where_it_touches(lost.max(-normal));
         let spread = (o.second - o.first * o.first / length).max(zero);
-        let about = where_it_touches(half * resistance * turning * spread);
+        let about = where_it_touches(resistance * turning * spread);
         // Friction: a spring that what leaves the contact takes along (THEORY §9.4).
         let dt = all(self.time_step);
         let left = one - (all(2.0) * pace * dt / length).min(one);

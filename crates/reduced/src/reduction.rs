@@ -36,7 +36,7 @@ use crate::{
 const SHIFT: f64 = 1.6e6;
 
 /// Loads of the local contact problem, up to this multiple of the largest roller load between rigid rings.
-const OVERLOAD: f64 = 4.0;
+pub(crate) const OVERLOAD: f64 = 4.0;
 
 /// Loads at which the local contact problem is solved, and knots of the curve through them.
 const LOADS: usize = 14;

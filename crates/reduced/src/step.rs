@@ -175,11 +175,11 @@ impl Bearing {
                 self.press_together(simd, track, *first, top, *bits, contacts, &mut scratch.parts);
             }
             self.push_rollers(simd, block, outer, inner, &mut sums);
-            let mut lifted = [0.0; LANES];
+            let mut lifted = [[0.0; LANES]; 2];
             if let (Some(oil), Some(films)) = (&self.oil, &mut state.films) {
-                let now = Now { step: state.steps, dt, last };
+                let now = Now { step: state.steps, dt, last, felt: self.seat.is_some() };
                 let by_oil = self.lift_rollers(oil, films, block, [outer, Some(inner)], now);
-                lifted = by_oil.normal;
+                lifted = [by_oil.normal, by_oil.stiffness];
                 energy.contact += by_oil.stored;
                 for (turning, moment) in [outer, Some(inner)].into_iter().zip(by_oil.drive) {
                     spent.drive += turning.map_or(0.0, |turning| dt * turning.rate * moment);
@@ -191,9 +191,9 @@ impl Bearing {
                 if force != [0.0; 2] {
                     self.press(simd, &self.place(facet as usize, share), force, &mut scratch.modes);
                 }
-                let force = block.contacts[0].normal[lane] + lifted[lane];
+                let force = block.contacts[0].normal[lane] + lifted[0][lane];
                 let heard = &mut scratch.heard[block.first + lane];
-                let stiffness = block.contacts[0].stiffness(self.penalty, lane);
+                let stiffness = block.contacts[0].stiffness(self.penalty, lane) + lifted[1][lane];
                 *heard = Heard { growth: force - heard.force, force, stiffness, ..*heard };
             }
             for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {

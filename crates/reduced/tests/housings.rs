@@ -10,6 +10,7 @@ use stribeck_scene::{
     kinematics::Kinematics,
     run_info::Status,
     scene::{ModelScene, PocketWalls, ReducedScene, Scene},
+    trace::Trace,
 };
 use stribeck_testing::{Scratch, ledger::compare};
 
@@ -84,6 +85,34 @@ fn analytic_the_cage_between_rings_whose_speeds_change() {
     }
     println!("cage {furthest:.4} rad from rolling, ledger off by {:.1e}", info.energy.max_relative_error);
     assert!(furthest < BEHIND, "{furthest}");
+}
+
+/// Rollers that roll lose by contact damping what those of the full model lose: half of it is lost as they turn in their contacts.
+/// Source: the full model from the same start.
+#[test]
+fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
+    const TOLERANCE: f64 = 0.05;
+    let mut scene = small("housing: rigid(mass_kg: 2), operation: (load_n: 3000, speed_rpm: 1500)");
+    scene.cage = None;
+    scene.contact.damping_ratio = 0.3;
+    let folder = Scratch::create("reduced-damping");
+    let heat = |name: &str, model: ModelScene| {
+        let scene = Scene { model, ..scene.clone() };
+        assert_eq!(run(&scene, &folder, name, 2).status, Status::Complete);
+        let energy = Trace::read(folder.join(name).join("energy.npy")).expect("a ledger");
+        let lost = energy.get("contact_damping_j").expect("counted");
+        // What a start at rest rings is over.
+        lost[lost.len() - 1] - lost[lost.len() / 2]
+    };
+    let (reduced, full) = (heat("reduced", scene.model.clone()), heat("full", ModelScene::Full));
+    compare(
+        "contact damping of rolling",
+        "the full model from the same start",
+        "J",
+        reduced,
+        full,
+        TOLERANCE,
+    );
 }
 
 /// From one start both models have the same forces in arrangements of which each is something else's limit: springs and dampers under

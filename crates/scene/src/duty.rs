@@ -35,7 +35,7 @@ pub struct Duty {
 }
 
 /// Longest run that a scene may ask for [s].
-pub const LONGEST_RUN_S: f64 = 60.0;
+pub const LONGEST_RUN_S: f64 = 3600.0;
 
 /// A number over time.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use super::layers;
 
 /// Crates that must be of use outside bearings.
-const GENERAL: [&str; 7] = ["mesh", "simd", "solver", "contact", "system", "dsp", "formats"];
+const GENERAL: [&str; 8] = ["mesh", "simd", "solver", "mpi", "contact", "system", "dsp", "formats"];
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 

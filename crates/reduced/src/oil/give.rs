@@ -27,6 +27,11 @@ impl Give {
         }
     }
 
+    /// By how much a force grows with the depth [N/m].
+    pub(crate) fn stiffness(&self, force: f64) -> f64 {
+        if force > 0.0 { 1.0 / self.depth(force).1 } else { 0.0 }
+    }
+
     /// Force at a depth above zero: Newton's method for the cube root of it, in which the depth is convex.
     fn seek(&self, depth: f64, mut root: f64) -> f64 {
         let most = (depth / self.softness).sqrt();

@@ -95,6 +95,8 @@ struct Answer {
     given: f64,
     /// By how much it falls where the seat gives way further [N/m]; zero where that is not felt.
     stiffness: f64,
+    /// The part of each change that a pass takes.
+    part: f64,
 }
 
 /// Adds a multiple of some rows to others.
@@ -368,9 +370,12 @@ impl Springs {
                 }
             }
             let expected = roller.next();
-            let mut answer = Answer { force: expected, expected, given: 0.0, stiffness: 0.0 };
-            if roller.stiffness * self.give[roller.facet as usize] > FELT {
-                answer = Answer { given: given.sum(), stiffness: roller.stiffness, ..answer };
+            let mut answer = Answer { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
+            let gain = roller.stiffness * self.give[roller.facet as usize];
+            if gain > FELT {
+                // Where panels let go a change comes back times −gain, where they hold not at all: halfway between the two.
+                let part = 1.0 / (1.0 + 0.5 * gain);
+                answer = Answer { given: given.sum(), stiffness: roller.stiffness, part, ..answer };
             }
             answers.rollers.push(answer);
         }
@@ -384,7 +389,8 @@ impl Springs {
             rollers.iter_mut().zip(by.chunks_exact(self.rows())).filter(|(roller, _)| roller.stiffness > 0.0);
         for (roller, by) in felt {
             let further = dot(simd, by, hold.open.as_chunks().0) - roller.given;
-            let force = (roller.expected - roller.stiffness * further).max(0.0);
+            let target = (roller.expected - roller.stiffness * further).max(0.0);
+            let force = roller.force + roller.part * (target - roller.force);
             add(simd, tension, by, force - roller.force);
             roller.force = force;
         }

@@ -2,18 +2,18 @@
 
 use std::fmt;
 
-/// An hour [ms].
-const LONGEST_MS: f64 = 3_600_000.0;
-
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
 use crate::deviation::{DeviationScene, FormScene, RollingSurface};
+use crate::duty::LONGEST_RUN_S;
 use crate::housing::HousingScene;
 use crate::scene::{
-    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
+/// Longest run [ms].
+const LONGEST_MS: f64 = 1e3 * LONGEST_RUN_S;
 /// Longest name of a scene or sensor: they become folder and channel names.
 const MAX_NAME: usize = 64;
 /// Most sensors: each adds a handful of channels to every sample.
@@ -91,6 +91,8 @@ fn with_everything() -> Scene {
     scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
     scene.defects = DeviationScene::of_every_form();
     scene.film = Some(FilmScene::default());
+    scene.outer_ring_mesh = Some(RingMeshScene::default());
+    scene.inner_ring_mesh = Some(RingMeshScene::default());
     // Between them they have the numbers of both kinds of profile.
     scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
     scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
