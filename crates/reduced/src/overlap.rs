@@ -51,8 +51,8 @@ pub struct Overlap<N = f64> {
     pub slope: N,
     /// ∫ (u + h h′) du over the overlap [m²].
     pub arm: N,
-    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins) [m³]: by how much the square grows with a turn of d
-    /// by one towards t.
+    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins), less what arcs stay as d turns [m³]: by how much
+    /// the square grows with a turn of d by one towards t.
     pub skew: N,
     /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
     pub ends: N,
@@ -302,7 +302,7 @@ impl Parts for Arcs {
     #[inline(always)]
     fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet) {
         let seen = round(ends, roller, raceway, self.sides, self.shift);
-        arcs(&mut self.sum, ends, seen, roller);
+        arcs(&mut self.sum, ends, seen, roller, raceway);
     }
 
     #[inline(always)]
@@ -347,7 +347,7 @@ pub(crate) fn add_between<N: Number>(
     if sides.are_round() {
         let mut seen = round(ends, roller, raceway, sides, shift);
         seen.p = choose(seen.p);
-        arcs(sum, ends, seen, roller);
+        arcs(sum, ends, seen, roller, raceway);
     } else {
         let p = choose(straight(ends, roller, raceway, shift));
         chords(sum, ends, p, roller, raceway);
@@ -420,9 +420,29 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
     Round { p: [p1, p2], curvature, bulge }
 }
 
+/// The outer points of Gauss' rule with three of them, √0.6.
+const GAUSS: f64 = 0.774_596_669_241_483_4;
+
+/// Penetration at τ, times what the arc of the roller stands out from its chord and the slope of that, less the same of the raceway; with
+/// half of both curvatures over u [1/m].
+#[inline(always)]
+fn leaning<N: Number>(
+    tau: N,
+    [u1, length]: [N; 2],
+    [p1, b, c]: [N; 3],
+    [of_r, of_w]: [N; 2],
+    [r, w]: [Facet<N>; 2],
+) -> N {
+    let u = length.times_plus(tau, u1);
+    let twice = u + u;
+    let of_roller = of_r * of_r * r.inside(u) * (r.from + r.to - twice);
+    let of_raceway = of_w * of_w * w.inside(u) * (w.from + w.to - twice);
+    c.times_plus(tau, b).times_plus(tau, p1) * (of_roller - of_raceway)
+}
+
 /// Adds what lies between two parabolas on chords.
 #[inline(always)]
-fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>) {
+fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>, w: Facet<N>) {
     let Round { p: [p1, p2], curvature, bulge } = seen;
     let (zero, one) = (u1.constant(0.0), u1.constant(1.0));
     let (two, three) = (u1.constant(2.0), u1.constant(3.0));
@@ -485,7 +505,15 @@ fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Fa
     sum.arm = length.times_plus(arm0.times_plus(t0, arm1.times_plus(t1, arm2 * t2)), sum.arm);
     let (pa, pz) = (c.times_plus(from, b).times_plus(from, p1), c.times_plus(to, b).times_plus(to, p1));
     let skewed = (lean - curvature * middle).times_plus(square, third * (pz * pz * pz - pa * pa * pa));
-    sum.skew = sum.skew + skewed;
+    // As in the moment, but for both bodies and with d: parabolas on chords stay parabolas. Gauss' rule with three points is exact.
+    let of_both = [half * curvature, bulge - half * curvature];
+    let (beside, centre) = (u1.constant(0.5 * GAUSS) * (to - from), half * (from + to));
+    let first = leaning(centre - beside, [u1, length], [p1, b, c], of_both, [r, w]);
+    let second = leaning(centre, [u1, length], [p1, b, c], of_both, [r, w]);
+    let last = leaning(centre + beside, [u1, length], [p1, b, c], of_both, [r, w]);
+    let outer = u1.constant(5.0 / 9.0) * (first + last);
+    let stays = width * u1.constant(8.0 / 9.0).times_plus(second, outer);
+    sum.skew = sum.skew + (skewed - stays);
     sum.slope = width.times_plus(lean - curvature * middle, sum.slope);
     sum.second = third.times_plus(z * z * z - a * a * a, sum.second);
     sum.deepest = sum.deepest.max(p1).max(p2);
