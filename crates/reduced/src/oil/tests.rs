@@ -88,7 +88,7 @@ fn analytic_a_roller_sinks_through_its_film() {
         let mut step = 0;
         while thickness > 3.5e-6 {
             assert!(step as f64 * dt < 1e-3, "the film stays at {thickness} m");
-            let now = Now { step, dt, last: false };
+            let now = Now { step, dt, last: false, felt: false };
             let mut force = Sinking::WEIGHT;
             for (race, films) in raceways.iter().zip(&mut films) {
                 force += race.lift(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
