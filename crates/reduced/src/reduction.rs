@@ -81,8 +81,6 @@ pub struct Reduction {
     pub cage: Option<([f64; 2], [f64; 2])>,
     /// Mass of outer ring and adapter [kg].
     pub structure_mass: f64,
-    /// Force of each roller on the outer raceway at the preload of the full model [N].
-    pub preload: Vec<f64>,
     /// Force of the housing on the outer ring that sits in it, at the preload [N].
     pub seat: Option<[f64; 2]>,
     /// Its springs, which may open and slip.
@@ -144,8 +142,6 @@ impl Reduction {
         let g = Geometry::of(scene);
         let forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
-        let preload =
-            (0..g.rollers).map(|i| resultants[machine.pairs.outer(i)]).map(|[x, y]| x.hypot(y)).collect();
         let seat = machine.pairs.seat().map(|seat| resultants[seat]);
         let nodes = Nodes::of(&machine, &g)?;
         let on_ring: Vec<u32> = machine.system.nodes_of(machine.outer).collect();
@@ -437,7 +433,6 @@ impl Reduction {
             roller_inertia: [of_roller.mass, of_roller.inertia],
             cage: cage.map(|cage| ([cage.mass, cage.inertia], cage.centre)),
             structure_mass,
-            preload,
             seat,
             springs: seat_springs,
             parts: meshed,

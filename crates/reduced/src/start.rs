@@ -115,13 +115,8 @@ impl Bearing {
                 let (_, outer) = balance(state, at);
                 // How the force grows with the raceway's displacement, the roller following.
                 let step = 1e-9;
-                let stiffness = |outer_moves: f64, state: &mut State| {
-                    let [a, b] =
-                        self.pressed(state, i, [moved[0] + outer_moves * c, moved[1] + outer_moves * s]);
-                    [a, b]
-                };
-                let [a0, b0] = stiffness(0.0, state);
-                let [a1, _] = stiffness(-step, state);
+                let [a0, b0] = self.pressed(state, i, moved);
+                let [a1, _] = self.pressed(state, i, [moved[0] - step * c, moved[1] - step * s]);
                 let outer_stiffness = (a1 - a0) / step;
                 (state.x[i], state.y[i]) = ((at - step) * c, (at - step) * s);
                 let [_, b1] = self.pressed(state, i, moved);
