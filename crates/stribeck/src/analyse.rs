@@ -172,6 +172,8 @@ fn passed(judged: &Judged) -> String {
 
 /// Rates that differ by less than this part are one: files round theirs.
 const SAME_RATE: f64 = 1e-3;
+/// Seconds over the units of time below them.
+const THOUSANDS: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
@@ -190,11 +192,15 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let recording = Recording::open(&file)?;
     let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
-        bail!("`{}` does not say how fast it was sampled: give `--rate-hz`", file.display());
+        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
+        bail!("`{}` does not say how fast it was sampled: give `--rate-hz`{notes}", file.display());
     };
     if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
+        // Times that do not say their unit say a rate in seconds, or in thousandths of them.
+        let unsaid = recording.channels.iter().any(|c| c.is_time && c.len == channel.len && c.unit.is_none());
+        let units = if unsaid { &THOUSANDS[..] } else { &THOUSANDS[..1] };
         ensure!(
-            (given / said - 1.0).abs() <= SAME_RATE,
+            units.iter().any(|unit| (given / said / unit - 1.0).abs() <= SAME_RATE),
             "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave the option out, or mend the file if \
              it is wrong",
             file.display(),
@@ -237,16 +243,25 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the longest.
 fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Result<&'a Channel> {
     if let Some(name) = asked {
-        return Ok(recording.channel(name)?);
+        let channel = recording.channel(name)?;
+        ensure!(
+            !channel.is_time,
+            "channel `{}` of `{}` rises evenly from sample to sample, as the time does: it is no signal; there are {}",
+            channel.name,
+            recording.path.display(),
+            recording.names()
+        );
+        return Ok(channel);
     }
-    let is_time = |c: &Channel| c.name.to_lowercase().starts_with("time");
+    // Times that are damaged do not rise.
+    let is_time = |c: &Channel| c.is_time || c.name.to_lowercase().starts_with("time");
     let signals: Vec<&Channel> = recording.channels.iter().filter(|c| !is_time(c)).collect();
     // Of a run the one that its report judges.
     let found =
         signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
     let longest = signals.iter().map(|c| c.len).max().unwrap_or(0);
     let Some(channel) = found.or_else(|| signals.iter().find(|c| c.len == longest)) else {
-        bail!("`{}` holds no channel", recording.path.display());
+        bail!("`{}` holds no signal; its channels are {}", recording.path.display(), recording.names());
     };
     if found.is_none() && signals.iter().filter(|c| c.len == longest).count() > 1 {
         eprintln!("note: channel `{}`; there are {}", channel.name, recording.names());

@@ -276,3 +276,67 @@ fn example_several_records_are_set_side_by_side() {
     assert!(page.contains("2-after/report.html"));
     assert!(desk.join("T/1-before/findings.json").exists());
 }
+
+/// Knocks beside their times, as a table.
+fn table(head: &str, rate_hz: f64, time: impl Fn(f64) -> String) -> String {
+    let row = |(n, x): (usize, f64)| format!("{},{x:.6}\n", time(n as f64 / rate_hz));
+    head.to_owned() + &knocks(rate_hz).into_iter().enumerate().map(row).collect::<String>()
+}
+
+/// The time column was diagnosed, and showed no defect; one in milliseconds was read in seconds.
+#[test]
+fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
+    let desk = Scratch::create("measured-times");
+    for (head, per_second) in [
+        ("t,acc\n", 1.0),
+        ("", 1.0),
+        ("\u{feff}time_s,acc\n", 1.0),
+        ("t,a\n[ms],[g]\n", 1e3),
+        ("time_us,a\n", 1e6),
+    ] {
+        let text = table(head, 12_800.0, |t| format!("{:.7}", t * per_second));
+        std::fs::write(desk.join("a.csv"), text).unwrap();
+        for more in [&[][..], &["--rate-hz=12800"]] {
+            let words = [&["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"], more].concat();
+            let output = stribeck(desk.path(), &words);
+            assert!(output.status.success(), "{head:?}: {}", said(&output));
+            says(&output, &["a defect of the outer raceway (BPFO at 71.5"]);
+        }
+    }
+    let named = stribeck(desk.path(), &["analyse", "a.csv", "--channel", "time_us"]);
+    assert!(!named.status.success() && said(&named).contains("it is no signal"), "{}", said(&named));
+    // In milliseconds without a word of it, the rate that is given decides.
+    std::fs::write(desk.join("b.csv"), table("", 12_800.0, |t| format!("{:.4}", 1e3 * t))).unwrap();
+    let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200", "--rate-hz=12800"];
+    says(&stribeck(desk.path(), &words), &["a defect of the outer raceway", "12.8 Hz if these are seconds"]);
+}
+
+#[test]
+fn issue_a_gap_in_the_times_is_noted() {
+    let desk = Scratch::create("measured-gap");
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { t + 0.5 }));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    let output = stribeck(desk.path(), &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    says(
+        &output,
+        &["note: the times of `t [s]` have a gap after row 51200 (3.999922 s): missing samples: 6400"],
+    );
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { 2.0 * t - 4.0 }));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    let output = stribeck(desk.path(), &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    assert!(!output.status.success());
+    says(
+        &output,
+        &["give `--rate-hz`; the times of `t [s]` are uneven, or their rate changes, from about row 51001"],
+    );
+}
+
+/// What we export as `.mat` did not say its rate when it was analysed.
+#[test]
+fn roundtrip_an_exported_record_says_its_rate() {
+    let desk = Scratch::create("measured-export");
+    let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
+    mat5::write(&desk.join("ex.mat"), &[channel], &[]).unwrap();
+    let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
+    says(&stribeck(desk.path(), &words), &["a defect of the outer raceway"]);
+}
