@@ -309,6 +309,12 @@ fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
     std::fs::write(desk.join("b.csv"), table("", 12_800.0, |t| format!("{:.4}", 1e3 * t))).unwrap();
     let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200", "--rate-hz=12800"];
     says(&stribeck(desk.path(), &words), &["a defect of the outer raceway", "12.8 Hz if these are seconds"]);
+    // What is said to be too slow is said with a rate that would do.
+    let output = stribeck(desk.path(), &words[..4]);
+    says(
+        &output,
+        &["cannot tell whether there is a defect", "harmonics of 71.7 Hz: sample at 610 Hz or faster"],
+    );
 }
 
 #[test]
