@@ -337,6 +337,25 @@ fn issue_a_gap_in_the_times_is_noted() {
     );
 }
 
+/// One sample of 1000 hid a defect that stands by 30 dB, without a word.
+#[test]
+fn issue_a_sample_that_hides_a_defect_is_told() {
+    let desk = Scratch::create("measured-spurious");
+    let mut samples = knocks(12_800.0);
+    samples[33_333] = -1000.0;
+    mat5::write(&desk.join("a.mat"), &[Channel::held("x", samples).at_rate(Some(12_800.0))], &[]).unwrap();
+    let output =
+        stribeck(desk.path(), &["analyse", "a.mat", "--channel=x", "--bearing=6205", "--speed-rpm=1200"]);
+    says(
+        &output,
+        &[
+            "shows no defect",
+            "note: sample 33333 (2.6041 s) is -1000.000000",
+            "Put the mean of its neighbours",
+        ],
+    );
+}
+
 /// What we export as `.mat` did not say its rate when it was analysed.
 #[test]
 fn roundtrip_an_exported_record_says_its_rate() {
