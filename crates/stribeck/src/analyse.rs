@@ -101,7 +101,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         for limit in &options.alarms {
             match limit.judge(&analysis.findings) {
                 Some(judged) => say!("  {}", passed(&judged)),
-                None => say!("  {}: the record does not say it", limit.quantity.name()),
+                None => say!("  {}: {}", limit.quantity.name(), limit.quantity.missing(&analysis.findings)),
             }
         }
         say!("report: {}", shown(&out.join("report.html")));
@@ -125,8 +125,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let limits = limits(options, &entries);
     for limit in &limits {
-        if !entries.iter().filter_map(|e| e.findings.as_ref()).any(|f| limit.judge(f).is_some()) {
-            eprintln!("note: no record says its {}: the limit is not used", limit.quantity.name());
+        let mut records = entries.iter().filter_map(|e| e.findings.as_ref()).peekable();
+        let why = records.peek().map(|first| limit.quantity.missing(first));
+        if let (Some(why), false) = (why, records.any(|f| limit.judge(f).is_some())) {
+            eprintln!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
         }
     }
     for entry in &mut entries {

@@ -364,4 +364,10 @@ fn roundtrip_an_exported_record_says_its_rate() {
     mat5::write(&desk.join("ex.mat"), &[channel], &[]).unwrap();
     let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
     says(&stribeck(desk.path(), &words), &["a defect of the outer raceway"]);
+    // A limit of the velocity asks for the unit that it needs.
+    let limited = [&words[..], &["--alarm=velocity=2.8..7.1"]].concat();
+    says(
+        &stribeck(desk.path(), &limited),
+        &["velocity: the samples have no unit of an acceleration; give `--unit g`"],
+    );
 }
