@@ -12,6 +12,7 @@ use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::scene::Scene;
 
+use crate::causes;
 use crate::out::say;
 use crate::place::{Place, shown};
 
@@ -39,7 +40,7 @@ pub struct Options {
     #[arg(long)]
     tacho: Option<String>,
     /// What a sample is multiplied by, for example 1/sensitivity
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
     /// Unit of the samples after that
     #[arg(long)]
@@ -86,6 +87,11 @@ impl Speed {
     }
 }
 
+fn scale(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|x| x.is_normal());
+    number.ok_or_else(|| format!("`{text}`: must be a number above 0 or below 0, such as 9.81"))
+}
+
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let Some(count) = options.reference {
         ensure!(
@@ -117,7 +123,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let done = analyse(file, &out.join(&folder), options, place);
         let (findings, error) = match done {
             Ok(analysis) => (Some(analysis.findings), None),
-            Err(why) => (None, Some(format!("{why:#}"))),
+            Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
         let file = file.display().to_string();
         say!("{file}: {}", findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict));
@@ -141,8 +147,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     write_trend(&out, &entries, &limits)?;
     say!("side by side: {}", shown(&out.join("trend.html")));
-    let any = entries.iter().any(|entry| entry.findings.is_some());
-    Ok(if any { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
+    ensure!(failed == 0, "{failed} of {} records could not be analysed", entries.len());
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Limits that were given, and those that follow from the reference records.

@@ -258,8 +258,11 @@ fn example_several_records_are_set_side_by_side() {
     }
     let words =
         ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
+    // The others are done, and the one that is missing is told once.
     let output = stribeck(desk.path(), &words);
-    assert!(output.status.success(), "{}", said(&output));
+    let text = said(&output);
+    assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
+    assert_eq!((text.matches("No such file").count(), text.matches("none.mat").count()), (1, 2), "{text}");
     let trend: serde_json::Value =
         serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
     let claimed = |at: usize| {
@@ -370,4 +373,11 @@ fn roundtrip_an_exported_record_says_its_rate() {
         &stribeck(desk.path(), &limited),
         &["velocity: the samples have no unit of an acceleration; give `--unit g`"],
     );
+    for (scale, says) in
+        [("0", "`0`: must be a number above 0 or below 0"), ("nan", "`nan`: must be"), ("x", "`x`: must be")]
+    {
+        let output = stribeck(desk.path(), &[&words[..], &["--scale", scale]].concat());
+        assert!(!output.status.success() && said(&output).contains(says), "{scale}: {}", said(&output));
+    }
+    assert!(stribeck(desk.path(), &[&words[..], &["--scale", "-0.5"]].concat()).status.success());
 }
