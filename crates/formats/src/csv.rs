@@ -2,19 +2,17 @@
 //!
 //! Columns are split by semicolons, tabs, commas or spaces, whichever the first rows of numbers agree with; beside
 //! semicolons and tabs a comma is a decimal point. Lines before the first row of numbers are a preamble, and the last of
-//! them gives the names when it has as many columns. An ascending first column whose name begins with `t` is the time [s].
+//! them gives the names when it has as many columns, or the units when it looks like them and the one above has as many, too.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use crate::recording::equal_lengths;
-use crate::{Channel, Error, Recording, Result};
+use crate::{Channel, Error, Recording, Result, time};
 
 /// Lines before the first row of numbers, at most.
 const PREAMBLE: usize = 200;
-/// Rows that the sample rate is taken from.
-const RATE_ROWS: usize = 1000;
 /// Samples handed on at a time.
 const BLOCK: usize = 1 << 14;
 
@@ -38,7 +36,7 @@ pub(crate) struct Column {
     dialect: Dialect,
 }
 
-/// Opens a table: its columns, their names, the sample rate when there is a time column.
+/// Opens a table: its columns, their names and units.
 ///
 /// # Errors
 /// [`Error::Unknown`] for a text without a row of numbers, [`Error::Io`].
@@ -57,29 +55,24 @@ pub fn open(path: &Path) -> Result<Recording> {
     };
     let first = head.pop().unwrap_or_default();
     let columns = dialect.split(&first).count();
-    let names: Vec<String> = match head.last().map(|line| dialect.split(line).collect::<Vec<_>>()) {
-        Some(names) if names.len() == columns => {
-            names.iter().map(|n| n.trim_matches('"').to_owned()).collect()
-        }
-        _ => (1..=columns).map(|n| format!("column {n}")).collect(),
+    let words = |line: &String| -> Option<Vec<String>> {
+        let words: Vec<String> = dialect.split(line).map(|word| word.trim_matches('"').to_owned()).collect();
+        (words.len() == columns).then_some(words)
     };
-    let mut times: Vec<f64> =
-        dialect.number(dialect.split(&first).next().unwrap_or_default()).into_iter().collect();
+    let above = head.len().checked_sub(2).and_then(|at| words(&head[at]));
+    let (names, units) = match (above, head.last().and_then(words)) {
+        (Some(names), Some(units)) if units.iter().all(|unit| time::is_unit(unit)) => (names, units),
+        (_, Some(names)) => (names, Vec::new()),
+        (_, None) => ((1..=columns).map(|n| format!("column {n}")).collect(), Vec::new()),
+    };
     let mut rows: u64 = 1;
     while let Some(line) = lines.next(path)? {
-        if line.trim().is_empty() {
-            continue;
-        }
-        rows += 1;
-        if times.len() < RATE_ROWS {
-            times.extend(dialect.split(&line).next().and_then(|t| dialect.number(t)));
-        }
+        rows += u64::from(!line.trim().is_empty());
     }
-    let timed = columns > 1 && names[0].to_lowercase().starts_with('t');
-    let rate_hz = if timed { rate(&times) } else { None };
     let channel = |(at, name): (usize, &String)| {
         let column = Column { path: path.to_owned(), name: name.clone(), at, preamble: head.len(), dialect };
-        Channel::text(name.clone(), rows, column).at_rate(rate_hz)
+        let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
+        Channel::text(name.clone(), rows, column).in_unit(unit)
     };
     Ok(Recording {
         path: path.to_owned(),
@@ -181,21 +174,6 @@ impl Column {
     }
 }
 
-/// Sample rate [Hz] of ascending times [s], when they are even.
-fn rate(times: &[f64]) -> Option<f64> {
-    let (first, last) = (times.first()?, times.last()?);
-    let step = (last - first) / (times.len() - 1) as f64;
-    if times.len() < 3 || step.is_nan() || step <= 0.0 {
-        return None;
-    }
-    // Times are written with few digits, so single steps may be off by much of one; the whole may not.
-    let even = times.iter().enumerate().all(|(n, t)| (t - first - n as f64 * step).abs() < step);
-    // A rate is a round number more often than the digits of times are exact.
-    let hz = 1.0 / step;
-    let round = (hz * 10.0).round() / 10.0;
-    even.then_some(if (hz / round - 1.0).abs() < 1e-6 { round } else { hz })
-}
-
 struct Lines {
     file: BufReader<File>,
     bytes: Vec<u8>,
@@ -209,12 +187,13 @@ fn lines(path: &Path) -> Result<Lines> {
 }
 
 impl Lines {
-    /// The next line, whatever its encoding.
+    /// The next line, whatever its encoding, without the mark of one at its beginning.
     fn next(&mut self, path: &Path) -> Result<Option<String>> {
         self.bytes.clear();
         let count = self.file.read_until(b'\n', &mut self.bytes).map_err(|e| Error::read(path, e))?;
         self.read += 1;
-        Ok((count > 0)
-            .then(|| String::from_utf8_lossy(&self.bytes).trim_end_matches(['\r', '\n']).to_owned()))
+        let mark: &[u8] = if self.read == 1 { b"\xef\xbb\xbf" } else { b"" };
+        let line = self.bytes.strip_prefix(mark).unwrap_or(&self.bytes);
+        Ok((count > 0).then(|| String::from_utf8_lossy(line).trim_end_matches(['\r', '\n']).to_owned()))
     }
 }

@@ -19,6 +19,7 @@
 //! | FLAC | [`flac`] | no: it holds no floats |
 //! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
 //!
+//! Times are told from signals by how they rise, and the sample rate follows from them where the file does not say it.
 //! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
 mod error;
@@ -27,6 +28,7 @@ mod mdf4_records;
 mod number;
 mod open;
 mod recording;
+mod time;
 
 pub mod csv;
 pub mod flac;

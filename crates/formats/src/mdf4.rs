@@ -262,7 +262,8 @@ impl Found {
             None => None,
         };
         // Groups of one name keep apart.
-        for mut channel in channels {
+        for (mut channel, of) in channels.into_iter().zip(&described) {
+            channel.is_time = of.master;
             if self.channels.iter().any(|c| c.name == channel.name) {
                 channel.name = format!("{} ({})", channel.name, self.channels.len() + 1);
             }

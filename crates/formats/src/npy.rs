@@ -181,23 +181,8 @@ impl Layout {
                 channels.push(Channel::strided(called, len, strided));
             }
         }
-        let rate_hz = rate(&channels);
-        Ok(channels.into_iter().map(|c| c.at_rate(rate_hz)).collect())
+        Ok(channels)
     }
-}
-
-/// Sample rate [Hz] of records whose first field is the time.
-fn rate(channels: &[Channel]) -> Option<f64> {
-    let time = channels.first().filter(|c| c.name == "time_s" && c.len > 2)?;
-    let mut ends = (None, 0.0);
-    time.for_each_block(|block| {
-        ends = (ends.0.or(block.first().copied()), block.last().copied().unwrap_or(ends.1));
-        true
-    })
-    .ok()?;
-    let hz = (time.len - 1) as f64 / (ends.1 - ends.0?);
-    let round = (hz * 10.0).round() / 10.0;
-    (hz.is_finite() && hz > 0.0).then_some(if (hz / round - 1.0).abs() < 1e-6 { round } else { hz })
 }
 
 fn number(descr: &str) -> Option<Number> {

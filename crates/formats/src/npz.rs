@@ -49,12 +49,6 @@ pub fn open(path: &Path) -> Result<Recording> {
             channels.extend(found.iter().map(|c| c.held_from(&bytes)));
         }
     }
-    let rate = |name: &str| {
-        channels.iter().find(|c| c.name == name && c.len == 1).and_then(|c| c.read().ok()?.first().copied())
-    };
-    let rate_hz = rate("rate_hz").or(rate("fs"));
-    let channels =
-        channels.into_iter().map(|c| if c.rate_hz.is_none() { c.at_rate(rate_hz) } else { c }).collect();
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 

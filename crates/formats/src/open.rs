@@ -4,10 +4,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::{Error, Recording, Result, csv, flac, mat5, mat73, mdf4, npy, npz, parquet, tdms, uff58, wav};
+use crate::{
+    Error, Recording, Result, csv, flac, mat5, mat73, mdf4, npy, npz, parquet, tdms, time, uff58, wav,
+};
 
 impl Recording {
-    /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
+    /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file. Times are told from
+    /// signals, and give them the sample rate that the file does not say otherwise.
     ///
     /// # Errors
     /// [`Error::Unknown`] for a file of another kind, [`Error::Damaged`] for one that contradicts its format,
@@ -23,7 +26,7 @@ impl Recording {
         if start.is_empty() {
             return unknown("it is empty");
         }
-        if begins(npy::MAGIC) {
+        let opened = if begins(npy::MAGIC) {
             npy::open(path)
         } else if begins(b"PK") {
             npz::open(path)
@@ -38,7 +41,8 @@ impl Recording {
         } else if begins(b"TDSm") {
             tdms::open(path)
         } else if begins(b"MDF") {
-            mdf4::open(path)
+            // A group has its own time, and says which it is.
+            return mdf4::open(path);
         } else if begins(b"fLaC") {
             flac::open(path)
         } else if uff58::recognise(&start) || matches!(extension.as_str(), "uff" | "unv" | "u58") {
@@ -47,6 +51,7 @@ impl Recording {
             unknown("its first bytes belong to no known format, and it is no text")
         } else {
             csv::open(path)
-        }
+        }?;
+        time::told(opened)
     }
 }

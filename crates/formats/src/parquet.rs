@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -209,12 +209,23 @@ pub fn open(path: &Path) -> Result<Recording> {
             Physical::DOUBLE | Physical::FLOAT | Physical::INT64 | Physical::INT32
         ) {
             let stored = Stored { path: path.to_owned(), number, defined: column.max_def_level() };
-            channels.push(Channel::stored(name, rows, stored).at_rate(rate_hz));
+            let unit = column.logical_type_ref().and_then(unit_of_time).map(str::to_owned);
+            channels.push(Channel::stored(name, rows, stored).at_rate(rate_hz).in_unit(unit));
         } else {
             notes.push(format!("column `{name}` is left out: it holds no numbers"));
         }
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// The unit of what counts the time since some date.
+fn unit_of_time(of: &LogicalType) -> Option<&'static str> {
+    let LogicalType::Timestamp(time) = of else { return None };
+    Some(match time.unit {
+        TimeUnit::MILLIS => "ms",
+        TimeUnit::MICROS => "us",
+        TimeUnit::NANOS => "ns",
+    })
 }
 
 /// A column of numbers in a file.

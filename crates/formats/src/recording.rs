@@ -33,6 +33,8 @@ pub struct Channel {
     pub rate_hz: Option<f64>,
     /// Number of samples.
     pub len: u64,
+    /// Whether it is the time, or rises as evenly (a count, an angle), and so is no signal.
+    pub is_time: bool,
     /// What stored samples are multiplied by.
     scale: f64,
     source: Source,
@@ -97,54 +99,42 @@ impl Recording {
 }
 
 impl Channel {
+    fn new(name: impl Into<String>, len: u64, source: Source) -> Self {
+        Self { name: name.into(), unit: None, rate_hz: None, len, is_time: false, scale: 1.0, source }
+    }
+
     /// A channel whose samples are in memory.
     pub fn held(name: impl Into<String>, samples: Vec<f64>) -> Self {
-        let len = samples.len() as u64;
-        Self {
-            name: name.into(),
-            unit: None,
-            rate_hz: None,
-            len,
-            scale: 1.0,
-            source: Source::Held(Arc::new(samples)),
-        }
+        Self::new(name, samples.len() as u64, Source::Held(Arc::new(samples)))
     }
 
     pub(crate) fn strided(name: impl Into<String>, len: u64, strided: Strided) -> Self {
-        Self {
-            name: name.into(),
-            unit: None,
-            rate_hz: None,
-            len,
-            scale: 1.0,
-            source: Source::Strided(strided),
-        }
+        Self::new(name, len, Source::Strided(strided))
     }
 
     pub(crate) fn pieces(name: impl Into<String>, pieces: Vec<(Strided, u64)>) -> Self {
         let len = pieces.iter().fold(0_u64, |sum, piece| sum.saturating_add(piece.1));
-        let source = Source::Pieces(Arc::new(pieces));
-        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source }
+        Self::new(name, len, Source::Pieces(Arc::new(pieces)))
     }
 
     pub(crate) fn text(name: impl Into<String>, len: u64, column: csv::Column) -> Self {
-        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Text(column) }
+        Self::new(name, len, Source::Text(column))
     }
 
     pub(crate) fn flac(name: impl Into<String>, len: u64, stream: flac::Stream) -> Self {
-        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Flac(stream) }
+        Self::new(name, len, Source::Flac(stream))
     }
 
     pub(crate) fn chunks(name: impl Into<String>, len: u64, column: hdf5_chunks::Column) -> Self {
-        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Chunks(column) }
+        Self::new(name, len, Source::Chunks(column))
     }
 
     pub(crate) fn records(name: impl Into<String>, len: u64, field: mdf4_records::Field) -> Self {
-        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Records(field) }
+        Self::new(name, len, Source::Records(field))
     }
 
     pub(crate) fn stored(name: impl Into<String>, len: u64, column: parquet::Stored) -> Self {
-        Self { name: name.into(), unit: None, rate_hz: None, len, scale: 1.0, source: Source::Stored(column) }
+        Self::new(name, len, Source::Stored(column))
     }
 
     /// The same channel with its samples taken from `bytes`, which hold what a file would.

@@ -12,6 +12,7 @@ use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::scene::Scene;
 
+use crate::causes;
 use crate::out::say;
 use crate::place::{Place, shown};
 
@@ -39,7 +40,7 @@ pub struct Options {
     #[arg(long)]
     tacho: Option<String>,
     /// What a sample is multiplied by, for example 1/sensitivity
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
     /// Unit of the samples after that
     #[arg(long)]
@@ -86,6 +87,11 @@ impl Speed {
     }
 }
 
+fn scale(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|x| x.is_normal());
+    number.ok_or_else(|| format!("`{text}`: must be a number above 0 or below 0, such as 9.81"))
+}
+
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let Some(count) = options.reference {
         ensure!(
@@ -101,7 +107,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         for limit in &options.alarms {
             match limit.judge(&analysis.findings) {
                 Some(judged) => say!("  {}", passed(&judged)),
-                None => say!("  {}: the record does not say it", limit.quantity.name()),
+                None => say!("  {}: {}", limit.quantity.name(), limit.quantity.missing(&analysis.findings)),
             }
         }
         say!("report: {}", shown(&out.join("report.html")));
@@ -117,7 +123,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let done = analyse(file, &out.join(&folder), options, place);
         let (findings, error) = match done {
             Ok(analysis) => (Some(analysis.findings), None),
-            Err(why) => (None, Some(format!("{why:#}"))),
+            Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
         let file = file.display().to_string();
         say!("{file}: {}", findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict));
@@ -125,8 +131,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let limits = limits(options, &entries);
     for limit in &limits {
-        if !entries.iter().filter_map(|e| e.findings.as_ref()).any(|f| limit.judge(f).is_some()) {
-            eprintln!("note: no record says its {}: the limit is not used", limit.quantity.name());
+        let mut records = entries.iter().filter_map(|e| e.findings.as_ref()).peekable();
+        let why = records.peek().map(|first| limit.quantity.missing(first));
+        if let (Some(why), false) = (why, records.any(|f| limit.judge(f).is_some())) {
+            eprintln!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
         }
     }
     for entry in &mut entries {
@@ -139,8 +147,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     write_trend(&out, &entries, &limits)?;
     say!("side by side: {}", shown(&out.join("trend.html")));
-    let any = entries.iter().any(|entry| entry.findings.is_some());
-    Ok(if any { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
+    ensure!(failed == 0, "{failed} of {} records could not be analysed", entries.len());
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Limits that were given, and those that follow from the reference records.
@@ -172,6 +181,8 @@ fn passed(judged: &Judged) -> String {
 
 /// Rates that differ by less than this part are one: files round theirs.
 const SAME_RATE: f64 = 1e-3;
+/// Seconds over the units of time below them.
+const THOUSANDS: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
@@ -190,11 +201,15 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let recording = Recording::open(&file)?;
     let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
-        bail!("`{}` does not say how fast it was sampled: give `--rate-hz`", file.display());
+        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
+        bail!("`{}` does not say how fast it was sampled: give `--rate-hz`{notes}", file.display());
     };
     if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
+        // Times that do not say their unit say a rate in seconds, or in thousandths of them.
+        let unsaid = recording.channels.iter().any(|c| c.is_time && c.len == channel.len && c.unit.is_none());
+        let units = if unsaid { &THOUSANDS[..] } else { &THOUSANDS[..1] };
         ensure!(
-            (given / said - 1.0).abs() <= SAME_RATE,
+            units.iter().any(|unit| (given / said / unit - 1.0).abs() <= SAME_RATE),
             "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave the option out, or mend the file if \
              it is wrong",
             file.display(),
@@ -237,16 +252,25 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the longest.
 fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Result<&'a Channel> {
     if let Some(name) = asked {
-        return Ok(recording.channel(name)?);
+        let channel = recording.channel(name)?;
+        ensure!(
+            !channel.is_time,
+            "channel `{}` of `{}` rises evenly from sample to sample, as the time does: it is no signal; there are {}",
+            channel.name,
+            recording.path.display(),
+            recording.names()
+        );
+        return Ok(channel);
     }
-    let is_time = |c: &Channel| c.name.to_lowercase().starts_with("time");
+    // Times that are damaged do not rise.
+    let is_time = |c: &Channel| c.is_time || c.name.to_lowercase().starts_with("time");
     let signals: Vec<&Channel> = recording.channels.iter().filter(|c| !is_time(c)).collect();
     // Of a run the one that its report judges.
     let found =
         signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
     let longest = signals.iter().map(|c| c.len).max().unwrap_or(0);
     let Some(channel) = found.or_else(|| signals.iter().find(|c| c.len == longest)) else {
-        bail!("`{}` holds no channel", recording.path.display());
+        bail!("`{}` holds no signal; its channels are {}", recording.path.display(), recording.names());
     };
     if found.is_none() && signals.iter().filter(|c| c.len == longest).count() > 1 {
         eprintln!("note: channel `{}`; there are {}", channel.name, recording.names());

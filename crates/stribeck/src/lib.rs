@@ -73,11 +73,13 @@ pub fn conclude(done: Result<ExitCode>) -> ExitCode {
     });
     done.unwrap_or_else(|error| {
         eprintln!("error: {error}");
-        // Many messages of the crates already contain their cause.
-        let told = error.to_string();
-        for cause in error.chain().skip(1).map(ToString::to_string).filter(|cause| !told.contains(cause)) {
-            eprintln!("  because: {cause}");
-        }
+        causes(&error).iter().for_each(|cause| eprintln!("  because: {cause}"));
         ExitCode::FAILURE
     })
+}
+
+/// The causes of an error that its message does not contain already, as many of those of the crates do.
+fn causes(error: &anyhow::Error) -> Vec<String> {
+    let told = error.to_string();
+    error.chain().skip(1).map(ToString::to_string).filter(|cause| !told.contains(cause)).collect()
 }

@@ -258,8 +258,11 @@ fn example_several_records_are_set_side_by_side() {
     }
     let words =
         ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
+    // The others are done, and the one that is missing is told once.
     let output = stribeck(desk.path(), &words);
-    assert!(output.status.success(), "{}", said(&output));
+    let text = said(&output);
+    assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
+    assert_eq!((text.matches("No such file").count(), text.matches("none.mat").count()), (1, 2), "{text}");
     let trend: serde_json::Value =
         serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
     let claimed = |at: usize| {
@@ -275,4 +278,106 @@ fn example_several_records_are_set_side_by_side() {
     let page = std::fs::read_to_string(desk.join("T/trend.html")).unwrap();
     assert!(page.contains("2-after/report.html"));
     assert!(desk.join("T/1-before/findings.json").exists());
+}
+
+/// Knocks beside their times, as a table.
+fn table(head: &str, rate_hz: f64, time: impl Fn(f64) -> String) -> String {
+    let row = |(n, x): (usize, f64)| format!("{},{x:.6}\n", time(n as f64 / rate_hz));
+    head.to_owned() + &knocks(rate_hz).into_iter().enumerate().map(row).collect::<String>()
+}
+
+/// The time column was diagnosed, and showed no defect; one in milliseconds was read in seconds.
+#[test]
+fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
+    let desk = Scratch::create("measured-times");
+    for (head, per_second) in [
+        ("t,acc\n", 1.0),
+        ("", 1.0),
+        ("\u{feff}time_s,acc\n", 1.0),
+        ("t,a\n[ms],[g]\n", 1e3),
+        ("time_us,a\n", 1e6),
+    ] {
+        let text = table(head, 12_800.0, |t| format!("{:.7}", t * per_second));
+        std::fs::write(desk.join("a.csv"), text).unwrap();
+        for more in [&[][..], &["--rate-hz=12800"]] {
+            let words = [&["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"], more].concat();
+            let output = stribeck(desk.path(), &words);
+            assert!(output.status.success(), "{head:?}: {}", said(&output));
+            says(&output, &["a defect of the outer raceway (BPFO at 71.5"]);
+        }
+    }
+    let named = stribeck(desk.path(), &["analyse", "a.csv", "--channel", "time_us"]);
+    assert!(!named.status.success() && said(&named).contains("it is no signal"), "{}", said(&named));
+    // In milliseconds without a word of it, the rate that is given decides.
+    std::fs::write(desk.join("b.csv"), table("", 12_800.0, |t| format!("{:.4}", 1e3 * t))).unwrap();
+    let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200", "--rate-hz=12800"];
+    says(&stribeck(desk.path(), &words), &["a defect of the outer raceway", "12.8 Hz if these are seconds"]);
+    // What is said to be too slow is said with a rate that would do.
+    let output = stribeck(desk.path(), &words[..4]);
+    says(
+        &output,
+        &["cannot tell whether there is a defect", "harmonics of 71.7 Hz: sample at 610 Hz or faster"],
+    );
+}
+
+#[test]
+fn issue_a_gap_in_the_times_is_noted() {
+    let desk = Scratch::create("measured-gap");
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { t + 0.5 }));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    let output = stribeck(desk.path(), &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    says(
+        &output,
+        &["note: the times of `t [s]` have a gap after row 51200 (3.999922 s): missing samples: 6400"],
+    );
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { 2.0 * t - 4.0 }));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    let output = stribeck(desk.path(), &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    assert!(!output.status.success());
+    says(
+        &output,
+        &["give `--rate-hz`; the times of `t [s]` are uneven, or their rate changes, from about row 51001"],
+    );
+}
+
+/// One sample of 1000 hid a defect that stands by 30 dB, without a word.
+#[test]
+fn issue_a_sample_that_hides_a_defect_is_told() {
+    let desk = Scratch::create("measured-spurious");
+    let mut samples = knocks(12_800.0);
+    samples[33_333] = -1000.0;
+    mat5::write(&desk.join("a.mat"), &[Channel::held("x", samples).at_rate(Some(12_800.0))], &[]).unwrap();
+    let output =
+        stribeck(desk.path(), &["analyse", "a.mat", "--channel=x", "--bearing=6205", "--speed-rpm=1200"]);
+    says(
+        &output,
+        &[
+            "shows no defect",
+            "note: sample 33333 (2.6041 s) is -1000.000000",
+            "Put the mean of its neighbours",
+        ],
+    );
+}
+
+/// What we export as `.mat` did not say its rate when it was analysed.
+#[test]
+fn roundtrip_an_exported_record_says_its_rate() {
+    let desk = Scratch::create("measured-export");
+    let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
+    mat5::write(&desk.join("ex.mat"), &[channel], &[]).unwrap();
+    let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
+    says(&stribeck(desk.path(), &words), &["a defect of the outer raceway"]);
+    // A limit of the velocity asks for the unit that it needs.
+    let limited = [&words[..], &["--alarm=velocity=2.8..7.1"]].concat();
+    says(
+        &stribeck(desk.path(), &limited),
+        &["velocity: the samples have no unit of an acceleration; give `--unit g`"],
+    );
+    for (scale, says) in
+        [("0", "`0`: must be a number above 0 or below 0"), ("nan", "`nan`: must be"), ("x", "`x`: must be")]
+    {
+        let output = stribeck(desk.path(), &[&words[..], &["--scale", scale]].concat());
+        assert!(!output.status.success() && said(&output).contains(says), "{scale}: {}", said(&output));
+    }
+    assert!(stribeck(desk.path(), &[&words[..], &["--scale", "-0.5"]].concat()).status.success());
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::Findings;
+use super::velocity::is_acceleration;
 
 /// What a limit is set on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -113,6 +114,18 @@ impl Quantity {
                 let family = findings.families.iter().find(|f| f.name == self.name())?;
                 family.level_db.filter(|_| family.is_there())
             }
+        }
+    }
+
+    /// Why a record does not have it, and what to give.
+    pub fn missing(self, findings: &Findings) -> &'static str {
+        match self {
+            Self::VelocityMmS if !is_acceleration(findings.unit.as_deref()) => {
+                "the samples have no unit of an acceleration; give `--unit g` or `--unit m/s²`"
+            }
+            Self::VelocityMmS => "10 to 1000 Hz take a record of 1 s, sampled at 2000 Hz or faster",
+            _ if findings.families.is_empty() => "there are no families; give `--bearing` and `--speed-rpm`",
+            _ => "the record does not hold this family",
         }
     }
 

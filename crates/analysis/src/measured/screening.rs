@@ -38,14 +38,26 @@ pub(super) struct Screening {
     highest: Extreme,
 }
 
-/// An extreme value and how often it occurs in a row.
-#[derive(Debug, Clone, Copy, Default)]
+/// An extreme value, how often it occurs in a row, and the next ones.
+#[derive(Debug, Clone, Default)]
 struct Extreme {
     value: f64,
     /// Samples in a row at the value, now and at most.
     row: u64,
     longest: u64,
+    /// The largest values with their places, ascending.
+    largest: Vec<(f64, u64)>,
 }
+
+/// How many times as far from the mean as all others a sample is that stands for itself.
+const FAR: f64 = 10.0;
+/// Samples about one that may belong to it. What rings with a Q of 2.8 or more has a tenth of its height left beyond them, at any
+/// frequency that the record holds: `exp(−π f n/(Q f_s))` with n = 4 and f below half the sample rate.
+const NEAR: u64 = 3;
+/// Most such samples: more are how the machine sounds.
+const MOST: usize = 8;
+/// Largest values kept: of as many samples and what is near them, and one more.
+const KEPT: usize = MOST * (2 * NEAR as usize + 1) + 1;
 
 /// Samples in a row at the extreme that only a limiter makes.
 const CLIPPED_ROW: u64 = 4;
@@ -67,8 +79,8 @@ impl Screening {
             self.sums[2] += square * d;
             self.sums[3] += square * square;
             self.sums[4] += x.abs();
-            self.highest.see(d);
-            self.lowest.see(-d);
+            self.highest.see(d, self.count - 1);
+            self.lowest.see(-d, self.count - 1);
         }
     }
 
@@ -99,7 +111,42 @@ impl Screening {
                 ));
             }
         }
+        notes.extend(self.spurious(rate_hz));
         notes
+    }
+
+    /// What there is to say of samples that lie far beyond all others, and do not ring.
+    fn spurious(&self, rate_hz: f64) -> Option<String> {
+        let mean = self.sums[0] / (self.count - self.bad) as f64;
+        let of = |extreme: &Extreme, mean: f64| {
+            extreme.largest.iter().map(|(value, at)| (value - mean, *at)).rev().collect::<Vec<_>>()
+        };
+        let (above, below) = (of(&self.highest, mean), of(&self.lowest, -mean));
+        // Values beyond the last that was kept are all there.
+        let known = |all: &[(f64, u64)]| all.get(KEPT - 1).map_or(0.0, |last| last.0);
+        let known = known(&above).max(known(&below));
+        let mut all = [above, below].concat();
+        all.retain(|(value, _)| *value >= known);
+        all.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let mut peaks: Vec<(f64, u64)> = Vec::new();
+        for (value, at) in all {
+            if peaks.iter().all(|peak| peak.1.abs_diff(at) > NEAR) {
+                peaks.push((value, at));
+            }
+        }
+        let count =
+            (1..=MOST).rev().find(|n| peaks.get(*n).is_some_and(|next| peaks[n - 1].0 > FAR * next.0))?;
+        let (value, at) = peaks[0];
+        let sign = if self.highest.largest.iter().any(|largest| largest.1 == at) { 1.0 } else { -1.0 };
+        let others = if count > 1 { format!(", and so do {} others", count - 1) } else { String::new() };
+        Some(format!(
+            "sample {at} ({:.4} s) is {:.6} and stands {:.0} times as far from the mean as the rest of the record{others}: it does not ring \
+             as knocks do, so the recording is at fault, and it can hide a defect. Put the mean of its neighbours in its place, or cut the \
+             record beside it",
+            at as f64 / rate_hz,
+            self.origin.unwrap_or(0.0) + mean + sign * value,
+            value / peaks[count].0
+        ))
     }
 
     /// The largest distance from the first value, where its fourth power lies beyond the range of numbers.
@@ -144,14 +191,90 @@ fn spectral_entropy(density: &[f64]) -> f64 {
 }
 
 impl Extreme {
-    fn see(&mut self, value: f64) {
+    fn see(&mut self, value: f64, at: u64) {
+        let full = self.largest.len() == KEPT;
+        if !full || value > self.largest[0].0 {
+            let place = self.largest.partition_point(|kept| kept.0 < value);
+            self.largest.insert(place, (value, at));
+            if full {
+                self.largest.remove(0);
+            }
+        }
         if value > self.value || self.longest == 0 {
-            *self = Self { value, row: 1, longest: 1 };
+            (self.value, self.row, self.longest) = (value, 1, 1);
         } else if value == self.value {
             self.row += 1;
             self.longest = self.longest.max(self.row);
         } else {
             self.row = 0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use stribeck_testing::Noise;
+
+    use super::*;
+
+    fn notes(samples: &[f64]) -> String {
+        let mut screening = Screening::default();
+        samples.chunks(777).for_each(|block| screening.add(block));
+        screening.notes(12_800.0).join("; ")
+    }
+
+    /// Noise, and knocks every `period` samples that ring at `hz` times the sample rate with a Q.
+    fn knocks(period: usize, height: f64, hz: f64, q: f64) -> Vec<f64> {
+        let mut noise = Noise::new(6);
+        (0..50_000)
+            .map(|n| {
+                let since = (n + period / 2) % period;
+                let ring =
+                    (-TAU * hz * since as f64 / (2.0 * q)).exp() * (TAU * hz * since as f64 + 1.0).sin();
+                noise.uniform() + height * ring
+            })
+            .collect()
+    }
+
+    /// A spike of one sample, or of a few places, on any side; in the first one, too.
+    #[test]
+    fn issue_samples_that_stand_for_themselves_are_told() {
+        for (places, value, says) in [
+            (&[31_000][..], 1000.0, "sample 31000 (2.4219 s) is 1000.000000"),
+            (&[31_000], -1000.0, "sample 31000 (2.4219 s) is -1000.000000"),
+            (&[0], 60.0, "sample 0 (0.0000 s) is 60.000000"),
+            (&[49_999], 60.0, "sample 49999"),
+            (&[9, 10, 700, 40_000], 300.0, "and so do 2 others"),
+        ] {
+            for offset in [0.0, 2000.0] {
+                let mut samples = knocks(700, 2.0, 0.2, 20.0);
+                places.iter().for_each(|at| samples[*at] = value);
+                samples.iter_mut().for_each(|x| *x += offset);
+                let told = notes(&samples);
+                assert!(
+                    told.contains(&says.replace(&format!("{value:.6}"), &format!("{:.6}", value + offset))),
+                    "{told}"
+                );
+            }
+        }
+    }
+
+    /// Knocks ring, however rare, high and short they are, and many spikes are how a machine sounds.
+    #[test]
+    fn example_knocks_are_not_told_as_spurious() {
+        for (period, hz, q) in [
+            (700, 0.2, 20.0),
+            (90_000, 0.2, 20.0),
+            (90_000, 0.45, 6.0),
+            (90_000, 0.02, 2.0),
+            (4000, 0.25, 1.0),
+        ] {
+            for height in [3.0, 100.0, 1e5] {
+                let told = notes(&knocks(period, height, hz, q));
+                assert!(told.is_empty(), "{period} {hz} {q} {height}: {told}");
+            }
         }
     }
 }

@@ -11,6 +11,19 @@ const SEGMENT_S: f64 = 1.0;
 /// Metres a second² in one g.
 const G: f64 = 9.806_65;
 
+/// Metres a second² in a unit of acceleration.
+fn acceleration(unit: &str) -> Option<f64> {
+    match unit.trim() {
+        "m/s²" | "m/s^2" | "m/s2" | "m/s**2" => Some(1.0),
+        "g" | "G" | "gn" => Some(G),
+        _ => None,
+    }
+}
+
+pub(super) fn is_acceleration(unit: Option<&str>) -> bool {
+    unit.and_then(acceleration).is_some()
+}
+
 /// A level averaged over everything that was added.
 pub(super) struct Level {
     welch: Welch,
@@ -24,11 +37,7 @@ impl Level {
     /// For segments of `segment` samples in `unit`; `None` where that is no acceleration, or the record too short or too
     /// slowly sampled for the band.
     pub(super) fn new(rate_hz: f64, segment: usize, unit: Option<&str>) -> Result<Option<Self>, Error> {
-        let unit = match unit.map(str::trim) {
-            Some("m/s²" | "m/s^2" | "m/s2" | "m/s**2") => 1.0,
-            Some("g" | "G" | "gn") => G,
-            _ => return Ok(None),
-        };
+        let Some(unit) = unit.and_then(acceleration) else { return Ok(None) };
         let part = (SEGMENT_S * rate_hz) as usize;
         if part > segment || 0.5 * rate_hz < BAND_HZ.1 {
             return Ok(None);

@@ -15,7 +15,7 @@ use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::unrelated::{SLIP, is_the_same, unrelated_hz};
-use super::{Machine, passage};
+use super::{HIGHEST_HZ, LOWEST, Machine, passage};
 
 /// One defect family.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -227,8 +227,7 @@ fn look(
         .collect();
     let searched = found.len() as f64;
     let Some((n, comb)) = found.into_iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
-        family.reason =
-            format!("no band is wide enough for four harmonics of {comb_hz:.1} Hz: sample faster");
+        family.reason = too_narrow(comb_hz, !bands.is_empty());
         return (family, None);
     };
     let (band, spectrum) = &bands[n];
@@ -239,6 +238,23 @@ fn look(
     family.harmonics = comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count();
     family.depth = Some(band.depth(comb.fundamental_hz));
     (family, Some(Standing { band: n, comb, comb_hz, times }))
+}
+
+/// Why no band holds a comb, and what rate would do.
+fn too_narrow(comb_hz: f64, any: bool) -> String {
+    let harmonics = CombTest::FOUR_OF_FIVE.needed;
+    let highest_hz = harmonics as f64 * (1.0 + SLIP) * comb_hz;
+    // The widest band, with a hundredth to spare for its last lines, in tens of hertz.
+    let rate_hz = 10.0 * (0.1 * 1.01 * 2.0 * highest_hz / (1.0 - LOWEST)).ceil();
+    if !any {
+        return "no band holds noise that lines could stand above".to_owned();
+    }
+    let advice = if highest_hz > HIGHEST_HZ {
+        format!("spectra end at {HIGHEST_HZ:.0} Hz, whatever the rate: run the machine slower")
+    } else {
+        format!("sample at {rate_hz:.0} Hz or faster")
+    };
+    format!("no band is wide enough for {harmonics} harmonics of {comb_hz:.1} Hz: {advice}")
 }
 
 /// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried. The comb of

@@ -1,0 +1,333 @@
+//! Which channels are times, and the sample rate that they say.
+//!
+//! Times rise evenly from sample to sample, to their last digit, and so do counts, and the angle of a shaft that turns
+//! steadily: none of them is a signal. All samples are looked at, a stretch at a time, because a record that was interrupted,
+//! or put together, shows it nowhere else.
+
+use crate::{Channel, Recording, Result};
+
+/// Samples that are looked at together.
+const STRETCH: usize = 1000;
+/// Fewest samples that show how a channel rises.
+const LEAST: usize = 10;
+/// Of so many steps one may be a gap.
+const RARE: usize = 250;
+/// Rates that differ by less than this part are one: clocks drift.
+const SAME_RATE: f64 = 1e-3;
+/// A step from which on numbers without a unit are no seconds: nobody listens to a bearing once a second.
+const SLOWEST_S: f64 = 1.0;
+
+/// Units of time [s]. The third and the fourth micro are the Greek letter, and what is left of a sign in another encoding.
+const UNITS: [(&str, f64); 11] = [
+    ("s", 1.0),
+    ("sec", 1.0),
+    ("seconds", 1.0),
+    ("ms", 1e-3),
+    ("us", 1e-6),
+    ("µs", 1e-6),
+    ("μs", 1e-6),
+    ("\u{fffd}s", 1e-6),
+    ("ns", 1e-9),
+    ("min", 60.0),
+    ("h", 3600.0),
+];
+/// Endings of names of what rises evenly and is no time.
+const OTHERS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
+
+/// The unit of a channel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Unit {
+    /// Of time, and how many seconds it has.
+    Time(&'static str, f64),
+    Other,
+    Unsaid,
+}
+
+/// How a channel rises.
+#[derive(Debug, Default)]
+struct Course {
+    /// First and last sample that are numbers, with their places.
+    first: (f64, f64),
+    last: (f64, f64),
+    /// Stretches in which it rises evenly, and others.
+    even: usize,
+    uneven: usize,
+    gaps: Vec<Gap>,
+    /// What all gaps add to the steps there.
+    jumped: f64,
+    /// Where it first rises otherwise than before.
+    change: Option<(f64, f64)>,
+}
+
+/// A step that is none of the others.
+#[derive(Debug, Clone, Copy)]
+struct Gap {
+    /// Place and value before it.
+    after: (f64, f64),
+    /// What it is more than a step.
+    by: f64,
+}
+
+/// A stretch that rises evenly.
+struct Stretch {
+    step: f64,
+    /// Largest part by which rounding may change the step.
+    rounding: f64,
+    gaps: Vec<Gap>,
+}
+
+/// Marks the channels that are no signals, and gives the others the rate that the file says: as a number beside them, or by
+/// the times.
+///
+/// # Errors
+/// As [`Channel::for_each_block`], for times.
+pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
+    let channels = &mut recording.channels;
+    let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
+    for (channel, course) in channels.iter_mut().zip(&courses) {
+        channel.is_time = course.as_ref().is_some_and(|course| course.is_even() || says_time(&channel.name));
+        if let (true, Unit::Time(unit, _)) = (channel.is_time, Unit::of(channel)) {
+            channel.unit = Some(unit.to_owned());
+        }
+    }
+    let said = rates_said(channels);
+    for channel in channels.iter_mut().filter(|c| c.rate_hz.is_none()) {
+        let mut beside = said.iter().filter(|(of, _)| of.is_empty() || *of == parent(&channel.name));
+        channel.rate_hz = beside.next().map(|(_, hz)| *hz);
+    }
+    let mut lengths: Vec<u64> = channels.iter().map(|c| c.len).collect();
+    lengths.sort_unstable();
+    lengths.dedup();
+    for len in lengths {
+        let first = channels.iter().position(|c| c.len == len);
+        let asked = channels.iter().any(|c| c.len == len && c.rate_hz.is_none());
+        let rank = |n: usize| match Unit::of(&channels[n]) {
+            Unit::Time(..) => Some(0),
+            Unit::Unsaid if says_time(&channels[n].name) => Some(1),
+            Unit::Unsaid if asked && first == Some(n) => Some(2),
+            _ => None,
+        };
+        let of_time = |n: &usize| channels[*n].len == len && channels[*n].is_time;
+        let clock = (0..channels.len()).filter(of_time).filter_map(|n| Some((rank(n)?, n))).min();
+        let Some((n, course)) = clock.and_then(|(_, n)| Some((n, courses[n].as_ref()?))) else { continue };
+        let rate_hz = course.rate_hz(&channels[n], asked, &mut recording.notes);
+        for channel in channels.iter_mut().filter(|c| c.len == len && c.rate_hz.is_none()) {
+            channel.rate_hz = rate_hz;
+        }
+    }
+    Ok(recording)
+}
+
+/// The rates [Hz] that stand as numbers of their own, `rate_hz` or `fs`, each with the struct that it is in.
+fn rates_said(channels: &[Channel]) -> Vec<(String, f64)> {
+    let is_rate =
+        |c: &&Channel| c.len == 1 && ["rate_hz", "fs"].contains(&member(&c.name).to_lowercase().as_str());
+    let rate_hz = |c: &Channel| c.read().ok()?.first().copied().filter(|hz| hz.is_finite() && *hz > 0.0);
+    channels.iter().filter(is_rate).filter_map(|c| Some((parent(&c.name).to_owned(), rate_hz(c)?))).collect()
+}
+
+/// The structs around a name.
+fn parent(name: &str) -> &str {
+    name.rsplit_once('.').map_or("", |(parent, _)| parent)
+}
+
+/// The name without them.
+fn member(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}
+
+fn says_time(name: &str) -> bool {
+    let word: String = member(name).chars().take_while(|c| c.is_alphabetic()).collect();
+    let word = word.to_lowercase();
+    word.starts_with("time") || matches!(word.as_str(), "t" | "zeit" | "temps" | "tiempo" | "tempo")
+}
+
+/// The seconds of a unit of time, and its usual spelling.
+fn seconds(unit: &str) -> Option<(&'static str, f64)> {
+    let unit = unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
+    UNITS.into_iter().find(|(name, _)| *name == unit)
+}
+
+impl Unit {
+    /// That of a channel, or of its name: `t [ms]`, `t (ms)`, `t/ms`, `time_ms`.
+    fn of(channel: &Channel) -> Self {
+        let time = |unit: &str| seconds(unit).map(|(name, s)| Self::Time(name, s));
+        if let Some(unit) = channel.unit.as_deref().filter(|unit| !unit.trim().is_empty()) {
+            return time(unit).unwrap_or(Self::Other);
+        }
+        let name = &channel.name;
+        let Some((_, last)) = name.trim_end_matches([' ', ']', ')']).rsplit_once(['[', '(', '_', '/', ' '])
+        else {
+            return Self::Unsaid;
+        };
+        let other = name.contains(['[', '(']) || OTHERS.contains(&last.to_lowercase().as_str());
+        time(last).unwrap_or(if other { Self::Other } else { Self::Unsaid })
+    }
+}
+
+/// Whether a field of a table is a unit and no name.
+pub(crate) fn is_unit(field: &str) -> bool {
+    const USUAL: [&str; 16] =
+        ["g", "V", "mV", "N", "kN", "Pa", "MPa", "m", "mm", "um", "µm", "rad", "deg", "rpm", "Hz", "-"];
+    let bracketed = field.starts_with(['[', '(']) && field.ends_with([']', ')']);
+    bracketed || USUAL.contains(&field) || field.contains(['/', '°']) || seconds(field).is_some()
+}
+
+impl Course {
+    /// How a channel rises; `None` for one that does not.
+    fn of(channel: &Channel) -> Result<Option<Self>> {
+        if channel.len < LEAST as u64 {
+            return Ok(None);
+        }
+        let (mut course, mut rises, mut row) = (Self::default(), true, 0.0);
+        let (mut step, mut held) = (None, Vec::with_capacity(STRETCH + LEAST + 1));
+        let read = channel.for_each_block(|block| {
+            for &value in block {
+                if value.is_finite() {
+                    held.push((row, value));
+                }
+                row += 1.0;
+                // What is left for the last stretch shows how it rises, too.
+                if held.len() > STRETCH + LEAST {
+                    rises = course.add(&held[..=STRETCH], &mut step);
+                    // The next begins with the last of this one.
+                    held.drain(..STRETCH);
+                }
+                if !rises {
+                    break;
+                }
+            }
+            rises
+        });
+        if course.even == 0 && read.is_err() {
+            // What cannot be read is told where it is needed.
+            return Ok(None);
+        }
+        read?;
+        if rises && held.len() >= LEAST {
+            rises = course.add(&held, &mut step);
+        }
+        Ok((rises && course.even + course.uneven > 0).then_some(course))
+    }
+
+    /// Takes a stretch, as places and values; false where it falls. `step` is that of the first even one.
+    fn add(&mut self, values: &[(f64, f64)], step: &mut Option<f64>) -> bool {
+        let [first, .., last] = values else { return true };
+        let falls = values.windows(2).filter(|w| w[1].1 < w[0].1).count();
+        if last.1 <= first.1 && falls == 0 || falls > (values.len() / RARE).max(1) {
+            return false;
+        }
+        if self.even + self.uneven == 0 {
+            self.first = *first;
+        }
+        self.last = *last;
+        let Some(stretch) = Stretch::of(values) else {
+            self.uneven += 1;
+            self.change.get_or_insert(*first);
+            return true;
+        };
+        self.even += 1;
+        self.jumped += stretch.gaps.iter().map(|gap| gap.by).sum::<f64>();
+        self.gaps.extend(stretch.gaps);
+        let before = *step.get_or_insert(stretch.step);
+        if (stretch.step / before - 1.0).abs() > SAME_RATE + stretch.rounding {
+            self.change.get_or_insert(*first);
+        }
+        true
+    }
+
+    fn is_even(&self) -> bool {
+        self.even > self.uneven
+    }
+
+    /// The rate [Hz] that times say, with what is odd about them, also about their unit if it is `asked` for.
+    fn rate_hz(&self, times: &Channel, asked: bool, notes: &mut Vec<String>) -> Option<f64> {
+        let (name, unit) = (&times.name, Unit::of(times));
+        let (spelt, second) = if let Unit::Time(spelt, second) = unit { (spelt, second) } else { ("", 1.0) };
+        let at = |(row, value): (f64, f64)| {
+            format!("row {} ({value:.6} {spelt}", row + 1.0).trim_end().to_owned() + ")"
+        };
+        if let Some(from) = self.change {
+            notes.push(format!(
+                "the times of `{name}` are uneven, or their rate changes, from about {} on: cut the file there and take the longer part, \
+                 or give the rate by hand if it does not change",
+                at(from)
+            ));
+            return None;
+        }
+        let (rows, span) = (self.last.0 - self.first.0, self.last.1 - self.first.1 - self.jumped);
+        let step = span / rows;
+        if let Some(gap) = self.gaps.first() {
+            let (missing, more) = ((gap.by / step).round(), self.gaps.len() - 1);
+            let what = if gap.by > 0.0 {
+                format!("missing samples: {missing}")
+            } else {
+                "they fall back".to_owned()
+            };
+            let more = if more > 0 { format!(", and so at {more} more places") } else { String::new() };
+            notes.push(format!(
+                "the times of `{name}` have a gap after {}: {what}{more}. Knocks before and after it do not line up: cut the file there \
+                 and take the longer part",
+                at(gap.after)
+            ));
+        }
+        let hz = rows / (span * second);
+        // A rate is a round number more often than the digits of times are exact.
+        let round = (hz * 10.0).round() / 10.0;
+        let hz = if (hz / round - 1.0).abs() < 1e-6 { round } else { hz };
+        if asked && unit == Unit::Unsaid {
+            let slow = step >= SLOWEST_S * (1.0 - SAME_RATE);
+            let means =
+                if slow { "no rate follows".to_owned() } else { format!("{hz} Hz if these are seconds") };
+            notes.push(format!(
+                "`{name}` rises by {step:.6} from sample to sample, and does not say its unit: {means}. Call it `t [ms]` or the like if \
+                 it is the time in another one"
+            ));
+            return (!slow).then_some(hz);
+        }
+        Some(hz).filter(|hz| hz.is_finite() && *hz > 0.0)
+    }
+}
+
+impl Stretch {
+    /// `None` for values that do not rise evenly: apart from gaps, each must lie within a step of the line, or within the last
+    /// digit, where that is coarser than a step.
+    fn of(values: &[(f64, f64)]) -> Option<Self> {
+        let (first, last) = (values.first()?, values.last()?);
+        // The rise over a quarter of the values, in the middle: few gaps do not move it.
+        let lag = values.len() / 4;
+        let slopes = values.iter().zip(&values[lag..]).map(|(a, b)| (b.1 - a.1) / (b.0 - a.0));
+        let step = middle(slopes.collect(), 2)?;
+        let over = |w: &[(f64, f64)]| w[1].1 - w[0].1 - step * (w[1].0 - w[0].0);
+        // Rounding moves many steps, gaps are rare.
+        let usual = middle(values.windows(2).map(|w| over(w).abs()).collect(), RARE)?;
+        let is_gap = |w: &[(f64, f64)]| w[1].1 < w[0].1 || over(w) > (0.5 * step).max(1.01 * usual);
+        let gap = |w: &[(f64, f64)]| Gap { after: w[0], by: over(w) };
+        let gaps: Vec<Gap> = values.windows(2).filter(|w| is_gap(w)).map(gap).collect();
+        let jumped: f64 = gaps.iter().map(|gap| gap.by).sum();
+        let rows = last.0 - first.0;
+        let without = (last.1 - first.1 - jumped) / rows;
+        if (without / step - 1.0).abs() > 0.5 {
+            // The gaps are how it rises.
+            return None;
+        }
+        let step = without;
+        let rises = values.windows(2).map(|w| w[1].1 - w[0].1).filter(|rise| *rise > 0.0);
+        let tolerance = rises.fold(f64::INFINITY, f64::min).max(step);
+        let (mut at, mut jumped) = (0, 0.0);
+        let even = values.iter().all(|value| {
+            while gaps.get(at).is_some_and(|gap| gap.after.0 < value.0) {
+                jumped += gaps[at].by;
+                at += 1;
+            }
+            (value.1 - jumped - first.1 - step * (value.0 - first.0)).abs() < tolerance
+        });
+        (step > 0.0 && even).then_some(Self { step, rounding: 2.0 * tolerance / (rows * step), gaps })
+    }
+}
+
+/// The number that one of `parts` of all exceed, two at least.
+fn middle(mut numbers: Vec<f64>, parts: usize) -> Option<f64> {
+    let at = numbers.len().checked_sub(1 + (numbers.len() / parts).max(2))?;
+    Some(*numbers.select_nth_unstable_by(at, f64::total_cmp).1)
+}
