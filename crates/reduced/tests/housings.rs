@@ -88,7 +88,7 @@ fn analytic_the_cage_between_rings_whose_speeds_change() {
 }
 
 /// Rollers that roll lose by contact damping what those of the full model lose: half of it is lost as they turn in their contacts.
-/// Source: the full model from the same start.
+/// Source: THEORY §4.2, by the full model from the same start.
 #[test]
 fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
     const TOLERANCE: f64 = 0.05;
