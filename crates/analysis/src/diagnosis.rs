@@ -107,7 +107,11 @@ fn judged(
     samples: Vec<f64>,
 ) -> Result<Option<Analysis>, Error> {
     let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * relative_hz(expected));
-    let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing) };
+    let machine = Machine {
+        speed_rpm: Some(speed_rpm),
+        outer_speed_rpm: Machine::outer_speed_rpm(scene),
+        bearing: Some(bearing),
+    };
     let channel = Channel::held(name.to_owned(), samples).in_unit(Some("m/s²".to_owned()));
     match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         // A record that is too short, or a sensor that stands still.

@@ -22,6 +22,7 @@
 //! let machine = Machine {
 //!     speed_rpm: Some(1200.0),
 //!     bearing: Some(CatalogueBearing::parse("6205")?),
+//!     ..Machine::default()
 //! };
 //! let analysis = Analysis::of(&Channel::held("housing", samples), rate_hz, &machine)?;
 //! let claimed: Vec<&str> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
@@ -46,7 +47,7 @@ mod verdict;
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, BandEnvelopes, Welch};
 use stribeck_formats::Channel;
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 
 use crate::Error;
 pub use angular::over_angle;
@@ -60,10 +61,23 @@ pub(crate) use verdict::sidebands_seen;
 /// What is known of the machine.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Machine {
-    /// Speed of the shaft [1/min].
+    /// Speed of the shaft, against the outer ring where that turns [1/min].
     pub speed_rpm: Option<f64>,
+    /// Speed of the outer ring, positive where it turns as the shaft does against it [1/min].
+    pub outer_speed_rpm: f64,
     /// Its bearing.
     pub bearing: Option<CatalogueBearing>,
+}
+
+impl Machine {
+    /// Speed of the outer ring of a scene as [`Machine`] has it; none where speeds change, and nothing has one frequency.
+    pub fn outer_speed_rpm(scene: &Scene) -> f64 {
+        let operation = &scene.operation;
+        if operation.speed_varies() {
+            return 0.0;
+        }
+        operation.outer_speed_rpm * (operation.speed_rpm - operation.outer_speed_rpm).signum()
+    }
 }
 
 /// What `findings.json` says. What a record cannot yield is `null`, with the reason in `notes`.

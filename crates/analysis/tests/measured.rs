@@ -13,7 +13,7 @@ const RATE_HZ: f64 = 12_800.0;
 const SAMPLES: usize = 65_536;
 
 fn machine(rpm: f64) -> Machine {
-    Machine { speed_rpm: Some(rpm), bearing: CatalogueBearing::parse("6205").ok() }
+    Machine { speed_rpm: Some(rpm), bearing: CatalogueBearing::parse("6205").ok(), ..Machine::default() }
 }
 
 fn gaussian(noise: &mut Noise) -> f64 {
@@ -131,7 +131,8 @@ fn issue_sidebands_near_the_places_of_other_families_are_no_defects() {
     let (shaft_hz, samples) = (25.0, 10_240);
     let inner = knocks(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
     let signal = inner.iter().zip(coloured(7, samples)).map(|(a, b)| 4.0 * a + b).collect();
-    let machine = Machine { speed_rpm: Some(60.0 * shaft_hz), bearing: CatalogueBearing::parse("6203").ok() };
+    let bearing = CatalogueBearing::parse("6203").ok();
+    let machine = Machine { speed_rpm: Some(60.0 * shaft_hz), bearing, ..Machine::default() };
     let findings = Analysis::of(&Channel::held("test", signal), RATE_HZ, &machine).unwrap().findings;
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:#?}");
 }

@@ -38,7 +38,8 @@ pub(crate) fn analyse(
     py.detach(|| {
         let bearing = bearing.map(|text| CatalogueBearing::parse(&text)).transpose().map_err(refused)?;
         let channel = Channel::held(name, samples).in_unit(unit);
-        let analysis = Analysis::of(&channel, rate_hz, &Machine { speed_rpm, bearing }).map_err(refused)?;
+        let machine = Machine { speed_rpm, bearing, ..Machine::default() };
+        let analysis = Analysis::of(&channel, rate_hz, &machine).map_err(refused)?;
         serde_json::to_string(&analysis.findings).map_err(refused)
     })
 }

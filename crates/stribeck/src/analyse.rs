@@ -243,6 +243,14 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
         }
         None => Analysis::of(&scaled, rate_hz, &machine)?,
     };
+    let claims = analysis.findings.families.iter().any(|family| family.claimed);
+    if claims && scene.is_some() {
+        notes.push(
+            "a run has no noise but its bearing's: what elements rattle as they come under the load can make a claim of its own, in a sound \
+             bearing, too. Its report says what is in the scene; `export` with `--sensor` and a `noise_density` gives it a machine's noise"
+                .to_owned(),
+        );
+    }
     analysis.findings.notes.splice(0..0, notes);
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
     write_measured(out, &name, &analysis)?;
@@ -353,7 +361,8 @@ fn machine(
     } else {
         None
     };
-    Ok((Machine { speed_rpm, bearing }, pulses))
+    let outer_speed_rpm = scene.map_or(0.0, Machine::outer_speed_rpm);
+    Ok((Machine { speed_rpm, outer_speed_rpm, bearing }, pulses))
 }
 
 fn default_folder(file: &Path) -> PathBuf {

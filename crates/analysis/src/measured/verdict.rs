@@ -131,10 +131,12 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         .iter()
         .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
         .collect();
+    // Load and sensor stand still: what they hear of the cage are its turns in space.
+    let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
     let looked: Vec<(Family, Option<Standing>)> = FAMILIES
         .into_iter()
-        .zip([orders.bpfo, orders.bpfi, orders.bsf, orders.ftf])
-        .map(|((name, _, times), order)| look(name, order * shaft_hz, times, &whitened, record_s, segment_s))
+        .zip([orders.bpfo * shaft_hz, orders.bpfi * shaft_hz, orders.bsf * shaft_hz, cage_hz])
+        .map(|((name, _, times), hz)| look(name, hz, times, &whitened, record_s, segment_s))
         .collect();
     let first = first(looked.iter().map(|(family, _)| family));
     let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
@@ -157,7 +159,7 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         at,
         comb_hz,
         shaft_hz,
-        cage_hz: orders.ftf * shaft_hz,
+        cage_hz,
         resolution_hz: 1.0 / segment_s,
     });
     Judged { families, verdict: String::new(), notes, first }
