@@ -139,7 +139,7 @@ fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Re
 }
 
 fn print(agreement: &Agreement) {
-    let [full, reduced] = agreement.cpu_s_per_ms;
+    let [full, reduced, times] = agreement.cost();
     say!(
         "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval (dB: mean, least and most of the bands)",
         agreement.scene,
@@ -163,10 +163,7 @@ fn print(agreement: &Agreement) {
     for note in &agreement.notes {
         say!("  note: {note}");
     }
-    say!(
-        "  processor time of a simulated millisecond: full {full:.3} s, reduced {reduced:.4} s, {:.0} times less",
-        full / reduced
-    );
+    say!("  processor time of a simulated millisecond: full {full}, reduced {reduced}, {times}");
 }
 
 /// The difference and its limit.
