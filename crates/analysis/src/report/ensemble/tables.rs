@@ -185,8 +185,8 @@ pub(super) fn families(summary: &EnsembleSummary) -> Markup {
                         tr {
                             td { (spoken(family.text("name").unwrap_or("–"))) }
                             (cell(share(family)))
-                            (cell(family.number("predicted_hz").filter(|s| s.mean > 0.0).map(|s| mean(s, 1.0, 1))))
-                            (cell(family.number("carrier_hz").filter(|s| s.mean > 0.0).map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("predicted_hz").map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("carrier_hz").map(|s| mean(s, 1.0, 1))))
                             (cell(family.number("offset_resolutions").map(|s| mean(s, 1.0, 2))))
                             (cell(family.number("level_g").map(|s| mean(s, 1.0, 1))))
                         }

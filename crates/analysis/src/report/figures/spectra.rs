@@ -269,16 +269,16 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     marks
 }
 
-/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not.
+/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not, by geometry where no motion
+/// tells it.
 fn line_marks(findings: &Findings) -> Vec<Mark> {
     let bpfo = findings.summary.kinematics.bpfo_hz.unwrap_or(findings.prediction.kinematics.bpfo_hz);
     let mut marks = Vec::new();
-    for (family, colour) in
-        findings.summary.families.iter().zip([Colour::Green, Colour::Purple, Colour::Teal])
-    {
+    let families = findings.summary.families.iter().zip(&findings.prediction.facet_lines);
+    for ((family, (_, geometry_hz)), colour) in families.zip([Colour::Green, Colour::Purple, Colour::Teal]) {
         let Some(carrier) = family.carrier_hz else {
-            let label = format!("{} absent", spoken(&family.name));
-            marks.push(mark(family.predicted_hz, &label, colour, true));
+            let (hz, word) = family.predicted_hz.map_or((*geometry_hz, "by geometry"), |hz| (hz, "absent"));
+            marks.push(mark(hz, &format!("{} {word}", spoken(&family.name)), colour, true));
             continue;
         };
         for m in -SIDEBANDS..=SIDEBANDS {
