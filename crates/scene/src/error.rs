@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::ensemble::folder_name;
 use crate::scene_file::SceneError;
 
 /// Everything that can go wrong with a scene file or the folder of a run.
@@ -115,6 +116,18 @@ pub enum Error {
         path: PathBuf,
         /// The first file that was looked for in vain.
         missing: &'static str,
+    },
+
+    /// The folder of an ensemble, where that of one run is wanted.
+    #[error(
+        "`{}` is an ensemble, and each of its {starts} starts is a run: name one of them, such as `{}`",
+        path.display(), path.join(folder_name(1)).display()
+    )]
+    Ensemble {
+        /// The folder.
+        path: PathBuf,
+        /// Starts that are there.
+        starts: usize,
     },
 
     /// `scene.ron` is not the scene that was simulated.

@@ -250,7 +250,7 @@ impl RunDir {
     ///
     /// # Errors
     ///
-    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing.
+    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing; [`Error::Ensemble`] when it is that of many starts.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         is_run(path, &[SCENE, INFO])?;
@@ -321,6 +321,9 @@ impl RunDir {
 /// Whether all of these are there.
 fn is_run(path: &Path, names: &[&'static str]) -> Result<(), Error> {
     match names.iter().find(|name| !path.join(name).is_file()) {
+        Some(&INFO) if RunDir::is_ensemble(path) => {
+            Err(Error::Ensemble { path: path.to_owned(), starts: files::start_folders(path).len() })
+        }
         Some(missing) => Err(Error::NotARun { path: path.to_owned(), missing }),
         None => Ok(()),
     }

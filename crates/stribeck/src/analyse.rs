@@ -192,6 +192,9 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     if !file.exists() {
         file = place.locate_run(asked);
     }
+    if RunDir::is_ensemble(&file) {
+        RunDir::open(&file)?;
+    }
     if file.is_dir() {
         scene = Some(
             Scene::read(file.join("scene.ron"))
