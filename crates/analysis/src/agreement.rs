@@ -17,6 +17,7 @@ use crate::load::running_mean;
 use crate::record::Record;
 use crate::statistic::Statistic;
 use crate::summary::Summary;
+use crate::words::significant;
 
 /// The record is compared from here on [s]: before, both models still settle.
 pub const FROM_S: f64 = 1e-3;
@@ -32,6 +33,8 @@ const LEAST_BINS: f64 = 3.0;
 /// Waveforms are compared below these frequencies [Hz], over so many samples at most.
 const BELOW_HZ: [f64; 2] = [500.0, 2000.0];
 const WAVEFORM: usize = 50_000;
+/// Systems count processor time in ticks of this length [s].
+const TICK_S: f64 = 0.01;
 /// Lines of BPFO that are compared, and the periods of it that a record must hold for them.
 const LINES: usize = 5;
 const PERIODS: f64 = 10.0;
@@ -219,6 +222,23 @@ impl Agreement {
             correlations: BELOW_HZ.into_iter().filter_map(|hz| alike(hz, &sides)).collect(),
             notes,
         })
+    }
+
+    /// What a simulated millisecond costs, in words: by the full model, by the reduced one, and how many times less that is. Less than a
+    /// tick of the clock is not told from nothing.
+    pub fn cost(&self) -> [String; 3] {
+        let tick_s = TICK_S / self.simulated_ms;
+        let [full, reduced] = self.cpu_s_per_ms;
+        let said = |cost_s: f64, digits: usize| match cost_s < tick_s {
+            true => format!("less than {} s", significant(tick_s, 2)),
+            false => format!("{cost_s:.digits$} s"),
+        };
+        let times = match (full < tick_s, reduced < tick_s) {
+            (true, _) => "too little to compare".to_owned(),
+            (false, true) => format!("more than {:.0} times less", (full / tick_s).floor()),
+            (false, false) => format!("{:.0} times less", full / reduced),
+        };
+        [said(full, 3), said(reduced, 4), times]
     }
 
     /// Rows that do not keep their limit.
@@ -494,6 +514,29 @@ impl Octaves {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A short run of the reduced model took no tick of the clock, and its page said that it takes "inf times less".
+    #[test]
+    fn issue_less_than_a_tick_of_the_clock_is_no_division_by_zero() {
+        let of = |cpu_s_per_ms| {
+            let agreement = Agreement {
+                scene: String::new(),
+                scene_hash: String::new(),
+                starts: 1,
+                simulated_ms: 5.0,
+                step_us: 2.0,
+                cpu_s_per_ms,
+                rows: Vec::new(),
+                sensors: Vec::new(),
+                correlations: Vec::new(),
+                notes: Vec::new(),
+            };
+            agreement.cost()
+        };
+        assert_eq!(of([0.8, 0.004]), ["0.800 s", "0.0040 s", "200 times less"]);
+        assert_eq!(of([0.8, 0.0]), ["0.800 s", "less than 0.002 s", "more than 400 times less"]);
+        assert_eq!(of([0.0, 0.0])[2], "too little to compare");
+    }
 
     /// Four correlations whose mean is 0.922: an interval about it by Student's t reaches 1.018.
     #[test]

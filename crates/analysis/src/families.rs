@@ -112,8 +112,9 @@ pub struct FamilyFinding {
     pub name: String,
     /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
     pub carrier_hz: Option<f64>,
-    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at loaded contacts.
-    pub predicted_hz: f64,
+    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at loaded contacts; `None` when no
+    /// comb was made of it.
+    pub predicted_hz: Option<f64>,
     /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is absent, that of the best
     /// fit within 1.5 BPFO; `None` when it is not judged.
     pub offset_resolutions: Option<f64>,
@@ -279,7 +280,7 @@ fn finding(
     n: usize,
 ) -> Result<FamilyFinding, Error> {
     let case = &cases[n];
-    let predicted_hz = case.comb.as_ref().map_or(0.0, |comb| comb.line_hz);
+    let predicted_hz = case.comb.as_ref().map(|comb| comb.line_hz);
     let mut finding = FamilyFinding {
         name: case.name.to_owned(),
         carrier_hz: None,
@@ -304,7 +305,7 @@ fn finding(
     finding.lead = Some(*lead);
     finding.explained = Some(trial.explained);
     finding.explained_forces = Some(trial.explained_forces);
-    if there {
+    if let Some(predicted_hz) = predicted_hz.filter(|_| there) {
         let carrier_hz = predicted_hz + offset_hz;
         finding.carrier_hz = Some(carrier_hz);
         finding.lines = lines::read(accelerations, 1.0 / motion.interval_s, carrier_hz, motion.bpfo_hz)?;

@@ -3,6 +3,8 @@
 
 use std::f64::consts::PI;
 
+use stribeck_dsp::PeriodCount;
+use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::run_info::MeshInfo;
@@ -14,7 +16,7 @@ use stribeck_scene::static_load;
 use crate::Error;
 use crate::kinematics::KinematicsFinding;
 use crate::lumped::Lumped;
-use crate::prediction::Prediction;
+use crate::prediction::{Prediction, family};
 use crate::rolling;
 
 /// What a plan must know of the mesh that a scene makes.
@@ -56,8 +58,9 @@ pub struct Plan {
     pub resolution_hz: f64,
     /// Record that separates the closest two of the lines, Hann window [s]; `None` when they coincide.
     pub separating_s: Option<f64>,
-    /// Records for ten periods of the defect, the least for an envelope [s].
-    pub envelope_s: f64,
+    /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of the defect, of several the
+    /// slowest, without one BPFO; `None` where the rings do not turn against each other.
+    pub envelope: Option<(&'static str, f64)>,
     /// What to change, each with its reason.
     pub advice: Vec<String>,
 }
@@ -99,6 +102,9 @@ impl Plan {
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let facets = counts.roller_facets as f64;
+        let families = scene.faults().into_iter().map(|on| family(on, kinematics));
+        let slowest = families.min_by(|a, b| a.1.total_cmp(&b.1));
+        let slowest = slowest.unwrap_or_else(|| family(RollingSurface::Outer, kinematics));
         let mut plan = Self {
             lines: prediction.facet_lines.clone(),
             lumped,
@@ -117,7 +123,9 @@ impl Plan {
             elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / geometry.element_size,
             resolution_hz: 1.0 / duration_s,
             separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
-            envelope_s: 10.0 / kinematics.bpfo_hz,
+            envelope: Some(slowest)
+                .filter(|(_, hz)| *hz > 0.0)
+                .map(|(name, hz)| (name, PeriodCount::ENOUGH / hz)),
             advice: Vec::new(),
         };
         plan.advise(scene, &geometry);
@@ -230,6 +238,33 @@ mod tests {
             inner_facets: 258,
         };
         MeshFacts { counts, element_time_step_s: 60e-9 }
+    }
+
+    /// Ten periods were those of BPFO whatever the defect, and "inf ms" of a bearing at rest.
+    #[test]
+    fn issue_ten_periods_are_those_of_the_scenes_own_defect() {
+        let envelope = |scene: &Scene| Plan::of(scene, &facts()).expect("a load distribution").envelope;
+        let mut scene = Scene::default();
+        let of = |scene: &Scene| {
+            let k = stribeck_scene::kinematics::Kinematics::of(scene);
+            [("BPFO", 10.0 / k.bpfo_hz), ("BPFI", 10.0 / k.bpfi_hz), ("2×BSF", 5.0 / k.bsf_hz)]
+        };
+        let [outer, inner, roller] = of(&scene);
+        assert_eq!(envelope(&scene), Some(outer));
+        let mut inside = scene.clone();
+        inside.defect.as_mut().expect("the paper's").ring = stribeck_scene::scene::DefectRing::Inner;
+        assert_eq!(envelope(&inside), Some(inner));
+        // Of several the slowest, which takes the longest record.
+        inside.defects = Scene::default()
+            .with_overrides(&[
+                "film=None",
+                "defects=[(on: roller(1), form: dent(length_mm: 3.0, depth_mm: 0.05))]",
+            ])
+            .expect("a dent")
+            .defects;
+        assert_eq!(envelope(&inside), Some(if roller.1 > inner.1 { roller } else { inner }));
+        scene.operation.speed_rpm = 0.0;
+        assert_eq!(envelope(&scene), None);
     }
 
     #[test]

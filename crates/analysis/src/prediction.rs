@@ -124,11 +124,11 @@ impl Prediction {
         Self {
             facet_lines,
             spalls: scene.spalls().into_iter().map(course).collect(),
-            family: scene.faults().first().filter(|_| !scene.operation.speed_varies()).map(|on| match on {
-                RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
-                RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
-                RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
-            }),
+            family: scene
+                .faults()
+                .first()
+                .filter(|_| !scene.operation.speed_varies())
+                .map(|on| family(*on, &kinematics)),
             kinematics,
         }
     }
@@ -234,6 +234,15 @@ impl Prediction {
             let from_middle = (angle_deg - d.middle_deg + 180.0).rem_euclid(360.0) - 180.0;
             from_middle.abs() < (d.leading_deg - d.middle_deg).abs()
         })
+    }
+}
+
+/// Name and frequency [Hz] of the family of a defect on a surface.
+pub(crate) fn family(on: RollingSurface, kinematics: &Kinematics) -> (&'static str, f64) {
+    match on {
+        RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
+        RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
+        RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
     }
 }
 

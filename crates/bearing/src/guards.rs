@@ -23,6 +23,7 @@ use stribeck_system::{Limits, Scale, System, Words};
 
 use crate::assembly::{Assembly, Machine};
 use stribeck_scene::{
+    advice,
     duty::Duty,
     geometry::Geometry,
     run_info::RunInfo,
@@ -55,6 +56,8 @@ pub(crate) struct Guards {
     annulus: [f64; 2],
     /// How far the middle of the cage may be from there [m].
     pitch_radius: f64,
+    /// What else holds the cage, in words.
+    holds_cage: String,
     /// How far the housing may leave the ring [m].
     seat: f64,
     /// Height of the housing above the outer ring at rest [m], if there is one.
@@ -117,6 +120,7 @@ impl Guards {
             unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
             annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
             pitch_radius: 0.5 * (g.inner_race_radius + g.outer_race_radius),
+            holds_cage: advice::holds_cage(scene),
             seat: slack,
             housing_height: machine.housing.map(|housing| height(housing) - height(machine.outer)),
         }
@@ -223,10 +227,10 @@ impl Guards {
             let off = (middle(cage, 0) - ring[0]).hypot(middle(cage, 1) - ring[1]);
             if off > self.pitch_radius {
                 return Some(format!(
-                    "the cage has left the bearing: its centre is {:.1} mm from that of the outer ring {}. Nothing holds it there: take `cage.pocket: \
-                     corners` with pockets narrower than rollers, more `contact.friction`, or `cage: None`",
+                    "the cage has left the bearing: its centre is {:.1} mm from that of the outer ring {}. Nothing holds it there: take {}",
                     1e3 * off,
-                    when(info)
+                    when(info),
+                    self.holds_cage
                 ));
             }
         }

@@ -218,7 +218,10 @@ impl CatalogueBearing {
     }
 
     /// As [`parse`](Self::parse), with other advice on what to give where a name is not known.
-    pub(crate) fn parse_or_advise(text: &str, advice: &str) -> Result<Self, String> {
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse).
+    pub fn parse_or_advise(text: &str, advice: &str) -> Result<Self, String> {
         let mut parts = text.split(',').map(str::trim).filter(|part| !part.is_empty()).peekable();
         let named = match parts.peek() {
             Some(name) if !name.contains('=') => {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use crate::ensemble::folder_name;
 use crate::scene_file::SceneError;
 
 /// Everything that can go wrong with a scene file or the folder of a run.
@@ -70,9 +71,9 @@ pub enum Error {
         message: String,
     },
 
-    /// The folder for a run holds something else.
+    /// The folder for a run, or for what is made of runs, holds something else.
     #[error(
-        "`{}` holds files that are not a run of Stribeck (for example `{found}`), and a run would mix with them. \
+        "`{}` holds files of something else (for example `{found}`), and what is written there would mix with them. \
          Try another folder with --out, or empty this one",
         path.display()
     )]
@@ -83,17 +84,17 @@ pub enum Error {
         found: String,
     },
 
-    /// An earlier run left samples in the folder for a run.
+    /// An earlier run left samples in the folder for a run, or for what is made of runs.
     #[error(
-        "`{}` holds {found}, which is kept. You can {}, or choose another folder with --out, such as `{}`",
-        path.display(), ways.join(", "), free.display()
+        "`{}` holds {found}, which is kept. You can {}choose another folder with --out, such as `{}`",
+        path.display(), or(ways), free.display()
     )]
     FolderHoldsRun {
         /// The folder.
         path: PathBuf,
         /// What the run is.
         found: String,
-        /// What can be done with it, in words.
+        /// What can be done with it, in words; none where no run was to go there.
         ways: Vec<String>,
         /// A folder of a similar name that is not there.
         free: PathBuf,
@@ -115,6 +116,18 @@ pub enum Error {
         path: PathBuf,
         /// The first file that was looked for in vain.
         missing: &'static str,
+    },
+
+    /// The folder of an ensemble, where that of one run is wanted.
+    #[error(
+        "`{}` is an ensemble, and each of its {starts} starts is a run: name one of them, such as `{}`",
+        path.display(), path.join(folder_name(1)).display()
+    )]
+    Ensemble {
+        /// The folder.
+        path: PathBuf,
+        /// Starts that are there.
+        starts: usize,
     },
 
     /// `scene.ron` is not the scene that was simulated.
@@ -140,4 +153,9 @@ pub enum Error {
         /// What is wrong, with line and column.
         source: serde_json::Error,
     },
+}
+
+/// Ways to go before the last one.
+fn or(ways: &[String]) -> String {
+    if ways.is_empty() { String::new() } else { ways.join(", ") + ", or " }
 }

@@ -49,6 +49,7 @@
 //! | Which scenes does a campaign make of one? | [`campaign`] |
 //! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
+pub mod advice;
 pub mod campaign;
 pub mod catalogue;
 mod contact_formula;

@@ -11,7 +11,7 @@
 //!
 //! A run is never written over another one that holds samples: [`RunDir::create`] refuses such a folder,
 //! [`RunDir::create_numbered`] takes the next free one, and [`RunDir::replace`] keeps the earlier run until the new one is
-//! complete.
+//! complete. What other commands make of runs takes no folder of a run ([`check_folder`]).
 //!
 //! The checkpoint is there from the first step of a run on. Whatever kills the run, the folder can be read, and continued
 //! from the last checkpoint: traces never hold fewer samples than it counts. A complete run keeps its last one, so that it
@@ -21,6 +21,7 @@ mod earlier;
 mod ensemble;
 mod files;
 mod kept;
+mod product;
 mod replacement;
 mod reservation;
 mod run;
@@ -35,6 +36,7 @@ use earlier::Earlier;
 pub use ensemble::State;
 pub use files::write_atomic;
 pub use kept::{Keep, SENSOR};
+pub use product::check_folder;
 pub use reservation::Reservation;
 pub use run::Run;
 
@@ -248,7 +250,7 @@ impl RunDir {
     ///
     /// # Errors
     ///
-    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing.
+    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing; [`Error::Ensemble`] when it is that of many starts.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         is_run(path, &[SCENE, INFO])?;
@@ -319,6 +321,9 @@ impl RunDir {
 /// Whether all of these are there.
 fn is_run(path: &Path, names: &[&'static str]) -> Result<(), Error> {
     match names.iter().find(|name| !path.join(name).is_file()) {
+        Some(&INFO) if RunDir::is_ensemble(path) => {
+            Err(Error::Ensemble { path: path.to_owned(), starts: files::start_folders(path).len() })
+        }
         Some(missing) => Err(Error::NotARun { path: path.to_owned(), missing }),
         None => Ok(()),
     }

@@ -20,7 +20,7 @@ mod overrides;
 pub(crate) mod problem;
 mod reference;
 mod ring_meshes;
-mod schema;
+pub(crate) mod schema;
 pub(crate) mod suggest;
 mod syntax;
 mod table;

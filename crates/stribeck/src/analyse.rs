@@ -10,6 +10,7 @@ use stribeck_analysis::record;
 use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
 use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::run_dir::{RunDir, check_folder};
 use stribeck_scene::scene::Scene;
 
 use crate::causes;
@@ -102,6 +103,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
+        check_folder(&out, &["findings.json"])?;
         let analysis = analyse(file, &out, options, place)?;
         print(&analysis);
         for limit in &options.alarms {
@@ -114,12 +116,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("trend-analysis"));
-    let digits = options.files.len().to_string().len();
+    let folders = folders(&options.files);
+    // The table of all comes last.
+    let marks: Vec<&str> = folders.iter().map(String::as_str).chain(["trend.json"]).collect();
+    check_folder(&out, &marks)?;
     let mut entries = Vec::new();
-    for (at, file) in options.files.iter().enumerate() {
-        // Files of one name in several folders keep apart.
-        let stem = file.file_stem().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-        let folder = format!("{:0digits$}-{stem}", at + 1);
+    for (file, folder) in options.files.iter().zip(folders) {
         let done = analyse(file, &out.join(&folder), options, place);
         let (findings, error) = match done {
             Ok(analysis) => (Some(analysis.findings), None),
@@ -150,6 +152,16 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
     ensure!(failed == 0, "{failed} of {} records could not be analysed", entries.len());
     Ok(ExitCode::SUCCESS)
+}
+
+/// A folder for each of several files: those of one name in several places keep apart.
+fn folders(files: &[PathBuf]) -> Vec<String> {
+    let digits = files.len().to_string().len();
+    let name = |(at, file): (usize, &PathBuf)| {
+        let stem = file.file_stem().map_or_else(|| "record".into(), |n| n.to_string_lossy());
+        format!("{:0digits$}-{stem}", at + 1)
+    };
+    files.iter().enumerate().map(name).collect()
 }
 
 /// Limits that were given, and those that follow from the reference records.
@@ -190,6 +202,9 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let mut scene = None;
     if !file.exists() {
         file = place.locate_run(asked);
+    }
+    if RunDir::is_ensemble(&file) {
+        RunDir::open(&file)?;
     }
     if file.is_dir() {
         scene = Some(

@@ -14,9 +14,12 @@ pub struct Options {
     name: Option<String>,
 }
 
+/// What to do where a name is not known.
+const NUMBERS: &str = "give its numbers, `\"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
+
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     match &options.name {
-        Some(name) => one(&CatalogueBearing::parse(name).map_err(|why| anyhow!(why))?),
+        Some(name) => one(&CatalogueBearing::parse_or_advise(name, NUMBERS).map_err(|why| anyhow!(why))?),
         None => {
             say!(
                 "{:<9} {:>5} {:>9} {:>9} {:>6} {:>14} {:>7} {:>7} {:>7} {:>7}",
@@ -72,7 +75,10 @@ fn one(bearing: &CatalogueBearing) {
             o.bsf,
             o.ftf
         ),
-        Err(why) => say!("  {why}"),
+        Err(_) => say!(
+            "  makers fit different numbers of rolling elements: count them, and give `\"{}, elements=…\"`",
+            bearing.name
+        ),
     }
     say!("  source: {}", bearing.source);
 }

@@ -19,7 +19,7 @@ use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_scene::Error;
 use stribeck_scene::campaign::{Campaign, Variant};
-use stribeck_scene::run_dir::{Keep, Run, RunDir, State, write_atomic};
+use stribeck_scene::run_dir::{Keep, Run, RunDir, State, check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::interrupt::{self, Interrupt};
@@ -81,6 +81,15 @@ fn shard(text: &str) -> Result<Shard, String> {
     }
 }
 
+/// Held by the part that writes the files of the campaign itself.
+const TURN: &str = ".turn";
+
+const SCENES: &str = "scenes.txt";
+
+/// By these a folder is known to be that of a campaign, from the first moment of its first part on. A file `campaign.ron` may lie
+/// anywhere.
+const MARKS: [&str; 2] = [TURN, SCENES];
+
 /// Where the things of a campaign are.
 struct Folder(PathBuf);
 
@@ -108,13 +117,13 @@ impl Folder {
 
     /// Hashes of the scenes of all runs, by which a table or a scene file that was changed is known.
     fn scenes(&self) -> PathBuf {
-        self.0.join("scenes.txt")
+        self.0.join(SCENES)
     }
 
     /// Waits until no other part writes the files of the campaign itself, for as long as what is returned lives, and removes what a
     /// part that was killed has left half written.
     fn take_turn(&self) -> Result<File> {
-        let path = self.0.join(".lock");
+        let path = self.0.join(TURN);
         let lock = || {
             let file = File::options().write(true).create(true).truncate(false).open(&path)?;
             match file.lock() {
@@ -177,6 +186,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let folder = Folder(out);
+    check_folder(&folder.0, &MARKS)?;
     enter(&folder, &campaign)?;
     let interrupt = Interrupt::listen()?;
     let mine = |variant: &&Variant| {
@@ -264,8 +274,7 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
             return Ok(());
         }
     }
-    std::fs::create_dir_all(folder.0.join("runs"))
-        .with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
+    std::fs::create_dir_all(&folder.0).with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
     let _turn = folder.take_turn()?;
     replace(&folder.scenes(), &scenes)?;
     if there.is_none() {

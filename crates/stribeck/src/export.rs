@@ -17,6 +17,7 @@ use stribeck_scene::frames;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
+use stribeck_scene::scene::ModelScene;
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -24,7 +25,7 @@ use crate::place::{Place, shown};
 /// Flags of `export`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Folder of the run, or its name below runs/ [default: the newest run]
+    /// Folder of the run, or its name below runs/ [default: the newest run; of an ensemble name a start]
     run: Option<PathBuf>,
     /// Format
     #[arg(long)]
@@ -72,7 +73,7 @@ enum Format {
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let folder = match &options.run {
         Some(run) => place.locate_run(run),
-        None => place.newest_run()?,
+        None => place.newest_single_run()?,
     };
     let dir = RunDir::open(&folder)?;
     let run = Run::read(dir.path())?;
@@ -229,10 +230,13 @@ struct Stressed {
 fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
     let frames = frames::read_all(&dir.frames())?;
     if frames.is_empty() {
-        bail!(
-            "`{}` holds no frames; give its scene `output: (frames: ())` and run it again",
-            dir.path().display()
-        );
+        let wanted = match run.scene.model {
+            ModelScene::Full => "`output: (frames: ())`",
+            ModelScene::Reduced(_) => {
+                "`model: full` and `output: (frames: ())`, as the reduced model makes none,"
+            }
+        };
+        bail!("`{}` holds no frames; give its scene {wanted} and run it again", dir.path().display());
     }
     let whole = RunMesh::read(dir.mesh())?;
     let lame = Lame::of(&Geometry::of(&run.scene).material);

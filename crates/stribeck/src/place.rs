@@ -80,13 +80,25 @@ impl Place {
     /// # Errors
     /// When there is none.
     pub fn newest_run(&self) -> Result<PathBuf> {
+        self.newest(&["run.json", "ensemble.json"])
+    }
+
+    /// The newest run below `runs/` that is one of its own; where there are ensembles alone, the newest of those.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn newest_single_run(&self) -> Result<PathBuf> {
+        self.newest(&["run.json"]).or_else(|_| self.newest_run())
+    }
+
+    /// The folder below `runs/` in which one of these files was written last.
+    fn newest(&self, files: &[&str]) -> Result<PathBuf> {
         let folder = self.runs();
         let advice = format!("start one with `{} simulate`, or name a run's folder", self.program);
         let entries = std::fs::read_dir(&folder)
             .with_context(|| format!("no runs in `{}`: {advice}", folder.display()))?;
         let written = |path: &Path| -> Option<SystemTime> {
-            let of = |name: &str| path.join(name).metadata().ok()?.modified().ok();
-            of("run.json").max(of("ensemble.json"))
+            files.iter().filter_map(|name| path.join(name).metadata().ok()?.modified().ok()).max()
         };
         let runs = entries.flatten().filter_map(|entry| Some((written(&entry.path())?, entry.path())));
         match runs.max() {

@@ -143,7 +143,14 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let Some(needed) = plan.separating_s {
         say!("  {:.0} ms separate the closest two lines", 1e3 * needed);
     }
-    say!("  {:.0} ms hold ten periods of the defect, the least for an envelope", 1e3 * plan.envelope_s);
+    match plan.envelope {
+        Some((family, record_s)) => {
+            say!("  {:.0} ms hold ten periods of {family}, the least for an envelope", 1e3 * record_s);
+        }
+        None => {
+            say!("  nothing turns against the outer ring: there are no periods of a defect, and no envelope")
+        }
+    }
     for advice in &plan.advice {
         say!("  advice: {advice}");
     }

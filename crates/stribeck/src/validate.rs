@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use stribeck_analysis::agreement::{Agreement, FINE_S, Row};
 use stribeck_analysis::report;
 use stribeck_scene::ensemble::{folder_name, start};
-use stribeck_scene::run_dir::{Run, State};
+use stribeck_scene::run_dir::{Run, State, check_folder};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ModelScene, Scene};
 
@@ -42,10 +42,14 @@ pub struct Options {
     out: Option<PathBuf>,
 }
 
+/// By these a folder is known to be that of a validation, also of one that was interrupted.
+const MARKS: [&str; 3] = ["validation.json", "full/start-001", "reduced/start-001"];
+
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(Some(&options.scene), &options.set)?;
     let models = models(&scene)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(format!("{}-validation", scene.name)));
+    check_folder(&out, &MARKS)?;
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     let due = due(&out, &models, options)?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
@@ -135,7 +139,7 @@ fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Re
 }
 
 fn print(agreement: &Agreement) {
-    let [full, reduced] = agreement.cpu_s_per_ms;
+    let [full, reduced, times] = agreement.cost();
     say!(
         "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval (dB: mean, least and most of the bands)",
         agreement.scene,
@@ -159,10 +163,7 @@ fn print(agreement: &Agreement) {
     for note in &agreement.notes {
         say!("  note: {note}");
     }
-    say!(
-        "  processor time of a simulated millisecond: full {full:.3} s, reduced {reduced:.4} s, {:.0} times less",
-        full / reduced
-    );
+    say!("  processor time of a simulated millisecond: full {full}, reduced {reduced}, {times}");
 }
 
 /// The difference and its limit.

@@ -299,6 +299,8 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
         let deck = fs::read_to_string(desk.0.join(format!("runs/mine/mesh.{format}"))).expect("a deck");
         assert!(deck.contains(has), "{format}");
     }
+    // There are no frames to export, and only the full model makes some.
+    says(&desk.run(&["export", "mine", "--to=pvd"]), &["`model: full`", "`output: (frames: ())`"]);
     // Dampers that allow far shorter steps than the scene has.
     let stiff = ["mine.ron", "--set=housing=springs(damping_n_s_m: 1e6)", "--no-report", "--out=stiff"];
     let stiff = desk.run(&[&["simulate"][..], &stiff].concat());
@@ -335,6 +337,41 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
 }
 
 /// What a reader has closed ends quietly, as `| head` leaves it; a full disk is told.
+/// The advice for an ensemble named no start of it, and the newest run to export was one.
+#[test]
+fn issue_an_ensemble_is_told_by_its_starts() {
+    let desk = Desk::new("ensemble-told");
+    desk.complete(&["--starts=2", "--jobs=1", "--out=runs/ens"]);
+    let told = ["`runs/ens` is an ensemble", "2 starts", "`runs/ens/start-001`"];
+    for words in [&["export", "ens", "--to=csv"][..], &["export", "--to=csv"], &["analyse", "runs/ens"]] {
+        let refused = desk.run(words);
+        assert!(!refused.status.success(), "{words:?}: {}", said(&refused));
+        says(&refused, &told);
+    }
+    // Where there is a run of its own, that is exported, however old.
+    desk.complete(&["--out=runs/one"]);
+    let more = desk.run(&["simulate", "--resume=runs/ens", "--starts=3", "--jobs=1", "--no-report"]);
+    assert!(more.status.success(), "{}", said(&more));
+    let exported = desk.run(&["export", "--to=csv"]);
+    assert!(exported.status.success(), "{}", said(&exported));
+    says(&exported, &["runs/one/trace.csv"]);
+}
+
+/// `bearings` named an option that it does not have, and said "inf ms" of what does not turn.
+#[test]
+fn issue_hints_are_those_of_their_command() {
+    let desk = Desk::new("hints");
+    let unknown = desk.run(&["bearings", "6204"]);
+    assert!(!unknown.status.success());
+    let known = desk.run(&["bearings", "NU312"]);
+    assert!(known.status.success(), "{}", said(&known));
+    says(&known, &["NU 312", "`\"NU 312, elements=…\"`"]);
+    assert!(![&unknown, &known].iter().any(|output| said(output).contains("--bearing")));
+    let still = desk.run(&["plan", "quick.ron", "--set=operation.speed_rpm=0"]);
+    assert!(still.status.success() && !said(&still).contains("inf"), "{}", said(&still));
+    says(&still, &["nothing turns"]);
+}
+
 #[test]
 fn survives_an_output_that_is_closed_or_full() {
     let desk = Desk::new("closed");

@@ -247,6 +247,39 @@ fn example_limits_are_given_or_follow_from_sound_records() {
     }
 }
 
+/// `--reference` gave no limits for families, because none stands out in a sound record.
+#[test]
+fn issue_sound_records_give_limits_for_each_family() {
+    let desk = Scratch::create("alarm-families");
+    let mut noise = Noise::new(11);
+    let mut words = vec!["analyse".to_owned()];
+    for n in 0..7 {
+        let samples = if n == 6 { knocks(12_800.0) } else { (0..100_000).map(|_| noise.uniform()).collect() };
+        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
+        mat5::write(&desk.join(format!("{n}.mat")), &[channel], &[]).unwrap();
+        words.push(format!("{n}.mat"));
+    }
+    words.extend(
+        ["--rate-hz=12800", "--bearing=6205", "--speed-rpm=1200", "--reference=6", "--out=T"]
+            .map(str::to_owned),
+    );
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let output = stribeck(desk.path(), &words);
+    assert!(output.status.success(), "{}", said(&output));
+    let trend: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let state = |at: usize, name: &str| {
+        let alarms = trend[at]["alarms"].as_array().unwrap();
+        let judged =
+            alarms.iter().find(|a| a["quantity"] == name).unwrap_or_else(|| panic!("{name}: {alarms:?}"));
+        judged["state"].as_str().unwrap().to_owned()
+    };
+    for name in ["BPFO", "BPFI", "BSF", "FTF"] {
+        assert_eq!(state(0, name), "good", "a record of the reference");
+    }
+    assert_eq!(state(6, "BPFO"), "alarm");
+}
+
 #[test]
 fn example_several_records_are_set_side_by_side() {
     let desk = Scratch::create("trend");

@@ -177,3 +177,55 @@ fn refuses_to_compare_a_run_that_diverged() {
     assert!(!nothing.status.success());
     says(&nothing, &["<SCENE>"]);
 }
+
+/// `validate` and `analyse` put their page in the place of a run's report, and `campaign` its runs among what lay in a folder.
+#[test]
+fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
+    let desk = Scratch::create("products");
+    fs::write(desk.join("scene.ron"), SCENE).unwrap();
+    let made = run(&desk, &["simulate", "scene.ron", "--set=solver.duration_ms=0.3", "--out=runs/mine"]);
+    assert!(made.status.success(), "{}", said(&made));
+    let campaign = "(name: \"c\", scene: \"scene.ron\", set: [\"solver.duration_ms=0.3\"], variants: grid([
+        (field: \"operation.load_n\", values: [20000]),
+    ]))";
+    fs::write(desk.join("c.ron"), campaign).unwrap();
+    let table: String = (0..4000).map(|n| format!("{}\n", f64::from(n).sin())).collect();
+    fs::write(desk.join("a.csv"), format!("x\n{table}")).unwrap();
+    fs::create_dir(desk.join("thesis")).unwrap();
+    fs::write(desk.join("thesis/campaign.ron"), campaign).unwrap();
+    let files = |folder: &str| {
+        let entries = fs::read_dir(desk.join(folder)).unwrap().flatten();
+        let mut files: Vec<_> = entries.map(|e| (e.file_name(), fs::read(e.path()).ok())).collect();
+        files.sort();
+        files
+    };
+    let before = ["runs/mine", "thesis"].map(files);
+    for command in [
+        &["validate", "scene.ron", "--starts=1"][..],
+        &["analyse", "a.csv", "--rate-hz=1000"],
+        &["analyse", "a.csv", "a.csv", "--rate-hz=1000"],
+        &["campaign", "c.ron"],
+    ] {
+        for (out, words) in
+            [("runs/mine", ["a complete run", "runs/mine-2"]), ("thesis", ["campaign.ron", "--out"])]
+        {
+            let refused = run(&desk, &[command, &["--out", out]].concat());
+            assert!(!refused.status.success(), "{command:?} {out}: {}", said(&refused));
+            says(&refused, &words);
+        }
+    }
+    assert_eq!(before, ["runs/mine", "thesis"].map(files));
+    // What is their own they go on with, and no run is put there.
+    for (command, words) in [
+        (&["analyse", "a.csv", "--rate-hz=1000"][..], "report"),
+        (&["analyse", "a.csv", "a.csv", "--rate-hz=1000", "--out=both"], "side by side"),
+        (&["campaign", "c.ron", "--out=runs/c"], "1 of 1"),
+    ] {
+        for _ in 0..2 {
+            says(&run(&desk, command), &[words]);
+        }
+    }
+    let refused = run(&desk, &["simulate", "scene.ron", "--out=runs/c"]);
+    assert!(!refused.status.success());
+    says(&refused, &["files of something else", "--out"]);
+}

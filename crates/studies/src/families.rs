@@ -126,7 +126,7 @@ fn verdicts(sheet: &mut Sheet, id: &str, runs: &[Finished]) {
         let percent = |share: Option<f64>| cell(share.map(|s| 100.0 * s), 0);
         let name = &run.variant.name;
         for (quantity, value) in [
-            ("predicted Hz", Some(family.predicted_hz)),
+            ("predicted Hz", family.predicted_hz),
             ("carrier Hz", family.carrier_hz),
             ("offset resolutions", family.offset_resolutions),
             ("lead", family.lead),
@@ -139,7 +139,7 @@ fn verdicts(sheet: &mut Sheet, id: &str, runs: &[Finished]) {
         sheet.word(id, name, "verdict", &in_a_word(family));
         let mut row = vec![
             name.trim_start_matches(char::is_alphabetic).to_owned(),
-            number(family.predicted_hz, 0),
+            cell(family.predicted_hz, 0),
             cell(family.carrier_hz, 0),
             cell(family.offset_resolutions, 1),
             cell(family.offset_scatter_resolutions, 1),
@@ -180,7 +180,7 @@ fn tally(runs: &[Finished]) -> Result<Tally> {
         let kinematics = &findings.prediction.kinematics;
         let count = findings.summary.mesh.roller_facets as f64;
         let vertices = Candidate { name: "roller_vertices".into(), source: Source::RotatedVertices(count) };
-        let true_hz = findings.summary.families.first().map_or(0.0, |f| f.predicted_hz);
+        let Some(true_hz) = findings.summary.families.first().and_then(|f| f.predicted_hz) else { continue };
         let mut dice = Dice::new(SEED + findings.summary.mesh.roller_facets as u64);
         for number in 0..FALSE_COMBS {
             let hz = true_hz + FALSE_REACH * (2.0 * dice.share() - 1.0) * motion.bpfo_hz;

@@ -111,8 +111,9 @@ impl Quantity {
             Self::Kurtosis => Some(health.kurtosis),
             Self::CrestFactor => Some(health.crest_factor),
             Self::Bpfo | Self::Bpfi | Self::Bsf | Self::Ftf => {
+                // Sound records have a level, too: that of the noise at the family's lines, by whose scatter a limit is set.
                 let family = findings.families.iter().find(|f| f.name == self.name())?;
-                family.level_db.filter(|_| family.is_there())
+                family.level_db.filter(|db| db.is_finite())
             }
         }
     }

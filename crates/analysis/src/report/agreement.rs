@@ -45,13 +45,12 @@ pub fn write_agreement(folder: &Path, agreement: &Agreement) -> Result<(), Error
 }
 
 fn lead(agreement: &Agreement) -> String {
-    let [full, reduced] = agreement.cpu_s_per_ms;
+    let [full, reduced, times] = agreement.cost();
     format!(
-        "{} by both models, {:.0} ms each. A simulated millisecond takes {full:.2} s of processor time by the full model and {reduced:.4} s \
-         by the reduced one: {:.0} times less.",
+        "{} by both models, {:.0} ms each. A simulated millisecond takes {full} of processor time by the full model and {reduced} by the \
+         reduced one: {times}.",
         starts(agreement.starts),
-        agreement.simulated_ms,
-        full / reduced
+        agreement.simulated_ms
     )
 }
 

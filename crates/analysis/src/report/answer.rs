@@ -168,12 +168,13 @@ fn mesh(summary: &Summary) -> String {
     }
     let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
     let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
+    // Of families that are there, which have a carrier.
     let place = |f: &FamilyFinding| {
         let level = f.level_g.map_or(String::new(), |g| format!(", up to {}", gravities(g)));
         let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
         format!(
             "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands every {spacing_hz:.1} Hz{level}",
-            f.carrier_hz.unwrap_or(f.predicted_hz)
+            f.carrier_hz.unwrap_or(f64::NAN)
         )
         .replace('-', "−")
     };

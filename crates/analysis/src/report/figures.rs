@@ -12,6 +12,7 @@ use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
 pub(super) use self::forces::DRAWN as CROSSINGS;
+pub(super) use self::spectra::about_the_tone;
 use super::course;
 use super::pictures::Pictures;
 use crate::Error;

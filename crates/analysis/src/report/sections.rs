@@ -130,7 +130,7 @@ pub(super) fn families(summary: &Summary) -> Markup {
                     @for f in &summary.families {
                         tr {
                             td { (spoken(&f.name)) }
-                            td class="n" { (format!("{:.1}", f.predicted_hz)) }
+                            (cell(hz(f.predicted_hz)))
                             (cell(hz(f.carrier_hz)))
                             (cell(signed(f.offset_resolutions)))
                             (cell(f.offset_scatter_resolutions.map(|v| format!("{v:.1}"))))

@@ -6,6 +6,7 @@ use super::design::Rows;
 use super::{MOST_RUNS, MOST_STARTS};
 use crate::scene_file::outline::{Entry, Outline};
 use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_file};
+use crate::scene_file::schema::{Kind, Schema};
 use crate::scene_file::wording::{list, shown};
 use crate::scene_file::{self, suggest};
 
@@ -79,11 +80,26 @@ impl<'a> File<'a> {
                 let written = &rows.values[row][column];
                 let listed = |i: usize| self.outline.get(&format!("{axis}.values[{i}]"));
                 let item = (0..).map_while(listed).find(|entry| self.text[entry.value.clone()] == **written);
-                item.map(|entry| place_in_file(self.name, self.text, entry.value.clone()))
-                    .or_else(|| Some(self.place(axis)))
+                match item {
+                    Some(entry) => Some(place_in_file(self.name, self.text, entry.value.clone())),
+                    None => return self.range(problem, axis),
+                }
             }
         };
         problem.of_value_at(place.unwrap_or_else(|| self.place("variants")))
+    }
+
+    /// A value of a range that its field cannot have: one that it can have is no range.
+    fn range(&self, problem: Problem, axis: &str) -> Problem {
+        let counts = matches!(Schema::new().kind(&problem.field), Kind::Count | Kind::OptionalCount);
+        let from = self.outline.get(&format!("{axis}.from")).filter(|_| counts);
+        let first = from.and_then(|from| self.text[from.value.clone()].parse::<f64>().ok()).map(f64::ceil);
+        let mut problem = problem.of_value_at(self.place(axis));
+        if let Some(first) = first {
+            problem.suggestion =
+                format!("`values: [{first}, {}, …]` in place of `from` and `to`", first + 1.0);
+        }
+        problem
     }
 
     /// The scene that variants start from; what is wrong with an item of `set` is shown there.

@@ -200,7 +200,13 @@ fn refuses_values_that_their_field_cannot_have() {
 (field: \"contact.surface\", values: [facet, acr]),
 (field: \"bearing.rollers\", from: 10, to: 20)]))"
                 .to_owned(),
-            &["a.ron:2:44", "a.ron:3:1", "`bearing.rollers`", "not a whole number"],
+            &[
+                "a.ron:2:44",
+                "a.ron:3:1",
+                "`bearing.rollers`",
+                "not a whole number",
+                "try: `values: [10, 11, …]`",
+            ],
         ),
     ] {
         let why = parse(&text).unwrap_err();

@@ -151,16 +151,22 @@ fn make(path: &Path, made: &mut Vec<PathBuf>) -> std::io::Result<()> {
 
 /// A file in the folder that no run writes; hidden files are nobody's business.
 fn foreign_file(path: &Path) -> std::io::Result<Option<String>> {
+    // A folder with run.json is a run, and what its owner added to it is left alone.
+    if [INFO, LOCK].iter().any(|name| path.join(name).exists()) {
+        return Ok(None);
+    }
+    Ok(visible(path)?.into_iter().find(|name| !files::is_ours(name)))
+}
+
+/// Names in a folder, in their order, without hidden ones.
+pub(super) fn visible(path: &Path) -> std::io::Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in std::fs::read_dir(path)? {
         names.push(entry?.file_name().to_string_lossy().into_owned());
     }
-    // A folder with run.json is a run, and what its owner added to it is left alone.
-    if names.iter().any(|name| name == INFO || name == LOCK) {
-        return Ok(None);
-    }
+    names.retain(|name| !name.starts_with('.'));
     names.sort();
-    Ok(names.into_iter().find(|name| !files::is_ours(name) && !name.starts_with('.')))
+    Ok(names)
 }
 
 /// Locks the folder of a run.

@@ -244,6 +244,33 @@ fn refuses_foreign_folders_and_leaves_them_alone() {
     assert_eq!(std::fs::read_dir(folder.path()).expect("readable").count(), 1);
 }
 
+/// A validation filled any folder, and its page took the place of a run's report.
+#[test]
+fn issue_what_is_made_of_runs_takes_no_folder_of_others() {
+    const MARKS: &[&str] = &["page.json", "full/start-001"];
+    let folder = Scratch::new("product");
+    let path = folder.join("x");
+    assert!(check_folder(&path, MARKS).is_ok() && !path.exists());
+    write_run(&path);
+    let error = check_folder(&path, MARKS).expect_err("a run").to_string();
+    assert!(
+        error.contains("a complete run of") && error.contains("x-2`") && !error.contains("can ,"),
+        "{error}"
+    );
+    std::fs::remove_file(path.join(TRACE)).expect("it is there");
+    assert!(check_folder(&path, MARKS).is_err(), "`run.json` is still there");
+    let other = folder.join("other");
+    std::fs::create_dir_all(&other).expect("writable");
+    std::fs::write(other.join(".hidden"), "").expect("writable");
+    assert!(check_folder(&other, MARKS).is_ok());
+    std::fs::write(other.join("thesis.tex"), "years of work").expect("writable");
+    let error = check_folder(&other, MARKS).expect_err("foreign").to_string();
+    assert!(error.contains("thesis.tex") && error.contains("--out"), "{error}");
+    // In what is its own a command goes on, whatever its owner has added.
+    std::fs::create_dir_all(other.join("full/start-001")).expect("writable");
+    assert!(check_folder(&other, MARKS).is_ok());
+}
+
 #[test]
 fn example_a_run_that_never_starts_leaves_no_folder() {
     let folder = Scratch::new("never");

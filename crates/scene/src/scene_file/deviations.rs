@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::geometry::MAX_DEFECT_DEPTH_RATIO;
+use super::ring_meshes;
 use super::wording::{number, round_down, round_up};
 use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface, SpallScene};
 use crate::faults::rolling_circle;
@@ -466,14 +467,32 @@ impl<'a> Checked<'a> {
         }
         let message = format!(
             "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope by {:.0}° at most \
-             without kinks, but for walls at right angles",
+             without kinks, but for walls at right angles{}",
             self.index,
             self.surface(),
-            GENTLE.atan().to_degrees()
+            GENTLE.atan().to_degrees(),
+            if self.could_stand_upright() {
+                ". With `edge: rectangular` this spall may lie in oil"
+            } else {
+                ""
+            }
         );
         let form = Remedy::new(self.path("form"), "a gentle dent, a rounded spall, or waves, on a raceway");
         let dry = Remedy::new("film", "`None`").value("None", "dry");
         Some(Finding::new(message, vec![dry, form.value("dent(length_mm: 6.0, depth_mm: 0.05)", "")]))
+    }
+
+    /// Whether the same spall is allowed once its walls are at right angles.
+    fn could_stand_upright(&self) -> bool {
+        let mut scene = self.scene.clone();
+        let deviation = &mut scene.defects[self.index];
+        let FormScene::Spall(spall) = &mut deviation.form else { return false };
+        if spall.edge == Edge::Rectangular {
+            return false;
+        }
+        (spall.edge, spall.edge_mm) = (Edge::Rectangular, 0.0);
+        let upright = Checked::new(&scene, self.index, &scene.defects[self.index]);
+        upright.findings().is_empty() && ring_meshes::findings(&scene).is_empty()
     }
 
     /// Walls of a groove and nodes that move do not go together.

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
+use crate::advice::MOST_FRICTION;
 use crate::deviation::{DeviationScene, FormScene, RollingSurface};
 use crate::duty::LONGEST_RUN_S;
 use crate::housing::HousingScene;
@@ -319,7 +320,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("contact.penalty_scale", contact.penalty_scale, positive(1_000.0), "");
     add("contact.onset_um", contact.onset_um, within(0.0, 20.0), "µm");
     add("contact.damping_ratio", contact.damping_ratio, within(0.0, 1.0), "");
-    add("contact.friction", contact.friction, within(0.0, 2.0), "");
+    add("contact.friction", contact.friction, within(0.0, MOST_FRICTION), "");
     add("contact.seat_friction", contact.seat_friction, within(0.0, 2.0), "");
     if let Some(film) = &scene.film {
         // From petrol to honey.

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use stribeck_scene::scene::{ModelScene, Scene};
 
-use super::tables::{mean, shown};
+use super::tables::{decimals, mean, shown};
 use crate::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use crate::statistic::Statistic;
 
@@ -106,11 +106,12 @@ fn scatter(summary: &EnsembleSummary) -> String {
     let of = |path: &str, what: &str| {
         let s = summary.number(path)?;
         let needed = s.starts_for(0.1).map_or(String::new(), |n| format!("; {n} starts for ±10 %"));
+        let decimals = decimals(s, 0);
         Some(format!(
             "{what} {} g (one start: {} to {} g, {:.0} % scatter{needed})",
-            mean(s, 1.0, 0),
-            shown(s.q10, 0),
-            shown(s.q90, 0),
+            mean(s, 1.0, decimals),
+            shown(s.q10, decimals),
+            shown(s.q90, decimals),
             100.0 * s.deviation? / s.mean
         ))
     };

@@ -1,6 +1,6 @@
 //! Charts of an ensemble: one start in front of what all do.
 
-use super::super::figures::{Item, mark};
+use super::super::figures::{Item, about_the_tone, mark};
 use super::strips;
 use crate::ensemble::{EnsembleFindings, Merged};
 use crate::findings::Findings;
@@ -166,7 +166,7 @@ fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
         format!("Power spectral density of a_y at sensor “{sensor}”, mean of {} starts", leading.len());
     let mut whole = banded(over("spectrum", &title, (0.0, half)))
         .caption("Lines that stand in the mean repeat from start to start; the band says how much a single start differs.");
-    let zoom = zoom(findings, half);
+    let zoom = about_the_tone(findings.summary.number("notch.centre_hz").map(|s| s.median), &marks, half);
     let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
     let mut close = banded(over("spectrum-zoom", &title, zoom))
         .caption("Upright: carriers of families of facet lines, full where most starts hold them, dashed where they belong otherwise.");
@@ -184,16 +184,6 @@ fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
         figures.push(all);
     }
     figures
-}
-
-/// About the tone: where the notches stand, or 4 to 6 kHz as in the paper.
-fn zoom(findings: &EnsembleFindings, half: f64) -> (f64, f64) {
-    let centre = findings.summary.number("notch.centre_hz").map_or(5000.0, |s| s.median);
-    if (4000.0..6000.0).contains(&centre) && half >= 6000.0 {
-        (4000.0, 6000.0)
-    } else {
-        ((centre - 1000.0).max(0.0), (centre + 1000.0).min(half))
-    }
 }
 
 /// Carriers of the families: fitted where most starts hold them, by the motion where most do not; where the records are too

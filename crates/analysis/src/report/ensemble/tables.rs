@@ -7,6 +7,7 @@ use super::super::tables::cell;
 use crate::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use crate::statistic::{CONFIDENCE, Statistic};
 use crate::summary::Event;
+use crate::words;
 
 /// Part of itself to which a mean is worth knowing.
 const WORTH: f64 = 0.1;
@@ -52,6 +53,21 @@ pub(super) fn mean(s: &Statistic, factor: f64, decimals: usize) -> String {
         Some(high) => format!("{mean} ± {}", shown(factor.abs() * (high - s.mean), decimals)),
         None => mean,
     }
+}
+
+/// Decimals of a level: as many as given, or more where the interval of its mean, of a single start a tenth of the level, is smaller
+/// than those show.
+pub(super) fn decimals(s: &Statistic, least: usize) -> usize {
+    const MOST: usize = 6;
+    let half = s.high.map(|high| high - s.mean).filter(|half| *half > 1e-9 * s.mean.abs());
+    let first = -half.unwrap_or(0.1 * s.mean.abs()).log10().floor();
+    // Of zero there is no first digit.
+    if first.is_finite() { (first.max(0.0) as usize).clamp(least, MOST) } else { least }
+}
+
+/// A level [g] with as many decimals.
+pub(super) fn level(s: &Statistic, least: usize) -> String {
+    mean(s, 1.0, decimals(s, least))
 }
 
 /// The numbers that an engineer asks for first.
@@ -110,11 +126,12 @@ fn group(name: &str, summary: &EnsembleSummary, rows: &[Row]) -> Markup {
     html! {
         @if !known.is_empty() { tr class="group" { td colspan="7" { (name) } } }
         @for (row, s) in known {
+            @let decimals = if row.scatters { decimals(s, row.decimals) } else { row.decimals };
             tr {
                 td { (row.name) }
-                td class="n" { (mean(s, row.factor, row.decimals)) }
-                td class="n" { (span(s.q10, s.q90, row)) }
-                td class="n" { (span(s.least, s.most, row)) }
+                td class="n" { (mean(s, row.factor, decimals)) }
+                td class="n" { (span(s.q10, s.q90, row.factor, decimals)) }
+                td class="n" { (span(s.least, s.most, row.factor, decimals)) }
                 (cell(s.deviation.filter(|_| row.scatters).map(|d| format!("{:.0} %", 100.0 * d / s.mean.abs()))))
                 (cell(s.starts_for(WORTH).filter(|_| row.scatters).map(|n| n.to_string())))
                 td class="n" { (s.count) "/" (s.of) }
@@ -123,8 +140,8 @@ fn group(name: &str, summary: &EnsembleSummary, rows: &[Row]) -> Markup {
     }
 }
 
-fn span(low: f64, high: f64, row: &Row) -> String {
-    format!("{} to {}", shown(row.factor * low, row.decimals), shown(row.factor * high, row.decimals))
+fn span(low: f64, high: f64, factor: f64, decimals: usize) -> String {
+    format!("{} to {}", shown(factor * low, decimals), shown(factor * high, decimals))
 }
 
 /// Peaks by phase at every sensor.
@@ -143,7 +160,7 @@ pub(super) fn sensors(summary: &EnsembleSummary) -> Markup {
                 .find(|c| c.text("component") == Some(component))
                 .and_then(|c| c.number(&path)),
         };
-        found.map(|s| mean(s, 1.0, 0))
+        found.map(|s| level(s, 0))
     };
     html! {
         h3 { "Peaks by phase at every sensor [g], mean ± 95 %" }
@@ -185,10 +202,10 @@ pub(super) fn families(summary: &EnsembleSummary) -> Markup {
                         tr {
                             td { (spoken(family.text("name").unwrap_or("–"))) }
                             (cell(share(family)))
-                            (cell(family.number("predicted_hz").filter(|s| s.mean > 0.0).map(|s| mean(s, 1.0, 1))))
-                            (cell(family.number("carrier_hz").filter(|s| s.mean > 0.0).map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("predicted_hz").map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("carrier_hz").map(|s| mean(s, 1.0, 1))))
                             (cell(family.number("offset_resolutions").map(|s| mean(s, 1.0, 2))))
-                            (cell(family.number("level_g").map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("level_g").map(|s| level(s, 1))))
                         }
                     }
                 }
@@ -242,7 +259,7 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
                             (cell(event.number("compensation_gain").map(|s| mean(s, 1.0, 2))))
                             td class="n" { (count(event, "exit_ms")) "/" (of) }
                             (cell(off(event, Event::exit_off_ms)))
-                            (cell(event.number("impulse_g").map(|s| mean(s, 1.0, 0))))
+                            (cell(event.number("impulse_g").map(|s| level(s, 0))))
                         }
                     }
                 }
@@ -362,8 +379,8 @@ pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
                             (cell(start.first_roller_deg.map(|deg| shown(deg, 4))))
                             (cell(start.roller_phase_deg.map(|deg| shown(deg, 4))))
                             td { (ended(start.ended)) }
-                            (cell(start.exit_g.map(|g| shown(g, 0))))
-                            (cell(start.gap_g.map(|g| shown(g, 0))))
+                            (cell(start.exit_g.map(words::level)))
+                            (cell(start.gap_g.map(words::level)))
                             (cell(start.energy_error.map(|e| shown(100.0 * e, 3))))
                             (cell(start.wall_s.map(|s| shown(s, 1))))
                             td class="n" { (start.warnings.len()) }
@@ -390,4 +407,19 @@ pub(super) fn provenance(findings: &EnsembleFindings) -> Markup {
         ("Complete", findings.complete.len().to_string()),
     ];
     html! { table class="pairs" { tbody { @for (name, value) in rows { tr { td { (name) } td { (value) } } } } } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The page of a quiet ensemble said "gaps 0 ± 0 g".
+    #[test]
+    fn issue_quiet_levels_have_as_many_digits_as_their_scatter() {
+        let of = |values: &[f64]| level(&Statistic::of(values, values.len()).expect("some"), 0);
+        assert_eq!(of(&[130.0, 136.0, 142.0]), "136 ± 15");
+        assert_eq!(of(&[0.030, 0.031, 0.032]), "0.031 ± 0.002");
+        assert_eq!(of(&[0.031]), "0.031");
+        assert_eq!((of(&[2.0, 2.0]), of(&[0.0, 0.0])), ("2.0 ± 0.0".into(), "0 ± 0".into()));
+    }
 }

@@ -114,15 +114,28 @@ fn tone(findings: &Findings) -> Option<f64> {
     tones::dominant(&findings.summary.tones, &leading.name)?.measured_hz
 }
 
-/// The paper zooms to 4–6 kHz; a coarser mesh has its tone elsewhere.
 fn zoom(findings: &Findings, raw: &Spectrum) -> (f64, f64) {
-    let half = 0.5 * raw.sample_rate_hz();
-    let centre = findings.summary.notch.as_ref().map_or(5000.0, |n| n.centre_hz);
-    if (4000.0..6000.0).contains(&centre) && half >= 6000.0 {
-        (4000.0, 6000.0)
-    } else {
-        ((centre - 1000.0).max(0.0), (centre + 1000.0).min(half))
+    let notch_hz = findings.summary.notch.as_ref().map(|n| n.centre_hz);
+    about_the_tone(notch_hz, &line_marks(findings), 0.5 * raw.sample_rate_hz())
+}
+
+/// Where a spectrum is drawn close: about the notch, or without one about the carriers among `marks`, those that are there first. The
+/// paper zooms to 4–6 kHz; a coarser mesh has its tone elsewhere.
+pub(in super::super) fn about_the_tone(notch_hz: Option<f64>, marks: &[Mark], half_hz: f64) -> (f64, f64) {
+    const PAPER_HZ: (f64, f64) = (4000.0, 6000.0);
+    const AROUND_HZ: f64 = 1000.0;
+    let dashed = marks.iter().all(|mark| mark.dashed);
+    let carriers = marks.iter().filter(|mark| mark.dashed == dashed && (0.0..half_hz).contains(&mark.x));
+    let [low, high] = match notch_hz {
+        Some(hz) => [hz, hz],
+        None => carriers.fold([f64::INFINITY, 0.0], |[low, high], mark| [mark.x.min(low), mark.x.max(high)]),
+    };
+    if half_hz >= PAPER_HZ.1 && (low > high || PAPER_HZ.0 <= low && high < PAPER_HZ.1) {
+        return PAPER_HZ;
     }
+    // Without any, the top of what is sampled.
+    let low = low.min(half_hz);
+    ((low - AROUND_HZ).max(0.0), (high.max(low) + AROUND_HZ).min(half_hz))
 }
 
 /// What a spectrum can tell apart, in one sentence.
@@ -269,16 +282,16 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     marks
 }
 
-/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not.
+/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not, by geometry where no motion
+/// tells it.
 fn line_marks(findings: &Findings) -> Vec<Mark> {
     let bpfo = findings.summary.kinematics.bpfo_hz.unwrap_or(findings.prediction.kinematics.bpfo_hz);
     let mut marks = Vec::new();
-    for (family, colour) in
-        findings.summary.families.iter().zip([Colour::Green, Colour::Purple, Colour::Teal])
-    {
+    let families = findings.summary.families.iter().zip(&findings.prediction.facet_lines);
+    for ((family, (_, geometry_hz)), colour) in families.zip([Colour::Green, Colour::Purple, Colour::Teal]) {
         let Some(carrier) = family.carrier_hz else {
-            let label = format!("{} absent", spoken(&family.name));
-            marks.push(mark(family.predicted_hz, &label, colour, true));
+            let (hz, word) = family.predicted_hz.map_or((*geometry_hz, "by geometry"), |hz| (hz, "absent"));
+            marks.push(mark(hz, &format!("{} {word}", spoken(&family.name)), colour, true));
             continue;
         };
         for m in -SIDEBANDS..=SIDEBANDS {
@@ -290,4 +303,23 @@ fn line_marks(findings: &Findings) -> Vec<Mark> {
         }
     }
     marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without a notch the zoom was 4 to 6 kHz, whose marks lay elsewhere.
+    #[test]
+    fn issue_the_close_spectrum_is_about_the_carriers() {
+        let at = |hz: f64, dashed: bool| mark(hz, "", Colour::Green, dashed);
+        let zoom = |notch_hz, marks: &[Mark]| about_the_tone(notch_hz, marks, 50_000.0);
+        assert_eq!(zoom(None, &[at(1500.0, true), at(1800.0, true)]), (500.0, 2800.0));
+        assert_eq!(zoom(None, &[at(1500.0, true), at(9000.0, false)]), (8000.0, 10_000.0));
+        assert_eq!(zoom(Some(1700.0), &[at(9000.0, false)]), (700.0, 2700.0));
+        // The paper's carriers lie where it looks, and so does a record without any.
+        assert_eq!(zoom(None, &[at(4545.0, true), at(4671.0, true)]), (4000.0, 6000.0));
+        assert_eq!(zoom(None, &[]), (4000.0, 6000.0));
+        assert_eq!(about_the_tone(None, &[], 5000.0), (4000.0, 5000.0));
+    }
 }

@@ -131,6 +131,17 @@ fn refuses_a_defect_beside_a_groove_and_in_oil() {
     assert_eq!(oil.repair.as_deref(), Some("film=None"));
 }
 
+/// The advice for a spall with sloped edges in oil was to go without oil, though upright walls go with it.
+#[test]
+fn issue_a_spall_in_oil_is_told_of_walls_at_right_angles() {
+    let spall = |on: &str, form: &str| format!("(defect: None, defects: [(on: {on}, form: spall({form}))])");
+    let told = |text: String| only(parse(&text)).message.contains("`edge: rectangular`");
+    assert!(told(spall("outer", "length_mm: 6.0, depth_mm: 0.2, edge_mm: 1.0")));
+    assert!(parse(&spall("outer", "length_mm: 6.0, depth_mm: 0.2, edge: rectangular")).is_ok());
+    // On a roller no wall helps.
+    assert!(!told(spall("roller(1)", "length_mm: 4.0, depth_mm: 0.05, edge_mm: 1.0")));
+}
+
 #[test]
 fn refuses_too_many_missing_rollers() {
     let missing =
