@@ -3,6 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use stribeck_scene::{
+    advice,
     geometry::Geometry,
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
@@ -71,10 +72,6 @@ const FEW_MODES: usize = 5;
 /// A cage that strays by more than this share of a roller's radius is not held by its pockets.
 const ASTRAY: f64 = 0.1;
 
-/// What holds a cage.
-const HOLD_IT: &str = "Nothing holds it there: take `cage.pocket: corners` with pockets narrower than rollers, more `contact.friction`, or \
-                       `cage: None`";
-
 /// Rollers may leave their annulus by this share of a roller's radius.
 const OUT_OF_PLACE: f64 = 0.5;
 
@@ -106,6 +103,8 @@ pub(crate) struct Guards {
     /// How far the cage's centre may be from it [m].
     pitch_radius: f64,
     roller_radius: f64,
+    /// What holds a cage.
+    holds_cage: String,
 }
 
 impl Guards {
@@ -123,6 +122,7 @@ impl Guards {
             ],
             pitch_radius: 0.5 * (g.inner_race_radius + g.outer_race_radius),
             roller_radius: g.roller_radius,
+            holds_cage: advice::holds_cage(scene),
         }
     }
 
@@ -182,8 +182,9 @@ impl Guards {
         if astray > ASTRAY * self.roller_radius {
             return format!(
                 "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its roller lets go of it all at once. \
-                 {HOLD_IT}",
-                1e3 * astray
+                 Nothing holds it there: take {}",
+                1e3 * astray,
+                self.holds_cage
             );
         }
         "Take a smaller `model.step_us`, a larger `model.modes_khz`, or `model: full` to see which of the two models is wrong".to_owned()
@@ -244,8 +245,9 @@ impl Guards {
         let off = state.cage[0].hypot(state.cage[1]);
         (off > self.pitch_radius).then(|| {
             format!(
-                "the cage has left the bearing: its centre is {:.1} mm from that of the bearing {when}. {HOLD_IT}",
-                1e3 * off
+                "the cage has left the bearing: its centre is {:.1} mm from that of the bearing {when}. Nothing holds it there: take {}",
+                1e3 * off,
+                self.holds_cage
             )
         })
     }
