@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use stribeck_formats::{Channel, Recording};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 use stribeck_testing::Noise;
 
 use stribeck_analysis::measured::{Analysis, Family, Findings, Machine};
@@ -170,6 +170,34 @@ fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage(
     // As many as close together, without a rhythm.
     let cage = passages(cage_hz, |_, [_, knock]| 2.0 * knock / knocks_hz);
     assert_eq!(claimed(&analysed(cage, 60.0 * shaft_hz)), ["FTF"]);
+}
+
+/// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns goes by what the ring is ahead.
+#[test]
+fn issue_a_cage_is_expected_by_its_turns_in_space() {
+    let noise = coloured(3, SAMPLES);
+    let ftf = |outer_speed_rpm: f64| {
+        let machine = Machine { outer_speed_rpm, ..machine(1500.0) };
+        let analysis = Analysis::of(&Channel::held("x", noise.clone()), RATE_HZ, &machine).expect("a record");
+        analysis
+            .findings
+            .families
+            .iter()
+            .find(|f| f.name == "FTF")
+            .map(|f| f.expected_hz)
+            .expect("looked for")
+    };
+    let (still, ahead, behind) = (ftf(0.0), ftf(600.0), ftf(-1500.0));
+    assert!(
+        (ahead - still - 10.0).abs() < 1e-9 && (behind - (25.0 - still)).abs() < 1e-9,
+        "{still} {ahead} {behind}"
+    );
+    let scene = |speeds: &str| {
+        Scene::parse(&format!("(housing: rigid(), film: None, defect: None, operation: ({speeds}))"), "here")
+            .expect("sound")
+    };
+    assert_eq!(Machine::outer_speed_rpm(&scene("speed_rpm: 0, outer_speed_rpm: 1500")), -1500.0);
+    assert_eq!(Machine::outer_speed_rpm(&scene("speed_rpm: 1500, outer_speed_rpm: -900")), -900.0);
 }
 
 /// Short bursts over a wide band, as an element makes them that passes an edge: `hz` times a second, each followed by a second
