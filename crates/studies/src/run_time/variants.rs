@@ -103,7 +103,12 @@ pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
         let name = format!("reduced, {khz} kHz, {step_us} µs{name}");
         all.push(choice(curve, &name, shows, LEAN, mesh.into_iter().chain([model]).collect(), starts));
     };
-    for (step_us, shows) in [(2.0, "the reduced model"), (1.0, "half its step"), (0.5, "a quarter of it")] {
+    for (step_us, shows) in [
+        (5.0, "its longest step"),
+        (2.0, "the reduced model"),
+        (1.0, "half its step"),
+        (0.5, "a quarter of it"),
+    ] {
         reduced("reduced", [30.0, step_us], shows, "", graded(BASE_MM));
     }
     for (khz, shows) in [(5.0, "fewer modes"), (15.0, "fewer modes"), (60.0, "more modes")] {
