@@ -122,7 +122,7 @@ fn judged(
 
 /// The verdict of an `analysis` beside the recorded `motion` and the defects of the scene.
 pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> DiagnosisFinding {
-    let present = scene.faults();
+    let (present, steady) = (scene.faults(), !scene.operation.speed_varies());
     let families = analysis.findings.families.iter().map(|family| {
         let sides = match family.name {
             "BPFO" if motion.outer_ring_hz > 0.0 => Some(("outer ring", motion.outer_ring_hz)),
@@ -134,7 +134,7 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
         DiagnosedFamily {
             name: family.name.to_owned(),
             expected_hz: family.expected_hz,
-            from_motion_hz: from_motion(family.name, family.in_passages, motion, &present),
+            from_motion_hz: from_motion(family.name, family.in_passages, motion, &present, steady),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
@@ -167,6 +167,7 @@ fn from_motion(
     in_passages: bool,
     motion: &KinematicsFinding,
     present: &[RollingSurface],
+    steady: bool,
 ) -> Option<f64> {
     match name {
         "BPFO" => motion.bpfo_hz,
@@ -180,7 +181,8 @@ fn from_motion(
             let own = mean(motion.rollers.iter().filter(damaged).map(|roller| roller.spin_hz));
             own.or(motion.roller_spin_hz)
         }
-        // Families are those beside an outer ring that stands still.
+        // Turns in space, but for speeds that change: orders are those beside an outer ring that stands still.
+        _ if steady => motion.cage_hz,
         _ => motion.cage_on_outer_hz[0].or(motion.cage_hz),
     }
 }
@@ -214,8 +216,9 @@ mod tests {
             rollers: vec![spins(1, 79.7), spins(2, 36.7)],
             ..KinematicsFinding::default()
         };
-        let of = |name: &str, present: &[RollingSurface]| from_motion(name, false, &motion, present);
-        assert_eq!((of("FTF", &[]), of("BSF", &[])), (Some(15.3), Some(79.7)));
+        let of = |name: &str, present: &[RollingSurface]| from_motion(name, false, &motion, present, true);
+        assert_eq!((of("FTF", &[]), of("BSF", &[])), (Some(5.3), Some(79.7)));
+        assert_eq!(from_motion("FTF", false, &motion, &[], false), Some(15.3));
         // Lines of a damaged roller stand at all that it turns.
         assert_eq!(of("BSF", &[RollingSurface::Roller(2)]), Some(36.7));
     }

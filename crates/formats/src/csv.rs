@@ -59,8 +59,9 @@ pub fn open(path: &Path) -> Result<Recording> {
         let words: Vec<String> = dialect.split(line).map(|word| word.trim_matches('"').to_owned()).collect();
         (words.len() == columns).then_some(words)
     };
-    let above = head.len().checked_sub(2).and_then(|at| words(&head[at]));
-    let (names, units) = match (above, head.last().and_then(words)) {
+    let mut told = head.iter().rev().filter(|line| !line.trim().is_empty());
+    let (last, above) = (told.next().and_then(words), told.next().and_then(words));
+    let (names, units) = match (above, last) {
         (Some(names), Some(units)) if units.iter().all(|unit| time::is_unit(unit)) => (names, units),
         (_, Some(names)) => (names, Vec::new()),
         (_, None) => ((1..=columns).map(|n| format!("column {n}")).collect(), Vec::new()),

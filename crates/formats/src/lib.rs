@@ -45,6 +45,7 @@ pub mod wav;
 pub use error::{Error, Result};
 pub use number::{Kind, Number};
 pub use recording::{Channel, Recording};
+pub use time::says_time;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -18,11 +18,18 @@ const SAME_RATE: f64 = 1e-3;
 const SLOWEST_S: f64 = 1.0;
 
 /// Units of time [s]. The third and the fourth micro are the Greek letter, and what is left of a sign in another encoding.
-const UNITS: [(&str, f64); 11] = [
+const UNITS: [(&str, f64); 18] = [
     ("s", 1.0),
     ("sec", 1.0),
+    ("second", 1.0),
     ("seconds", 1.0),
     ("ms", 1e-3),
+    ("msec", 1e-3),
+    ("milliseconds", 1e-3),
+    ("usec", 1e-6),
+    ("microseconds", 1e-6),
+    ("minutes", 60.0),
+    ("hours", 3600.0),
     ("us", 1e-6),
     ("µs", 1e-6),
     ("μs", 1e-6),
@@ -136,7 +143,8 @@ fn member(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
 }
 
-fn says_time(name: &str) -> bool {
+/// Whether a name says that it is the time's.
+pub fn says_time(name: &str) -> bool {
     let word: String = member(name).chars().take_while(|c| c.is_alphabetic()).collect();
     let word = word.to_lowercase();
     word.starts_with("time") || matches!(word.as_str(), "t" | "zeit" | "temps" | "tiempo" | "tempo")
@@ -144,7 +152,7 @@ fn says_time(name: &str) -> bool {
 
 /// The seconds of a unit of time, and its usual spelling.
 fn seconds(unit: &str) -> Option<(&'static str, f64)> {
-    let unit = unit.trim_matches(['[', ']', '(', ')', ' ']).to_lowercase();
+    let unit = unit.trim_matches(['[', ']', '(', ')', ' ', '.']).to_lowercase();
     UNITS.into_iter().find(|(name, _)| *name == unit)
 }
 
@@ -167,10 +175,12 @@ impl Unit {
 
 /// Whether a field of a table is a unit and no name.
 pub(crate) fn is_unit(field: &str) -> bool {
-    const USUAL: [&str; 16] =
-        ["g", "V", "mV", "N", "kN", "Pa", "MPa", "m", "mm", "um", "µm", "rad", "deg", "rpm", "Hz", "-"];
+    const USUAL: [&str; 22] = [
+        "g", "V", "mV", "N", "kN", "Pa", "MPa", "m", "mm", "um", "µm", "rad", "deg", "rpm", "Hz", "-",
+        "m/s²", "m/s2", "m/s^2", "m/s", "mm/s", "1/min",
+    ];
     let bracketed = field.starts_with(['[', '(']) && field.ends_with([']', ')']);
-    bracketed || USUAL.contains(&field) || field.contains(['/', '°']) || seconds(field).is_some()
+    bracketed || USUAL.contains(&field) || field.starts_with('°') || seconds(field).is_some()
 }
 
 impl Course {
@@ -248,11 +258,15 @@ impl Course {
             format!("row {} ({value:.6} {spelt}", row + 1.0).trim_end().to_owned() + ")"
         };
         if let Some(from) = self.change {
-            notes.push(format!(
-                "the times of `{name}` are uneven, or their rate changes, from about {} on: cut the file there and take the longer part, \
-                 or give the rate by hand if it does not change",
-                at(from)
-            ));
+            let what = if from.0 == self.first.0 {
+                "from the beginning on: give the rate by hand if only the times are uneven, or cut that part off".to_owned()
+            } else {
+                format!(
+                    "from about {} on: cut the file there and take the longer part, or give the rate by hand if it does not change",
+                    at(from)
+                )
+            };
+            notes.push(format!("the times of `{name}` are uneven, or their rate changes, {what}"));
             return None;
         }
         let (rows, span) = (self.last.0 - self.first.0, self.last.1 - self.first.1 - self.jumped);
@@ -301,9 +315,15 @@ impl Stretch {
         let over = |w: &[(f64, f64)]| w[1].1 - w[0].1 - step * (w[1].0 - w[0].0);
         // Rounding moves many steps, gaps are rare.
         let usual = middle(values.windows(2).map(|w| over(w).abs()).collect(), RARE)?;
-        let is_gap = |w: &[(f64, f64)]| w[1].1 < w[0].1 || over(w) > (0.5 * step).max(1.01 * usual);
-        let gap = |w: &[(f64, f64)]| Gap { after: w[0], by: over(w) };
-        let gaps: Vec<Gap> = values.windows(2).filter(|w| is_gap(w)).map(gap).collect();
+        // What a late sample adds the next step takes back.
+        let is_late =
+            |n: usize| values.get(n..n + 3).is_some_and(|w| w[2].1 - w[0].1 < step * (w[2].0 - w[0].0 + 0.5));
+        let is_gap = |n: &usize| {
+            let w = &values[*n..n + 2];
+            w[1].1 < w[0].1 || over(w) > (0.5 * step).max(1.01 * usual) && !is_late(*n)
+        };
+        let gap = |n: usize| Gap { after: values[n], by: over(&values[n..n + 2]) };
+        let gaps: Vec<Gap> = (0..values.len() - 1).filter(is_gap).map(gap).collect();
         let jumped: f64 = gaps.iter().map(|gap| gap.by).sum();
         let rows = last.0 - first.0;
         let without = (last.1 - first.1 - jumped) / rows;

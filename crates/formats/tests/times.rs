@@ -56,6 +56,16 @@ fn issue_times_are_told_by_how_they_rise_and_in_any_unit() {
         // The last digit of a thousandth in 2.3 s.
         assert!((rate_hz / RATE_HZ - 1.0).abs() < 5e-4, "{head:?} gives {rate_hz}");
     }
+    for (head, separator) in [
+        ("t/ms,a/g\n", ","),
+        ("Kanal,Messung 3\nt/ms,a/g\n", ","),
+        ("t/ms;a/g\n\n", ";"),
+        ("t (msec);a/g\n", ";"),
+    ] {
+        let found =
+            opened(&desk, &table(head, separator, 20_000, |n| format!("{:.5}", n as f64 / RATE_HZ * 1e3)));
+        assert_eq!((found.channels[1].name.as_str(), read(&found).1), ("a/g", Some(RATE_HZ)), "{head:?}");
+    }
     let units = opened(&desk, &table("Zeit;a\n[s];[g]\n", ";", 20, |n| n.to_string()));
     assert_eq!((units.channels[1].name.as_str(), units.channels[1].unit.as_deref()), ("a", Some("g")));
 }
@@ -124,7 +134,7 @@ fn issue_gaps_and_changes_of_the_rate_are_noted_with_their_place() {
     assert_eq!(rate_hz, None);
 }
 
-/// Rates that stand beside the signals, as our own export writes them, were read from `.npz` alone.
+/// Tables of others say no rate; their times do.
 #[test]
 fn roundtrip_a_foreign_table_has_its_rate_from_its_times() {
     let desk = Scratch::create("formats-foreign-times");
@@ -135,4 +145,21 @@ fn roundtrip_a_foreign_table_has_its_rate_from_its_times() {
     parquet::write_table(&desk.join("a.parquet"), &columns, &[]).unwrap();
     let found = Recording::open(desk.join("a.parquet")).unwrap();
     assert_eq!(read(&found), (vec![true, false], Some(RATE_HZ)));
+}
+
+/// A late sample is no missing one: what it adds the next step takes back.
+#[test]
+fn issue_times_that_jitter_have_no_gaps() {
+    let desk = Scratch::create("formats-jitter");
+    let mut noise = Noise::new(5);
+    let mut gaussian = || (0..12).map(|_| noise.uniform()).sum::<f64>() / 2.0;
+    let late: Vec<f64> = (0..30_000).map(|_| 0.1 * gaussian()).collect();
+    let found = opened(
+        &desk,
+        &table("t,acc\n", ",", late.len(), |n| format!("{:.9}", (n as f64 + late[n]) / RATE_HZ)),
+    );
+    let (times, rate_hz) = read(&found);
+    assert_eq!(times, [true, false]);
+    assert!((rate_hz.expect("a rate") / RATE_HZ - 1.0).abs() < 1e-4, "{rate_hz:?}");
+    assert!(!found.notes.iter().any(|note| note.contains("a gap")), "{:?}", found.notes);
 }

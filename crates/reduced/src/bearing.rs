@@ -312,7 +312,8 @@ impl Bearing {
     }
 
     /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with raceways as stiff as at the
-    /// largest load that the local problem was solved for, friction over those of the fullest roller, and the cage on corners of all pockets.
+    /// largest load that the local problem was solved for, friction over those of the fullest roller, and the cage on corners
+    /// of all pockets; straight walls, which press over more depth, are left out.
     pub fn critical_time_step(&self) -> f64 {
         let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
         let [mass, inertia] = self.reduction.roller_inertia;

@@ -8,9 +8,9 @@ use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity,
 use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
 use stribeck_analysis::record;
 use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
-use stribeck_formats::{Channel, Recording};
+use stribeck_formats::{Channel, Recording, says_time};
 use stribeck_scene::catalogue::CatalogueBearing;
-use stribeck_scene::run_dir::{RunDir, check_folder};
+use stribeck_scene::run_dir::{RunDir, check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::causes;
@@ -117,9 +117,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("trend-analysis"));
     let folders = folders(&options.files);
-    // The table of all comes last.
-    let marks: Vec<&str> = folders.iter().map(String::as_str).chain(["trend.json"]).collect();
-    check_folder(&out, &marks)?;
+    check_folder(&out, &[TREND])?;
+    // The table of all comes last; until then an empty one tells whose folder this is.
+    if !out.join(TREND).exists() {
+        std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
+        write_atomic(&out.join(TREND), b"[]")?;
+    }
     let mut entries = Vec::new();
     for (file, folder) in options.files.iter().zip(folders) {
         let done = analyse(file, &out.join(&folder), options, place);
@@ -146,7 +149,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             say!("{}: {}", entry.file, passed(judged));
         }
     }
-    std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     write_trend(&out, &entries, &limits)?;
     say!("side by side: {}", shown(&out.join("trend.html")));
     let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
@@ -190,6 +192,9 @@ fn passed(judged: &Judged) -> String {
         State::Alarm => format!("{name} {value:.4}: ALARM, from {:.4}", limit.alarm),
     }
 }
+
+/// The levels of several records side by side.
+const TREND: &str = "trend.json";
 
 /// Rates that differ by less than this part are one: files round theirs.
 const SAME_RATE: f64 = 1e-3;
@@ -286,7 +291,8 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
         return Ok(channel);
     }
     // Times that are damaged do not rise.
-    let is_time = |c: &Channel| c.is_time || c.name.to_lowercase().starts_with("time");
+    let alone = recording.channels.iter().filter(|c| c.len > 1).count() < 2;
+    let is_time = |c: &Channel| c.is_time || says_time(&c.name) && !alone;
     let signals: Vec<&Channel> = recording.channels.iter().filter(|c| !is_time(c)).collect();
     // Of a run the one that its report judges.
     let found =

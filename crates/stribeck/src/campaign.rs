@@ -86,9 +86,8 @@ const TURN: &str = ".turn";
 
 const SCENES: &str = "scenes.txt";
 
-/// By these a folder is known to be that of a campaign, from the first moment of its first part on. A file `campaign.ron` may lie
-/// anywhere.
-const MARKS: [&str; 2] = [TURN, SCENES];
+/// The folder of a campaign is known by the former from the first moment of its first part on, and by the latter when it is done.
+const MARKS: [&str; 2] = [TURN, "runs.parquet"];
 
 /// Where the things of a campaign are.
 struct Folder(PathBuf);

@@ -336,7 +336,6 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
     assert!(!said(&other).contains("`mesh.size_mm`"), "{}", said(&other));
 }
 
-/// What a reader has closed ends quietly, as `| head` leaves it; a full disk is told.
 /// The advice for an ensemble named no start of it, and the newest run to export was one.
 #[test]
 fn issue_an_ensemble_is_told_by_its_starts() {
@@ -372,6 +371,7 @@ fn issue_hints_are_those_of_their_command() {
     says(&still, &["nothing turns"]);
 }
 
+/// What a reader has closed ends quietly, as `| head` leaves it; a full disk is told.
 #[test]
 fn survives_an_output_that_is_closed_or_full() {
     let desk = Desk::new("closed");

@@ -294,9 +294,9 @@ pub(super) fn diagnosis(summary: &Summary) -> Markup {
         h3 #diagnosis { "What the record shows by itself" }
         p { "Sensor channel " code { (diagnosis.channel) } ", judged as a measured record is, without the scene: " (diagnosis.verdict) }
         @if diagnosis.families.iter().any(|family| family.claimed && !family.present) {
-            p { "What is claimed and is not in the scene is the rattle of elements that come under the load: a run has no noise but its "
-                "bearing's, so that this alone swings its power as knocks do. In a machine's noise such claims go (`stribeck export` with "
-                "`--sensor`, `noise_density`)." }
+            p { "What is claimed and is no defect of the scene may be the rattle of elements that come under the load: a run has no noise "
+                "but its bearing's, so that this alone can swing its power as knocks do. In a machine's noise such claims go "
+                "(`stribeck export` with `--sensor`, `noise_density`)." }
         }
         div class="scroll" {
             table {
