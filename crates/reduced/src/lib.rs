@@ -15,7 +15,7 @@
 //! | What changes in time? | `state.rs` |
 //! | What is one step? | `step.rs`; eight rollers as it takes them: `block.rs`, in rows of `row.rs`; its parts: `modes.rs`, `touch.rs`, `raceway.rs`, `lift.rs`, `pocket.rs` with `polygon.rs` |
 //! | What does oil do? | `oil.rs`; to rollers, modes and rings, `lift.rs` |
-//! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` |
+//! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` and, in vectors, `window.rs` |
 //! | What is recorded, and what is watched? | `recorder.rs`, `guards.rs`; both in the time loop, `motion.rs` |
 
 pub mod simulation;
@@ -30,6 +30,7 @@ pub mod outline;
 pub mod overlap;
 pub mod start;
 pub mod state;
+pub mod window;
 
 mod block;
 pub mod heard;

@@ -3,6 +3,9 @@
 
 use stribeck_simd::lanes::Number;
 
+/// So many vertices are repeated before the first and after the last one, for who reads several at once.
+pub(crate) const PAD: usize = 16;
+
 /// Closed boundary of a raceway or roller, counter-clockwise, in the frame of its body.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Outline {
@@ -10,6 +13,9 @@ pub struct Outline {
     pub x: Vec<f64>,
     /// Ordinates of the vertices [m].
     pub y: Vec<f64>,
+    /// Both again, with vertices repeated: counter-clockwise and clockwise.
+    ahead: [Vec<f64>; 2],
+    back: [Vec<f64>; 2],
     /// Whether neither a facet nor its neighbours are walls.
     plain: Vec<bool>,
 }
@@ -21,6 +27,12 @@ impl Outline {
     /// Of vertices in counter-clockwise order.
     pub fn new(vertices: &[[f64; 2]]) -> Self {
         let n = vertices.len();
+        // Vertex −i is the last but i − 1, of as many rounds as it takes.
+        let repeated = |c: usize| -> Vec<f64> {
+            let count = if n == 0 { 0 } else { n + 2 * PAD };
+            (0..count).map(|i| vertices[(i + n * PAD - PAD) % n][c]).collect()
+        };
+        let reversed = |c: usize| repeated(c).into_iter().rev().collect();
         let is_wall = |i: usize| {
             let [[ax, ay], [bx, by]] = [vertices[i % n], vertices[(i + 1) % n]];
             let (length, radius) = ((bx - ax).hypot(by - ay), (ax + bx).hypot(ay + by));
@@ -29,8 +41,22 @@ impl Outline {
         Self {
             x: vertices.iter().map(|v| v[0]).collect(),
             y: vertices.iter().map(|v| v[1]).collect(),
+            ahead: [0, 1].map(repeated),
+            back: [0, 1].map(reversed),
             plain: (0..n).map(|i| ![n - 1, n, n + 1].iter().any(|&beside| is_wall(i + beside))).collect(),
         }
+    }
+
+    /// Abscissae and ordinates; vertex 0 is number [`PAD`], and vertices before and after it are repeated.
+    #[inline(always)]
+    pub(crate) fn ahead(&self) -> [&[f64]; 2] {
+        [&self.ahead[0], &self.ahead[1]]
+    }
+
+    /// The same clockwise; the last vertex is number [`PAD`].
+    #[inline(always)]
+    pub(crate) fn back(&self) -> [&[f64]; 2] {
+        [&self.back[0], &self.back[1]]
     }
 
     /// Vertices.

@@ -8,6 +8,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{
     outline::{Facet, Parts, View, Walk},
     row::Row,
+    window::{self, Window},
 };
 
 /// How a raceway lies to a roller.
@@ -153,25 +154,6 @@ impl Overlap<Row> {
         Vector::store_largest(simd, of(|of| &of.deepest), &mut self.deepest.0);
     }
 
-    /// Of one contact, from its parts, which lie in the first lanes.
-    #[inline(always)]
-    pub(crate) fn sum<S: Simd>(&self, simd: S) -> Overlap {
-        Overlap {
-            area: Vector::load(simd, &self.area, 0).sum(),
-            across: Vector::load(simd, &self.across, 0).sum(),
-            moment: Vector::load(simd, &self.moment, 0).sum(),
-            square: Vector::load(simd, &self.square, 0).sum(),
-            length: Vector::load(simd, &self.length, 0).sum(),
-            first: Vector::load(simd, &self.first, 0).sum(),
-            second: Vector::load(simd, &self.second, 0).sum(),
-            slope: Vector::load(simd, &self.slope, 0).sum(),
-            arm: Vector::load(simd, &self.arm, 0).sum(),
-            skew: Vector::load(simd, &self.skew, 0).sum(),
-            ends: Vector::load(simd, &self.ends, 0).sum(),
-            deepest: Vector::load(simd, &self.deepest, 0).largest(),
-        }
-    }
-
     /// Replaces one of them.
     pub(crate) fn set(&mut self, lane: usize, by: &Overlap) {
         self.area[lane] = by.area;
@@ -210,30 +192,57 @@ impl<S: Simd> Overlap<Vector<S>> {
 
 /// A roller and a raceway near their contact.
 #[derive(Debug, Clone, Copy)]
-pub struct Pair<'a> {
+pub struct Pair<'a, S> {
+    simd: S,
     /// The roller.
     pub roller: View<'a>,
     /// The raceway.
     pub raceway: View<'a>,
     /// How the raceway lies to the roller.
     pub sides: Sides,
+    /// Roller and raceway again, eight facets at once.
+    windows: &'a [Window; 2],
+    /// Whether they can be seen so.
+    pub in_windows: bool,
 }
 
-impl Pair<'_> {
+impl<'a, S: Simd> Pair<'a, S> {
+    /// Of two views, looked at in vectors where it can be; `windows` is room for that.
+    #[inline(always)]
+    pub fn new(
+        simd: S,
+        roller: View<'a>,
+        raceway: View<'a>,
+        sides: Sides,
+        windows: &'a mut [Window; 2],
+    ) -> Self {
+        let [first, second] = &mut *windows;
+        let in_windows = first.look(simd, &roller, true) && second.look(simd, &raceway, sides.along);
+        Self { simd, roller, raceway, sides, windows, in_windows }
+    }
+
     /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
     #[inline(always)]
     pub fn overlap(&self, shift: f64, reach: f64) -> Overlap {
         let sides = self.sides;
         if sides.are_round() {
-            self.walk(reach, Arcs { sum: Overlap::default(), sides, shift }).sum
+            self.taken(reach, Arcs { sum: Overlap::default(), sides, shift }).sum
         } else {
-            self.walk(reach, Chords { sum: Overlap::default(), shift }).sum
+            self.taken(reach, Chords { sum: Overlap::default(), shift }).sum
         }
+    }
+
+    #[inline(always)]
+    fn taken<P: Parts>(&self, reach: f64, mut parts: P) -> P {
+        if !(self.in_windows && window::segments(self.simd, self.windows, reach, &mut parts)) {
+            self.walk(reach, &mut parts);
+        }
+        parts
     }
 
     /// Walks along both boundaries, and hands over what lies between two places where neither has a vertex.
     #[inline(always)]
-    fn walk<P: Parts>(&self, reach: f64, mut parts: P) -> P {
+    fn walk(&self, reach: f64, parts: &mut impl Parts) {
         let mut u = -reach;
         let mut r = Walk::of_roller(self.roller, u);
         let mut w = Walk::of_raceway(self.raceway, self.sides.along, u);
@@ -258,7 +267,6 @@ impl Pair<'_> {
             // Walls of a groove may lean over: their facets hold no u.
             if r.end <= w.end { r.step() } else { w.step() }
         }
-        parts
     }
 }
 

@@ -196,6 +196,7 @@ impl Bearing {
         let centre = [state.x[i], state.y[i]];
         let seen = [centre[0] - moved[0], centre[1] - moved[1]];
         let mut hints = [state.hints[0][i], state.hints[1][i]];
+        let simd = Scalar::new();
         // A force found with steps of Newton's method: from the one before until it stands.
         let mut forces = [state.force[0][i], state.force[1][i]];
         for _ in 0..40 {
@@ -203,10 +204,13 @@ impl Bearing {
             let rim = self.rim(i);
             let near =
                 Near { track: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
-            let outer = self.touch(Scalar::new(), near, &mut hints[0], None);
+            let outer = self.touch(simd, near, &mut hints[0]);
             let (centre, spin) = (back(centre), back([c, s]));
-            let near = Near { track: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other };
-            let inner = self.touch(Scalar::new(), near, &mut hints[1], None);
+            let inner = self.touch(
+                simd,
+                Near { track: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },
+                &mut hints[1],
+            );
             let next = [outer.normal, inner.normal];
             let still = (0..2).all(|k| (next[k] - forces[k]).abs() <= 1e-12 * next[k].abs());
             forces = next;

@@ -10,7 +10,8 @@ use crate::{
     outline::View,
     overlap::{Overlap, Pair},
     row::{Row, lanes, load, of_one},
-    seam::{Seam, Sight},
+    seam::Sight,
+    window::Window,
 };
 
 /// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
@@ -107,8 +108,7 @@ impl Bearing {
             let before = contacts.normal[lane];
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
             let near = Near { track, rim, centre, spin, bound: contacts.bound[lane], before };
-            let beside = if (alone >> lane) & 1 == 0 { Some(&contacts.seams[lane]) } else { None };
-            let found = self.touch(simd, near, &mut contacts.hints[lane], beside);
+            let found = self.touch(simd, near, &mut contacts.hints[lane]);
             contacts.normal[lane] = found.normal;
             contacts.give[lane] = found.give;
             contacts.shift[lane] = found.given;
@@ -262,16 +262,9 @@ impl Bearing {
         again
     }
 
-    /// Contact of a roller with a raceway, by itself. `hints` are the facets found last, `seam` holds the parts of the overlap where they are
-    /// known.
+    /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
     #[inline(always)]
-    pub(crate) fn touch<S: Simd>(
-        &self,
-        simd: S,
-        near: Near<'_>,
-        hints: &mut [u32; 2],
-        seam: Option<&Seam>,
-    ) -> Touch {
+    pub(crate) fn touch<S: Simd>(&self, simd: S, near: Near<'_>, hints: &mut [u32; 2]) -> Touch {
         let Near { track, rim, centre, bound, before, .. } = near;
         let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
         let outwards = track.outwards();
@@ -280,8 +273,9 @@ impl Bearing {
         if most <= 0.0 {
             return Touch::default();
         }
-        let sight = Sight { own: turned_back(near.spin, d), d, from: centre };
-        let mut pair = None;
+        let mut windows = [Window::default(); 2];
+        let [roller, raceway] = Self::views(&near, d, hints);
+        let pair = Pair::new(simd, roller, raceway, track.sides, &mut windows);
         let mut force = before;
         let mut found = Overlap::default();
         let (mut give, mut given) = (0.0, 0.0);
@@ -293,18 +287,7 @@ impl Bearing {
                 (found, force) = (Overlap::default(), 0.0);
                 continue;
             }
-            let reach = track.reach(depth);
-            let side_by_side = match seam {
-                Some(seam) => seam.overlap_alone(simd, track.sides, &sight, shift, reach),
-                None => None,
-            };
-            found = match side_by_side {
-                Some(found) => found,
-                None => {
-                    let [roller, raceway] = *pair.get_or_insert_with(|| Self::views(&near, d, hints));
-                    Pair { roller, raceway, sides: track.sides }.overlap(shift, reach)
-                }
-            };
+            found = pair.overlap(shift, track.reach(depth));
             // Newton's method with what the overlap becomes by a further shift.
             let start = force;
             let (mut further, mut now) = (0.0, [found.area, found.length]);
