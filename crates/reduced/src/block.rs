@@ -219,9 +219,8 @@ impl Block {
                 state.passive[k][i] = contacts.passive.map(|column| column[lane]);
                 state.hints[k][i] = contacts.hints[lane];
             }
-            if (self.contacts[0].near >> lane) & 1 == 0 {
-                state.hints[0][i][1] = self.facet[lane];
-            }
+            // What a list of parts was made from hangs on when that was.
+            state.hints[0][i][1] = self.facet[lane];
             for (side, walls) in self.walls.iter().enumerate() {
                 state.wall_slip[i][side] = walls.slip[lane];
                 state.wall_passive[i][side] = walls.passive.map(|column| column[lane]);
