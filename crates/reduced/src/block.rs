@@ -219,7 +219,7 @@ impl Block {
                 state.passive[k][i] = contacts.passive.map(|column| column[lane]);
                 state.hints[k][i] = contacts.hints[lane];
             }
-            // What a list of parts was made from hangs on when that was.
+            // Not that of the contact, which goes on only when its parts are listed: a continued run lists them earlier.
             state.hints[0][i][1] = self.facet[lane];
             for (side, walls) in self.walls.iter().enumerate() {
                 state.wall_slip[i][side] = walls.slip[lane];

@@ -80,7 +80,7 @@ impl Compliance {
     }
 }
 
-/// Length of a round contact with the relative radius R under a load F on a penalty k t [m]: F = ⅔ k t a³/R over 2a.
+/// Length 2a [m] of a round contact with the relative radius R [m] under a load F [N] on a penalty k t [N/m²]: F = ⅔ k t a³/R.
 pub(crate) fn contact_length(load: f64, penalty: f64, radius: f64) -> f64 {
     2.0 * (1.5 * load * radius / penalty).cbrt()
 }
