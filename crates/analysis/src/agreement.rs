@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
-use stribeck_dsp::{Welch, WelchOptions};
+use stribeck_dsp::{Sensor, Welch, WelchOptions};
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
@@ -33,6 +33,8 @@ const LEAST_BINS: f64 = 3.0;
 /// Waveforms are compared below these frequencies [Hz], over so many samples at most.
 const BELOW_HZ: [f64; 2] = [500.0, 2000.0];
 const WAVEFORM: usize = 50_000;
+/// Largest accelerations are compared as a recorder of this rate shows them [Hz], which passes four tenths of it.
+const RECORDER_HZ: f64 = 25_000.0;
 /// Systems count processor time in ticks of this length [s].
 const TICK_S: f64 = 0.01;
 /// Lines of BPFO that are compared, and the periods of it that a record must hold for them.
@@ -61,6 +63,9 @@ pub struct Agreement {
     /// How alike the waveforms of the first sensor are.
     #[serde(default)]
     pub correlations: Vec<Correlation>,
+    /// Largest accelerations of every sensor.
+    #[serde(default)]
+    pub peaks: Vec<Peak>,
     /// What could not be compared, and why.
     pub notes: Vec<String>,
 }
@@ -94,6 +99,46 @@ pub struct Correlation {
     pub below_hz: f64,
     /// Correlation of full and reduced model over the starts [-].
     pub value: Statistic,
+}
+
+/// The largest acceleration of a record below a frequency, by both models. No limit is set to it: it is that of one impact, whose
+/// waveform is chaotic, so that means over many starts are all that can be compared.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// Sensor.
+    pub sensor: String,
+    /// Only what is below this frequency counts [Hz].
+    pub below_hz: f64,
+    /// Magnitude of both components, by the full model [g].
+    pub full_g: Statistic,
+    /// The same by the reduced one [g].
+    pub reduced_g: Statistic,
+}
+
+impl Peak {
+    /// How far the mean of the reduced model is from that of the full one, and the standard error of that [%]; no error of a single start.
+    pub fn difference_percent(&self) -> (f64, Option<f64>) {
+        let ratio = self.reduced_g.mean / self.full_g.mean;
+        let error = |s: &Statistic| Some(s.deviation? / s.mean / (s.count as f64).sqrt());
+        let error = error(&self.full_g).zip(error(&self.reduced_g)).map(|(f, r)| 100.0 * ratio * f.hypot(r));
+        (100.0 * (ratio - 1.0), error)
+    }
+
+    /// Means by the full and by the reduced model with half of their 95 % intervals, in words [g].
+    pub fn levels(&self) -> [String; 2] {
+        [&self.full_g, &self.reduced_g].map(|level| {
+            let half = level
+                .high
+                .map_or(String::new(), |high| format!(" \u{b1} {}", significant(high - level.mean, 2)));
+            significant(level.mean, 3) + &half
+        })
+    }
+
+    /// The difference in words.
+    pub fn difference(&self) -> String {
+        let (mean, error) = self.difference_percent();
+        error.map_or(format!("{mean:+.0} %"), |error| format!("{mean:+.0} \u{b1} {error:.0} %"))
+    }
 }
 
 impl Row {
@@ -158,6 +203,8 @@ struct Side {
     lines_g: Option<Vec<f64>>,
     /// Vertical acceleration of the first sensor [g], and its rate [Hz].
     waveform: Option<(String, Vec<f64>, f64)>,
+    /// Largest acceleration of each sensor [g].
+    peaks_g: Vec<Option<f64>>,
     /// Middles of the bands [Hz], and of each sensor the power in each band [g²].
     centres_hz: Vec<f64>,
     powers: Vec<(String, Vec<f64>)>,
@@ -220,6 +267,7 @@ impl Agreement {
             rows,
             sensors,
             correlations: BELOW_HZ.into_iter().filter_map(|hz| alike(hz, &sides)).collect(),
+            peaks: peaks(&sides),
             notes,
         })
     }
@@ -281,6 +329,7 @@ impl Side {
         let mut powers = Vec::new();
         let mut lines_g = None;
         let mut waveform = None;
+        let mut peaks_g = Vec::new();
         for sensor in &run.scene.output.sensors {
             let component =
                 |name: &str| record.acceleration_g(&sensor.name, name).map(|a| a[from..].to_vec());
@@ -292,6 +341,7 @@ impl Side {
                     (1..=LINES).map(|n| amplitude(&y, n as f64 * bpfo_hz * record.interval_s())).collect()
                 });
             }
+            peaks_g.push(largest(&x, &y, record.sample_rate_hz()));
             let [x, y] = {
                 let rate_hz = record.sample_rate_hz();
                 let powers = [bands(&x, rate_hz, &centres_hz)?, bands(&y, rate_hz, &centres_hz)?];
@@ -309,10 +359,18 @@ impl Side {
             forces,
             lines_g,
             waveform,
+            peaks_g,
             powers,
             summary,
         })
     }
+}
+
+/// Largest magnitude of an acceleration as a recorder shows it; `None` of one that is sampled more slowly.
+fn largest(x: &[f64], y: &[f64], rate_hz: f64) -> Option<f64> {
+    let recorder = Sensor::ideal(RECORDER_HZ);
+    let [x, y] = [recorder.record(x, rate_hz).ok()?, recorder.record(y, rate_hz).ok()?];
+    x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).reduce(f64::max)
 }
 
 /// Amplitude of a line at `turns` a sample, through a Hann window.
@@ -458,6 +516,23 @@ fn of_correlations(values: &[f64], of: usize) -> Option<Statistic> {
     Some(Statistic { low: z.low.map(f64::tanh), high: z.high.map(f64::tanh), ..plain })
 }
 
+/// The largest acceleration of every sensor.
+fn peaks(sides: &[[Side; 2]]) -> Vec<Peak> {
+    let of = |which: usize, at: usize| {
+        statistic(sides.iter().map(|pair| *pair[which].peaks_g.get(at)?), sides.len())
+    };
+    let sensors = sides.first().map_or(&[][..], |pair| &pair[0].powers);
+    let peak = |(at, (sensor, _)): (usize, &(String, Vec<f64>))| {
+        Some(Peak {
+            sensor: sensor.clone(),
+            below_hz: 0.4 * RECORDER_HZ,
+            full_g: of(0, at)?,
+            reduced_g: of(1, at)?,
+        })
+    };
+    sensors.iter().enumerate().filter_map(peak).collect()
+}
+
 fn octaves(sides: &[[Side; 2]]) -> Vec<Octaves> {
     let Some([first, _]) = sides.first() else { return Vec::new() };
     let n = sides.len() as f64;
@@ -529,6 +604,7 @@ mod tests {
                 rows: Vec::new(),
                 sensors: Vec::new(),
                 correlations: Vec::new(),
+                peaks: Vec::new(),
                 notes: Vec::new(),
             };
             agreement.cost()

@@ -100,24 +100,43 @@ fn between(scene: &Scene) -> OperationScene {
     OperationScene { load_n: 0.5 * (least + most), ..fields }
 }
 
-/// The reduction of a scene, and whether it was there already. `runs` is where the folder of the run lies.
+/// The reduction of a scene, and whether it was there already. `runs` is where the folder of the run lies. Of several that ask for the
+/// same one at once, the first makes it and the others wait.
 ///
 /// # Errors
 /// When it cannot be made. One that cannot be kept is made again next time.
 pub fn reduction(scene: &Scene, runs: Option<&Path>) -> Result<(Reduction, bool), Error> {
     let reference = reference(scene);
-    let file = runs.map(|runs| file(runs, &reference.hash()));
-    if let Some(found) = file.as_deref().and_then(read) {
+    let Some(file) = runs.map(|runs| file(runs, &reference.hash())) else {
+        return Ok((Reduction::new(&reference)?, false));
+    };
+    if let Some(found) = read(&file) {
         return Ok((found, true));
     }
-    let made = Reduction::new(&reference)?;
-    if let (Some(file), Ok(bytes)) = (&file, postcard::to_extend(&made, MAGIC.to_vec())) {
-        // What cannot be kept costs time, no result.
-        let _ = fs::create_dir_all(file.parent().unwrap_or(file));
-        let checksum = crc32fast::hash(&bytes[MAGIC.len()..]);
-        let _ = write_atomic(file, &[bytes, checksum.to_le_bytes().to_vec()].concat());
+    // What cannot be kept or locked costs time, no result.
+    let _ = fs::create_dir_all(file.parent().unwrap_or(&file));
+    let lock = file.with_extension("lock");
+    let held = hold(&lock);
+    if let Some(found) = held.as_ref().and_then(|_| read(&file)) {
+        return Ok((found, true));
     }
-    Ok((made, false))
+    let made = Reduction::new(&reference);
+    if let Some(bytes) = made.as_ref().ok().and_then(|made| postcard::to_extend(made, MAGIC.to_vec()).ok()) {
+        let checksum = crc32fast::hash(&bytes[MAGIC.len()..]);
+        let _ = write_atomic(&file, &[bytes, checksum.to_le_bytes().to_vec()].concat());
+    }
+    if held.is_some() {
+        // Who waits for it holds it all the same, and finds what has been made.
+        let _ = fs::remove_file(lock);
+    }
+    Ok((made?, false))
+}
+
+/// Holds a file by its lock, which ends with the process, until it is dropped.
+fn hold(lock: &Path) -> Option<fs::File> {
+    let file = fs::File::create(lock).ok()?;
+    file.lock().ok()?;
+    Some(file)
 }
 
 fn file(runs: &Path, hash: &str) -> PathBuf {

@@ -166,6 +166,21 @@ fn issue_a_penalty_by_the_time_step_has_reductions_of_its_own() {
     assert!(!cached(0.9, layer) && cached(0.5, layer));
 }
 
+/// Runs that began side by side each made the reduction that one could have left to the others.
+#[test]
+fn issue_runs_that_begin_together_make_one_reduction() {
+    let folder = Scratch::create("reduced-together");
+    let scene = coarse(0.02);
+    let made = std::thread::scope(|scope| {
+        let begun = ["a", "b", "c"].map(|name| scope.spawn(|| run(&scene, &folder, name, 1)));
+        let runs = begun.map(|run| run.join().expect("it runs").reduced.expect("what was kept"));
+        runs.iter().filter(|kept| !kept.from_cache).count()
+    });
+    assert_eq!(made, 1);
+    let left = fs::read_dir(folder.join(".reduced")).expect("it is there").count();
+    assert_eq!(left, 1, "the lock goes with the run that made it");
+}
+
 /// One reduction serves all starts, and every run has the mesh of its own: as the scene makes it, with rollers, of which one may be missing,
 /// where they begin.
 #[test]

@@ -160,6 +160,11 @@ fn print(agreement: &Agreement) {
         let what = format!("correlation at {}, y, below {:.1} kHz", c.sensor, 1e-3 * c.below_hz);
         say!("  {what:<58} {:.3}{interval}", c.value.mean);
     }
+    for p in &agreement.peaks {
+        let what = format!("largest acceleration at {} below {:.0} kHz [g]", p.sensor, 1e-3 * p.below_hz);
+        let [full, reduced] = p.levels();
+        say!("  {what:<58} full {full}, reduced {reduced}; {}", p.difference());
+    }
     for note in &agreement.notes {
         say!("  note: {note}");
     }

@@ -124,6 +124,10 @@ fn example_both_models_from_the_same_starts() {
     assert!((of("load_percent").difference.mean - 2.0).abs() < 1e-9 && !of("load_percent").within);
     let side = of(&format!("octaves_{}_db", scene.output.sensors[0].name));
     assert!((side.difference.mean - 20.0 * 1.02_f64.log10()).abs() < 1e-9, "{side:?}");
+    // So is the largest acceleration, and that of a run beside itself is its own.
+    assert!(same.peaks.len() == scene.output.sensors.len());
+    assert!(same.peaks.iter().all(|p| p.full_g == p.reduced_g && p.difference_percent() == (0.0, None)));
+    assert!(other.peaks.iter().all(|p| (p.difference_percent().0 - 2.0).abs() < 1e-9), "{:?}", other.peaks);
     // 2 % of the root mean square of all forces.
     assert!((0.05..2.0).contains(&of("forces_percent").difference.mean));
 }

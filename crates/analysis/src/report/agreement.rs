@@ -94,6 +94,32 @@ fn table(agreement: &Agreement) -> Markup {
         @if !agreement.correlations.is_empty() {
             p class="hint" { (alike(agreement)) }
         }
+        (peaks(agreement))
+    }
+}
+
+/// Largest accelerations, which have no limit.
+fn peaks(agreement: &Agreement) -> Markup {
+    let Some(first) = agreement.peaks.first() else { return html! {} };
+    html! {
+        table {
+            tr { th { "Largest acceleration" } th { "Full, g" } th { "Reduced, g" } th { "Reduced less full" } }
+            @for peak in &agreement.peaks {
+                tr {
+                    td { (peak.sensor) }
+                    @for level in peak.levels() { td { (level) } }
+                    td { (peak.difference()) }
+                }
+            }
+        }
+        p class="hint" {
+            (format!(
+                "Magnitude of both components below {:.0} kHz, as a recorder shows it: means of the largest of each start with their \
+                 95 % intervals, and how far the means are apart with one standard error. It has no limit, because it is that of a single \
+                 impact. Above that the modes of the reduced model end, and peaks of raw samples do not compare.",
+                1e-3 * first.below_hz
+            ))
+        }
     }
 }
 
