@@ -8,13 +8,14 @@ use stribeck_scene::{
     duty::Duty,
     geometry::Geometry,
     kinematics::Kinematics,
-    scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
+    scene::{ContactMethod, ContactSurface, DampingFrame, RollerCopies, Scene},
 };
 use stribeck_simd::lanes::{LANES, Number};
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 
 use crate::{
     compliance::{Compliance, Curve, contact_length},
+    corner::Corner,
     error::Error,
     oil::Lubrication,
     outline::Outline,
@@ -65,8 +66,9 @@ pub struct Bearing {
     pub(crate) friction: f64,
     /// Radius at which friction acts [m].
     pub(crate) arm: f64,
-    /// Mass damping [1/s] and its frame.
+    /// Mass damping of rollers and of the modes [1/s], and its frame.
     pub(crate) alpha: f64,
+    pub(crate) mode_alpha: f64,
     pub(crate) frame: DampingFrame,
     /// Stiffness damping β [s].
     pub(crate) beta: f64,
@@ -121,10 +123,8 @@ pub(crate) struct Cage {
     pub(crate) walls: Vec<[Wall; 2]>,
     /// The same, of eight rollers side by side.
     pub(crate) wall_rows: Vec<[WallRows; 2]>,
-    /// Length of cage that an end of a wall stands for in its own pass [m].
-    pub(crate) corner: f64,
-    /// What the inner and the outer end of a wall cut from the facet of a roller in the middle of its pocket ([`wedge`]).
-    pub(crate) wedges: [f64; 2],
+    /// The inner and the outer end of each wall.
+    pub(crate) corners: [Corner; 2],
 }
 
 /// A wall from its inner to its outer end, with the normal that points into the pocket.
@@ -262,6 +262,18 @@ impl Bearing {
         let angles = per_angle(&outer);
         level_walls(&mut reduction.shapes, &angles);
         reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
+        let frame = scene.solver.damping_frame;
+        let alpha = scene.solver.mass_damping_per_s;
+        // As in the full model, what moves as one piece is not damped by its mass.
+        let undamped = frame == DampingFrame::RigidMotion || scene.housing.is_rigid();
+        let mode_alpha = if undamped { 0.0 } else { alpha };
+        if let Some(frame) = &reduction.frame {
+            for shape in frame.shape.chunks_exact(reduction.padded) {
+                for (row, a) in reduction.dampers.chunks_exact_mut(reduction.padded).zip(shape) {
+                    row.iter_mut().zip(shape).for_each(|(sum, b)| *sum -= mode_alpha * frame.mass * a * b);
+                }
+            }
+        }
         let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         let shapes = in_single(&mut reduction.shapes);
         let bounds = nearest_about(&outer, BESIDE * radius, 1.0 / (kr - ko));
@@ -290,8 +302,9 @@ impl Bearing {
             damping: law.damping * g.thickness,
             friction: scene.contact.friction,
             arm: radius - 2.0 / 3.0 * sag(radius, n),
-            alpha: scene.solver.mass_damping_per_s,
-            frame: scene.solver.damping_frame,
+            alpha,
+            mode_alpha,
+            frame,
             beta: g.stiffness_damping,
             branches,
             gravity: g.gravity,
@@ -349,11 +362,11 @@ impl Bearing {
                 .map(|wall| wall.inner[0].hypot(wall.inner[1]))
                 .fold(0.0, f64::max);
             let of_all = self.rollers as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
-            0.5 * self.penalty * cage.corner * (1.0 / mass + of_all)
+            0.5 * self.penalty * cage.corners[0].end * (1.0 / mass + of_all)
         });
         let square = of_roller.max(of_friction).max(of_modes).max(of_cage);
         // Dampers act half a step late: ω² Δt²/4 + d Δt/2 < 1, where d is the sum over all modes at most.
-        let d: f64 = self.reduction.dampers.iter().step_by(r + 1).sum();
+        let d = self.reduction.dampers.iter().step_by(r + 1).sum::<f64>().max(0.0);
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
     }
 
@@ -463,29 +476,18 @@ impl Cage {
             })
             .collect();
         let points = match scene.contact.method {
-            stribeck_scene::scene::ContactMethod::Integrated => scene.contact.points_per_facet as f64,
-            stribeck_scene::scene::ContactMethod::Collocated => 1.0,
+            ContactMethod::Integrated => Some(scene.contact.points_per_facet),
+            ContactMethod::Collocated => None,
         };
         let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
         // On the x axis, with the wall on the side of +y.
-        let wedges = [inner, outer].map(|radius: f64| {
+        let corners = [inner, outer].map(|radius: f64| {
             let along = (radius * radius - half * half).sqrt();
-            wedge([along - path, half], [0.0, -1.0])
+            Corner::new([along - path, half], (outer - inner) / rows, points)
         });
         let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
-        Some(Self { mass, inertia, walls, wall_rows, corner: 0.5 * (outer - inner) / rows / points, wedges })
+        Some(Self { mass, inertia, walls, wall_rows, corners })
     }
-}
-
-/// What a corner cuts from a facet, as a multiple of its depth: the length of the cut times how far the nearest side of the corner is
-/// away at most, over depth². `d` goes from the roller's centre to the corner, `normal` from the wall into the pocket; the other side of
-/// the corner stands at a right angle to the wall.
-fn wedge(d: [f64; 2], normal: [f64; 2]) -> f64 {
-    let cosine = (d[0] * normal[0] + d[1] * normal[1]) / d[0].hypot(d[1]);
-    let sine = (1.0 - cosine * cosine).max(1e-6).sqrt();
-    let cosine = cosine.abs().max(1e-3);
-    // Between its sides, at the angles a and 90° − a to the facet, it is depth (cot a + tan a) long.
-    1.0 / (sine * cosine * (sine + cosine))
 }
 
 /// A boundary with what deviates from round.

@@ -2,7 +2,6 @@
 //! to them, and how they move on (THEORY §9.3, §9.4).
 
 use pulp::Simd;
-use stribeck_scene::scene::DampingFrame;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
@@ -190,10 +189,7 @@ impl Bearing {
     ) {
         let dt = self.time_step;
         let r = self.reduction.padded;
-        let h = match self.frame {
-            DampingFrame::RigidMotion => 0.0,
-            _ => 0.5 * self.alpha * dt,
-        };
+        let h = 0.5 * self.mode_alpha * dt;
         spent.external += 0.5 * dt * self.power(further, state);
         for (branch, stretch) in self.branches.iter().zip(&mut state.branches) {
             let e = (-dt / branch.relaxation_time).exp();

@@ -219,7 +219,7 @@ impl Bearing {
         } else {
             // The normal of the roller's facet.
             let n = [level * d[0] - tilt * d[1], level * d[1] + tilt * d[0]];
-            (n, self.corner(cage, cage.wedges[usize::from(t > 0.5)], depth), 0.0)
+            (n, cage.corners[usize::from(t > 0.5)].press(self.penalty, depth), 0.0)
         };
         // The cage's velocity at the foot.
         let arm = [rel[0] + d[0] * distance, rel[1] + d[1] * distance];
@@ -258,18 +258,5 @@ impl Bearing {
             moment: couple + cross([d[0] * distance, d[1] * distance]),
             on_cage: couple + cross(arm),
         })
-    }
-
-    /// Force, stiffness and stored energy of a corner of the cage that is `depth` deep in a facet: its own points, and those of the
-    /// roller in the `wedge` that it cuts from the facet. They hang on the depth alone, whose gradient is the facet's normal.
-    #[inline(always)]
-    fn corner(&self, cage: &Cage, wedge: f64, depth: f64) -> [f64; 3] {
-        let own = 0.5 * self.penalty * cage.corner;
-        let others = 0.25 * self.penalty * wedge * depth * depth;
-        [
-            own * depth + others,
-            own + 0.5 * self.penalty * wedge * depth,
-            depth * (0.5 * own * depth + others / 3.0),
-        ]
     }
 }

@@ -69,6 +69,8 @@ pub struct Reduction {
     pub load: Load,
     /// Forces of dampers on each mode by a unit velocity of every mode [1/s], row by row; empty without dampers.
     pub dampers: Vec<f64>,
+    /// The frame around springs, which moves as one piece.
+    pub frame: Option<Frame>,
     /// Strain energy of all bodies at the preload [J].
     pub strain: f64,
     /// Of roller and outer raceway.
@@ -100,6 +102,15 @@ pub struct Sensor {
     pub shape: Vec<f64>,
     /// Displacement (x, y) by a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
     pub residual: Vec<[f64; 2]>,
+}
+
+/// What moves as one piece beside an elastic ring.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// Its mass [kg].
+    pub mass: f64,
+    /// Shapes at its nodes [1/√kg]: x of all modes, then y.
+    pub shape: Vec<f64>,
 }
 
 /// The load of the preload, and what it does to the modes.
@@ -155,6 +166,13 @@ impl Reduction {
         let centre = place(&machine.rollers[0].centre);
         let structure_mass: f64 = nodes.structure.iter().map(|&n| machine.system.mass(n)).sum();
 
+        let frame = match scene.housing {
+            HousingScene::Springs(_) => machine.housing.and_then(|body| {
+                let mass = machine.system.nodes_of(body).map(|n| machine.system.mass(n)).sum::<f64>();
+                Some((mass, machine.system.nodes_of(body).next()?))
+            }),
+            _ => None,
+        };
         let mut parts = machine.system.into_parts();
         let strain = parts.dynamics.elastic_energy();
         let strain = strain.strain + strain.hourglass;
@@ -270,6 +288,8 @@ impl Reduction {
             }
             _ => Vec::new(),
         };
+        let frame = frame
+            .map(|(mass, node)| Frame { mass, shape: structure.shape_at(slot_of[node as usize], padded) });
 
         // The raceway without the dents of the rollers, which the local compliance makes anew.
         let on_raceway = slots(&nodes.outer);
@@ -427,6 +447,7 @@ impl Reduction {
             external,
             load,
             dampers,
+            frame,
             strain,
             outer_compliance,
             inner_compliance,
