@@ -112,7 +112,6 @@ mod tests {
                 }
                 expected += push[0].hypot(push[1]);
             }
-            println!("{:.0} µm: {:.4} of all points", 1e6 * deep, force / expected);
             assert!((force / expected - 1.0).abs() < TOLERANCE, "{deep}: {force} {expected}");
         }
     }

@@ -12,7 +12,7 @@ use stribeck_scene::scene::ModelScene;
 
 use self::variants::{Choice, choices};
 use crate::impulse::statistics::{Sample, ratio};
-use crate::table::number;
+use crate::table::{figures, number};
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet};
 
 /// Flags of `study run_time`.
@@ -287,7 +287,7 @@ fn table(sheet: &mut Sheet, rows: &[Row]) {
             name.clone(),
             row.choice.shows.to_owned(),
             row.starts.len().to_string(),
-            number(row.seconds, 2),
+            figures(row.seconds, 2),
             row.nanoseconds.map_or("–".to_owned(), |ns| number(ns, 1)),
             percent(row.force, 2),
             percent(row.events, 2),
@@ -328,7 +328,9 @@ fn answers(sheet: &mut Sheet, rows: &[Row], reference: &[Measured]) {
             sheet.value("answers", &asked, "seconds a millisecond", best.map(|row| row.seconds));
             cells.push(vec![
                 asked,
-                best.map_or("none of these".to_owned(), |row| format!("{} s per ms", number(row.seconds, 2))),
+                best.map_or("none of these".to_owned(), |row| {
+                    format!("{} s per ms", figures(row.seconds, 2))
+                }),
                 best.map_or("–".to_owned(), |row| row.choice.name.clone()),
             ]);
         }

@@ -129,6 +129,12 @@ pub(crate) fn number(value: f64, decimals: usize) -> String {
     format!("{value:.decimals$}").replace('-', "−")
 }
 
+/// A positive number with that many figures at least.
+pub(crate) fn figures(value: f64, figures: usize) -> String {
+    let before = value.log10().floor() as i64 + 1;
+    number(value, (figures as i64 - before).max(0) as usize)
+}
+
 fn quoted(text: &str) -> String {
     if text.contains([',', '"']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text.to_owned() }
 }
