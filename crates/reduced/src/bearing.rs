@@ -8,21 +8,21 @@ use stribeck_scene::{
     duty::Duty,
     geometry::Geometry,
     kinematics::Kinematics,
-    scene::{ContactMethod, ContactSurface, DampingFrame, RollerCopies, Scene},
+    scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
 };
 use stribeck_simd::lanes::{LANES, Number};
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
 
 use crate::{
+    cage::Cage,
     compliance::{Compliance, Curve, contact_length},
-    corner::Corner,
     error::Error,
     oil::Lubrication,
     outline::Outline,
     overlap::Sides,
     polygon::Polygon,
     reduction::{OVERLOAD, Reduction},
-    row::{Row, Rows, Single, in_single, largest_of},
+    row::{Row, Single, in_single, largest_of},
     seat::{STICKING, Springs},
     sensors::Sensors,
     state::State,
@@ -112,64 +112,6 @@ pub(crate) struct Track {
     pub(crate) bounds: Vec<f64>,
     /// Largest relative radius [m].
     pub(crate) relative: f64,
-}
-
-/// The cage as a rigid body with corners and walls.
-#[derive(Debug, Clone)]
-pub(crate) struct Cage {
-    pub(crate) mass: f64,
-    pub(crate) inertia: f64,
-    /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre of mass.
-    pub(crate) walls: Vec<[Wall; 2]>,
-    /// The same, of eight rollers side by side.
-    pub(crate) wall_rows: Vec<[WallRows; 2]>,
-    /// The inner and the outer end of each wall.
-    pub(crate) corners: [Corner; 2],
-}
-
-/// A wall from its inner to its outer end, with the normal that points into the pocket.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Wall {
-    pub(crate) inner: [f64; 2],
-    /// From the inner to the outer end [m], and the same over its square [1/m].
-    pub(crate) edge: [f64; 2],
-    pub(crate) per_length: [f64; 2],
-    pub(crate) normal: [f64; 2],
-}
-
-/// One wall of each of eight rollers: as of one.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct WallRows {
-    pub(crate) inner: Rows,
-    pub(crate) edge: Rows,
-    pub(crate) per_length: Rows,
-    pub(crate) normal: Rows,
-}
-
-impl WallRows {
-    /// Of eight rollers or fewer.
-    fn of(walls: &[[Wall; 2]]) -> [Self; 2] {
-        [0, 1].map(|side| {
-            let mut rows = Self::default();
-            for (lane, wall) in walls.iter().map(|both| both[side]).enumerate() {
-                for c in 0..2 {
-                    rows.inner[c][lane] = wall.inner[c];
-                    rows.edge[c][lane] = wall.edge[c];
-                    rows.per_length[c][lane] = wall.per_length[c];
-                    rows.normal[c][lane] = wall.normal[c];
-                }
-            }
-            rows
-        })
-    }
-}
-
-impl Wall {
-    fn new([a, b]: [[f64; 2]; 2], normal: [f64; 2]) -> Self {
-        let edge = [b[0] - a[0], b[1] - a[1]];
-        let square = edge[0] * edge[0] + edge[1] * edge[1];
-        Self { inner: a, edge, per_length: [edge[0] / square, edge[1] / square], normal }
-    }
 }
 
 impl Track {
@@ -440,53 +382,6 @@ impl Bearing {
                 .collect()
         };
         [hints(&self.outer, 0.0, 1.0), hints(&self.inner, state.shaft, -1.0)]
-    }
-}
-
-impl Cage {
-    fn new(
-        g: &Geometry,
-        pockets: &[usize],
-        [mass, inertia]: [f64; 2],
-        centre: [f64; 2],
-        scene: &Scene,
-    ) -> Option<Self> {
-        let cage = g.cage.as_ref()?;
-        let path = g.outer_race_radius - g.roller_radius;
-        let [inner, outer] = cage.walls(path, g.roller_radius);
-        let half = stribeck_scene::geometry::pocket_half_width(
-            inner,
-            outer,
-            path,
-            g.roller_radius + cage.pocket_clearance,
-        );
-        let walls: Vec<[Wall; 2]> = pockets
-            .iter()
-            .map(|&pocket| {
-                let (s, c) = g.pocket_angle(pocket).sin_cos();
-                let wall = |side: f64| {
-                    let end = |radius: f64| {
-                        let along = (radius * radius - half * half).sqrt();
-                        // Ahead of the pocket's axis, counter-clockwise, with side +1.
-                        [along * c - side * half * s - centre[0], along * s + side * half * c - centre[1]]
-                    };
-                    Wall::new([end(inner), end(outer)], [side * s, -side * c])
-                };
-                [wall(-1.0), wall(1.0)]
-            })
-            .collect();
-        let points = match scene.contact.method {
-            ContactMethod::Integrated => Some(scene.contact.points_per_facet),
-            ContactMethod::Collocated => None,
-        };
-        let rows = (1e3 * (outer - inner) / stribeck_bearing::assembly::CAGE_ELEMENT_MM).round().max(1.0);
-        // On the x axis, with the wall on the side of +y.
-        let corners = [inner, outer].map(|radius: f64| {
-            let along = (radius * radius - half * half).sqrt();
-            Corner::new([along - path, half], (outer - inner) / rows, points)
-        });
-        let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
-        Some(Self { mass, inertia, walls, wall_rows, corners })
     }
 }
 

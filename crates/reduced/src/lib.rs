@@ -11,7 +11,7 @@
 //! |---|---|
 //! | What does a program call? | `simulation.rs` |
 //! | What is kept of the finite elements? | `reduction.rs`, `structure.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
-//! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `start.rs` |
+//! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `cage.rs`, `start.rs` |
 //! | What changes in time? | `state.rs` |
 //! | What is one step? | `step.rs`; eight rollers as it takes them: `block.rs`, in rows of `row.rs`; its parts: `modes.rs`, `touch.rs`, `raceway.rs`, `lift.rs`, `pocket.rs` with `polygon.rs` and `corner.rs` |
 //! | What does oil do? | `oil.rs`; to rollers, modes and rings, `lift.rs` |
@@ -33,6 +33,7 @@ pub mod state;
 pub mod window;
 
 mod block;
+mod cage;
 mod corner;
 pub mod heard;
 mod lift;

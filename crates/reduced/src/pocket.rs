@@ -4,8 +4,9 @@ use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
-    bearing::{Bearing, Cage, Wall, WallRows},
+    bearing::Bearing,
     block::{Block, Walls},
+    cage::{Cage, Wall, WallRows},
     row::{Rows, lanes, load, of_one},
     state::Stored,
 };
