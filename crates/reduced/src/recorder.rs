@@ -4,7 +4,7 @@ use pulp::Scalar;
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::LANES;
 
-use crate::{bearing::Bearing, row::Row, sensors::Sound, state::State, step::Scratch};
+use crate::{bearing::Bearing, row::{Row, Rows}, sensors::Sound, state::State, step::Scratch};
 
 /// What the recorder carries from sample to sample.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -48,8 +48,13 @@ impl Bearing {
         for i in 0..self.rollers {
             row.extend([state.x[i], state.y[i], state.angle[i]]);
             let (sums, lane) = (&scratch.blocks[i / LANES].sums, i % LANES);
-            let kinds = if self.cage.is_some() { 3 } else { 2 };
-            row.extend(sums[..kinds].iter().flatten().map(|sum| sum[lane] / steps));
+            let mean = |sum: &Rows| [sum[0][lane] / steps, sum[1][lane] / steps];
+            let [outer, inner, cage] = sums;
+            row.extend(mean(outer));
+            row.extend(mean(inner));
+            if self.cage.is_some() {
+                row.extend(mean(cage));
+            }
             if let (Some(oil), Some(films)) = (&self.oil, &state.films) {
                 row.extend(oil.raceways.iter().zip(&films.at).map(|(race, films)| race.thickness(films, i)));
             }

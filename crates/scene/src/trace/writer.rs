@@ -147,7 +147,11 @@ impl TraceWriter {
                 format!("a row of {} values was pushed into {} channels", row.len(), self.names.len());
             return Err(Error::Trace { path: self.path.clone(), message });
         }
-        self.pending.extend(row.iter().flat_map(|value| value.to_le_bytes()));
+        let first = self.pending.len();
+        self.pending.resize(first + 8 * row.len(), 0);
+        for (bytes, value) in self.pending[first..].as_chunks_mut().0.iter_mut().zip(row) {
+            *bytes = value.to_le_bytes();
+        }
         self.rows += 1;
         if self.rows - self.rows_on_disk >= ROWS_PER_FLUSH { self.flush() } else { Ok(()) }
     }
