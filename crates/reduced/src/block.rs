@@ -74,11 +74,13 @@ pub(crate) struct Contacts {
     pub(crate) slip: Row,
     pub(crate) passive: [Row; 3],
     pub(crate) hints: [[u32; 2]; LANES],
-    /// Centre, its distance from that of the raceway, the direction to the contact, and the direction of the roller's vertex 0.
+    /// Centre, its distance from that of the raceway, the direction of the roller's vertex 0, and that to the contact, in the frame of the
+    /// roller, too.
     pub(crate) centre: Rows,
     pub(crate) distance: Row,
-    pub(crate) d: Rows,
     pub(crate) spin: Rows,
+    pub(crate) d: Rows,
+    pub(crate) own: Rows,
     /// Circle that nothing of the raceway stands out from there [m], and the depth between the circles around both.
     pub(crate) bound: Row,
     pub(crate) most: Row,

@@ -83,16 +83,17 @@ impl Bearing {
         let (q, v) = (&modes.q[..groups], &modes.v[..groups]);
         let zero = Vector::all(simd, 0.0);
         let (mut first, mut second) = ([zero; 4], [zero; 4]);
-        for n in 0..groups {
+        let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
+        for (((q, v), (ax, ay)), (bx, by)) in q.iter().zip(v).zip(ahead).zip(behind) {
             let mut at = 0;
             while at < LANES {
-                let (q, v) = (Vector::load(simd, &q[n], at), Vector::load(simd, &v[n], at));
-                let (x, y) = (ax[n].load(simd, at), ay[n].load(simd, at));
+                let (q, v) = (Vector::load(simd, q, at), Vector::load(simd, v, at));
+                let (x, y) = (ax.load(simd, at), ay.load(simd, at));
                 first[0] = x.times_plus(q, first[0]);
                 first[1] = y.times_plus(q, first[1]);
                 first[2] = x.times_plus(v, first[2]);
                 first[3] = y.times_plus(v, first[3]);
-                let (x, y) = (bx[n].load(simd, at), by[n].load(simd, at));
+                let (x, y) = (bx.load(simd, at), by.load(simd, at));
                 second[0] = x.times_plus(q, second[0]);
                 second[1] = y.times_plus(q, second[1]);
                 second[2] = x.times_plus(v, second[2]);
@@ -122,14 +123,15 @@ impl Bearing {
         let [first, second] = [place.share - 1.0, -place.share];
         let (fx, fy) = (Vector::all(simd, first * force[0]), Vector::all(simd, first * force[1]));
         let (sx, sy) = (Vector::all(simd, second * force[0]), Vector::all(simd, second * force[1]));
-        for n in 0..groups {
+        let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
+        for ((push, (ax, ay)), (bx, by)) in push.iter_mut().zip(ahead).zip(behind) {
             let mut at = 0;
             while at < LANES {
-                let here = ax[n].load(simd, at).times_plus(fx, Vector::load(simd, &push[n], at));
-                let here = ay[n].load(simd, at).times_plus(fy, here);
-                let there = bx[n].load(simd, at) * sx;
-                let there = by[n].load(simd, at).times_plus(sy, there);
-                (here + there).store(&mut push[n], at);
+                let here = ax.load(simd, at).times_plus(fx, Vector::load(simd, push, at));
+                let here = ay.load(simd, at).times_plus(fy, here);
+                let there = bx.load(simd, at) * sx;
+                let there = by.load(simd, at).times_plus(sy, there);
+                (here + there).store(push, at);
                 at += Vector::<S>::LEN;
             }
         }

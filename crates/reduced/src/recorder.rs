@@ -4,7 +4,13 @@ use pulp::Scalar;
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::LANES;
 
-use crate::{bearing::Bearing, row::{Row, Rows}, sensors::Sound, state::State, step::Scratch};
+use crate::{
+    bearing::Bearing,
+    row::{Row, Rows},
+    sensors::Sound,
+    state::State,
+    step::Scratch,
+};
 
 /// What the recorder carries from sample to sample.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

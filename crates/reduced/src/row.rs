@@ -144,24 +144,28 @@ impl Iterator for Lanes {
 
 /// The places of all bits that are set.
 #[inline(always)]
-pub(crate) fn bits(of: u128) -> Bits {
-    Bits(of)
+pub(crate) fn bits(of: u128) -> impl Iterator<Item = usize> {
+    [(of as u64, 0), ((of >> u64::BITS) as u64, u64::BITS)]
+        .into_iter()
+        .flat_map(|(half, first)| Bits { half, first })
 }
 
 /// See [`bits`].
-#[derive(Clone)]
-pub(crate) struct Bits(u128);
+struct Bits {
+    half: u64,
+    first: u32,
+}
 
 impl Iterator for Bits {
     type Item = usize;
 
     #[inline(always)]
     fn next(&mut self) -> Option<usize> {
-        if self.0 == 0 {
+        if self.half == 0 {
             return None;
         }
-        let place = self.0.trailing_zeros() as usize;
-        self.0 &= self.0 - 1;
-        Some(place)
+        let place = self.first + self.half.trailing_zeros();
+        self.half &= self.half - 1;
+        Some(place as usize)
     }
 }

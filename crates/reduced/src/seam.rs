@@ -53,12 +53,14 @@ impl Seam {
         found: &mut Overlap<Row>,
     ) -> bool {
         let all = |value: f64| Vector::all(simd, value);
-        let (zero, one) = (all(0.0), all(1.0));
+        let zero = all(0.0);
         let (shift, near, far) = (all(shift), all(-reach), all(reach));
         let (own, d) = ([all(sight.own[0]), all(sight.own[1])], [all(sight.d[0]), all(sight.d[1])]);
         let [cx, cy] = [all(sight.from[0]), all(sight.from[1])];
         let mut sum = Overlap::none(zero);
-        let (mut before, mut behind, mut middle, mut wrong) = (0, 0, 0, 0);
+        // All parts may lie on one side of what is looked for.
+        let every = (1 << Vector::<S>::LEN) - 1;
+        let (mut before, mut behind, mut middle, mut wrong) = (every, every, 0, 0);
         let mut at = 0;
         while at < LANES {
             for group in 0..self.groups {
@@ -70,18 +72,17 @@ impl Seam {
                     seen([own, d], [[x0, y0], [a0 - cx, b0 - cy]], [[x1, y1], [a1 - cx, b1 - cy]]);
                 let ends = [roller.from.max(raceway.from), roller.to.min(raceway.to)];
                 let [u1, u2] = ends;
-                wrong |= u2.choose_below(u1, one, zero).bits();
-                before |= near.choose_below(u1, zero, one).bits();
-                behind |= u2.choose_below(far, zero, one).bits();
-                let ahead = zero.choose_below(u2, one, zero);
-                middle |= zero.choose_below(u1, zero, ahead).bits() << at;
+                wrong |= u2.bits_below(u1);
+                before &= near.bits_below(u1);
+                behind &= u2.bits_below(far);
+                middle |= (zero.bits_below(u2) & !zero.bits_below(u1)) << at;
                 let present = Vector::load(simd, &self.present, at);
                 add_between(&mut sum, ends, roller, raceway, sides, shift, present);
             }
             at += Vector::<S>::LEN;
         }
         sum.store(found, 0);
-        wrong == 0 && before != 0 && behind != 0 && (middle >> self.middle) & 1 == 1
+        wrong == 0 && before != every && behind != every && (middle >> self.middle) & 1 == 1
     }
 
     /// Lists the parts anew, as far as to `reach` [m] to either side. None are left where a wall is among them or there are too many.

@@ -9,7 +9,7 @@ use crate::{
     block::Contacts,
     outline::View,
     overlap::{Overlap, Pair},
-    row::{Row, lanes, load, of_one},
+    row::{Row, lanes, load, of_one, store},
     seam::Sight,
     window::Window,
 };
@@ -69,7 +69,7 @@ impl Bearing {
         parts: &mut [Overlap<Row>; LANES],
     ) {
         let all = |value: f64| Vector::all(simd, value);
-        let (zero, one) = (all(0.0), all(1.0));
+        let zero = all(0.0);
         let outwards = all(track.outwards());
         let mut deep = 0;
         let mut at = 0;
@@ -80,10 +80,11 @@ impl Bearing {
             let bound = Vector::load(simd, &contacts.bound, at);
             let most = outwards.times_plus(distance - bound, Vector::load(simd, top, at));
             distance.store(&mut contacts.distance, at);
-            (x * per).store(&mut contacts.d[0], at);
-            (y * per).store(&mut contacts.d[1], at);
+            let d = [x * per, y * per];
+            store(d, &mut contacts.d, at);
+            store(turned_back(load(simd, &contacts.spin, at), d), &mut contacts.own, at);
             most.store(&mut contacts.most, at);
-            deep |= zero.choose_below(most, one, zero).bits() << at;
+            deep |= zero.bits_below(most) << at;
             at += Vector::<S>::LEN;
         }
         contacts.near = deep & present;
@@ -145,7 +146,7 @@ impl Bearing {
             contacts.next[lane] = next;
         }
         let mut at = 0;
-        let mut clear = 0;
+        let mut reaches = 0;
         while at < LANES {
             let (start, root) =
                 (Vector::load(simd, &contacts.start, at), Vector::load(simd, &contacts.root, at));
@@ -158,11 +159,11 @@ impl Bearing {
             shift.store(&mut contacts.shift, at);
             (half * root).times_plus(slope, g).store(&mut contacts.give, at);
             track.reach(depth).store(&mut contacts.reach, at);
-            clear |= zero.choose_below(depth, zero, all(1.0)).bits() << at;
+            reaches |= zero.bits_below(depth) << at;
             at += Vector::<S>::LEN;
         }
         // Where nothing would overlap at that force, the search begins without one.
-        for lane in lanes(clear & contacts.near) {
+        for lane in lanes(contacts.near & !reaches) {
             let [knot, first, slope, next] = track.curve.piece_at(0.0);
             (contacts.knot[lane], contacts.first[lane]) = (knot, first);
             (contacts.slope[lane], contacts.next[lane]) = (slope, next);
@@ -184,11 +185,10 @@ impl Bearing {
     ) -> u64 {
         let mut alone = 0;
         for lane in lanes(contacts.near) {
-            let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
-            let d = of_one(&contacts.d, lane);
+            let (centre, d) = (of_one(&contacts.centre, lane), of_one(&contacts.d, lane));
             let (shift, reach) = (contacts.shift[lane], contacts.reach[lane]);
             let seam = &mut contacts.seams[lane];
-            let sight = Sight { own: turned_back(spin, d), d, from: centre };
+            let sight = Sight { own: of_one(&contacts.own, lane), d, from: centre };
             for look in 0..2 {
                 if seam.overlap(simd, track.sides, &sight, shift, reach, &mut parts[lane]) {
                     break;
@@ -198,7 +198,7 @@ impl Bearing {
                         track,
                         rim: self.rim(first + lane),
                         centre,
-                        spin,
+                        spin: of_one(&contacts.spin, lane),
                         bound: track.bound,
                         before: 0.0,
                     };
@@ -324,6 +324,6 @@ impl Bearing {
 
 /// A direction in the roller's own frame: turned back by its spin.
 #[inline(always)]
-fn turned_back([c, s]: [f64; 2], d: [f64; 2]) -> [f64; 2] {
+fn turned_back<N: Number>([c, s]: [N; 2], d: [N; 2]) -> [N; 2] {
     [c * d[0] + s * d[1], c * d[1] - s * d[0]]
 }

@@ -52,7 +52,7 @@ impl Window {
             u1.store(&mut self.to, at);
             slope.store(&mut self.slope, at);
             (-slope).times_plus(u0, h0).store(&mut self.base, at);
-            rising |= all(0.0).choose_below(width, all(1.0), all(0.0)).bits() << at;
+            rising |= all(0.0).bits_below(width) << at;
             at += Vector::<S>::LEN;
         }
         rising == (1 << LANES) - 1
@@ -66,14 +66,13 @@ impl Window {
     /// The facet that holds u = `start`.
     #[inline(always)]
     fn first<S: Simd>(&self, simd: S, start: f64) -> usize {
-        let (start, one, zero) = (Vector::all(simd, start), Vector::all(simd, 1.0), Vector::all(simd, 0.0));
-        let mut behind = 0;
-        let mut at = 0;
+        let start = Vector::all(simd, start);
+        let (mut ahead, mut at) = (0, 0);
         while at < LANES {
-            behind += start.choose_below(Vector::load(simd, &self.to, at), zero, one).bits().count_ones();
+            ahead += start.bits_below(Vector::load(simd, &self.to, at)).count_ones();
             at += Vector::<S>::LEN;
         }
-        behind as usize
+        LANES - ahead as usize
     }
 
     #[inline(always)]

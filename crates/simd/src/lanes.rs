@@ -39,6 +39,9 @@ pub trait Number:
 
     /// Of flags: bit l is set where number l is one. A single number is number 0.
     fn bits(self) -> u64;
+
+    /// Bit l is set where number l is below that of `limit`.
+    fn bits_below(self, limit: Self) -> u64;
 }
 
 impl Number for f64 {
@@ -75,6 +78,11 @@ impl Number for f64 {
     #[inline(always)]
     fn bits(self) -> u64 {
         u64::from(self > 0.5)
+    }
+
+    #[inline(always)]
+    fn bits_below(self, limit: f64) -> u64 {
+        u64::from(self < limit)
     }
 }
 
@@ -368,14 +376,19 @@ impl<S: Simd> Number for Vector<S> {
 
     #[inline(always)]
     fn bits(self) -> u64 {
+        self.constant(0.5).bits_below(self)
+    }
+
+    #[inline(always)]
+    fn bits_below(self, limit: Self) -> u64 {
         const WEIGHTS: [f64; LANES] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0];
-        let set = self.simd.less_than_f64s(self.simd.splat_f64s(0.5), self.lanes);
+        let below = self.simd.less_than_f64s(self.lanes, limit.lanes);
         // A mask register holds these very bits.
-        if let &[bits] = pulp::bytemuck::bytes_of(&set) {
+        if let &[bits] = pulp::bytemuck::bytes_of(&below) {
             return u64::from(bits);
         }
         let weights = Self::load(self.simd, &WEIGHTS, 0);
-        self.simd.reduce_sum_f64s((self * weights).lanes) as u64
+        self.choose_below(limit, weights, self.constant(0.0)).sum() as u64
     }
 }
 
@@ -412,6 +425,8 @@ mod tests {
             for bits in 0..1_u64 << len {
                 let ones = Vector::ones(simd, bits);
                 assert_eq!(ones.bits(), bits, "{len} lanes");
+                assert_eq!(Vector::all(simd, 0.0).bits_below(ones), bits, "{len} lanes");
+                assert_eq!(ones.bits_below(ones), 0, "{len} lanes");
                 assert_eq!(ones.sum(), f64::from(bits.count_ones()));
             }
             len

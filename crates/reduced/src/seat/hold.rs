@@ -37,7 +37,6 @@ const FELT: f64 = 0.2;
 /// What is looked up of the seat in every step, in rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Springs {
-    panels: usize,
     padded: usize,
     /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
     by_mode: Vec<Single>,
@@ -83,6 +82,8 @@ pub(crate) struct Answers {
     rollers: Vec<Answer>,
     /// Tensions by a unit force of each, roller by roller.
     by: Vec<Row>,
+    /// Springs that move, and by how much: room for a list.
+    moves: Vec<(usize, f64)>,
 }
 
 /// What one of them does.
@@ -162,6 +163,18 @@ fn add_all<S: Simd, R: AsMut<[f64]>, N: Numbers>(
     }
 }
 
+/// Lists springs, a bit for each, with how far each of them moves, so that they can be gone through several times.
+#[inline(always)]
+fn listed(
+    list: &mut Vec<(usize, f64)>,
+    moved: u128,
+    by: impl Fn(usize) -> f64,
+) -> impl Iterator<Item = (usize, f64)> + Clone {
+    list.clear();
+    list.extend(bits(moved).map(|spring| (spring, by(spring))));
+    list.iter().copied()
+}
+
 /// Sum of the products of some rows with others.
 #[inline(always)]
 fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
@@ -196,7 +209,6 @@ impl Springs {
         let give = seat.give(0);
         let mean = seat.pressed.iter().sum::<f64>() / seat.panels as f64;
         Self {
-            panels: seat.panels,
             padded: seat.padded,
             by_mode,
             by_spring: in_single(&mut by_spring),
@@ -244,7 +256,7 @@ impl Springs {
         let simd = Scalar::new();
         let (mut tension, mut answers) = (vec![Row::default(); self.rows()], Answers::default());
         self.answer(simd, hold, &hold.pressed, &mut answers);
-        self.pull(simd, hold, 0, q, &answers, &mut tension);
+        self.pull(simd, hold, 0, q, &mut answers, &mut tension);
         self.settle(simd, hold, 0, &mut tension, &mut answers, self.at_rest);
         hold.before.copy_from_slice(&hold.open);
     }
@@ -286,15 +298,14 @@ impl Springs {
     /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m], in parts to be summed.
     #[inline(always)]
     pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [Vector<S>; 2] {
-        let groups = self.rows();
-        let ends = self.ends(facet);
+        let [first, second] = self.ends(facet);
         let mut sums = [Vector::all(simd, 0.0); 2];
-        for (n, open) in hold.open.as_chunks::<LANES>().0.iter().enumerate().take(groups) {
+        for ((first, second), open) in first.iter().zip(second).zip(hold.open.as_chunks::<LANES>().0) {
             let mut at = 0;
             while at < LANES {
                 let open = Vector::load(simd, open, at);
-                sums[0] = ends[0][n].load(simd, at).times_plus(open, sums[0]);
-                sums[1] = ends[1][n].load(simd, at).times_plus(open, sums[1]);
+                sums[0] = first.load(simd, at).times_plus(open, sums[0]);
+                sums[1] = second.load(simd, at).times_plus(open, sums[1]);
                 at += Vector::<S>::LEN;
             }
         }
@@ -329,7 +340,7 @@ impl Springs {
     /// that have moved by that, a bit for each.
     #[inline(always)]
     fn go_on<S: Simd>(&self, simd: S, hold: &mut Hold) -> u128 {
-        let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
+        let zero = Vector::all(simd, 0.0);
         let mut moved = 0;
         for at in (0..2 * self.padded).step_by(Vector::<S>::LEN) {
             let (now, before) = (Vector::load(simd, &hold.open, at), Vector::load(simd, &hold.before, at));
@@ -340,7 +351,7 @@ impl Springs {
             let by = next - now;
             now.store(&mut hold.before, at);
             next.store(&mut hold.open, at);
-            moved |= u128::from(zero.choose_below(by.max(-by), one, zero).bits()) << at;
+            moved |= u128::from(zero.bits_below(by.max(-by))) << at;
         }
         moved
     }
@@ -359,10 +370,11 @@ impl Springs {
             let first = answers.by.len();
             answers.by.resize(first + groups, Row::default());
             let gaps = hold.open.as_chunks::<LANES>().0;
-            for ((n, by), gap) in answers.by[first..].iter_mut().enumerate().zip(gaps) {
+            let both = ends[0].iter().zip(ends[1]);
+            for ((by, gap), (ahead, behind)) in answers.by[first..].iter_mut().zip(gaps).zip(both) {
                 let mut at = 0;
                 while at < LANES {
-                    let (ahead, behind) = (ends[0][n].load(simd, at), ends[1][n].load(simd, at));
+                    let (ahead, behind) = (ahead.load(simd, at), behind.load(simd, at));
                     let between = ahead.times_plus(a, behind * b);
                     given = Vector::load(simd, gap, at).times_plus(between, given);
                     between.store(by, at);
@@ -384,7 +396,7 @@ impl Springs {
     /// Lets rollers answer to how far the seat has given way by now.
     #[inline(always)]
     fn press_again<S: Simd>(&self, simd: S, hold: &Hold, tension: &mut [Row], answers: &mut Answers) {
-        let Answers { rollers, by } = answers;
+        let Answers { rollers, by, .. } = answers;
         let felt =
             rollers.iter_mut().zip(by.chunks_exact(self.rows())).filter(|(roller, _)| roller.stiffness > 0.0);
         for (roller, by) in felt {
@@ -405,7 +417,7 @@ impl Springs {
         hold: &Hold,
         moved: u128,
         q: &[f64],
-        answers: &Answers,
+        answers: &mut Answers,
         tension: &mut [Row],
     ) {
         let lost = hold.lost.as_chunks::<LANES>().0;
@@ -421,8 +433,8 @@ impl Springs {
         add_all(simd, tension, &self.by_mode, modes);
         let rollers = answers.rollers.iter().map(|roller| roller.force).enumerate();
         add_all(simd, tension, &answers.by, rollers);
-        let springs = bits(moved).map(|spring| (spring, hold.before[spring] - hold.open[spring]));
-        add_all(simd, tension, &self.stiffness, springs);
+        let moves = listed(&mut answers.moves, moved, |spring| hold.before[spring] - hold.open[spring]);
+        add_all(simd, tension, &self.stiffness, moves);
     }
 
     /// Passes over the panels until no tension would change any more, some springs having `moved` already, a bit for each; returns the heat
@@ -440,7 +452,8 @@ impl Springs {
         // Every other panel at once: neighbours see what those between them have done.
         let mut quiet = 0;
         for half in 0..2 * passes.most {
-            let (these, far) = self.let_go(simd, hold, tension, &EVERY_OTHER[half % 2], passes.still);
+            let (these, far) =
+                self.let_go(simd, hold, tension, answers, &EVERY_OTHER[half % 2], passes.still);
             moved |= these;
             quiet = if far { 0 } else { quiet + 1 };
             if half % 2 == 1 {
@@ -450,11 +463,18 @@ impl Springs {
                 break;
             }
         }
-        self.take_along(simd, hold, moved);
-        let along = self.padded..self.padded + self.panels;
-        let slipped = hold.open[along.clone()].iter().zip(&hold.before[along.clone()]);
-        let held_by = tension.iter().flat_map(|row| row.iter()).skip(along.start);
-        slipped.zip(held_by).map(|((open, before), tension)| tension * (open - before)).sum()
+        self.take_along(simd, hold, &mut answers.moves, moved);
+        let mut heat = Vector::all(simd, 0.0);
+        let slips = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
+        for (tension, (open, before)) in tension.iter().zip(slips).skip(self.padded / LANES) {
+            let mut at = 0;
+            while at < LANES {
+                let slip = Vector::load(simd, open, at) - Vector::load(simd, before, at);
+                heat = slip.times_plus(Vector::load(simd, tension, at), heat);
+                at += Vector::<S>::LEN;
+            }
+        }
+        heat.sum()
     }
 
     /// Lets those of some panels that pull open, and those slip that friction does not hold, all at once. Returns which springs have moved,
@@ -465,11 +485,12 @@ impl Springs {
         simd: S,
         hold: &mut Hold,
         tension: &mut [Row],
+        answers: &mut Answers,
         these: &Row,
         still: f64,
     ) -> (u128, bool) {
         let all = |value: f64| Vector::all(simd, value);
-        let (zero, one, friction) = (all(0.0), all(1.0), all(self.friction));
+        let (zero, friction) = (all(0.0), all(self.friction));
         let groups = self.padded / LANES;
         let (mut moved, mut far) = (0_u128, 0);
         let mut changes = [0.0; u128::BITS as usize];
@@ -497,27 +518,27 @@ impl Springs {
                 (was + slips).store(&mut hold.open, LANES * along + at);
                 (-opens).store(&mut changes, LANES * across + at);
                 (-slips).store(&mut changes, LANES * along + at);
-                let opening = zero.choose_below(opens.max(-opens), one, zero).bits();
-                let slipping = zero.choose_below(slips.max(-slips), one, zero).bits();
+                let opening = zero.bits_below(opens.max(-opens));
+                let slipping = zero.bits_below(slips.max(-slips));
                 moved |= u128::from(opening) << (LANES * across + at);
                 moved |= u128::from(slipping) << (LANES * along + at);
-                far |= all(still).choose_below(most, one, zero).bits();
+                far |= all(still).bits_below(most);
                 at += Vector::<S>::LEN;
             }
         }
-        let springs = bits(moved).map(|spring| (spring, changes[spring]));
-        add_all(simd, tension, &self.stiffness, springs);
+        let moves = listed(&mut answers.moves, moved, |spring| changes[spring]);
+        add_all(simd, tension, &self.stiffness, moves);
         (moved, far != 0)
     }
 
     /// What follows from the springs that have opened and slipped in this step, a bit for each: what all tensions have lost, and what is done
     /// to the modes.
     #[inline(always)]
-    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moved: u128) {
+    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moves: &mut Vec<(usize, f64)>, moved: u128) {
         let Hold { open, before, lost, push, .. } = hold;
-        let changes = bits(moved).map(|spring| (spring, open[spring] - before[spring]));
-        add_all(simd, lost.as_chunks_mut::<LANES>().0, &self.stiffness, changes.clone());
-        add_all(simd, push.as_chunks_mut::<LANES>().0, &self.by_spring, changes);
+        let moves = listed(moves, moved, |spring| open[spring] - before[spring]);
+        add_all(simd, lost.as_chunks_mut::<LANES>().0, &self.stiffness, moves.clone());
+        add_all(simd, push.as_chunks_mut::<LANES>().0, &self.by_spring, moves);
     }
 
     /// Energy of the seat beyond that of one that holds, less the work of rollers [J].
@@ -580,7 +601,7 @@ mod tests {
         let mut tension = vec![Row::default(); springs.rows()];
         let mut answers = Answers::default();
         let moved = springs.go_on(Scalar::new(), hold);
-        springs.pull(Scalar::new(), hold, moved, &all, &answers, &mut tension);
+        springs.pull(Scalar::new(), hold, moved, &all, &mut answers, &mut tension);
         let heat = springs.settle(Scalar::new(), hold, moved, &mut tension, &mut answers, springs.in_step);
         [
             heat,
