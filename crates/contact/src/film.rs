@@ -29,8 +29,9 @@ const LOOK_EVERY: u64 = 16;
 /// Steps between two looks at a film that is too thick to push.
 const REST: u64 = 128;
 
-/// Looks over which the speed of rolling is taken.
+/// Looks over which the speed of rolling is taken, and the shortest time [s]: nodes that shake move the nearest places to and fro.
 const SPEED_EVERY: u64 = 4;
+const SPEED_OVER: f64 = 4e-6;
 
 /// A round body on a surface, with oil between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -302,11 +303,12 @@ impl Film {
         } else if m.layer.is_none() {
             (m.layer, begins) = (Some(Layer::at(gap)), true);
         }
-        if begins || m.layer.is_none() || m.speed_step + REST < at.step {
+        let steps = at.step.saturating_sub(m.speed_step);
+        let time = at.dt * steps as f64;
+        if begins || m.layer.is_none() || m.next_look + REST < at.step {
             (m.speed_places, m.speed_step, m.swept) = (m.places, at.step, [0.0; 2]);
-        } else if at.step >= m.speed_step + LOOK_EVERY * SPEED_EVERY {
+        } else if steps >= LOOK_EVERY * SPEED_EVERY && time >= SPEED_OVER {
             // The nearest places sweep over both surfaces at the speeds with which these draw oil in.
-            let time = at.dt * (at.step - m.speed_step) as f64;
             m.swept = [0, 1].map(|i| m.places[i].since(both[i], m.speed_places[i]) / time);
             m.speed = 0.5 * (m.swept[1] - m.swept[0]);
             (m.speed_places, m.speed_step) = (m.places, at.step);
