@@ -23,6 +23,10 @@ use crate::words::significant;
 pub const FROM_S: f64 = 1e-3;
 /// Forces are means over this time [s], a low pass that is 3 dB down at 1.8 kHz.
 pub const MEAN_S: f64 = 0.25e-3;
+/// A record must hold so many means …
+const LEAST_MEANS: usize = 4;
+/// … and be so long [s].
+pub const LEAST_S: f64 = FROM_S + LEAST_MEANS as f64 * MEAN_S;
 /// Third octaves, as steps of a third from 1 kHz: 500 Hz to 10 kHz.
 const THIRDS: std::ops::RangeInclusive<i32> = -3..=10;
 /// Samples of the full model that are no farther apart than this leave its third octaves as they are [s]. Nodes of the seat ring above
@@ -310,7 +314,7 @@ impl Side {
         let from =
             (together * ((FROM_S / interval_s - 1e-9).ceil() as usize).saturating_sub(1)).min(record.len());
         let width = together * (MEAN_S / interval_s).round().max(1.0) as usize;
-        if record.len() - from < 4 * width {
+        if record.len() - from < LEAST_MEANS * width {
             return Err(Error::NoSignal(format!(
                 "the record of `{}` ends {:.2} ms after the start; models are compared from {:.0} ms on",
                 run.scene.name,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use stribeck_analysis::agreement::{Agreement, FINE_S, Row};
+use stribeck_analysis::agreement::{Agreement, FINE_S, FROM_S, LEAST_S, Row};
 use stribeck_analysis::report;
 use stribeck_scene::ensemble::{folder_name, start};
 use stribeck_scene::run_dir::{Run, State, check_folder};
@@ -47,6 +47,15 @@ const MARKS: [&str; 3] = ["validation.json", "full/start-001", "reduced/start-00
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(Some(&options.scene), &options.set)?;
+    if 1e-3 * scene.solver.duration_ms < LEAST_S {
+        bail!(
+            "`solver.duration_ms` is {}; at least {} to compare models, which is done from {} ms on. Take a longer run: \
+             --set solver.duration_ms=30",
+            scene.solver.duration_ms,
+            1e3 * LEAST_S,
+            1e3 * FROM_S
+        );
+    }
     let models = models(&scene)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(format!("{}-validation", scene.name)));
     check_folder(&out, &MARKS)?;
