@@ -32,8 +32,9 @@ const THIRDS: std::ops::RangeInclusive<i32> = -3..=10;
 /// Samples of the full model that are no farther apart than this leave its third octaves as they are [s]. Nodes of the seat ring above
 /// 50 kHz, and the mean over an interval of 10 µs folds a part of that down (THEORY §9.1).
 pub const FINE_S: f64 = 2e-6;
-/// Bins that a third octave must hold.
+/// Bins that a third octave must hold, and its width over its middle.
 const LEAST_BINS: f64 = 3.0;
+const WIDTH: f64 = 0.23;
 /// Waveforms are compared below these frequencies [Hz], over so many samples at most.
 const BELOW_HZ: [f64; 2] = [500.0, 2000.0];
 const WAVEFORM: usize = 50_000;
@@ -248,6 +249,14 @@ impl Agreement {
         let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
         rows.extend(events(&sides));
         let sensors = octaves(&sides);
+        if sides[0][0].centres_hz.is_empty() {
+            let long_enough_ms = |step: i32| 1e3 * (FROM_S + LEAST_BINS / (WIDTH * middle_hz(step)));
+            notes.push(format!(
+                "third octaves are compared on records of {:.1} ms at least, all of them of {:.0} ms",
+                long_enough_ms(*THIRDS.end()),
+                long_enough_ms(*THIRDS.start())
+            ));
+        }
         rows.extend(sensors.iter().filter_map(Octaves::row));
         let lines: Vec<Row> = (0..LINES).filter_map(|n| line(n, &sides)).collect();
         if lines.is_empty() {
@@ -410,8 +419,13 @@ fn correlation(a: &[f64], b: &[f64], below_hz: f64, rate_hz: f64) -> Option<f64>
 /// Middles of the third octaves [Hz] that a record of this length and rate holds.
 fn centres(samples: usize, rate_hz: f64) -> Vec<f64> {
     let grid_hz = rate_hz / samples as f64;
-    let all = THIRDS.map(|n| 1000.0 * (f64::from(n) / 3.0).exp2());
-    all.filter(|hz| hz * 0.23 >= LEAST_BINS * grid_hz && 1.13 * hz < 0.5 * rate_hz).collect()
+    let all = THIRDS.map(middle_hz);
+    all.filter(|hz| hz * WIDTH >= LEAST_BINS * grid_hz && 1.13 * hz < 0.5 * rate_hz).collect()
+}
+
+/// The middle of a third octave, so many thirds above 1 kHz [Hz].
+fn middle_hz(step: i32) -> f64 {
+    1000.0 * (f64::from(step) / 3.0).exp2()
 }
 
 /// Mean square in third octaves, of what the means over a sampling interval were taken of.
@@ -538,7 +552,9 @@ fn peaks(sides: &[[Side; 2]]) -> Vec<Peak> {
 }
 
 fn octaves(sides: &[[Side; 2]]) -> Vec<Octaves> {
-    let Some([first, _]) = sides.first() else { return Vec::new() };
+    let Some([first, _]) = sides.first().filter(|[full, _]| !full.centres_hz.is_empty()) else {
+        return Vec::new();
+    };
     let n = sides.len() as f64;
     let mut all = Vec::new();
     for (at, (sensor, powers)) in first.powers.iter().enumerate() {

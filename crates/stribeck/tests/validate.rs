@@ -170,6 +170,19 @@ fn refuses_scenes_that_the_reduced_model_cannot_have() {
     assert!(!desk.join("runs").exists());
 }
 
+/// Its page had plots without a line in them.
+#[test]
+fn issue_a_record_that_holds_no_third_octaves_says_so() {
+    let desk = Scratch::create("validate-short");
+    fs::write(desk.join("scene.ron"), SCENE).unwrap();
+    let words = ["validate", "scene.ron", "--set=solver.duration_ms=2.0", "--starts=1", "--threads=2"];
+    let short = run(&desk, &words);
+    assert!(short.status.success(), "{}", said(&short));
+    says(&short, &["third octaves are compared on records of 2.3 ms at least, all of them of 27 ms"]);
+    let page = fs::read_to_string(desk.join("runs/coarse-validation/report.html")).unwrap();
+    assert!(!page.contains("Third octaves at"));
+}
+
 #[test]
 fn refuses_to_compare_a_run_that_diverged() {
     let desk = Scratch::create("validate-diverged");
