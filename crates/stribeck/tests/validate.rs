@@ -160,9 +160,9 @@ fn fivefold(from: &std::path::Path, to: &std::path::Path) -> Run {
 fn refuses_scenes_that_the_reduced_model_cannot_have() {
     let desk = Scratch::create("validate-refused");
     fs::write(desk.join("scene.ron"), SCENE).unwrap();
-    let oil = run(&desk, &["validate", "scene.ron", "--set", "film=Some(())"]);
-    assert!(!oil.status.success());
-    says(&oil, &["film"]);
+    let sudden = run(&desk, &["validate", "scene.ron", "--set", "solver.start=sudden"]);
+    assert!(!sudden.status.success());
+    says(&sudden, &["`solver.start` is `sudden`", "the reduced model"]);
     let short = run(&desk, &["validate", "scene.ron", "--set", "solver.duration_ms=1.9", "--starts=1"]);
     assert!(!short.status.success());
     says(&short, &["solver.duration_ms", "1.9", "at least 2"]);

@@ -453,7 +453,7 @@ impl Springs {
         let mut quiet = 0;
         for half in 0..2 * passes.most {
             let (these, far) =
-                self.let_go(simd, hold, tension, answers, &EVERY_OTHER[half % 2], passes.still);
+                self.let_go(simd, hold, tension, &mut answers.moves, &EVERY_OTHER[half % 2], passes.still);
             moved |= these;
             quiet = if far { 0 } else { quiet + 1 };
             if half % 2 == 1 {
@@ -485,7 +485,7 @@ impl Springs {
         simd: S,
         hold: &mut Hold,
         tension: &mut [Row],
-        answers: &mut Answers,
+        moves: &mut Vec<(usize, f64)>,
         these: &Row,
         still: f64,
     ) -> (u128, bool) {
@@ -526,7 +526,7 @@ impl Springs {
                 at += Vector::<S>::LEN;
             }
         }
-        let moves = listed(&mut answers.moves, moved, |spring| changes[spring]);
+        let moves = listed(moves, moved, |spring| changes[spring]);
         add_all(simd, tension, &self.stiffness, moves);
         (moved, far != 0)
     }
