@@ -40,10 +40,16 @@ pub struct Options {
     /// Folder of the runs and of the page [default: runs/NAME-validation]; the same command goes on with what is there
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Folder of the runs of the full model, for example that of another validation: other modes or another step need no other ones.
+    /// Those that are missing or too short are made there [default: `full` in the folder of the page]
+    #[arg(long, value_name = "DIR")]
+    full: Option<PathBuf>,
 }
 
 /// By these a folder is known to be that of a validation, also of one that was interrupted.
 const MARKS: [&str; 3] = ["validation.json", "full/start-001", "reduced/start-001"];
+/// By this the folder of its runs of one model.
+const MARK: &str = "start-001";
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(Some(&options.scene), &options.set)?;
@@ -59,8 +65,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let models = models(&scene)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(format!("{}-validation", scene.name)));
     check_folder(&out, &MARKS)?;
+    if let Some(full) = &options.full {
+        check_folder(full, &[MARK])?;
+    }
+    let folders = [options.full.clone().unwrap_or_else(|| out.join("full")), out.join("reduced")];
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
-    let due = due(&out, &models, options)?;
+    let due = due(&folders, &models, options)?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
     eprintln!(
         "{}: {} starts of {} ms by both models, {} runs to make, {} → {}",
@@ -74,15 +84,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let shop = Shop::new("run", &due, jobs, &interrupt);
     shop.run(&|_, _| {});
-    let left = self::due(&out, &models, options)?.len();
+    let left = self::due(&folders, &models, options)?.len();
     if left > 0 {
         eprintln!("{left} runs are not at their end; the same command goes on with them");
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let mut pairs = Vec::new();
     for number in 1..=usize::from(options.starts) {
-        let read = |model: &str| -> Result<Run> {
-            let folder = folder(&out, model, number);
+        let read = |folder: &Path| -> Result<Run> {
+            let folder = folder.join(folder_name(number));
             let run = Run::read(&folder)?;
             if run.info.status != Status::Complete {
                 let why = run.info.stop_reason.as_deref().unwrap_or("it was stopped");
@@ -90,9 +100,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             }
             Ok(run)
         };
-        pairs.push([read(models[0].0)?, read(models[1].0)?]);
+        pairs.push([read(&folders[0])?, read(&folders[1])?]);
     }
-    let agreement = Agreement::of(&models[1].1, &pairs)?;
+    let agreement = Agreement::of(&models[1], &pairs)?;
     report::write_agreement(&out, &agreement)?;
     print(&agreement);
     say!("page: {}", shown(&out.join("report.html")));
@@ -102,9 +112,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 /// Samples of a run of the full model, at most: 140 MB, a quarter of a second.
 const SAMPLES: f64 = 131_072.0;
 
-/// The scene by the full and by the reduced model, with the names of their folders. The full one is sampled more often, unless it is long,
-/// and makes no pictures.
-fn models(scene: &Scene) -> Result<[(&'static str, Scene); 2]> {
+/// The scene by the full and by the reduced model. The full one is sampled more often, unless it is long, and makes no pictures.
+fn models(scene: &Scene) -> Result<[Scene; 2]> {
     let by = |model: ModelScene| -> Result<Scene> {
         let scene = Scene { model, ..scene.clone() };
         scene.validate()?;
@@ -120,25 +129,26 @@ fn models(scene: &Scene) -> Result<[(&'static str, Scene); 2]> {
     let parts = (1e-6 * interval_us / FINE_S - 1e-9).ceil().min((SAMPLES / samples).floor()).max(1.0);
     full.output.interval_us = interval_us / parts;
     full.output.frames = None;
-    Ok([("full", full), ("reduced", by(reduced)?)])
-}
-
-fn folder(out: &Path, model: &str, number: usize) -> PathBuf {
-    out.join(model).join(folder_name(number))
+    Ok([full, by(reduced)?])
 }
 
 /// Runs that are not at their end, a pair after the other.
-fn due(out: &Path, models: &[(&'static str, Scene); 2], options: &Options) -> Result<Vec<Due>> {
+fn due(folders: &[PathBuf; 2], models: &[Scene; 2], options: &Options) -> Result<Vec<Due>> {
     let mut due: Vec<Due> = Vec::new();
     for number in 1..=usize::from(options.starts) {
-        for (model, scene) in models {
+        for (folder, scene) in folders.iter().zip(models) {
             let scene = start(scene, options.seed, number);
-            let folder = folder(out, model, number);
+            let folder = folder.join(folder_name(number));
             match State::of(&folder, &scene) {
                 State::Done => {}
                 State::Other => bail!(
-                    "`{}` holds a run of another scene, seed or duration: give another folder with `--out`, or move it away",
-                    shown(&folder)
+                    "`{}` holds a run of another scene, seed or duration: give another folder with `{}`, or move it away",
+                    shown(&folder),
+                    if folder.starts_with(&folders[0]) && options.full.is_some() {
+                        "--full"
+                    } else {
+                        "--out"
+                    }
                 ),
                 State::New | State::Begun => due.push(Due { number: due.len() + 1, scene, folder }),
             }

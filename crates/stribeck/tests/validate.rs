@@ -57,6 +57,20 @@ fn example_both_models_from_the_same_starts() {
     assert!(!other.status.success());
     says(&other, &["holds a run of another scene, seed or duration"]);
 
+    // Other modes are compared with the runs of the full model that are there.
+    let fewer = ["--set=model.modes_khz=10", "--full=runs/coarse-validation/full", "--out=runs/fewer"];
+    let fewer = run(&desk, &[&words[..], &fewer].concat());
+    assert!(fewer.status.success(), "{}", said(&fewer));
+    says(&fewer, &["2 runs to make", "forces on the rollers"]);
+    assert!(!desk.join("runs/fewer/full").exists());
+    let lighter =
+        ["--set=operation.load_n=40000", "--full=runs/coarse-validation/full", "--out=runs/lighter"];
+    let lighter = run(&desk, &[&words[..], &lighter].concat());
+    assert!(!lighter.status.success());
+    says(&lighter, &["full/start-001", "another scene, seed or duration", "`--full`"]);
+    fs::remove_dir_all(desk.join("runs/fewer")).unwrap();
+    fs::remove_dir_all(desk.join("runs/lighter")).unwrap();
+
     // A reduced run beside it says what is known of its error.
     let near = ["simulate", "scene.ron", "--set", "operation.load_n=45000", "--out=runs/near", "--threads=2"];
     let near = run(&desk, &near);

@@ -20,6 +20,7 @@ mod kills;
 mod long;
 mod noise;
 mod paper;
+mod reduced;
 mod rig;
 mod run_time;
 mod runner;
@@ -63,6 +64,8 @@ pub enum Study {
     Loop(closed_loop::Options),
     /// Simulated spalls of known length through `stribeck analyse`: whether it says how long they are
     Spalls(spalls::Options),
+    /// How far the reduced bearing is from the full one, scene by scene
+    Reduced(reduced::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
 }
@@ -85,6 +88,7 @@ impl Study {
             Self::Atlas(options) => atlas::run(options, host),
             Self::Loop(options) => closed_loop::run(options, host),
             Self::Spalls(options) => spalls::run(options, host),
+            Self::Reduced(options) => reduced::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
         }
     }

@@ -37,6 +37,18 @@ impl Flags {
     pub(crate) fn wants(&self, name: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|text| name.contains(text.as_str()))
     }
+
+    /// Whether tables alone are wanted.
+    pub(crate) fn runs_nothing(&self) -> bool {
+        self.tables_only
+    }
+
+    /// The same for a command that runs several scenes itself.
+    pub(crate) fn of_a_command(&self) -> Vec<String> {
+        let jobs = if self.jobs > 1 { Some(format!("--jobs={}", self.jobs)) } else { None };
+        let threads = self.threads.or((self.jobs > 1).then_some(self.jobs)).map(|n| format!("--threads={n}"));
+        jobs.into_iter().chain(threads).collect()
+    }
 }
 
 /// A scene and what is changed in it.
