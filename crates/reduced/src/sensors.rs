@@ -67,6 +67,9 @@ impl Sensors {
                 by_gap.extend(row_of(&mut of(panel).map(|heard| -seat.across[panel] * heard)));
                 by_tension.extend(row_of(&mut of(seat.padded + panel)));
             }
+            for table in [&mut by_gap, &mut by_tension] {
+                table.resize(rows * seat.padded, Row::default());
+            }
         }
         Self { rows, by_mode: by_mode.collect(), by_vertex: by_vertex.collect(), by_gap, by_tension }
     }
@@ -99,11 +102,14 @@ impl Sensors {
                     behind = of(&self.by_vertex, second).times_plus(all(of_second), behind);
                 }
                 if let Some(Hold { open, .. }) = &state.seat {
-                    let panels = self.by_gap.len() / self.rows;
-                    let along = tension[open.len() / (2 * LANES)..].iter().flat_map(|row| row.iter());
-                    for (panel, (open, along)) in open.iter().zip(along).take(panels).enumerate() {
-                        by_gaps = of(&self.by_gap, panel).times_plus(all(*open), by_gaps);
-                        by_tensions = of(&self.by_tension, panel).times_plus(all(*along), by_tensions);
+                    let across = open.as_chunks::<LANES>().0;
+                    let along = &tension[across.len() / 2..];
+                    for (eight, (across, along)) in across.iter().zip(along).enumerate() {
+                        for (lane, (open, along)) in across.iter().zip(along.iter()).enumerate() {
+                            let panel = LANES * eight + lane;
+                            by_gaps = of(&self.by_gap, panel).times_plus(all(*open), by_gaps);
+                            by_tensions = of(&self.by_tension, panel).times_plus(all(*along), by_tensions);
+                        }
                     }
                 }
                 ((ahead + behind) + (by_gaps + by_tensions)).store(beyond, at);
