@@ -196,9 +196,9 @@ impl Bearing {
             }
             _ => Vec::new(),
         };
-        let cage = reduction
-            .cage
-            .map(|([mass, inertia], centre)| Cage::new(&g, &pockets, [mass, inertia], centre, scene));
+        let cage = reduction.cage.map(|(inertia, centre)| {
+            Cage::new(&g, &pockets, inertia, centre, &reduction.wall_compliance, scene)
+        });
         let kinematics = Kinematics::of(scene);
         let mut reduction = reduction;
         let angles = per_angle(&outer);

@@ -19,7 +19,7 @@ use crate::{error::Error, reduction::Reduction};
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced vB\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced vC\n";
 
 /// The scene that a reduction of `scene` is made from: what matters neither to mesh nor to preload has its default. Rollers
 /// stand in the middle between their places, so that none is in the first groove.

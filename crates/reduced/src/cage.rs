@@ -7,7 +7,11 @@ use stribeck_scene::{
 };
 use stribeck_simd::lanes::LANES;
 
-use crate::{corner::Corner, row::Rows};
+use crate::{
+    compliance::{Compliance, Curve},
+    corner::Corner,
+    row::Rows,
+};
 
 /// The cage as a rigid body with corners and walls.
 #[derive(Debug, Clone)]
@@ -20,6 +24,8 @@ pub(crate) struct Cage {
     pub(crate) wall_rows: Vec<[WallRows; 2]>,
     /// The inner and the outer end of each wall.
     pub(crate) corners: [Corner; 2],
+    /// What a roller gives way by on a wall.
+    pub(crate) curve: Curve,
 }
 
 /// A wall from its inner to its outer end, with the normal that points into the pocket.
@@ -68,12 +74,14 @@ impl Wall {
 }
 
 impl Cage {
-    /// Of rollers in these pockets, from its mass and moment of inertia and its centre of mass; `None` without a cage.
+    /// Of rollers in these pockets, from its mass and moment of inertia and its centre of mass; `None` without a cage. On a wall rollers give
+    /// way by `compliance`.
     pub(crate) fn new(
         g: &Geometry,
         pockets: &[usize],
         [mass, inertia]: [f64; 2],
         centre: [f64; 2],
+        compliance: &Compliance,
         scene: &Scene,
     ) -> Option<Self> {
         let cage = g.cage.as_ref()?;
@@ -106,6 +114,6 @@ impl Cage {
             Corner::new([along - path, half], (outer - inner) / rows, points)
         });
         let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
-        Some(Self { mass, inertia, walls, wall_rows, corners })
+        Some(Self { mass, inertia, walls, wall_rows, corners, curve: compliance.curve() })
     }
 }

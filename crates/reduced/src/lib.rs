@@ -13,7 +13,7 @@
 //! | What is kept of the finite elements? | `reduction.rs`, `structure.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
 //! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `cage.rs`, `start.rs` |
 //! | What changes in time? | `state.rs` |
-//! | What is one step? | `step.rs`; eight rollers as it takes them: `block.rs`, in rows of `row.rs`; its parts: `modes.rs`, `touch.rs`, `raceway.rs`, `lift.rs`, `pocket.rs` with `polygon.rs` and `corner.rs` |
+//! | What is one step? | `step.rs`; eight rollers as it takes them: `block.rs`, in rows of `row.rs`; its parts: `modes.rs`, `touch.rs`, `raceway.rs`, `lift.rs`, `pocket.rs` with `polygon.rs`, `flat.rs` and `corner.rs` |
 //! | What does oil do? | `oil.rs`; to rollers, modes and rings, `lift.rs` |
 //! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` and, in vectors, `window.rs` |
 //! | What is recorded, and what is watched? | `recorder.rs`, `guards.rs`; both in the time loop, `motion.rs` |
@@ -50,6 +50,7 @@ mod sensors;
 pub mod step;
 mod touch;
 
+mod flat;
 mod guards;
 pub mod motion;
 pub mod recorder;

@@ -7,6 +7,7 @@ use crate::{
     bearing::Bearing,
     block::{Block, Walls},
     cage::{Cage, Wall, WallRows},
+    flat::{self, Shape},
     row::{Rows, lanes, load, of_one},
     state::Stored,
 };
@@ -80,6 +81,20 @@ impl Wall {
         }
         Some(Foot { from: [-from_foot[0], -from_foot[1]], share, distance: square.sqrt() })
     }
+}
+
+/// A wall or a corner of it that presses on a roller.
+struct Pressed {
+    /// From the roller towards it.
+    n: [f64; 2],
+    /// Force [N], stiffness of the penalty [N/m], and the part of an approach that it takes.
+    force: f64,
+    stiffness: f64,
+    part: f64,
+    /// Energy [J].
+    stored: f64,
+    /// About the foot, on the roller [N m].
+    couple: f64,
 }
 
 /// A roller whose wall was nearer than this share of its radius in a step is still seen in the next, when half of the work of the last
@@ -199,29 +214,32 @@ impl Bearing {
         let to = [foot[0] / distance, foot[1] / distance];
         let d = [c * to[0] - s * to[1], s * to[0] + c * to[1]];
         let own_d = [turned[0] * d[0] + turned[1] * d[1], turned[0] * d[1] - turned[1] * d[0]];
-        let rim = &self.rims[0];
-        let (depth, [level, tilt]) = if self.outer.sides.are_round() {
-            (rim.top - distance, [1.0, 0.0])
+        let round = self.outer.sides.are_round();
+        let top = self.rims[0].top;
+        let pressed = if t > 0.0 && t < 1.0 {
+            // The foot goes along the wall with the roller, so that the force stands on the wall.
+            let shape = if round { Shape::Circle(top) } else { Shape::Polygon(&self.polygon, own_d) };
+            flat::press(shape, distance, self.penalty, &cage.curve).map(|on| Pressed {
+                n: d,
+                force: on.force,
+                stiffness: self.penalty * on.length,
+                part: on.part,
+                stored: on.stored,
+                couple: on.force * on.lever,
+            })
         } else {
-            self.polygon.depth(own_d, distance)
+            let (depth, [level, tilt]) =
+                if round { (top - distance, [1.0, 0.0]) } else { self.polygon.depth(own_d, distance) };
+            // The normal of the roller's facet.
+            let n = [level * d[0] - tilt * d[1], level * d[1] + tilt * d[0]];
+            let [force, stiffness, stored] = cage.corners[usize::from(t > 0.5)].press(self.penalty, depth);
+            (depth > 0.0).then_some(Pressed { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
         };
-        let parted = depth <= 0.0;
-        if parted && *passive == [0.0; 2] {
+        if pressed.is_none() && *passive == [0.0; 2] {
             *slip = 0.0;
             return None;
         }
-        let depth = depth.max(0.0);
-        let (n, [force, stiffness, stored], couple) = if t > 0.0 && t < 1.0 {
-            // Flat against round: the parabola on the penalty. The foot goes along the wall with the roller, so that the force stands on
-            // the wall, and that the facet leans from it by `tilt` turns roller and cage against each other.
-            let reach = (2.0 * self.arm * depth).sqrt();
-            let force = self.penalty * depth * reach * (4.0 / 3.0);
-            (d, [level * force, self.penalty * 2.0 * reach, 0.4 * force * depth], -force * distance * tilt)
-        } else {
-            // The normal of the roller's facet.
-            let n = [level * d[0] - tilt * d[1], level * d[1] + tilt * d[0]];
-            (n, cage.corners[usize::from(t > 0.5)].press(self.penalty, depth), 0.0)
-        };
+        let n = pressed.as_ref().map_or(d, |pressed| pressed.n);
         // The cage's velocity at the foot.
         let arm = [rel[0] + d[0] * distance, rel[1] + d[1] * distance];
         let at_foot = [
@@ -237,11 +255,11 @@ impl Bearing {
         let sliding = relative[0] * t[0] + relative[1] * t[1];
         heat[0] -= passive[0] * sliding;
         heat[1] += passive[1] * closing;
-        if parted {
+        let Some(Pressed { force, stiffness, part, stored, couple, .. }) = pressed else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
-        }
-        let damping = (self.damping / self.penalty * stiffness * closing).max(-force);
+        };
+        let damping = (self.damping / self.penalty * part * stiffness * closing).max(-force);
         let sticking = self.sticking / self.penalty * stiffness;
         let most = self.friction * force / sticking;
         *slip = (*slip + self.time_step * sliding).clamp(-most, most);

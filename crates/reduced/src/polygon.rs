@@ -1,5 +1,7 @@
 //! The polygon of a roller as walls and corners of the cage meet it (THEORY §9.4).
 
+use crate::flat::Sunk;
+
 /// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A corner that passes a sharp vertex
 /// meets another force at once, and the step, which falls on it somewhere, gives or takes energy by its length; over a tenth of a facet,
 /// which takes several steps, that is gone, and a tenth of what vertices stand out by with it.
@@ -15,8 +17,9 @@ pub(crate) struct Polygon {
     rounded: f64,
     /// Directions of the middles of the facets.
     middles: Vec<[f64; 2]>,
-    /// Sines of half the angle, and of what is not rounded of it.
-    sine_half: f64,
+    /// Cosine and sine of half the angle of a facet and of the whole, and the sine of what is not rounded of half of it.
+    half_turn: [f64; 2],
+    turn: [f64; 2],
     sine_sharp: f64,
 }
 
@@ -25,16 +28,18 @@ impl Polygon {
     pub(crate) fn new(facets: usize, radius: f64) -> Self {
         let half = std::f64::consts::PI / facets as f64;
         let rounded = 2.0 * half * ROUNDED;
-        let middle = |facet: usize| {
-            let (s, c) = (half * (2 * facet + 1) as f64).sin_cos();
+        let direction = |angle: f64| {
+            let (s, c) = angle.sin_cos();
             [c, s]
         };
+        let middle = |facet: usize| direction(half * (2 * facet + 1) as f64);
         Self {
             apothem: radius * half.cos(),
             half,
             rounded,
             middles: (0..facets).map(middle).collect(),
-            sine_half: half.sin(),
+            half_turn: direction(half),
+            turn: direction(2.0 * half),
             sine_sharp: (half - rounded).sin(),
         }
     }
@@ -56,6 +61,32 @@ impl Polygon {
         (self.apothem - distance * cosine, [cosine, from_vertex / self.rounded * sine])
     }
 
+    /// What lies beyond a flat at `distance` from the centre, at a right angle to the direction `d`.
+    pub(crate) fn beyond(&self, d: [f64; 2], distance: f64) -> Sunk {
+        let mut sunk = Sunk::default();
+        let middle = self.beside_middle(d);
+        let radius = self.apothem / self.half_turn[0];
+        // A vertex in the direction [cosine, sine] from d: its u, and how far it lies beyond the flat.
+        let place = |[c, s]: [f64; 2]| [radius * s, radius * c - distance];
+        let turned = |[c, s]: [f64; 2], [by_c, by_s]: [f64; 2]| [c * by_c - s * by_s, s * by_c + c * by_s];
+        let back = |[c, s]: [f64; 2]| [c, -s];
+        let ends = [turned(middle, back(self.half_turn)), turned(middle, self.half_turn)];
+        let [[u1, p1], [u2, p2]] = ends.map(place);
+        sunk.add([u1, u2], [p1, p2]);
+        // Facet by facet to either side, as long as the last vertex lies beyond the flat.
+        for (end, forwards) in ends.into_iter().zip([false, true]) {
+            let (mut vertex, mut at) = (end, place(end));
+            while at[1] > 0.0 {
+                vertex = turned(vertex, if forwards { self.turn } else { back(self.turn) });
+                let next = place(vertex);
+                let [first, last] = if forwards { [at, next] } else { [next, at] };
+                sunk.add([first[0], last[0]], [first[1], last[1]]);
+                at = next;
+            }
+        }
+        sunk
+    }
+
     /// Cosine and sine of the angle by which the middle of the facet there is ahead of a direction.
     #[inline(always)]
     fn beside_middle(&self, [x, y]: [f64; 2]) -> [f64; 2] {
@@ -65,9 +96,9 @@ impl Polygon {
         for _ in 0..count {
             let [mx, my] = self.middles[facet];
             let sine = my * x - mx * y;
-            if sine > self.sine_half {
+            if sine > self.half_turn[1] {
                 facet = if facet == 0 { count - 1 } else { facet - 1 };
-            } else if sine < -self.sine_half {
+            } else if sine < -self.half_turn[1] {
                 facet = if facet + 1 == count { 0 } else { facet + 1 };
             } else {
                 return [mx * x + my * y, sine];

@@ -77,6 +77,8 @@ pub struct Reduction {
     pub outer_compliance: Compliance,
     /// Of roller and inner raceway.
     pub inner_compliance: Compliance,
+    /// Of a roller on a wall of the cage, which is rigid and flat.
+    pub wall_compliance: Compliance,
     /// Mass [kg] and moment of inertia [kg m²] of a roller.
     pub roller_inertia: [f64; 2],
     /// The same of the cage, if there is one, with its centre of mass [m].
@@ -416,7 +418,7 @@ impl Reduction {
         let flexible_roller: Vec<Vec<f64>> =
             flexible[..middle].iter().map(|row| row[..middle].to_vec()).collect();
 
-        let compliance = |flexible: &[Vec<f64>], spacing: f64, radius: f64| {
+        let compliance = |flexible: &[Vec<f64>], spacing: f64, radius: f64, across: f64| {
             let pressed = Pressed {
                 spacing: [spacing, rim_facet],
                 flexibility: [flexible, &flexible_roller],
@@ -425,8 +427,11 @@ impl Reduction {
             };
             curve(&pressed, most, across)
         };
-        let outer_compliance = compliance(&flexible_outer, outer_spacing, ro);
-        let inner_compliance = compliance(&flexible_inner, inner_spacing, ri);
+        let outer_compliance = compliance(&flexible_outer, outer_spacing, ro, across);
+        let inner_compliance = compliance(&flexible_inner, inner_spacing, ri, across);
+        // Nothing holds the roller on its other side but its mass.
+        let rigid = vec![vec![0.0; middle]; middle];
+        let wall_compliance = compliance(&rigid, rim_facet, g.roller_radius, 0.0);
         let roller = (0..nodes.rim.len())
             .map(|i| (TAU * i as f64 / nodes.rim.len() as f64).sin_cos())
             .map(|(s, c)| [g.roller_radius * c, g.roller_radius * s])
@@ -451,6 +456,7 @@ impl Reduction {
             strain,
             outer_compliance,
             inner_compliance,
+            wall_compliance,
             roller_inertia: [of_roller.mass, of_roller.inertia],
             cage: cage.map(|cage| ([cage.mass, cage.inertia], cage.centre)),
             structure_mass,

@@ -93,7 +93,7 @@ const CASES: &[Case] = &[
         what: "oil, 2 % of structural damping",
         scene: "fixtures/scenes/singh2014.ron",
         set: &[GRADED, "model=reduced(modes_khz: 30.0)"],
-        starts: 8,
+        starts: 16,
         steps_us: &["2"],
     },
     Case {
