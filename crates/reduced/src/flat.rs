@@ -1,51 +1,9 @@
 //! A roller on a straight wall of its pocket: what of it lies beyond the wall, in series with what it gives way by (THEORY §9.4).
 
-use crate::{compliance::Curve, polygon::Polygon};
-
-/// What of a roller lies beyond a flat, over the penetration p and the distance u from the foot of its centre, counter-clockwise about it.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Sunk {
-    /// ∫ p du [m²].
-    pub(crate) area: f64,
-    /// ∫ p² du [m³].
-    pub(crate) square: f64,
-    /// ∫ p u du [m³].
-    pub(crate) first: f64,
-    /// Length [m].
-    pub(crate) length: f64,
-}
-
-impl Sunk {
-    /// Adds a part between two places u with these penetrations.
-    #[inline(always)]
-    pub(crate) fn add(&mut self, [u1, u2]: [f64; 2], [p1, p2]: [f64; 2]) {
-        if p1 <= 0.0 && p2 <= 0.0 {
-            return;
-        }
-        // Where p is zero.
-        let root = || u1 + (u2 - u1) * p1 / (p1 - p2);
-        let ([u1, u2], [p1, p2]) = match (p1 < 0.0, p2 < 0.0) {
-            (true, _) => ([root(), u2], [0.0, p2]),
-            (_, true) => ([u1, root()], [p1, 0.0]),
-            _ => ([u1, u2], [p1, p2]),
-        };
-        let length = u2 - u1;
-        self.area += 0.5 * length * (p1 + p2);
-        self.square += length / 3.0 * (p1 * p1 + p1 * p2 + p2 * p2);
-        self.first += length / 6.0 * (p1 * (u1 + u1 + u2) + p2 * (u1 + u2 + u2));
-        self.length += length;
-    }
-
-    /// Of a circle that reaches `depth` beyond it.
-    fn of_circle(radius: f64, depth: f64) -> Self {
-        if depth <= 0.0 {
-            return Self::default();
-        }
-        let half = (2.0 * radius * depth).sqrt();
-        let area = 4.0 / 3.0 * depth * half;
-        Self { area, square: 0.8 * depth * area, first: 0.0, length: 2.0 * half }
-    }
-}
+use crate::{
+    compliance::Curve,
+    polygon::{Polygon, Sunk},
+};
 
 /// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its centre.
 #[derive(Debug, Clone, Copy)]
@@ -57,10 +15,20 @@ pub(crate) enum Shape<'a> {
 impl Shape<'_> {
     fn sunk(self, distance: f64) -> Sunk {
         match self {
-            Self::Circle(radius) => Sunk::of_circle(radius, radius - distance),
+            Self::Circle(radius) => circle(radius, radius - distance),
             Self::Polygon(polygon, d) => polygon.beyond(d, distance),
         }
     }
+}
+
+/// Of a circle that reaches `depth` beyond a flat.
+fn circle(radius: f64, depth: f64) -> Sunk {
+    if depth <= 0.0 {
+        return Sunk::default();
+    }
+    let half = (2.0 * radius * depth).sqrt();
+    let area = 4.0 / 3.0 * depth * half;
+    Sunk { area, square: 0.8 * depth * area, first: 0.0, length: 2.0 * half }
 }
 
 /// A roller that is pressed against a flat.
@@ -125,7 +93,7 @@ mod tests {
     fn analytic_what_lies_beyond_a_flat_is_that_of_the_outline() {
         let depth = 8e-6;
         let fine = Polygon::new(20_000, RADIUS).beyond([0.6, 0.8], RADIUS - depth);
-        let round = Sunk::of_circle(RADIUS, depth);
+        let round = circle(RADIUS, depth);
         for (a, b) in [(fine.area, round.area), (fine.square, round.square), (fine.length, round.length)] {
             assert!((a / b - 1.0).abs() < 1e-3, "{a} and {b}");
         }

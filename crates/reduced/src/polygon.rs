@@ -1,11 +1,44 @@
 //! The polygon of a roller as walls and corners of the cage meet it (THEORY §9.4).
 
-use crate::flat::Sunk;
-
 /// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A corner that passes a sharp vertex
 /// meets another force at once, and the step, which falls on it somewhere, gives or takes energy by its length; over a tenth of a facet,
 /// which takes several steps, that is gone, and a tenth of what vertices stand out by with it.
 const ROUNDED: f64 = 0.05;
+
+/// What of a roller lies beyond a flat, over the penetration p and the distance u from the foot of its centre, counter-clockwise about it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Sunk {
+    /// ∫ p du [m²].
+    pub(crate) area: f64,
+    /// ∫ p² du [m³].
+    pub(crate) square: f64,
+    /// ∫ p u du [m³].
+    pub(crate) first: f64,
+    /// Length [m].
+    pub(crate) length: f64,
+}
+
+impl Sunk {
+    /// Adds a part between two places u with these penetrations.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, [u1, u2]: [f64; 2], [p1, p2]: [f64; 2]) {
+        if p1 <= 0.0 && p2 <= 0.0 {
+            return;
+        }
+        // Where p is zero.
+        let root = || u1 + (u2 - u1) * p1 / (p1 - p2);
+        let ([u1, u2], [p1, p2]) = match (p1 < 0.0, p2 < 0.0) {
+            (true, _) => ([root(), u2], [0.0, p2]),
+            (_, true) => ([u1, root()], [p1, 0.0]),
+            _ => ([u1, u2], [p1, p2]),
+        };
+        let length = u2 - u1;
+        self.area += 0.5 * length * (p1 + p2);
+        self.square += length / 3.0 * (p1 * p1 + p1 * p2 + p2 * p2);
+        self.first += length / 6.0 * (p1 * (u1 + u1 + u2) + p2 * (u1 + u2 + u2));
+        self.length += length;
+    }
+}
 
 /// A regular polygon about the origin with vertex 0 on the x axis, counter-clockwise.
 #[derive(Debug, Clone)]
