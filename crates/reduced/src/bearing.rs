@@ -268,7 +268,7 @@ impl Bearing {
 
     /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with raceways as stiff as at the
     /// largest load that the local problem was solved for, friction over those of the fullest roller, and the cage on corners
-    /// of all pockets; straight walls, which press over more depth, are left out.
+    /// of all pockets, or on straight walls that lie flush with a facet of each roller.
     pub fn critical_time_step(&self) -> f64 {
         let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
         let [mass, inertia] = self.reduction.roller_inertia;
@@ -304,7 +304,10 @@ impl Bearing {
                 .map(|wall| wall.inner[0].hypot(wall.inner[1]))
                 .fold(0.0, f64::max);
             let of_all = self.rollers as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
-            0.5 * self.penalty * cage.corners[0].end * (1.0 / mass + of_all)
+            let corner = 0.5 * self.penalty * cage.corners[0].end;
+            let facet = if cage.has_flats { self.penalty * self.polygon.facet() } else { 0.0 };
+            let facet = facet / (1.0 + facet * cage.curve.approach(0.0).0[1]);
+            corner.max(facet) * (1.0 / mass + of_all)
         });
         let square = of_roller.max(of_friction).max(of_modes).max(of_cage);
         // Dampers act half a step late: ω² Δt²/4 + d Δt/2 < 1, where d is the sum over all modes at most.

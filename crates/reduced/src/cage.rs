@@ -24,6 +24,8 @@ pub(crate) struct Cage {
     pub(crate) wall_rows: Vec<[WallRows; 2]>,
     /// The inner and the outer end of each wall.
     pub(crate) corners: [Corner; 2],
+    /// Whether rollers stand between the ends of the walls, not at one of them.
+    pub(crate) has_flats: bool,
     /// What a roller gives way by on a wall.
     pub(crate) curve: Curve,
 }
@@ -114,6 +116,8 @@ impl Cage {
             Corner::new([along - path, half], (outer - inner) / rows, points)
         });
         let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
-        Some(Self { mass, inertia, walls, wall_rows, corners, curve: compliance.curve() })
+        let [before, behind] = [inner, outer].map(|radius: f64| (radius * radius - half * half).sqrt());
+        let has_flats = before < path && path < behind;
+        Some(Self { mass, inertia, walls, wall_rows, corners, has_flats, curve: compliance.curve() })
     }
 }

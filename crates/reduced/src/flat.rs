@@ -56,7 +56,7 @@ pub(crate) fn press(shape: Shape<'_>, distance: f64, penalty: f64, curve: &Curve
     if sunk.area <= 0.0 {
         return None;
     }
-    // From the penalty alone, which is too much, along a curve that is steeper there than farther down: each step stops short of the force.
+    // From the penalty alone, which is too much. The first step may go past the force, those after it come to it from one side.
     let mut force = penalty * sunk.area;
     let mut give = 0.0;
     for _ in 0..STEPS {

@@ -94,6 +94,11 @@ impl Polygon {
         (self.apothem - distance * cosine, [cosine, from_vertex / self.rounded * sine])
     }
 
+    /// Length of a facet [m].
+    pub(crate) fn facet(&self) -> f64 {
+        2.0 * self.apothem * self.half_turn[1] / self.half_turn[0]
+    }
+
     /// What lies beyond a flat at `distance` from the centre, at a right angle to the direction `d`.
     pub(crate) fn beyond(&self, d: [f64; 2], distance: f64) -> Sunk {
         let mut sunk = Sunk::default();

@@ -41,7 +41,7 @@ pub struct Options {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Folder of the runs of the full model, for example that of another validation: other modes or another step need no other ones.
-    /// Those that are missing or too short are made there [default: `full` in the folder of the page]
+    /// Those that are missing are made there, those that are too short are made longer [default: `full` in the folder of the page]
     #[arg(long, value_name = "DIR")]
     full: Option<PathBuf>,
 }
@@ -65,10 +65,16 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let models = models(&scene)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(format!("{}-validation", scene.name)));
     check_folder(&out, &MARKS)?;
+    let folders = [options.full.clone().unwrap_or_else(|| out.join("full")), out.join("reduced")];
     if let Some(full) = &options.full {
         check_folder(full, &[MARK])?;
+        if *full == folders[1] {
+            bail!(
+                "`--full` is where runs of the reduced model go: `{}`. Give a folder of its own",
+                shown(full)
+            );
+        }
     }
-    let folders = [options.full.clone().unwrap_or_else(|| out.join("full")), out.join("reduced")];
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     let due = due(&folders, &models, options)?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
@@ -134,9 +140,10 @@ fn models(scene: &Scene) -> Result<[Scene; 2]> {
 
 /// Runs that are not at their end, a pair after the other.
 fn due(folders: &[PathBuf; 2], models: &[Scene; 2], options: &Options) -> Result<Vec<Due>> {
+    let flags = [if options.full.is_some() { "--full" } else { "--out" }, "--out"];
     let mut due: Vec<Due> = Vec::new();
     for number in 1..=usize::from(options.starts) {
-        for (folder, scene) in folders.iter().zip(models) {
+        for ((folder, scene), flag) in folders.iter().zip(models).zip(flags) {
             let scene = start(scene, options.seed, number);
             let folder = folder.join(folder_name(number));
             match State::of(&folder, &scene) {
@@ -144,11 +151,7 @@ fn due(folders: &[PathBuf; 2], models: &[Scene; 2], options: &Options) -> Result
                 State::Other => bail!(
                     "`{}` holds a run of another scene, seed or duration: give another folder with `{}`, or move it away",
                     shown(&folder),
-                    if folder.starts_with(&folders[0]) && options.full.is_some() {
-                        "--full"
-                    } else {
-                        "--out"
-                    }
+                    flag
                 ),
                 State::New | State::Begun => due.push(Due { number: due.len() + 1, scene, folder }),
             }

@@ -68,6 +68,9 @@ fn example_both_models_from_the_same_starts() {
     let lighter = run(&desk, &[&words[..], &lighter].concat());
     assert!(!lighter.status.success());
     says(&lighter, &["full/start-001", "another scene, seed or duration", "`--full`"]);
+    let same = run(&desk, &[&words[..], &["--full=runs/coarse-validation/reduced"]].concat());
+    assert!(!same.status.success());
+    says(&same, &["`--full` is where runs of the reduced model go"]);
     fs::remove_dir_all(desk.join("runs/fewer")).unwrap();
     fs::remove_dir_all(desk.join("runs/lighter")).unwrap();
 
