@@ -25,9 +25,15 @@ struct Case {
     scene: &'static str,
     set: &'static [&'static str],
     starts: usize,
-    /// Time steps of the reduced model [µs].
-    steps_us: &'static [&'static str],
+    /// Reduced models of it: in words, and what is changed in the scene for each.
+    models: &'static [Model],
 }
+
+/// A name and overrides.
+type Model = (&'static str, &'static [&'static str]);
+
+const AT_2_US: Model = ("2 µs", &["model.step_us=2"]);
+const AT_5_US: Model = ("5 µs", &["model.step_us=5"]);
 
 const SCENE: &str = "fixtures/scenes/reduced_30ms.ron";
 const GRADED: &str = "mesh.grading=(coarse_mm: 2.0, fine_layers: 2)";
@@ -39,7 +45,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED],
         starts: 32,
-        steps_us: &["2", "5"],
+        models: &[AT_2_US, AT_5_US],
     },
     Case {
         name: "load",
@@ -47,7 +53,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &["mesh.size_mm=1.0", "operation.load_n=30000", "operation.speed_rpm=700"],
         starts: 32,
-        steps_us: &["2", "5"],
+        models: &[AT_2_US, AT_5_US],
     },
     Case {
         name: "rollers",
@@ -55,7 +61,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED, "bearing.rollers=20"],
         starts: 32,
-        steps_us: &["2", "5"],
+        models: &[AT_2_US, AT_5_US],
     },
     Case {
         name: "rigid",
@@ -63,7 +69,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED, "bearing.rollers=20", "housing=rigid(mass_kg: 10)"],
         starts: 12,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "arcs",
@@ -71,7 +77,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED, "contact.surface=arc"],
         starts: 8,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "spall",
@@ -79,7 +85,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED, "bearing.thickness_mm=20", "defect.length_mm=6", "defect.depth_mm=0.1"],
         starts: 8,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "inner",
@@ -87,7 +93,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &["mesh.size_mm=1.0", "defect.ring=inner", "solver.duration_ms=10"],
         starts: 8,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "oil",
@@ -95,7 +101,7 @@ const CASES: &[Case] = &[
         scene: "fixtures/scenes/singh2014.ron",
         set: &[GRADED, "model=reduced(modes_khz: 30.0)"],
         starts: 16,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "physical",
@@ -103,7 +109,24 @@ const CASES: &[Case] = &[
         scene: "fixtures/scenes/physical.ron",
         set: &["solver.duration_ms=2.1"],
         starts: 2,
-        steps_us: &["2"],
+        models: &[("0.9 µs", &["model.step_us=2"])],
+    },
+    Case {
+        name: "small",
+        what: "NU 205, 1500 rpm",
+        scene: "fixtures/scenes/atlas.ron",
+        set: &[
+            "bearing=NU 205",
+            "mesh.size_mm=0.5",
+            "mesh.roller_facets=112",
+            "defects=[(on: outer, form: spall(length_mm: 2, depth_mm: 0.05))]",
+            "solver.duration_ms=10",
+        ],
+        starts: 8,
+        models: &[
+            ("30 kHz", &["model.modes_khz=30", "model.step_us=0.5"]),
+            ("60 kHz", &["model.modes_khz=60", "model.step_us=0.5"]),
+        ],
     },
     Case {
         name: "paper-long",
@@ -111,7 +134,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED, "solver.duration_ms=120"],
         starts: 12,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "load-long",
@@ -124,7 +147,7 @@ const CASES: &[Case] = &[
             "solver.duration_ms=85",
         ],
         starts: 12,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
     Case {
         name: "rollers-long",
@@ -132,7 +155,7 @@ const CASES: &[Case] = &[
         scene: SCENE,
         set: &[GRADED, "bearing.rollers=20", "solver.duration_ms=140"],
         starts: 6,
-        steps_us: &["2"],
+        models: &[AT_2_US],
     },
 ];
 
@@ -141,10 +164,11 @@ const LONG: &str = "fixtures/scenes/reduced.ron";
 const LEDGER_US: [&str; 3] = ["5", "2", "0.5"];
 const LEDGER_MS: [&str; 2] = ["1000", "10000"];
 
-/// What came out of a case with one step.
+/// What came out of a case with one reduced model.
 struct Compared {
     case: &'static Case,
-    /// Name of its folder.
+    /// In words, and the name of its folder.
+    words: String,
     name: String,
     agreement: Agreement,
 }
@@ -154,21 +178,21 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let folder = host.root().join("runs/study/reduced");
     let mut all = Vec::new();
     for case in CASES {
-        for step_us in case.steps_us {
-            let name = case.folder(step_us);
+        for model in case.models {
+            let name = case.folder(model);
             let out = folder.join(&name);
             if flags.wants(&name) && !flags.runs_nothing() {
                 host.say(&format!("{name}: {} starts", case.starts));
-                if let Err(error) = validate(case, step_us, &out, &folder, flags, host) {
+                if let Err(error) = validate(case, model, &out, &folder, flags, host) {
                     host.say(&format!("{name}: {error:#}"));
                 }
                 ensure!(!host.is_interrupted(), "interrupted; the same command goes on from here");
             }
             let Some(agreement) = read(&out)? else { continue };
-            if agreement.scene_hash == case.scene(host.root(), step_us)?.hash()
+            if agreement.scene_hash == case.scene(host.root(), model)?.hash()
                 && agreement.starts == case.starts
             {
-                all.push(Compared { case, name, agreement });
+                all.push(Compared { case, words: format!("{}, {}", case.what, model.0), name, agreement });
             } else {
                 host.say(&format!(
                     "{name}: what is there is of another scene or number of starts, and is left out"
@@ -208,30 +232,29 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
 }
 
 impl Case {
-    /// Its folder with a step of the reduced model.
-    fn folder(&self, step_us: &str) -> String {
-        format!("{}-{step_us}us", self.name)
+    /// Its folder with one of the reduced models.
+    fn folder(&self, (words, _): &Model) -> String {
+        format!("{}-{}", self.name, words.replace(' ', "").replace('µ', "u").replace('.', "_").to_lowercase())
     }
 
     /// What is changed in its scene.
-    fn set(&self, step_us: &str) -> Vec<String> {
-        let set = self.set.iter().map(|set| (*set).to_owned());
-        set.chain([format!("model.step_us={step_us}")]).collect()
+    fn set(&self, (_, own): &Model) -> Vec<String> {
+        self.set.iter().chain(*own).map(|set| (*set).to_owned()).collect()
     }
 
-    fn scene(&self, root: &Path, step_us: &str) -> Result<Scene> {
-        let scene = Scene::read_with(root.join(self.scene), &self.set(step_us));
+    fn scene(&self, root: &Path, model: &Model) -> Result<Scene> {
+        let scene = Scene::read_with(root.join(self.scene), &self.set(model));
         scene.with_context(|| format!("case `{}` is not a scene", self.name))
     }
 }
 
-/// Runs both models from all starts, those that are missing. Steps of one scene share the runs of the full model.
+/// Runs both models from all starts, those that are missing. Models of one scene share the runs of the full model.
 ///
 /// # Errors
 /// When a run does not come to its end.
 fn validate(
     case: &Case,
-    step_us: &str,
+    model: &Model,
     out: &Path,
     folder: &Path,
     flags: &Flags,
@@ -239,7 +262,7 @@ fn validate(
 ) -> Result<()> {
     let mut command = host.stribeck()?;
     command.arg("validate").arg(host.root().join(case.scene));
-    command.args(case.set(step_us).iter().map(|set| format!("--set={set}")));
+    command.args(case.set(model).iter().map(|set| format!("--set={set}")));
     command.arg(format!("--starts={}", case.starts));
     command.arg("--out").arg(out).arg("--full").arg(folder.join(format!("{}-full", case.name)));
     command.args(flags.of_a_command()).stdout(std::process::Stdio::null());
@@ -266,11 +289,11 @@ fn scenes(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("The scenes");
     let rows: Vec<Vec<String>> = all
         .iter()
-        .map(|Compared { case, agreement, .. }| {
+        .map(|Compared { case, words, agreement, .. }| {
             let [full_s, reduced_s] = agreement.cpu_s_per_ms;
             let changed: Vec<String> = case.set.iter().map(|set| format!("`{set}`")).collect();
             vec![
-                words(case, agreement),
+                words.clone(),
                 format!("`{}`", case.scene.rsplit('/').next().unwrap_or(case.scene)),
                 changed.join(", "),
                 number(agreement.simulated_ms, 1),
@@ -282,19 +305,13 @@ fn scenes(sheet: &mut Sheet, all: &[Compared]) {
         .collect();
     let names = ["scene", "file", "changed", "ms", "starts", "full, s/ms", "reduced, s/ms"];
     sheet.table(&names, &rows);
-    sheet.say("The last two columns are processor time of a simulated millisecond, of as many runs side by side as there were cores. Steps are 2 µs \
-         where contacts allow it.");
-}
-
-/// A scene with the step of its reduced model.
-fn words(case: &Case, agreement: &Agreement) -> String {
-    format!("{}, {} µs", case.what, figures(agreement.step_us, 2).trim_end_matches(".0"))
+    sheet.say("The last two columns are processor time of a simulated millisecond, of as many runs side by side as there were cores.");
 }
 
 /// What rollers carry, when, and how fast the cage is.
 fn forces(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("Forces, events, cage");
-    let of = |Compared { case, agreement, .. }: &Compared| {
+    let of = |Compared { words, agreement, .. }: &Compared| {
         let by_name = |name: &str| agreement.rows.iter().find(|row| row.name == name);
         let events = agreement.rows.iter().filter(|row| row.unit == "ms");
         let size = |row: &Row| row.difference.mean.abs();
@@ -304,7 +321,7 @@ fn forces(sheet: &mut Sheet, all: &[Compared]) {
             found.map_or(NONE.to_owned(), |c| number(c.value.mean, 3))
         };
         vec![
-            words(case, agreement),
+            words.clone(),
             by_name("forces_percent").map_or(NONE.to_owned(), |row| cell(row, 2)),
             by_name("load_percent").map_or(NONE.to_owned(), |row| cell(row, 4)),
             worst.map_or(NONE.to_owned(), |row| cell(row, 3)),
@@ -386,12 +403,12 @@ impl Band<'_> {
 fn accelerations(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("Accelerations in third octaves, 0.5 to 10 kHz");
     let mut rows = Vec::new();
-    for Compared { case, agreement, .. } in all.iter().filter(|c| !c.agreement.sensors.is_empty()) {
+    for Compared { words, agreement, .. } in all.iter().filter(|c| !c.agreement.sensors.is_empty()) {
         let bands = || agreement.sensors.iter().flat_map(Band::all_of);
         let within = bands().filter(|band| !band.is_outside()).count();
         let mut errors: Vec<f64> = bands().filter_map(|band| band.error_db).collect();
         errors.sort_by(f64::total_cmp);
-        let mut row = vec![words(case, agreement), format!("{within} of {}", bands().count())];
+        let mut row = vec![words.clone(), format!("{within} of {}", bands().count())];
         row.extend(agreement.sensors.iter().map(|sensor| {
             let farthest = Band::all_of(sensor).max_by(|a, b| a.off_db.abs().total_cmp(&b.off_db.abs()));
             farthest.map_or(NONE.to_owned(), |band| {
@@ -420,11 +437,11 @@ fn accelerations(sheet: &mut Sheet, all: &[Compared]) {
 /// Lines of BPFO.
 fn lines(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("Lines of BPFO at the first sensor");
-    let row_of = |Compared { case, agreement, .. }: &Compared| {
+    let row_of = |Compared { words, agreement, .. }: &Compared| {
         let of = |n: usize| agreement.rows.iter().find(|row| row.name == format!("bpfo_{n}_percent"));
         of(1)?;
         let cells = (1..=5).map(|n| of(n).map_or(NONE.to_owned(), |row| cell(row, 1)));
-        Some([words(case, agreement)].into_iter().chain(cells).collect())
+        Some([words.clone()].into_iter().chain(cells).collect())
     };
     let rows: Vec<Vec<String>> = all.iter().filter_map(row_of).collect();
     sheet.table(&["scene", "line 1, %", "2, %", "3, %", "4, %", "5, %"], &rows);
@@ -434,9 +451,9 @@ fn lines(sheet: &mut Sheet, all: &[Compared]) {
 /// Largest accelerations, which have no limit.
 fn peaks(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("Largest accelerations below 10 kHz");
-    let row_of = |Compared { case, agreement, .. }: &Compared| {
+    let row_of = |Compared { words, agreement, .. }: &Compared| {
         let cells = agreement.peaks.iter().map(|peak| peak.difference().replace('-', "−"));
-        [words(case, agreement)].into_iter().chain(cells).collect()
+        [words.clone()].into_iter().chain(cells).collect()
     };
     let rows: Vec<Vec<String>> = all.iter().filter(|c| !c.agreement.peaks.is_empty()).map(row_of).collect();
     sheet.table(&["scene", "side", "shoulder", "seat", "bottom"], &rows);
@@ -447,7 +464,7 @@ fn peaks(sheet: &mut Sheet, all: &[Compared]) {
 fn outside(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("What is not kept, and what cannot be told");
     let mut rows = Vec::new();
-    for Compared { case, agreement, .. } in all {
+    for Compared { words, agreement, .. } in all {
         let kept = agreement.rows.iter().filter(|row| row.told && row.within).count();
         let failed = agreement.rows.iter().filter(|row| !row.over_bands() && row.told && !row.within);
         let mut outside: Vec<String> =
@@ -463,7 +480,7 @@ fn outside(sheet: &mut Sheet, all: &[Compared]) {
         open.extend(bands().filter(|band| !band.is_told()).map(of_band));
         let said = |list: Vec<String>| if list.is_empty() { NONE.to_owned() } else { list.join("; ") };
         rows.push(vec![
-            words(case, agreement),
+            words.clone(),
             format!("{kept} of {}", agreement.rows.len()),
             said(outside),
             said(open),
@@ -548,8 +565,8 @@ mod tests {
     fn example_every_case_is_a_scene_of_both_models() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
         for case in CASES {
-            for step_us in case.steps_us {
-                let scene = case.scene(&root, step_us).expect("a scene");
+            for model in case.models {
+                let scene = case.scene(&root, model).expect("a scene");
                 assert!(scene.with_overrides(&["model=full".to_owned()]).is_ok(), "{}", case.name);
             }
         }
