@@ -32,6 +32,8 @@ const THIRDS: std::ops::RangeInclusive<i32> = -3..=10;
 /// Samples of the full model that are no farther apart than this leave its third octaves as they are [s]. Nodes of the seat ring above
 /// 50 kHz, and the mean over an interval of 10 µs folds a part of that down (THEORY §9.1).
 pub const FINE_S: f64 = 2e-6;
+/// Largest difference of a third octave that is agreement [dB].
+pub const BAND_LIMIT_DB: f64 = 1.5;
 /// Bins that a third octave must hold, and its width over its middle.
 const LEAST_BINS: f64 = 3.0;
 const WIDTH: f64 = 0.23;
@@ -585,7 +587,6 @@ fn octaves(sides: &[[Side; 2]]) -> Vec<Octaves> {
 
 impl Octaves {
     fn row(&self) -> Option<Row> {
-        const LIMIT_DB: f64 = 1.5;
         let off: Vec<f64> = self.reduced_db.iter().zip(&self.full_db).map(|(r, f)| r - f).collect();
         let difference = Statistic::of(&off, off.len())?;
         // Twice the standard error of a band may be on either side.
@@ -593,15 +594,15 @@ impl Octaves {
             off.iter().zip(&self.error_db).map(move |(off, error)| off.abs() + sign * 2.0 * error)
         };
         let told = !self.error_db.is_empty()
-            && (sure(1.0).all(|most| most <= LIMIT_DB) || sure(-1.0).any(|least| least > LIMIT_DB));
+            && (sure(1.0).all(|most| most <= BAND_LIMIT_DB) || sure(-1.0).any(|least| least > BAND_LIMIT_DB));
         Some(Row {
             name: format!("octaves_{}_db", self.sensor),
             quantity: format!("third octaves at the sensor {}, 0.5 to 10 kHz", self.sensor),
             unit: "dB".to_owned(),
-            within: difference.most.max(-difference.least) <= LIMIT_DB,
+            within: difference.most.max(-difference.least) <= BAND_LIMIT_DB,
             told,
             difference,
-            limit: LIMIT_DB,
+            limit: BAND_LIMIT_DB,
         })
     }
 }

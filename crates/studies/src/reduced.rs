@@ -1,9 +1,9 @@
 //! `cargo xtask study reduced`: how far the reduced bearing is from the full one, scene by scene, with what it does not keep.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::agreement::{Agreement, Octaves, Row};
+use stribeck_analysis::agreement::{Agreement, BAND_LIMIT_DB, Octaves, Row};
 use stribeck_scene::scene::Scene;
 
 use crate::table::{figures, number};
@@ -273,7 +273,7 @@ fn validate(
 
 /// What a validation has found, if it has been made.
 fn read(out: &Path) -> Result<Option<Agreement>> {
-    let path: PathBuf = out.join("validation.json");
+    let path = out.join("validation.json");
     let text = match std::fs::read(&path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         text => text.with_context(|| format!("cannot read {}", path.display()))?,
@@ -367,9 +367,6 @@ struct Band<'a> {
     error_db: Option<f64>,
 }
 
-/// Largest difference of a third octave that is agreement [dB].
-const BAND_DB: f64 = 1.5;
-
 impl Band<'_> {
     fn all_of(octaves: &Octaves) -> impl Iterator<Item = Band<'_>> {
         octaves.centres_hz.iter().enumerate().map(|(band, &hz)| Band {
@@ -381,12 +378,12 @@ impl Band<'_> {
     }
 
     fn is_outside(&self) -> bool {
-        self.off_db.abs() > BAND_DB
+        self.off_db.abs() > BAND_LIMIT_DB
     }
 
     /// Whether that is more than chance.
     fn is_told(&self) -> bool {
-        self.error_db.is_some_and(|error| self.off_db.abs() - 2.0 * error > BAND_DB)
+        self.error_db.is_some_and(|error| self.off_db.abs() - 2.0 * error > BAND_LIMIT_DB)
     }
 
     fn off(&self) -> String {
