@@ -1,6 +1,5 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
-use stribeck_bearing::recorder::Tacho;
 use stribeck_contact::Law;
 use stribeck_mesh::{Circle, FormDeviation};
 use stribeck_scene::{
@@ -85,7 +84,6 @@ pub struct Bearing {
     pub(crate) oil: Option<Lubrication>,
     /// Speeds and load, where they change.
     pub(crate) duty: Option<Duty>,
-    pub(crate) tacho: Tacho,
 }
 
 /// The rim of a roller.
@@ -253,7 +251,6 @@ impl Bearing {
             outer_turns: scene.operation.outer_turns(),
             kinematics,
             duty: Duty::varying(scene),
-            tacho: Tacho::of(scene),
             cage: cage.flatten(),
             polygon: Polygon::new(rims[0].outline.len(), rims[0].top),
             rims,
@@ -313,6 +310,11 @@ impl Bearing {
         // Dampers act half a step late: ω² Δt²/4 + d Δt/2 < 1, where d is the sum over all modes at most.
         let d = self.reduction.dampers.iter().step_by(r + 1).sum::<f64>().max(0.0);
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
+    }
+
+    /// Whether the outer ring sits in a seat that may open and slip.
+    pub fn has_seat(&self) -> bool {
+        self.seat.is_some()
     }
 
     /// The rim of a roller, from 0.

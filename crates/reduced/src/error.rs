@@ -1,10 +1,10 @@
 //! The error type of this crate.
 
-/// Everything that can go wrong between a scene and a finished reduced run.
+/// Everything that can go wrong between a scene and a reduced bearing in equilibrium.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The full model, from which the reduced one is made, cannot be made or preloaded, or a run not be written.
+    /// The full model, from which the reduced one is made, cannot be made or preloaded.
     #[error(transparent)]
     Bearing(#[from] stribeck_bearing::error::Error),
 

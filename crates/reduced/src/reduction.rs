@@ -14,7 +14,7 @@ use stribeck_mesh::Mesh;
 use stribeck_scene::{
     geometry::{DefectGeometry, Geometry},
     housing::HousingScene,
-    scene::Scene,
+    scene::{ModelScene, ReducedScene, Scene},
     static_load,
 };
 use stribeck_simd::lanes::LANES;
@@ -489,15 +489,6 @@ impl Nodes {
         // The outer raceway is walked clockwise, with the solid on the left.
         let mut outer = named("outer raceway")?;
         outer.reverse();
-        let off = |n: u32, wanted: f64| {
-            let [x, y] = system.position(n);
-            let angle = y.atan2(x) - wanted;
-            angle.sin().hypot(1.0 - angle.cos())
-        };
-        let sensors = g.sensor_angles.iter().map(|&wanted| {
-            let nearest = machine.back.iter().min_by(|a, b| off(**a, wanted).total_cmp(&off(**b, wanted)));
-            *nearest.expect("a ring has nodes")
-        });
         Ok(Self {
             outer,
             inner: named("inner raceway")?,
@@ -508,7 +499,7 @@ impl Nodes {
                 .collect(),
             inner_ring: system.nodes_of(machine.inner).collect(),
             roller: system.nodes_of(machine.rollers[0].body).collect(),
-            sensors: sensors.collect(),
+            sensors: machine.nodes_on_back(&g.sensor_angles),
         })
     }
 }
@@ -571,5 +562,15 @@ impl Reduction {
     /// The boundaries of outer raceway, inner raceway and roller.
     pub fn outlines(&self) -> [Outline; 3] {
         [&self.outer, &self.inner, &self.roller].map(|vertices| Outline::new(vertices))
+    }
+}
+
+impl Reduction {
+    /// The modes that a scene asks for [kHz].
+    pub(crate) fn khz(scene: &Scene) -> f64 {
+        match &scene.model {
+            ModelScene::Reduced(reduced) => reduced.modes_khz,
+            ModelScene::Full => ReducedScene::default().modes_khz,
+        }
     }
 }

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 18] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -18,13 +18,15 @@ const LAYERS: [(&str, &[&str]); 16] = [
     ("scene", &[]),
     ("system", &["contact", "mesh", "solver"]),
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
+    ("run", &["scene", "solver", "system"]),
     ("reduced", &["bearing", "contact", "mesh", "scene", "simd", "solver", "system"]),
+    ("simulation", &["bearing", "mesh", "reduced", "run", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
     ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
-    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "reduced", "scene"]),
-    ("python", &["analysis", "bearing", "dsp", "formats", "reduced", "scene"]),
+    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "run", "scene", "simulation"]),
+    ("python", &["analysis", "dsp", "formats", "run", "scene", "simulation"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.
