@@ -390,25 +390,43 @@ fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Op
     }
 }
 
-/// A rotating load that does not lift the adapter.
+/// A rotating load that does not lift an adapter, which lies on its ring. Any other housing surrounds the ring and pulls it along; the
+/// run then only needs a load that presses at its start.
 fn rotating_load(scene: &Scene) -> Option<Finding> {
     const FORCE: &str = "operation.rotating_load.force_n";
     let rotating = scene.operation.rotating_load.as_ref()?;
-    let [least, _] = Duty::of(scene).load_range_n(1e-3 * scene.solver.duration_ms);
+    let duty = Duty::of(scene);
+    let [least, _] = duty.load_range_n(1e-3 * scene.solver.duration_ms);
     if least > 0.0 {
         return None;
     }
-    let load = least + rotating.force_n;
-    let message = format!(
-        "`{FORCE}` is {}, not less than the least load ({} N): it would lift the adapter",
-        number(rotating.force_n),
-        number(load)
-    );
-    let less = Remedy::new(FORCE, format!("less than {} N", number(load)));
-    let more = Remedy::new("operation.load_n", format!("more than {} N", number(rotating.force_n)));
-    let remedies =
-        vec![less.number(round_down(0.2 * load, 2), "a fifth"), more.number(5.0 * rotating.force_n, "")];
-    Some(Finding::new(message, remedies))
+    if scene.housing == HousingScene::Adapter {
+        let load = least + rotating.force_n;
+        let message = format!(
+            "`{FORCE}` is {}, not less than the least load ({} N): it would lift the adapter",
+            number(rotating.force_n),
+            number(load)
+        );
+        let less = Remedy::new(FORCE, format!("less than {} N", number(load)));
+        let more = Remedy::new("operation.load_n", format!("more than {} N", number(rotating.force_n)));
+        let housing = Remedy::new("housing", "`rigid()`, `springs()` or `pedestal()`, which surround the ring");
+        let remedies =
+            vec![less.number(round_down(0.2 * load, 2), "a fifth"), more.number(5.0 * rotating.force_n, ""), housing];
+        return Some(Finding::new(message, remedies));
+    }
+    let start = duty.load_n(0.0);
+    (start <= 0.0).then(|| {
+        const ANGLE: &str = "operation.rotating_load.angle_deg";
+        let message = format!(
+            "`{ANGLE}` is {}: with {FORCE} = {} the load at the start comes to {} N, and a run starts under a load that presses",
+            number(rotating.angle_deg),
+            number(rotating.force_n),
+            number(start)
+        );
+        let along = Remedy::new(ANGLE, "an angle at which it acts with `load_n` at the start")
+            .number(scene.operation.load_angle_deg.rem_euclid(360.0), "with the load");
+        Finding::new(message, vec![along])
+    })
 }
 
 /// A file that fits a disk.

@@ -757,3 +757,22 @@ fn refuses_reduced_scenes_of_what_only_the_full_model_has() {
         );
     }
 }
+
+/// An exciter pulls a housing that surrounds its ring against the load, too; a run only starts under a load that presses.
+#[test]
+fn issue_a_rotating_load_beyond_the_static_one_runs_where_nothing_can_lift() {
+    let scene = |housing: &str, angle_deg: f64| {
+        parse(&format!(
+            "(bearing: \"NU 205\", housing: {housing}, defect: None,
+              operation: (load_n: 200, speed_rpm: 1500, rotating_load: (force_n: 3000, angle_deg: {angle_deg})))"
+        ))
+    };
+    for housing in ["rigid(mass_kg: 5)", "springs()", "pedestal()"] {
+        assert!(scene(housing, 270.0).is_ok(), "{housing}: {:?}", scene(housing, 270.0).err());
+        let problem = only(scene(housing, 90.0));
+        assert_eq!(problem.field, "operation.rotating_load.angle_deg");
+        assert!(problem.to_string().contains("-2800 N"), "{problem}");
+    }
+    let problem = only(scene("adapter", 270.0));
+    assert!(problem.to_string().contains("lift the adapter"), "{problem}");
+}
