@@ -14,6 +14,7 @@ use crate::{
     frames::Frames,
     full::{Full, Saved},
     guards::Guards,
+    own_mesh,
     ranks::{called_to, lead},
     start::{launch, preload},
     time_loop::Run,
@@ -73,6 +74,7 @@ impl Setup {
             energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0, heat_j: 0.0 },
             guards: GuardInfo::default(),
             expected_support_n: self.expected_support,
+            notes: own_mesh::notes(scene),
             warnings: Vec::new(),
         }
     }

@@ -89,8 +89,10 @@ fn roundtrip_file_gives_back_the_mesh() {
     let numbers = decoded(&array(&file, "number").2, f32::from_le_bytes);
     assert_eq!(numbers.last(), Some(&(mesh.elements() as f32 - 1.0)));
 
-    let (kind, _, data) = array(&file, "body_names");
-    assert_eq!((kind.as_str(), data.as_slice()), ("String", &b"disc\0plate\0"[..]));
+    for (name, number) in [("disc", 0), ("plate", 1)] {
+        let (kind, _, data) = array(&file, name);
+        assert_eq!((kind.as_str(), decoded(&data, i32::from_le_bytes)), ("Int32", vec![number, 2]), "{name}");
+    }
     let bodies = decoded(&array(&file, "body").2, i32::from_le_bytes);
     for (index, body) in mesh.bodies.iter().enumerate() {
         assert!(body.quads.clone().all(|q| bodies[q] == index as i32));
