@@ -67,8 +67,11 @@ impl<'a> OwnMesh<'a> {
             let sets =
                 self.deck.node_sets.keys().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let there = if sets.is_empty() { "none" } else { &sets };
+            let about = format!("the set `{name}` ").to_lowercase();
+            let why = self.deck.notes.iter().find(|note| note.to_lowercase().contains(&about));
+            let why = why.map_or(String::new(), |note| format!("; {note}"));
             return self.refuse(format!(
-                "it has no set of nodes `{name}`, which `{}.{field}` names; sets: {there}",
+                "it has no set of nodes `{name}`, which `{}.{field}` names; sets: {there}{why}",
                 self.group
             ));
         };

@@ -35,6 +35,13 @@ fn invariant_a_mesh_reads_back() {
     assert_eq!(corners, [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8, 7]]);
 }
 
+/// Names of bodies as versions before wrote them, as texts.
+#[test]
+fn roundtrip_names_in_texts() {
+    let texts = include_bytes!("../../../../fixtures/golden/two_bodies_texts.vtu");
+    assert_eq!(read(texts), read(TWO_BODIES));
+}
+
 #[test]
 fn invariant_damage_is_named() {
     for (bytes, words) in [

@@ -318,14 +318,14 @@ impl File {
         for one in &placed {
             one.gather(&mut found)?;
         }
-        sets(&placed, &assembly, &mut found)?;
+        sets(&placed, &assembly, &mut found);
         Ok(found)
     }
 }
 
-/// Puts all sets into the mesh. Those of the assembly have their names, as have those of an instance that no other has, too; others
+/// Puts all sets into the mesh, but those with members that are not there: meshio writes such, and who asks for one is told. Those of the assembly have their names, as have those of an instance that no other has, too; others
 /// have that of the instance before theirs.
-fn sets(placed: &[Placed], assembly: &[Sets; 2], found: &mut Gathered) -> Result<(), DeckError> {
+fn sets(placed: &[Placed], assembly: &[Sets; 2], found: &mut Gathered) {
     let mut made = Vec::new();
     let resolver =
         Resolver { placed, assembly: [&assembly[0], &assembly[1]], found, known: Default::default() };
@@ -339,20 +339,20 @@ fn sets(placed: &[Placed], assembly: &[Sets; 2], found: &mut Gathered) -> Result
         names.for_each(|name| *times.entry(name.to_ascii_uppercase()).or_default() += 1);
         for (placed, sets) in &of_instances {
             for (name, members) in &sets.all {
-                let numbers = resolver.numbers(members, of, Some(placed), 0)?;
+                let numbers = resolver.numbers(members, of, Some(placed), 0);
                 let only = placed.name.is_empty() || times.get(&name.to_ascii_uppercase()) == Some(&1);
                 made.push((of, if only { name.clone() } else { format!("{}.{name}", placed.name) }, numbers));
             }
         }
         for (name, members) in &own.all {
-            made.push((of, name.clone(), resolver.numbers(members, of, None, 0)?));
+            made.push((of, name.clone(), resolver.numbers(members, of, None, 0)));
         }
     }
     for (of, name, numbers) in made {
-        match of {
-            Of::Nodes => found.node_set(&name).extend(numbers),
-            Of::Elements => found.set(&name).extend(numbers),
+        match (of, numbers) {
+            (Of::Nodes, Ok(numbers)) => found.node_set(&name).extend(numbers),
+            (Of::Elements, Ok(numbers)) => found.set(&name).extend(numbers),
+            (_, Err(why)) => found.note(why.line, format!("the set `{name}` is passed over: {}", why.what)),
         }
     }
-    Ok(())
 }

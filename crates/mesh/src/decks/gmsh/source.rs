@@ -45,7 +45,8 @@ impl<'a> Source<'a> {
     }
 
     fn ends(&self) -> DeckError {
-        self.fault("the file ends in the middle of a section")
+        let line = 1 + ends_of_lines(self.bytes[..self.at].trim_ascii_end());
+        fault(line, "the file ends in the middle of a section")
     }
 
     /// The next line that is not empty, with its number; none at the end.

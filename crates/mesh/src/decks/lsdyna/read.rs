@@ -77,7 +77,7 @@ pub(in crate::decks) fn read(text: &str) -> Result<Gathered, DeckError> {
         at.2 += 1;
         file.line(at, raw.trim_end(), line)?;
     }
-    file.gather()
+    Ok(file.gather())
 }
 
 #[derive(Default)]
@@ -212,13 +212,13 @@ impl File {
         Ok(())
     }
 
-    fn gather(self) -> Result<Gathered, DeckError> {
+    fn gather(self) -> Gathered {
         let Self { parts, of_part, sets, mut found, .. } = self;
         for (part, elements) in &of_part {
             let name = parts.get(part).cloned().unwrap_or_else(|| format!("part {part}"));
             found.set(&name).extend(elements);
         }
-        sets.gather(&of_part, &mut found)?;
-        Ok(found)
+        sets.gather(&of_part, &mut found);
+        found
     }
 }

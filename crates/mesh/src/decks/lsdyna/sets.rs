@@ -120,8 +120,13 @@ impl NodeSets {
             members.extend(general(&cells, line)?.into_iter().map(|member| (member, line)));
             return Ok(());
         }
-        let numbers: Result<Vec<u64>, DeckError> =
-            cells.iter().map(|cell| if cell.is_empty() { Ok(0) } else { whole(cell, line) }).collect();
+        // Attributes may stand behind the node of a column.
+        let many = if head.kind == Kind::Column { 1 } else { cells.len() };
+        let numbers: Result<Vec<u64>, DeckError> = cells
+            .iter()
+            .take(many)
+            .map(|cell| if cell.is_empty() { Ok(0) } else { whole(cell, line) })
+            .collect();
         let numbers = numbers?;
         match head.kind {
             Kind::Column => members.extend(numbers.first().map(|n| (Member::Node(*n), line))),
@@ -146,11 +151,7 @@ impl NodeSets {
     }
 
     /// Puts all sets into the mesh, by their titles; those that have none, or one that another has, as `set 7`.
-    pub(super) fn gather(
-        self,
-        of_part: &BTreeMap<u64, Vec<u64>>,
-        found: &mut Gathered,
-    ) -> Result<(), DeckError> {
+    pub(super) fn gather(self, of_part: &BTreeMap<u64, Vec<u64>>, found: &mut Gathered) {
         let mut taken = BTreeSet::new();
         let mut made = Vec::new();
         for (number, members) in &self.members {
@@ -160,12 +161,14 @@ impl NodeSets {
                 let line = members.first().map_or(1, |(_, line)| *line);
                 found.note(line, format!("a second set of nodes `{title}` is called `set {number}`"));
             }
-            made.push((name, self.nodes(members, of_part, found, 0)?));
+            made.push((name, self.nodes(members, of_part, found, 0)));
         }
         for (name, nodes) in made {
-            found.node_set(&name).extend(nodes);
+            match nodes {
+                Ok(nodes) => found.node_set(&name).extend(nodes),
+                Err(why) => found.note(why.line, format!("the set `{name}` is passed over: {}", why.what)),
+            }
         }
-        Ok(())
     }
 
     fn nodes(
