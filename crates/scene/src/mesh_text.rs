@@ -30,13 +30,11 @@ pub fn bytes(text: &str) -> Result<Cow<'_, [u8]>, String> {
 /// The text of the mesh `file`, and of what it includes, of `most` bytes in all.
 pub(crate) fn read(file: &Path, most: u64) -> Result<String, String> {
     let main = bytes_of(file, most)?;
-    if main.contains(&0) {
-        return Ok(format!("{BINARY}{}", STANDARD.encode(main)));
-    }
     let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let format = match extension.as_str() {
         "inp" => Includes::Abaqus,
         "k" | "key" | "dyn" => Includes::LsDyna,
+        _ if main.contains(&0) => return Ok(format!("{BINARY}{}", STANDARD.encode(main))),
         _ => return Ok(text_of(main)),
     };
     let folder = file.parent().unwrap_or(Path::new("")).to_owned();
@@ -46,8 +44,18 @@ pub(crate) fn read(file: &Path, most: u64) -> Result<String, String> {
     Ok(text.out)
 }
 
-/// Text of any encoding that has ASCII in it: what is not UTF-8 is taken for Latin-1, which has a letter for every byte.
+/// Text of any encoding that has ASCII in it: what is not UTF-8 is taken for Latin-1, which has a letter for every byte. UTF-16 is known by
+/// its byte order mark.
 fn text_of(bytes: Vec<u8>) -> String {
+    let units = |order: fn([u8; 2]) -> u16| {
+        let units = bytes[2..].as_chunks().0.iter().map(|pair| order(*pair));
+        char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
+    };
+    match bytes.as_slice() {
+        [0xff, 0xfe, ..] => return units(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => return units(u16::from_be_bytes),
+        _ => {}
+    }
     let text = String::from_utf8(bytes)
         .unwrap_or_else(|error| error.as_bytes().iter().map(|byte| char::from(*byte)).collect());
     text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
@@ -266,5 +274,8 @@ mod tests {
         assert!(bytes("base64:*").is_err());
         std::fs::write(folder.join("a.inp"), b"*HEADING\nAu\xdfenring\n").expect("written");
         assert_eq!(read(&folder.join("a.inp"), 1000).as_deref(), Ok("*HEADING\nAu\u{df}enring\n"));
+        let wide: Vec<u8> = "\u{feff}*NODE\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        std::fs::write(folder.join("a.inp"), wide).expect("written");
+        assert_eq!(read(&folder.join("a.inp"), 1000).as_deref(), Ok("*NODE\n"));
     }
 }

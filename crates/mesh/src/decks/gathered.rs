@@ -9,6 +9,9 @@ use crate::{Body, Mesh};
 /// Numbers in a file are below this, so that readers may number the instances of a part beyond it.
 pub(super) const MOST_NUMBER: u64 = 1 << 40;
 
+/// How far out of the plane nodes may be, as a part of the mesh's size: what sums and turns leave.
+const FLAT: f64 = 1e-9;
+
 /// Gathers nodes, elements and sets.
 #[derive(Default)]
 pub(super) struct Gathered {
@@ -20,6 +23,10 @@ pub(super) struct Gathered {
     /// Elements by the name of the part or set, in the order in which names came up.
     sets: Vec<(String, Vec<u64>)>,
     node_sets: BTreeMap<String, Vec<u64>>,
+    /// Largest coordinate in the plane.
+    widest: f64,
+    /// The coordinate farthest out of it, of which node, and its line.
+    farthest: (f64, u64, usize),
     /// What was passed over, with the lines where it stands.
     notes: Vec<(String, Vec<usize>)>,
 }
@@ -54,8 +61,9 @@ impl Gathered {
         if !(x.is_finite() && y.is_finite() && z.is_finite()) {
             return Err(fault(line, format!("a coordinate of node {shown} is no finite number")));
         }
-        if z.abs() > 1e-9 * (x.abs() + y.abs()) {
-            return Err(fault(line, format!("node {shown} has z = {z}; a plane mesh lies in z = 0")));
+        self.widest = self.widest.max(x.abs()).max(y.abs());
+        if z.abs() > self.farthest.0.abs() {
+            self.farthest = (z, shown, line);
         }
         match self.nodes.insert(number, [x, y]) {
             Some(before) if before != [x, y] => Err(fault(
@@ -116,6 +124,10 @@ impl Gathered {
 
     /// The mesh, body by body: each element belongs to the first set that names it. `last` is the last line.
     pub(super) fn finish(mut self, last: usize, origins: &Origins) -> Result<ReadDeck, DeckError> {
+        let (z, node, line) = self.farthest;
+        if z.abs() > FLAT * self.widest {
+            return Err(fault(line, format!("node {node} has z = {z}; a plane mesh lies in z = 0")));
+        }
         if self.elements.is_empty() {
             return Err(fault(last.max(1), "the file holds no plane element of three or four nodes"));
         }
