@@ -13,7 +13,7 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
-use super::{TraceFile, header};
+use super::header;
 use crate::error::Error;
 
 /// First bytes of an archive.
@@ -73,8 +73,13 @@ impl Archive {
     }
 }
 
-/// Writes the channels of `trace` as an archive at `path`, as many at a time as need little memory.
-pub(super) fn write(trace: &TraceFile, path: &Path) -> Result<(), Error> {
+/// Writes channels as an archive at `path`, as many at a time as need little memory: `columns` reads the values of some of them.
+pub(super) fn write(
+    path: &Path,
+    names: &[String],
+    rows: usize,
+    columns: impl Fn(&[String]) -> Result<Vec<Vec<f64>>, Error>,
+) -> Result<(), Error> {
     let io = |source| {
         Error::Io {
         action: "write",
@@ -91,12 +96,10 @@ pub(super) fn write(trace: &TraceFile, path: &Path) -> Result<(), Error> {
         .compression_method(CompressionMethod::Stored)
         .last_modified_time(zip::DateTime::default())
         .large_file(true);
-    let head = header::encode_column(trace.len());
-    let names = trace.names();
-    let at_once = (AT_ONCE / (8 * trace.len().max(1))).max(1);
+    let head = header::encode_column(rows);
+    let at_once = (AT_ONCE / (8 * rows.max(1))).max(1);
     for group in names.chunks(at_once) {
-        let part = trace.read(0..trace.len(), |name| group.iter().any(|wanted| wanted == name))?;
-        for (name, column) in part.names.iter().zip(&part.columns) {
+        for (name, column) in group.iter().zip(columns(group)?) {
             archive.start_file(format!("{name}.npy"), options).map_err(zipped)?;
             archive.write_all(&head).map_err(io)?;
             let bytes: Vec<u8> = column.iter().flat_map(|value| value.to_le_bytes()).collect();
@@ -107,7 +110,7 @@ pub(super) fn write(trace: &TraceFile, path: &Path) -> Result<(), Error> {
     file.sync_data().map_err(io)
 }
 
-/// Reads `values` of a channel that begins at `start`, from the sample `first` on.
+/// Fills `bytes` with the values of a channel that begins at `start`, from the sample `first` on.
 pub(super) fn read_column(
     file: &mut File,
     start: u64,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::archive::{self, Archive};
-use super::{Trace, TraceWriter, header};
+use super::{Trace, header};
 use crate::error::Error;
 
 /// What is read at once [bytes]: it stays in a core's cache while channels are picked from it.
@@ -199,37 +199,6 @@ impl TraceFile {
     /// Whether the rows begin where a writer of these channels puts them, so that it can append to them.
     pub(super) fn can_grow(&self, header_length: usize) -> bool {
         matches!(self.layout, Layout::Rows(start) if start == header_length as u64)
-    }
-
-    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
-    pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
-        self.rows_to(path, wanted)?.finish()
-    }
-
-    /// Writes all channels to `path`, row after row.
-    pub(super) fn copy_rows(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        self.rows_to(path, |_| true).map(drop)
-    }
-
-    /// A writer that holds the channels that are `wanted`, on disk.
-    fn rows_to(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<TraceWriter, Error> {
-        // As many rows as fit in 16 MiB, and a seek a channel is worth.
-        let at_once = (WIDE_BLOCK_BYTES / (8 * self.names.len())).max(1);
-        let names: Vec<&String> = self.names.iter().filter(|name| wanted(name)).collect();
-        let mut writer = TraceWriter::create(path, &names)?;
-        for first in (0..self.rows).step_by(at_once) {
-            let part = self.read(first..first + at_once, &wanted)?;
-            for n in 0..part.len() {
-                let row: Vec<f64> = part.columns.iter().map(|column| column[n]).collect();
-                writer.push(&row)?;
-            }
-        }
-        writer.sync()?;
-        Ok(writer)
     }
 
     /// Hands blocks of whole rows to `take` until it says no.

@@ -253,7 +253,7 @@ fn distinct(names: &[String], count: usize) -> Vec<Vec<f64>> {
 #[test]
 fn issue_no_header_is_longer_than_numpy_reads() {
     let file = File::new();
-    for rollers in [3, 20, 27, 28, 33, 36, 45, 60, 150, 400] {
+    for rollers in [3, 20, 34, 35, 48, 49, 60, 400] {
         let names = channels(rollers);
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         let all = distinct(&channels(rollers), 5);
@@ -264,15 +264,15 @@ fn issue_no_header_is_longer_than_numpy_reads() {
             "archive"
         } else {
             assert!(bytes.starts_with(&header) && header.len() <= 10_012, "{rollers}: {}", header.len());
-            if header.windows(5).any(|window| window == b"'V224" || window == b"names") {
+            if header.windows(5).any(|window| window == b"names") {
                 "short form"
             } else {
                 "pairs"
             }
         };
         let expected = match rollers {
-            0..=30 => "pairs",
-            31..=44 => "short form",
+            0..=34 => "pairs",
+            35..=48 => "short form",
             _ => "archive",
         };
         println!("{rollers} rollers: {} channels, {form}, header of {} bytes", names.len(), header.len());

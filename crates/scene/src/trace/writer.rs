@@ -9,6 +9,8 @@ use crate::error::Error;
 
 /// Rows that a killed run may lose: one millisecond at 100 kHz.
 const ROWS_PER_FLUSH: u64 = 100;
+/// What of a trace is in memory while it is copied [bytes].
+const COPIED_BYTES: usize = 1 << 24;
 
 /// Appends rows to a `.npy` file.
 ///
@@ -204,7 +206,12 @@ impl TraceWriter {
             return Ok(());
         }
         let beside = beside(&self.path);
-        archive::write(&TraceFile::open(&self.path)?, &beside)
+        let rows = TraceFile::open(&self.path)?;
+        let columns = |wanted: &[String]| {
+            let part = rows.read(0..rows.len(), |name| wanted.iter().any(|wanted| wanted == name))?;
+            Ok(part.columns)
+        };
+        archive::write(&beside, rows.names(), rows.len(), columns)
             .and_then(|()| renamed(&beside, &self.path))
             .inspect_err(|_| drop(std::fs::remove_file(&beside)))
     }
@@ -226,6 +233,38 @@ impl TraceWriter {
         self.rows_on_disk = self.rows;
         self.pending.clear();
         Ok(())
+    }
+}
+
+impl TraceFile {
+    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
+    pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
+        self.rows_to(path, wanted)?.finish()
+    }
+
+    /// Writes all channels to `path`, row after row.
+    fn copy_rows(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.rows_to(path, |_| true).map(drop)
+    }
+
+    /// A writer that holds the channels that are `wanted`, on disk.
+    fn rows_to(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<TraceWriter, Error> {
+        let at_once = (COPIED_BYTES / (8 * self.names().len())).max(1);
+        let names: Vec<&String> = self.names().iter().filter(|name| wanted(name)).collect();
+        let mut writer = TraceWriter::create(path, &names)?;
+        for first in (0..self.len()).step_by(at_once) {
+            let part = self.read(first..first + at_once, &wanted)?;
+            for n in 0..part.len() {
+                let row: Vec<f64> = part.columns.iter().map(|column| column[n]).collect();
+                writer.push(&row)?;
+            }
+        }
+        writer.sync()?;
+        Ok(writer)
     }
 }
 

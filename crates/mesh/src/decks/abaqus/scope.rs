@@ -15,7 +15,7 @@ pub(super) enum Member {
     Number(u64),
     /// First, last and step.
     Range(u64, u64, u64),
-    /// Another set, maybe of an instance: `ring-1.raceway`, `ring-1.5`.
+    /// Another set, maybe of an instance: `plate-1.edge`, `plate-1.5`.
     Named(String),
     /// The nodes of a set of elements.
     NodesOf(String),
