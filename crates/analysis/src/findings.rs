@@ -366,6 +366,7 @@ fn notes_on(run: &Run, record: &Record<'_>) -> Vec<String> {
             run.info.simulated_s
         ));
     }
+    notes.extend(run.info.notes.iter().cloned());
     notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.bearing));
     notes
 }

@@ -9,6 +9,7 @@ use stribeck_mesh::{
 use stribeck_scene::{
     geometry::Geometry,
     housing::{HousingScene, MeshHousingScene},
+    mesh_text,
     ring_mesh::RingMeshScene,
     scene::{DefectRing, Scene},
 };
@@ -39,7 +40,8 @@ impl<'a> OwnMesh<'a> {
         let extension = Path::new(file).extension().and_then(|e| e.to_str()).unwrap_or_default();
         let deck = Deck::of_extension(extension)
             .ok_or_else(|| refuse("its name ends in neither `.msh`, `.inp` nor `.k`".to_owned()))?;
-        let deck = deck.read(text).map_err(|fault| refuse(fault.to_string()))?;
+        let bytes = mesh_text::bytes(text).map_err(refuse)?;
+        let deck = deck.read_bytes(&bytes).map_err(|fault| refuse(fault.to_string()))?;
         let mut part = deck.part().map_err(|error| refuse(error.to_string()))?;
         let unit = 1e-3 * unit_mm;
         part.x.iter_mut().chain(&mut part.y).for_each(|place| *place *= unit);
@@ -50,14 +52,26 @@ impl<'a> OwnMesh<'a> {
         Err(refused(self.group, self.file, what))
     }
 
+    /// The set of that name; Abaqus and LS-DYNA take capitals and small letters for the same.
+    fn set(&self, name: &str) -> Option<&[u32]> {
+        let sets = &self.deck.node_sets;
+        let mut alike =
+            sets.iter().filter(|(known, _)| known.eq_ignore_ascii_case(name)).map(|(_, nodes)| nodes);
+        let nodes = sets.get(name).or_else(|| alike.next().filter(|_| alike.next().is_none()));
+        nodes.map(Vec::as_slice)
+    }
+
     /// The boundary along the set `name`, which the field `field` asks for: its pieces, the longest first.
     fn pieces(&self, field: &str, name: &str) -> Result<Vec<Surface>, Error> {
-        let Some(nodes) = self.deck.node_sets.get(name) else {
+        let Some(nodes) = self.set(name) else {
             let sets =
                 self.deck.node_sets.keys().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
             let there = if sets.is_empty() { "none" } else { &sets };
+            let about = format!("the set `{name}` ").to_lowercase();
+            let why = self.deck.notes.iter().find(|note| note.to_lowercase().contains(&about));
+            let why = why.map_or(String::new(), |note| format!("; {note}"));
             return self.refuse(format!(
-                "it has no set of nodes `{name}`, which `{}.{field}` names; sets: {there}",
+                "it has no set of nodes `{name}`, which `{}.{field}` names; sets: {there}{why}",
                 self.group
             ));
         };
@@ -160,6 +174,22 @@ pub fn check(scene: &Scene) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// What of a scene's mesh files was passed over, in sentences that name field, file and line.
+pub fn notes(scene: &Scene) -> Vec<String> {
+    let housing = match &scene.housing {
+        HousingScene::Mesh(mesh) => Some(("housing", &mesh.file, &mesh.text)),
+        _ => None,
+    };
+    let rings = [("outer_ring_mesh", &scene.outer_ring_mesh), ("inner_ring_mesh", &scene.inner_ring_mesh)];
+    let rings = rings.into_iter().filter_map(|(group, mesh)| Some((group, mesh.as_ref()?)));
+    let files = housing.into_iter().chain(rings.map(|(group, mesh)| (group, &mesh.file, &mesh.text)));
+    let notes = files.filter_map(|(group, file, text)| {
+        let own = OwnMesh::read(group, file, text, 1.0).ok()?;
+        Some(own.deck.notes.into_iter().map(move |note| format!("of `{group}.file` `{file}`, {note}")))
+    });
+    notes.flatten().collect()
 }
 
 /// A housing, with its surfaces `bore` and `loaded`.

@@ -120,6 +120,10 @@ impl Layout {
                 record += number.kind.bytes();
                 rest = behind.trim_start_matches([',', ' ']);
             }
+        } else if let Some(names) = short_form(descr) {
+            let double = Number { kind: Kind::F64, big_endian: false };
+            fields = (0..).step_by(8).zip(names).map(|(at, name)| (name.to_owned(), at, double)).collect();
+            record = 8 * fields.len();
         } else {
             let kind = descr.split('\'').nth(1).unwrap_or_default();
             let number = number(kind).ok_or_else(|| Refusal::Foreign(spoken(kind)))?;
@@ -183,6 +187,15 @@ impl Layout {
         }
         Ok(channels)
     }
+}
+
+/// Names of records of doubles in the short form in which runs of many channels describe them:
+/// `('V16', {'names':['t','x'],'formats':'dd'})`.
+fn short_form(descr: &str) -> Option<std::str::Split<'_, &'static str>> {
+    let (names, rest) = descr.strip_prefix('(')?.split_once("{'names':['")?.1.split_once("'],'formats':'")?;
+    let formats = rest.split_once("'})")?.0;
+    let names = names.split("','");
+    (formats.len() == names.clone().count() && formats.bytes().all(|letter| letter == b'd')).then_some(names)
 }
 
 fn number(descr: &str) -> Option<Number> {
@@ -259,5 +272,19 @@ mod tests {
             assert!(said.contains(words) && said.contains("float64") && !said.contains("damaged"), "{said}");
         }
         assert!(why("'<f8'", "(x,)").contains("damaged"));
+    }
+
+    #[test]
+    fn example_records_in_their_short_form() {
+        let header = |formats: &str| {
+            format!(
+                "{{'descr': ('V24', {{'names':['time_s','a','b c'],'formats':'{formats}'}}), 'fortran_order': False, 'shape': (2,), }}"
+            )
+        };
+        let layout = Layout::of(&file(&header("ddd"))).expect("a layout");
+        let fields: Vec<(&str, usize)> =
+            layout.fields.iter().map(|(name, at, _)| (name.as_str(), *at)).collect();
+        assert_eq!((fields, layout.record), (vec![("time_s", 0), ("a", 8), ("b c", 16)], 24));
+        assert!(Layout::of(&file(&header("dfd"))).is_err());
     }
 }

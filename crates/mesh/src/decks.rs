@@ -1,33 +1,42 @@
 //! Meshes in the formats of other programs: LS-DYNA keyword files, Abaqus input files and Gmsh files.
 //!
 //! Written are nodes [m], elements, and for each body a part or element set of its name and a set of its nodes. The reader
-//! takes the same from any such file: plane quadrilaterals and triangles of first order, with their sets. Cards that are not
-//! mesh (materials, steps, loads) are named with their lines, so that nothing is ignored unsaid.
+//! takes the same from any such file: plane quadrilaterals and triangles of first order, with their sets. What is not mesh
+//! (materials, steps, loads) and elements along lines or at points are passed over and named with their lines; what would
+//! change the mesh if it were passed over is refused by its name.
 //!
 //! | format | nodes | elements | sets |
 //! |---|---|---|---|
-//! | LS-DYNA `.k` | `*NODE` | `*ELEMENT_SHELL`, triangles with the last node twice | `*PART`, `*SET_NODE_LIST_TITLE` |
-//! | Abaqus `.inp` | `*NODE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*NSET` |
-//! | Gmsh `.msh` 4.1, ASCII | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
+//! | LS-DYNA `.k` | `*NODE` | `*ELEMENT_SHELL`, triangles with the last node twice | `*PART`, `*SET_NODE…` |
+//! | Abaqus `.inp` | `*NODE`, `*PART` and `*INSTANCE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*ELSET`, `NSET=`, `*NSET` |
+//! | Gmsh `.msh` 2.2, 4.0, 4.1, text or binary | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
+//!
+//! A set of line elements is a set of their nodes. An `*INCLUDE` is for whoever reads the files to follow ([`included`]).
 //!
 //! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MAT_ELASTIC`, `*SECTION_SHELL` and
 //! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT PAIR`; and a step of explicit
 //! dynamics ([`Step`]): gravity, loads on nodes, guided and turning nodes, and the velocities of all at the start.
 //!
 //! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh Reference Manual*,
-//! MSH file format 4.1.
+//! MSH file formats 2.2, 4.0 and 4.1.
 
 mod abaqus;
+mod gathered;
 mod gmsh;
 mod lsdyna;
 mod model;
+mod origin;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
+use self::gathered::MOST_NUMBER;
 pub use self::model::{ContactPair, Model, Side, Step};
+use self::origin::Origins;
+pub use self::origin::included;
 use crate::smoothing::sound;
-use crate::{Body, Error, Mesh, Part};
+use crate::{Error, Mesh, Part};
 
 /// A format that meshes are exchanged in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +45,7 @@ pub enum Deck {
     LsDyna,
     /// Abaqus input file, `.inp`.
     Abaqus,
-    /// Gmsh 4.1, ASCII, `.msh`.
+    /// Gmsh, `.msh`; written in version 4.1 as text.
     Gmsh,
 }
 
@@ -77,11 +86,25 @@ impl Deck {
     /// # Errors
     /// [`DeckError`] with the line, for what contradicts the format, elements of other kinds, and nodes that are not there.
     pub fn read(self, text: &str) -> Result<ReadDeck, DeckError> {
-        match self {
-            Self::LsDyna => lsdyna::read(text),
-            Self::Abaqus => abaqus::read(text),
-            Self::Gmsh => gmsh::read(text),
+        self.read_bytes(text.as_bytes())
+    }
+
+    /// Reads a file of this format, which is binary or of any encoding: what is not UTF-8 is taken for Latin-1.
+    ///
+    /// # Errors
+    /// As [`Deck::read`].
+    pub fn read_bytes(self, bytes: &[u8]) -> Result<ReadDeck, DeckError> {
+        let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
+        if self == Self::Gmsh {
+            return gmsh::read(bytes);
         }
+        let text = text_of(bytes);
+        let origins = Origins::of(&text);
+        let found = if self == Self::LsDyna { lsdyna::read(&text) } else { abaqus::read(&text) };
+        found.and_then(|found| found.finish(text.lines().count(), &origins)).map_err(|fault| {
+            let (file, line) = origins.locate(fault.line);
+            DeckError { file: file.map(str::to_owned), line, what: fault.what }
+        })
     }
 }
 
@@ -92,7 +115,7 @@ pub struct ReadDeck {
     pub mesh: Mesh,
     /// Node sets by name, in numbers of the mesh.
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// Cards that were not understood, with their lines.
+    /// What was passed over, with its lines.
     pub notes: Vec<String>,
 }
 
@@ -110,7 +133,9 @@ impl ReadDeck {
 /// Why a file is no mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeckError {
-    /// Line, from 1.
+    /// The included file, where it is not the one that was read.
+    pub file: Option<String>,
+    /// Line in it, from 1.
     pub line: usize,
     /// What is wrong, and what to try.
     pub what: String,
@@ -118,127 +143,24 @@ pub struct DeckError {
 
 impl fmt::Display for DeckError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: {}", self.line, self.what)
+        match &self.file {
+            Some(file) => write!(f, "`{file}`, line {}: {}", self.line, self.what),
+            None => write!(f, "line {}: {}", self.line, self.what),
+        }
     }
 }
 
 impl std::error::Error for DeckError {}
 
 fn fault(line: usize, what: impl Into<String>) -> DeckError {
-    DeckError { line, what: what.into() }
+    DeckError { file: None, line, what: what.into() }
 }
 
-/// Gathers what a reader finds, by the numbers of the file.
-#[derive(Default)]
-struct Gathered {
-    nodes: BTreeMap<u64, [f64; 2]>,
-    /// Corners with the line that they stand in, by element number.
-    elements: BTreeMap<u64, (Vec<u64>, usize)>,
-    /// Elements by the name of the part or set, in the order in which names came up.
-    sets: Vec<(String, Vec<u64>)>,
-    node_sets: BTreeMap<String, Vec<u64>>,
-    notes: Vec<String>,
-}
-
-impl Gathered {
-    /// The set of that name.
-    fn set(&mut self, name: &str) -> &mut Vec<u64> {
-        let at = self.sets.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
-            self.sets.push((name.to_owned(), Vec::new()));
-            self.sets.len() - 1
-        });
-        &mut self.sets[at].1
-    }
-
-    /// A node in the plane.
-    fn node(&mut self, number: u64, [x, y, z]: [f64; 3], line: usize) -> Result<(), DeckError> {
-        if !(x.is_finite() && y.is_finite()) {
-            return Err(fault(line, "a coordinate is no finite number"));
-        }
-        if z.abs() > 1e-9 * (x.abs() + y.abs()) {
-            return Err(fault(line, format!("node {number} has z = {z}; a plane mesh lies in z = 0")));
-        }
-        self.nodes.insert(number, [x, y]);
-        Ok(())
-    }
-
-    /// An element of three or four corners.
-    fn element(&mut self, number: u64, mut corners: Vec<u64>, line: usize) -> Result<(), DeckError> {
-        if corners.len() == 4 && corners[2] == corners[3] {
-            corners.pop();
-        }
-        if !(3..=4).contains(&corners.len()) {
-            return Err(fault(
-                line,
-                format!("element {number} has {} nodes; 3 or 4 are read", corners.len()),
-            ));
-        }
-        self.elements.insert(number, (corners, line));
-        Ok(())
-    }
-
-    /// The mesh, body by body: each element belongs to the first set that names it.
-    fn finish(self, lines: usize) -> Result<ReadDeck, DeckError> {
-        let Self { nodes, elements, mut sets, node_sets, notes } = self;
-        if elements.is_empty() {
-            return Err(fault(lines.max(1), "the file holds no plane element of three or four nodes"));
-        }
-        let mut mesh = Mesh::new();
-        let mut place: BTreeMap<u64, u32> = BTreeMap::new();
-        let mut left = elements;
-        sets.push(("rest".to_owned(), left.keys().copied().collect()));
-        for (name, numbers) in sets {
-            let own: Vec<(Vec<u64>, usize)> =
-                numbers.iter().filter_map(|number| left.remove(number)).collect();
-            if own.is_empty() {
-                continue;
-            }
-            let starts = (mesh.x.len(), mesh.quads.len(), mesh.triangles.len());
-            for (corners, line) in own {
-                let mut at = Vec::with_capacity(4);
-                for corner in corners {
-                    let known = place.get(&corner).copied();
-                    at.push(match (known, nodes.get(&corner)) {
-                        (Some(known), _) => known,
-                        (None, Some([x, y])) => {
-                            let new = mesh.x.len() as u32;
-                            mesh.x.push(*x);
-                            mesh.y.push(*y);
-                            place.insert(corner, new);
-                            new
-                        }
-                        (None, None) => return Err(fault(line, format!("there is no node {corner}"))),
-                    });
-                }
-                counter_clockwise(&mesh, &mut at);
-                match at[..] {
-                    [a, b, c] => mesh.triangles.push([a, b, c]),
-                    [a, b, c, d] => mesh.quads.push([a, b, c, d]),
-                    _ => {}
-                }
-            }
-            mesh.bodies.push(Body {
-                name,
-                nodes: starts.0..mesh.x.len(),
-                quads: starts.1..mesh.quads.len(),
-                triangles: starts.2..mesh.triangles.len(),
-            });
-        }
-        let in_mesh = |numbers: Vec<u64>| numbers.iter().filter_map(|n| place.get(n).copied()).collect();
-        let node_sets = node_sets.into_iter().map(|(name, numbers)| (name, in_mesh(numbers))).collect();
-        Ok(ReadDeck { mesh, node_sets, notes })
-    }
-}
-
-/// Turns corners that run clockwise.
-fn counter_clockwise(mesh: &Mesh, corners: &mut [u32]) {
-    let at = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
-    let area: f64 = (0..corners.len())
-        .map(|i| (at(corners[i]), at(corners[(i + 1) % corners.len()])))
-        .map(|([ax, ay], [bx, by])| ax * by - bx * ay)
-        .sum();
-    if area < 0.0 {
-        corners.reverse();
+/// A text of any encoding that has ASCII in it.
+fn text_of(bytes: &[u8]) -> Cow<'_, str> {
+    match std::str::from_utf8(bytes) {
+        Ok(text) => text.into(),
+        Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect::<String>().into(),
     }
 }
 
@@ -249,7 +171,8 @@ fn plain(name: &str) -> String {
 
 /// A whole number in a file.
 fn whole(text: &str, line: usize) -> Result<u64, DeckError> {
-    text.trim().parse().map_err(|_| fault(line, format!("`{}` is no whole number", text.trim())))
+    let number = text.trim().parse().ok().filter(|number| *number < MOST_NUMBER);
+    number.ok_or_else(|| fault(line, format!("`{}` is no whole number from 0 to 10¹²", text.trim())))
 }
 
 /// A number in a file; Fortran's exponents are understood.

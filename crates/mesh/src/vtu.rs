@@ -3,7 +3,8 @@
 //! An XML header names the arrays and gives their offsets; the values follow in one appended section, raw and
 //! little-endian, each array preceded by its length in bytes (64 bits). Coordinates and exact fields keep all
 //! their digits (64-bit floats); other fields are written as 32-bit floats. The body of each cell is always
-//! written, as the cell array `body`, and so are the names of the bodies, as the field array `body_names`.
+//! written, as the cell array `body`, and so are the names of the bodies: each is that of a field array of two numbers, the
+//! body's and its dimension, 2. That is how meshio names groups of cells; texts, which the format has, too, it refuses.
 //!
 //! Cells are all quadrilaterals of the mesh, then all triangles; cell fields follow that order.
 //!
@@ -72,7 +73,9 @@ pub fn write(sink: &mut impl Write, mesh: &Mesh, nodes: &[Field], cells: &[Field
     cells.iter().try_for_each(|f| f.check(mesh.elements(), "elements"))?;
     let mut file = Appended::default();
     file.open("FieldData");
-    file.texts("body_names", mesh.bodies.iter().map(|body| body.name.as_str()));
+    for (number, body) in (0..).zip(&mesh.bodies) {
+        file.group(&body.name, number);
+    }
     file.close("FieldData");
     file.open_piece(mesh.x.len(), mesh.elements());
     file.open("PointData");
@@ -133,14 +136,13 @@ impl Appended {
         }
     }
 
-    /// Texts as the format has them: each ends with a zero byte.
-    fn texts<'a>(&mut self, name: &str, texts: impl ExactSizeIterator<Item = &'a str>) {
+    /// The name of a body, with its number and dimension.
+    fn group(&mut self, name: &str, number: i32) {
+        let (name, offset) = (escaped(name), self.offset);
         self.header += &format!(
-            "<DataArray type=\"String\" Name=\"{name}\" NumberOfTuples=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-            texts.len(),
-            self.offset
+            "<DataArray type=\"Int32\" Name=\"{name}\" NumberOfTuples=\"2\" format=\"appended\" offset=\"{offset}\"/>\n"
         );
-        self.append(texts.flat_map(|text| text.bytes().chain([0])).collect());
+        self.append(bytes([number, 2], i32::to_le_bytes));
     }
 
     fn array(&mut self, name: &str, kind: &str, components: usize, data: Vec<u8>) {

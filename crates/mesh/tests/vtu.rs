@@ -1,6 +1,9 @@
 //! The file format, read back byte by byte from the offsets in its header.
 
+use std::process::Command;
+
 use stribeck_mesh::{Disc, Error, Mesh, Part, Rectangle, vtu};
+use stribeck_testing::{Scratch, said};
 
 fn mesh() -> Mesh {
     let disc = Disc { radius: 1.0, facets: 24, size: 0.25, rotation: 0.1 };
@@ -89,8 +92,10 @@ fn roundtrip_file_gives_back_the_mesh() {
     let numbers = decoded(&array(&file, "number").2, f32::from_le_bytes);
     assert_eq!(numbers.last(), Some(&(mesh.elements() as f32 - 1.0)));
 
-    let (kind, _, data) = array(&file, "body_names");
-    assert_eq!((kind.as_str(), data.as_slice()), ("String", &b"disc\0plate\0"[..]));
+    for (name, number) in [("disc", 0), ("plate", 1)] {
+        let (kind, _, data) = array(&file, name);
+        assert_eq!((kind.as_str(), decoded(&data, i32::from_le_bytes)), ("Int32", vec![number, 2]), "{name}");
+    }
     let bodies = decoded(&array(&file, "body").2, i32::from_le_bytes);
     for (index, body) in mesh.bodies.iter().enumerate() {
         assert!(body.quads.clone().all(|q| bodies[q] == index as i32));
@@ -155,4 +160,39 @@ fn golden_a_file_that_others_read() {
         std::fs::write(golden, &file).expect("writable");
     }
     assert!(std::fs::read(golden).expect("readable") == file, "the format has changed");
+}
+
+/// Places, cells, bodies and their names as meshio 5.3.5 reads them, where the interpreter in STRIBECK_PYTHON (or python3) has it.
+#[test]
+fn peer_meshio_opens_the_file() {
+    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python).args(["-c", "import meshio"]).output();
+    if !has.is_ok_and(|output| output.status.success()) {
+        eprintln!("files for ParaView are not opened by meshio: `{python}` does not have it");
+        return;
+    }
+    let mesh = mesh();
+    let folder = Scratch::create("vtu");
+    let mut file = Vec::new();
+    let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(x, y)| [*x, *y, 0.0]).collect();
+    vtu::write(&mut file, &mesh, &[vtu::Field::exact_vector("reference_m", &reference)], &[])
+        .expect("a file");
+    std::fs::write(folder.join("a.vtu"), file).expect("it is written");
+    let script = format!(
+        "import meshio, numpy as np
+m = meshio.read('a.vtu')
+assert m.points.shape == ({}, 3) and (m.points == m.point_data['reference_m']).all()
+assert abs((m.points ** 2).sum() / {:e} - 1) < 1e-14
+assert [(c.type, len(c.data)) for c in m.cells] == [('quad', {}), ('triangle', {})], m
+assert {{name: list(held) for name, held in m.field_data.items()}} == {{'disc': [0, 2], 'plate': [1, 2]}}, m.field_data
+assert sorted(set(np.concatenate([b.ravel() for b in m.cell_data['body']]))) == [0, 1]
+print('agreed')",
+        mesh.x.len(),
+        mesh.x.iter().chain(&mesh.y).map(|v| v * v).sum::<f64>(),
+        mesh.quads.len(),
+        mesh.triangles.len()
+    );
+    let output =
+        Command::new(&python).current_dir(folder.path()).args(["-c", &script]).output().expect("it starts");
+    assert!(output.status.success(), "{}", said(&output));
 }

@@ -26,6 +26,8 @@ pub struct Setup {
     pub wall_s: f64,
     /// Mass of the outer ring and of what sits on it [kg]: the rollers carry its weight beside the load.
     pub carried_mass: f64,
+    /// What of the scene's mesh files was passed over.
+    pub notes: Vec<String>,
     /// Warnings of the preload and of the model.
     pub warnings: Vec<String>,
 }
@@ -60,6 +62,7 @@ impl Setup {
             energy: EnergyInfo { max_relative_error: 0.0, peak_strain_j: 0.0, heat_j: 0.0 },
             guards: GuardInfo::default(),
             expected_support_n: expected_support(scene, self.carried_mass),
+            notes: self.notes,
             warnings: self.warnings,
         }
     }

@@ -67,6 +67,7 @@ mod line_contact;
 pub mod lubrication;
 pub mod material;
 pub mod mesh_file;
+pub mod mesh_text;
 mod point_contact;
 pub mod ring_mesh;
 pub mod run_dir;

@@ -6,11 +6,13 @@
 //!
 //! | array | type | what |
 //! |---|---|---|
-//! | `body_names` | text, each ends with a zero byte | names of the bodies |
+//! | in `FieldData`, one for each body, called as it | i32, i32 | number of the body, and its dimension, 2 |
 //! | `points` | f64 × 3 a node | positions when the run starts, under preload [m] |
 //! | [`reference_m`](REFERENCE) | f64 × 3 a node | positions free of stress [m] |
 //! | `types`, `connectivity` | u8, i32 | cells: quadrilaterals (9) first, then triangles (5), and their nodes |
 //! | `body` | i32 a cell | the body that it belongs to |
+//!
+//! Earlier versions wrote the names as one array `body_names` of texts, each of which ends with a zero byte; they are read, too.
 //!
 //! A reduced run keeps no more of rings and housing than their modes: they stand in the file as at the preload of the reduction, whose
 //! rollers stand symmetrically about the defect, so that one serves all starts. Rollers and cage stand where the run starts.
@@ -85,7 +87,7 @@ impl RunMesh {
     fn of(file: &mut (impl Read + Seek)) -> Result<Self, String> {
         let mut arrays = Arrays::of(file)?;
         let (nodes, cells) = (arrays.count("NumberOfPoints")?, arrays.count("NumberOfCells")?);
-        let names = names(&arrays.bytes("body_names", "String", Size::AtMost(MAX_NAMES))?)?;
+        let names = arrays.body_names()?;
         let start = positions(&arrays.bytes("points", "Float64", Size::Exactly(24 * nodes))?)?;
         let reference = positions(&arrays.bytes(REFERENCE, "Float64", Size::Exactly(24 * nodes))?)?;
 
@@ -169,6 +171,27 @@ impl<'a, F: Read + Seek> Arrays<'a, F> {
             .ok_or(format!("its header has no `{name}` of at most {MAX_COUNT}"))
     }
 
+    /// Names of the bodies, by their numbers.
+    fn body_names(&mut self) -> Result<Vec<String>, String> {
+        if self.header.contains(" Name=\"body_names\"") {
+            return names(&self.bytes("body_names", "String", Size::AtMost(MAX_NAMES))?);
+        }
+        let fields =
+            self.header.split_once("<FieldData>").and_then(|(_, rest)| rest.split_once("</FieldData>"));
+        let (fields, _) = fields.ok_or("it names no bodies")?;
+        let escaped: Vec<String> =
+            fields.lines().filter_map(|line| attribute(line, "Name")).map(str::to_owned).collect();
+        let mut names = Vec::new();
+        for (number, name) in escaped.iter().enumerate() {
+            let held = numbers(&self.bytes(name, "Int32", Size::Exactly(8))?);
+            if held.first().copied() != u32::try_from(number).ok() {
+                return Err(format!("its body `{name}` is not number {number}, and is the next one"));
+            }
+            names.push(unescaped(name));
+        }
+        if names.is_empty() { Err("it names no bodies".to_owned()) } else { Ok(names) }
+    }
+
     /// The bytes of a named array.
     fn bytes(&mut self, name: &str, kind: &str, size: Size) -> Result<Vec<u8>, String> {
         let line = self.header.lines().find(|line| attribute(line, "Name") == Some(name)).ok_or(format!(
@@ -208,6 +231,11 @@ fn refused(why: std::io::Error) -> String {
 fn attribute<'a>(line: &'a str, name: &str) -> Option<&'a str> {
     let (_, rest) = line.split_once(&format!(" {name}=\""))?;
     Some(rest.split_once('"')?.0)
+}
+
+/// A name as it was before it was put into an attribute.
+fn unescaped(name: &str) -> String {
+    name.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
 }
 
 fn names(bytes: &[u8]) -> Result<Vec<String>, String> {

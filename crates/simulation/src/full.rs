@@ -9,6 +9,7 @@ use std::{ops::ControlFlow, sync::Arc};
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::{
     assembly::{Assembly, Machine, load},
+    own_mesh,
     start::{damp, launch, preload},
 };
 use stribeck_run::{
@@ -116,6 +117,7 @@ impl Model for Full {
             reduced: None,
             wall_s: (with.host.wall_s)() - started,
             carried_mass: full.carried_mass(),
+            notes: own_mesh::notes(scene),
             warnings: Vec::from_iter(preloaded),
         };
         Ok((full, setup))

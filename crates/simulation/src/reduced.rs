@@ -10,7 +10,7 @@ use std::{
     path::Path,
 };
 
-use stribeck_bearing::assembly::Assembly;
+use stribeck_bearing::{assembly::Assembly, own_mesh};
 use stribeck_reduced::{bearing::Bearing, cache, reduction::Reduction, state::State};
 use stribeck_run::{host::Progress, setup::Setup};
 use stribeck_scene::{
@@ -72,6 +72,7 @@ impl Model for Reduced {
             reduced: Some(summary),
             wall_s: (with.host.wall_s)() - started,
             carried_mass,
+            notes: own_mesh::notes(scene),
             warnings,
         };
         Ok((Self { assembly, bearing, start: Some(state) }, setup))

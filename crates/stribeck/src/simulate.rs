@@ -247,6 +247,9 @@ fn check_overrides(overrides: &[String]) -> Result<()> {
 
 /// Says how the run ended and what it cost.
 fn announce(info: &RunInfo) {
+    for note in &info.notes {
+        eprintln!("note: {note}");
+    }
     for warning in &info.warnings {
         eprintln!("warning: {warning}");
     }

@@ -98,6 +98,7 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
         energy: EnergyInfo { max_relative_error: 2.5e-3, peak_strain_j: 0.8, heat_j: 0.4 },
         guards: Default::default(),
         expected_support_n: SUPPORT_N,
+        notes: Vec::new(),
         warnings: vec!["the sensor `seat` lies under the adapter".into()],
     }
 }

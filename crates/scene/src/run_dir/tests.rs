@@ -37,6 +37,7 @@ fn info(status: Status) -> RunInfo {
         guards: crate::run_info::GuardInfo::default(),
         expected_support_n: 50_100.0,
         resumed_at_s: vec![1e-5],
+        notes: Vec::new(),
         warnings: vec!["one".into()],
     }
 }

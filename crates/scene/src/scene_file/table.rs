@@ -22,6 +22,7 @@ use super::problem::{Problem, SceneError, place_in_file};
 use super::wording::{number, shown};
 use crate::deviation::{FormScene, PointScene};
 use crate::housing::HousingScene;
+use crate::mesh_text;
 use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
@@ -88,7 +89,7 @@ fn read_mesh(
     if !text.is_empty() {
         return Ok(());
     }
-    *text = text_of(&folder.join(file), MAX_MESH_BYTES).map_err(|why| {
+    *text = mesh_text::read(&folder.join(file), MAX_MESH_BYTES).map_err(|why| {
         let field = format!("{path}.file");
         let mut problem =
             Problem::new(format!("cannot read the mesh `{}`: {why}", shown(file)), origin.place(&field));

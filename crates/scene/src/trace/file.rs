@@ -1,16 +1,19 @@
 //! A trace that stays on disk: its channels are read when they are asked for, also those of a run that was killed.
 
 use std::fs::File;
-use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use super::{Trace, TraceWriter, header};
+use super::archive::{self, Archive};
+use super::{Trace, header};
 use crate::error::Error;
 
 /// What is read at once [bytes]: it stays in a core's cache while channels are picked from it.
 const BLOCK_BYTES: usize = 1 << 18;
+/// The same where channel lies after channel: enough of each that reading it is worth a seek.
+const WIDE_BLOCK_BYTES: usize = 1 << 24;
 
 /// An open trace. Its memory does not depend on how long it is.
 #[derive(Debug)]
@@ -19,9 +22,17 @@ pub struct TraceFile {
     names: Vec<String>,
     /// Whole rows, by the size of the file when it was opened.
     rows: usize,
-    /// Where the rows begin [bytes].
-    start: u64,
+    layout: Layout,
     file: Mutex<File>,
+}
+
+/// How the values lie in the file.
+#[derive(Debug)]
+enum Layout {
+    /// Row after row, from this byte on.
+    Rows(u64),
+    /// Channel after channel, each from its byte on.
+    Columns(Vec<u64>),
 }
 
 impl TraceFile {
@@ -46,6 +57,11 @@ impl TraceFile {
             return Err(bad("it is not a regular file".to_owned()));
         }
         let mut source = BufReader::new(file);
+        if source.fill_buf().map_err(io)?.starts_with(archive::MAGIC) {
+            let file = source.into_inner();
+            let Archive { names, starts, rows } = Archive::of(&file).map_err(bad)?;
+            return Ok(Self { path, names, rows, layout: Layout::Columns(starts), file: Mutex::new(file) });
+        }
         let mut first = Vec::with_capacity(12);
         source.by_ref().take(10).read_to_end(&mut first).map_err(io)?;
         if first.get(6).is_some_and(|version| *version > 1) {
@@ -61,7 +77,8 @@ impl TraceFile {
         let start = (prefix + length) as u64;
         let rows = about.len().saturating_sub(start) / (8 * names.len() as u64);
         let rows = usize::try_from(rows).unwrap_or(usize::MAX);
-        Ok(Self { path, names, rows, start, file: Mutex::new(source.into_inner()) })
+        let layout = Layout::Rows(start);
+        Ok(Self { path, names, rows, layout, file: Mutex::new(source.into_inner()) })
     }
 
     /// Channel names, in file order; the first is `time_s`.
@@ -118,10 +135,26 @@ impl TraceFile {
     /// [`Error::Io`] when the file cannot be read.
     pub fn read(&self, rows: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
         let mut part = Part::of(self, rows.len().min(self.rows), wanted);
+        if let Layout::Columns(starts) = &self.layout {
+            return self.read_columns(rows, starts, part);
+        }
         self.each_block(rows, |block| {
             part.take(block);
             true
         })?;
+        Ok(part.trace)
+    }
+
+    /// Of an archive only what is wanted is read.
+    fn read_columns(&self, rows: Range<usize>, starts: &[u64], mut part: Part) -> Result<Trace, Error> {
+        let rows = rows.start.min(self.rows)..rows.end.min(self.rows);
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut bytes = vec![0; 8 * rows.len()];
+        for (column, &at) in part.trace.columns.iter_mut().zip(&part.places) {
+            archive::read_column(&mut file, starts[at], rows.start, &mut bytes)
+                .map_err(|source| cannot_read(&self.path, source))?;
+            column.extend(bytes.as_chunks().0.iter().map(|value| f64::from_le_bytes(*value)));
+        }
         Ok(part.trace)
     }
 
@@ -163,37 +196,39 @@ impl TraceFile {
         Ok(part.trace)
     }
 
-    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
-    pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
-        const AT_ONCE: usize = 1 << 14;
-        let names: Vec<&String> = self.names.iter().filter(|name| wanted(name)).collect();
-        let mut writer = TraceWriter::create(path, &names)?;
-        for first in (0..self.rows).step_by(AT_ONCE) {
-            let part = self.read(first..first + AT_ONCE, &wanted)?;
-            for n in 0..part.len() {
-                let row: Vec<f64> = part.columns.iter().map(|column| column[n]).collect();
-                writer.push(&row)?;
-            }
-        }
-        writer.sync()
+    /// Whether the rows begin where a writer of these channels puts them, so that it can append to them.
+    pub(super) fn can_grow(&self, header_length: usize) -> bool {
+        matches!(self.layout, Layout::Rows(start) if start == header_length as u64)
     }
 
     /// Hands blocks of whole rows to `take` until it says no.
     fn each_block(&self, rows: Range<usize>, mut take: impl FnMut(&[[u8; 8]]) -> bool) -> Result<(), Error> {
         let rows = rows.start..rows.end.min(self.rows);
         let row = 8 * self.names.len();
-        let at_once = (BLOCK_BYTES / row).max(1);
+        let wide = matches!(self.layout, Layout::Columns(_));
+        let at_once = (if wide { WIDE_BLOCK_BYTES } else { BLOCK_BYTES } / row).max(1);
         let mut block = vec![0; row * at_once.min(rows.len())];
         let io = |source| cannot_read(&self.path, source);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        file.seek(SeekFrom::Start(self.start + (row * rows.start) as u64)).map_err(io)?;
+        if let Layout::Rows(start) = self.layout {
+            file.seek(SeekFrom::Start(start + (row * rows.start) as u64)).map_err(io)?;
+        }
+        let mut column = Vec::new();
         for first in rows.clone().step_by(at_once) {
             let block = &mut block[..row * at_once.min(rows.end - first)];
-            file.read_exact(block).map_err(io)?;
+            match &self.layout {
+                Layout::Rows(_) => file.read_exact(block).map_err(io)?,
+                Layout::Columns(starts) => {
+                    column.resize(block.len() / self.names.len(), 0);
+                    for (channel, &start) in starts.iter().enumerate() {
+                        archive::read_column(&mut file, start, first, &mut column).map_err(io)?;
+                        let places = block.as_chunks_mut::<8>().0.iter_mut().skip(channel);
+                        for (place, value) in places.step_by(self.names.len()).zip(column.as_chunks().0) {
+                            *place = *value;
+                        }
+                    }
+                }
+            }
             if !take(block.as_chunks().0) {
                 break;
             }

@@ -1,9 +1,10 @@
 //! A trace on disk: what NumPy would read, what a killed run leaves, what is refused.
 
 use std::path::PathBuf;
+use std::process::Command;
 
 use proptest::prelude::*;
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, said};
 
 use super::{Trace, TraceFile, TraceWriter, header};
 use crate::error::Error;
@@ -189,7 +190,8 @@ fn refuses_foreign_files_with_a_reason() {
     let mut claim = b"\x93NUMPY\x02\x00".to_vec();
     claim.extend(u32::MAX.to_le_bytes());
     for (bytes, words) in [
-        (b"PK\x03\x04".to_vec(), "does not begin like a `.npy` file"),
+        (b"PK\x03\x04".to_vec(), "no complete NumPy archive"),
+        (b"PK".to_vec(), "does not begin like a `.npy` file"),
         (plain, "not named little-endian doubles"),
         (single, "channel `a` is not a little-endian double"),
         (fortran, "fortran_order"),
@@ -220,12 +222,179 @@ fn example_many_channels_take_version_2() {
     let names: Vec<String> = (0..4000).map(|i| format!("roller.{i}.outer_n")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let row: Vec<f64> = (0..4000).map(f64::from).collect();
-    let bytes = file.write(&names, std::slice::from_ref(&row));
+    let mut writer = TraceWriter::create(file.path(), &names).expect("writable");
+    writer.push(&row).expect("writable");
+    writer.sync().expect("writable");
+    let bytes = std::fs::read(file.path()).expect("readable");
     assert_eq!(bytes[6], 2);
     let trace = file.read(&bytes).expect("readable");
     assert_eq!(trace.get("roller.3999.outer_n"), Some(&[3999.0][..]));
     let few = header::encode(&["a"], 0).expect("short").len();
     assert_eq!(header::encode(&["a"], u64::MAX).expect("short").len(), few, "the header never grows");
+}
+
+/// Channels of a bearing in oil.
+fn channels(rollers: usize) -> Vec<String> {
+    let mut names = vec!["time_s".to_owned()];
+    for roller in 0..rollers {
+        let of = ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"];
+        names.extend(of.iter().map(|channel| format!("roller.{roller}.{channel}")));
+        names.extend(["outer", "inner"].map(|ring| format!("roller.{roller}.{ring}_film_m")));
+    }
+    names
+}
+
+/// Values that tell channel and sample.
+fn distinct(names: &[String], count: usize) -> Vec<Vec<f64>> {
+    (0..count).map(|row| (0..names.len()).map(|at| (at * 1000 + row) as f64 / 7.0).collect()).collect()
+}
+
+/// A run with 28 rollers in oil had a header of 10 486 characters, which `numpy.load` refuses.
+#[test]
+fn issue_no_header_is_longer_than_numpy_reads() {
+    let file = File::new();
+    for rollers in [3, 20, 34, 35, 48, 49, 60, 400] {
+        let names = channels(rollers);
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let all = distinct(&channels(rollers), 5);
+        let bytes = file.write(&names, &all);
+        let header = header::encode(&names, 5).expect("short enough");
+        let form = if bytes.starts_with(b"PK") {
+            assert!(header.len() > 10_000, "{rollers} rollers need no archive");
+            "archive"
+        } else {
+            assert!(bytes.starts_with(&header) && header.len() <= 10_012, "{rollers}: {}", header.len());
+            if header.windows(5).any(|window| window == b"names") {
+                "short form"
+            } else {
+                "pairs"
+            }
+        };
+        let expected = match rollers {
+            0..=34 => "pairs",
+            35..=48 => "short form",
+            _ => "archive",
+        };
+        println!("{rollers} rollers: {} channels, {form}, header of {} bytes", names.len(), header.len());
+        assert_eq!(form, expected, "{rollers} rollers");
+        let trace = file.read(&bytes).expect("readable");
+        assert_eq!(trace.names, names);
+        for (at, column) in trace.columns.iter().enumerate() {
+            assert!(column.iter().zip(&all).all(|(value, row)| *value == row[at]), "{rollers}: channel {at}");
+        }
+    }
+}
+
+#[test]
+fn invariant_an_archive_is_read_in_parts_as_rows_are() {
+    let file = File::new();
+    let names = channels(150);
+    // More rows than are read at once.
+    let mut all = distinct(&names, 3000);
+    let short: Vec<&str> = names.iter().map(String::as_str).collect();
+    let bytes = file.write(&short, &all);
+    assert!(bytes.starts_with(b"PK") && file.write(&short, &all) == bytes, "equal samples make equal bytes");
+    let trace = TraceFile::open(file.path()).expect("readable");
+    assert_eq!((trace.len(), trace.names()), (3000, names.as_slice()));
+    let wanted = "roller.77.outer_fy_n";
+    let at = names.iter().position(|name| name == wanted).expect("a channel");
+    let column: Vec<f64> = all.iter().map(|row| row[at]).collect();
+    assert_eq!(trace.channel(wanted).expect("readable"), Some(column.clone()));
+    assert_eq!(trace.last(wanted).expect("readable"), column.last().copied());
+    let part = trace.read(2990..5000, |name| name == wanted).expect("readable");
+    assert_eq!(part.columns, [&column[2990..]]);
+    let finite = trace.read_finite(0..usize::MAX, |name| name == wanted).expect("readable");
+    assert_eq!(finite.columns, [column.as_slice()]);
+    let thinned = trace.read_thinned(300).expect("readable");
+    assert_eq!(thinned.get(wanted), Some(&column.iter().copied().step_by(10).collect::<Vec<_>>()[..]));
+    all[2500][5] = f64::NAN;
+    file.write(&short, &all);
+    let trace = TraceFile::open(file.path()).expect("readable");
+    let finite = trace.read_finite(0..usize::MAX, |name| name == wanted).expect("readable");
+    assert_eq!(finite.columns, [&column[..2500]]);
+}
+
+/// A run that ended may go on, whatever form its trace has: an archive, or a header that an earlier version wrote.
+#[test]
+fn roundtrip_every_form_can_be_continued() {
+    let file = File::new();
+    for rollers in [28, 40, 60] {
+        let names = channels(rollers);
+        let short: Vec<&str> = names.iter().map(String::as_str).collect();
+        let all = distinct(&names, 230);
+        let whole = file.write(&short, &all);
+        let begun = file.write(&short, &all[..120]);
+        // As versions before wrote it.
+        let long = long_header(&short, 120);
+        let values: Vec<u8> = all[..120].iter().flatten().flat_map(|value| value.to_le_bytes()).collect();
+        for bytes in [begun, [long, values].concat()] {
+            std::fs::write(file.path(), bytes).expect("writable");
+            let mut writer = TraceWriter::resume(file.path(), &short, 110).expect("it holds as many");
+            all[110..].iter().for_each(|row| writer.push(row).expect("writable"));
+            writer.finish().expect("writable");
+            assert!(std::fs::read(file.path()).expect("readable") == whole, "{rollers} rollers");
+        }
+    }
+}
+
+/// A header of pairs, however long.
+fn long_header(names: &[&str], rows: usize) -> Vec<u8> {
+    let fields: Vec<String> = names.iter().map(|name| format!("('{name}', '<f8')")).collect();
+    let text =
+        format!("{{'descr': [{}], 'fortran_order': False, 'shape': ({rows},), }}\n", fields.join(", "));
+    [b"\x93NUMPY\x02\x00".as_slice(), &(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
+}
+
+#[test]
+fn survives_an_archive_cut_or_damaged() {
+    let file = File::new();
+    let names = channels(60);
+    let short: Vec<&str> = names.iter().map(String::as_str).collect();
+    let bytes = file.write(&short, &distinct(&names, 2));
+    for at in (0..bytes.len()).step_by(37) {
+        if let Ok(trace) = file.read(&bytes[..at]) {
+            assert!(trace.is_empty(), "cut at {at}");
+        }
+        for value in [0, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[at] = value;
+            if let Ok(trace) = file.read(&damaged) {
+                assert!(trace.len() <= bytes.len() / 8, "byte {at}");
+            }
+        }
+    }
+}
+
+/// NumPy 2.4, where the interpreter in STRIBECK_PYTHON (or python3) has it: with the limit that it has by itself.
+#[test]
+fn peer_numpy_opens_every_trace() {
+    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has = Command::new(&python).args(["-c", "import numpy"]).output();
+    if !has.is_ok_and(|output| output.status.success()) {
+        eprintln!("traces are not opened by NumPy: `{python}` does not have it");
+        return;
+    }
+    let file = File::new();
+    for rollers in [20, 28, 40, 60, 400] {
+        let names = channels(rollers);
+        let short: Vec<&str> = names.iter().map(String::as_str).collect();
+        file.write(&short, &distinct(&names, 3));
+        let script = format!(
+            "import numpy as np
+trace = np.load('trace.npy')
+assert len(trace['time_s']) == 3
+for at, name in enumerate({names:?}):
+    assert trace[name].dtype == np.dtype('<f8')
+    assert (trace[name] == (at * 1000 + np.arange(3)) / 7).all(), name
+print('agreed')"
+        );
+        let output = Command::new(&python)
+            .current_dir(file.0.path())
+            .args(["-c", &script])
+            .output()
+            .expect("it starts");
+        assert!(output.status.success(), "{rollers} rollers: {}", said(&output));
+    }
 }
 
 #[test]

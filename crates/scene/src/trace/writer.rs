@@ -4,16 +4,19 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use super::header;
+use super::{TraceFile, archive, header};
 use crate::error::Error;
 
 /// Rows that a killed run may lose: one millisecond at 100 kHz.
 const ROWS_PER_FLUSH: u64 = 100;
+/// What of a trace is in memory while it is copied [bytes].
+const COPIED_BYTES: usize = 1 << 24;
 
 /// Appends rows to a `.npy` file.
 ///
 /// Rows go to disk every hundred, first the data and then the number of rows in the header, so that a run which is
-/// killed leaves a file that NumPy opens.
+/// killed leaves a file that NumPy opens. Where the names of the channels are too long for a header that `numpy.load` reads,
+/// [`TraceWriter::finish`] makes an archive of the rows; before that they open with a larger `max_header_size`.
 ///
 /// # Examples
 ///
@@ -90,6 +93,7 @@ impl TraceWriter {
             source,
         };
         let header = header::encode(names, rows).map_err(bad)?;
+        rows_again(&path, names, header.len())?;
         let mut file = File::options().read(true).write(true).open(&path).map_err(io)?;
         // Its own number of rows may be any: a killed run leaves a stale one.
         let mut start = Vec::with_capacity(header.len());
@@ -191,13 +195,25 @@ impl TraceWriter {
         self.told(synced)
     }
 
-    /// Flushes and closes the file.
+    /// Flushes and closes the file, in the form in which `numpy.load` opens it.
     ///
     /// # Errors
     ///
     /// As [`TraceWriter::flush`].
     pub fn finish(mut self) -> Result<(), Error> {
-        self.flush()
+        self.flush()?;
+        if header::opens_in_numpy(&self.names) {
+            return Ok(());
+        }
+        let beside = beside(&self.path);
+        let rows = TraceFile::open(&self.path)?;
+        let columns = |wanted: &[String]| {
+            let part = rows.read(0..rows.len(), |name| wanted.iter().any(|wanted| wanted == name))?;
+            Ok(part.columns)
+        };
+        archive::write(&beside, rows.names(), rows.len(), columns)
+            .and_then(|()| renamed(&beside, &self.path))
+            .inspect_err(|_| drop(std::fs::remove_file(&beside)))
     }
 
     fn write_pending(&mut self) -> std::io::Result<()> {
@@ -218,6 +234,67 @@ impl TraceWriter {
         self.pending.clear();
         Ok(())
     }
+}
+
+impl TraceFile {
+    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
+    pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
+        self.rows_to(path, wanted)?.finish()
+    }
+
+    /// Writes all channels to `path`, row after row.
+    fn copy_rows(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.rows_to(path, |_| true).map(drop)
+    }
+
+    /// A writer that holds the channels that are `wanted`, on disk.
+    fn rows_to(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<TraceWriter, Error> {
+        let at_once = (COPIED_BYTES / (8 * self.names().len())).max(1);
+        let names: Vec<&String> = self.names().iter().filter(|name| wanted(name)).collect();
+        let mut writer = TraceWriter::create(path, &names)?;
+        for first in (0..self.len()).step_by(at_once) {
+            let part = self.read(first..first + at_once, &wanted)?;
+            for n in 0..part.len() {
+                let row: Vec<f64> = part.columns.iter().map(|column| column[n]).collect();
+                writer.push(&row)?;
+            }
+        }
+        writer.sync()?;
+        Ok(writer)
+    }
+}
+
+/// Where a file is written before it takes the place of `path`.
+fn beside(path: &Path) -> PathBuf {
+    let mut beside = path.as_os_str().to_owned();
+    beside.push(".part");
+    beside.into()
+}
+
+fn renamed(from: &Path, to: &Path) -> Result<(), Error> {
+    std::fs::rename(from, to).map_err(|source| Error::Io {
+        action: "write",
+        path: to.to_owned(),
+        kept: "What it held before is still there; check the permissions of its folder".to_owned(),
+        source,
+    })
+}
+
+/// Makes rows of an archive of these channels, and of rows that stand after a header of another length, so that they can be appended to.
+/// Other files are left alone.
+fn rows_again<S: AsRef<str>>(path: &Path, names: &[S], header_length: usize) -> Result<(), Error> {
+    let Ok(found) = TraceFile::open(path) else { return Ok(()) };
+    let same = found.names().iter().map(String::as_str).eq(names.iter().map(AsRef::as_ref));
+    if !same || found.can_grow(header_length) {
+        return Ok(());
+    }
+    let beside = beside(path);
+    let copied = found.copy_rows(&beside).and_then(|()| renamed(&beside, path));
+    copied.inspect_err(|_| drop(std::fs::remove_file(&beside)))
 }
 
 impl Drop for TraceWriter {
