@@ -10,17 +10,14 @@ use std::{
 
 use common::{coarse, host};
 use proptest::prelude::*;
-use stribeck_run::{
-    error::Error as RunError,
-    host::{Host, Progress},
-};
+use stribeck_run::host::{Host, Progress};
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::{RunInfo, Status},
     scene::{Scene, Start},
     trace::TraceFile,
 };
-use stribeck_simulation::{Error, extend, resume, simulate};
+use stribeck_simulation::{Error, extend, resume, saved_until, simulate};
 use stribeck_testing::Scratch;
 
 /// Bytes before the content of a checkpoint: name, version, scene hash, length, checksum.
@@ -270,7 +267,7 @@ fn refuses_a_forged_checkpoint() {
         forged.extend(crc32fast::hash(&content).to_le_bytes());
         forged.extend(content);
         fs::write(folder.file("checkpoint"), forged).expect("writable");
-        if let Err(error) = stribeck_bearing::simulation::saved_until(&dir) {
+        if let Err(error) = saved_until(&dir) {
             let words = error.to_string();
             prop_assert!(words.contains("checkpoint") && words.contains("start it anew"), "{}", words);
         }
