@@ -12,7 +12,7 @@ use stribeck::host;
 use stribeck::{Command, Place};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
-use stribeck_analysis::report as page;
+use stribeck_report as page;
 use stribeck_bearing::simulation::Progress;
 use stribeck_reduced::simulation;
 use stribeck_scene::run_dir::{Run, RunDir};

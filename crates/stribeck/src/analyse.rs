@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
 use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
 use stribeck_analysis::record;
-use stribeck_analysis::report::{TrendEntry, write_measured, write_trend};
+use stribeck_report::{TrendEntry, write_measured, write_trend};
 use stribeck_formats::{Channel, Recording, says_time};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::run_dir::{RunDir, check_folder, write_atomic};

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::report;
+use stribeck_report as report;
 use stribeck_bearing::ranks::Ranks;
 use stribeck_bearing::simulation::{Progress, follow};
 use stribeck_reduced::simulation;

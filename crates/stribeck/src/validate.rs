@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::agreement::{Agreement, FINE_S, FROM_S, LEAST_S, Row};
-use stribeck_analysis::report;
+use stribeck_report as report;
 use stribeck_scene::ensemble::{folder_name, start};
 use stribeck_scene::run_dir::{Run, State, check_folder};
 use stribeck_scene::run_info::Status;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use stribeck_analysis::plan::{MeshFacts, Plan};
-use stribeck_analysis::report;
+use stribeck_report as report;
 use stribeck_bearing::assembly::Assembly;
 use stribeck_bearing::simulation::{Host, simulate};
 use stribeck_scene::mesh_file::RunMesh;

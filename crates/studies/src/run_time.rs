@@ -4,7 +4,7 @@ mod variants;
 
 use anyhow::Result;
 use stribeck_analysis::noise;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_scene::run_dir::Run;

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 17] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -22,9 +22,10 @@ const LAYERS: [(&str, &[&str]); 16] = [
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
-    ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
-    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "reduced", "scene"]),
-    ("python", &["analysis", "bearing", "dsp", "formats", "reduced", "scene"]),
+    ("report", &["analysis", "dsp", "scene"]),
+    ("studies", &["analysis", "contact", "mesh", "report", "scene", "solver", "system"]),
+    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "reduced", "report", "scene"]),
+    ("python", &["analysis", "bearing", "dsp", "formats", "reduced", "report", "scene"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.

@@ -1,7 +1,7 @@
 //! The time step: where instability sets in, per element type and with contact, against the computed limit.
 
 use anyhow::Result;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_contact::Method;
 use stribeck_mesh::{Annulus, Disc, Part};
 use stribeck_solver::Motion;
