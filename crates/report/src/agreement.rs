@@ -10,8 +10,8 @@ use stribeck_scene::scene::{ModelScene, Scene};
 
 use crate::Error;
 use crate::page::{head, json, sentence};
-use stribeck_analysis::agreement::{Agreement, Octaves, Row};
 use crate::plot::{Axis, Colour, Figure, Series};
+use stribeck_analysis::agreement::{Agreement, Octaves, Row};
 
 /// Name of the file in the folder of a validation.
 const FILE: &str = "validation.json";
@@ -79,9 +79,9 @@ fn table(agreement: &Agreement) -> Markup {
             @for row in &agreement.rows {
                 tr {
                     td { (row.quantity) }
-                    td { (format!("{:+.3} {}", row.difference.mean, row.unit)) @if row.over_bands() { ", mean of the bands" } }
+                    td { (format!("{:+.3} {}", row.difference.mean, row.scale.unit())) @if row.over_bands() { ", mean of the bands" } }
                     td { (interval(row)) }
-                    td { (format!("{} {}", row.limit, row.unit)) }
+                    td { (format!("{} {}", row.limit, row.scale.unit())) }
                     td { @if row.told && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
                 }
             }

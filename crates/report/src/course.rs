@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use stribeck_analysis::measured::Course;
 use crate::plot::{Anchor, Picture, Scale, Sheet, shade_rgb, ticks};
+use stribeck_analysis::measured::Course;
 
 /// Decibels from the darkest shade to the brightest.
 const RANGE_DB: f64 = 60.0;

@@ -14,8 +14,8 @@ use crate::figures::Item;
 use crate::lead::lead;
 use crate::page::{head, json, section, sentence, write_figures};
 use crate::{Error, agreement};
-use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 use figures::Figures;
+use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 
 /// Writes the report of the ensemble in `folder` into that folder and returns its numbers.
 ///

@@ -16,9 +16,9 @@ pub(super) use self::spectra::about_the_tone;
 use super::course;
 use super::pictures::Pictures;
 use crate::Error;
+use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::measured::Course;
-use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
 use stribeck_analysis::record::Record;
 
 /// Shortest record with a spectrogram [s].

@@ -103,4 +103,3 @@ fn of_ring((least, most): (f64, f64)) -> String {
         span(least, most)
     }
 }
-

@@ -7,9 +7,9 @@ use stribeck_dsp::BandEnvelope;
 use stribeck_scene::run_dir::write_atomic;
 
 use crate::page::{head, json, sentence};
-use crate::{Error, course};
-use stribeck_analysis::measured::{Analysis, Enhanced, Family, Interval};
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
+use crate::{Error, course};
+use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, Interval};
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
@@ -93,7 +93,7 @@ fn families(families: &[Family]) -> Markup {
             }
             @for f in families {
                 tr {
-                    td { (f.name) }
+                    td { (f.name.name()) }
                     td { (format!("{:.2}", f.expected_hz)) }
                     td { (hz(f.measured_hz)) }
                     td { (f.harmonics) }
@@ -102,7 +102,7 @@ fn families(families: &[Family]) -> Markup {
                     td { (f.false_alarm()) }
                     td { (f.band_hz.map_or("–".to_owned(), |(low, high)| format!("{low:.0}–{high:.0}"))) }
                     td { @if f.claimed { strong { "yes" } } @else { "no" } }
-                    td { (f.reason) }
+                    td { (f.reason.to_string()) }
                 }
             }
         }
@@ -181,8 +181,8 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
     let end_hz = spectrum.grid_hz * spectrum.values.len() as f64;
     for (family, colour) in families.iter().zip(colours) {
         let found = family.measured_hz.filter(|_| family.is_there());
-        let hz = found.unwrap_or(family.expected_hz) * if family.name == "BSF" { 2.0 } else { 1.0 };
-        let name = if family.name == "BSF" { "2×BSF" } else { family.name };
+        let hz = found.unwrap_or(family.expected_hz) * family.name.shocks_per_period();
+        let name = if family.name == Defect::Bsf { "2×BSF" } else { family.name.name() };
         let shown = if found.is_some() { 3 } else { 1 };
         for n in (1..=shown).filter(|n| f64::from(*n) * hz < end_hz) {
             let label = if n == 1 { name.to_owned() } else { format!("{n}× {name}") };
@@ -193,24 +193,27 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
 }
 
 /// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its sidebands.
-fn envelope(band: &BandEnvelope, family: &Family, findings: &stribeck_analysis::measured::Findings) -> Figure {
-    let twice = if family.name == "BSF" { 2.0 } else { 1.0 };
-    let hz = twice * family.measured_hz.unwrap_or(family.expected_hz);
-    let id = format!("envelope-{}", family.name.to_lowercase());
+fn envelope(
+    band: &BandEnvelope,
+    family: &Family,
+    findings: &stribeck_analysis::measured::MeasuredFindings,
+) -> Figure {
+    let hz = family.name.shocks_per_period() * family.measured_hz.unwrap_or(family.expected_hz);
+    let id = format!("envelope-{}", family.name.name().to_lowercase());
     let mut figure =
         spectrum_of(band, &id, &format!("Squared envelope spectrum about {}", family.name), 5.6 * hz)
-            .caption(format!("{}. {}", family.name, sentence(&family.reason)));
+            .caption(format!("{}. {}", family.name, sentence(&family.reason.to_string())));
     let shaft_hz = findings.speed_rpm.unwrap_or(0.0) / 60.0;
     let cage_hz = findings
         .families
         .iter()
-        .find(|f| f.name == "FTF")
+        .find(|f| f.name == Defect::Ftf)
         .map_or(0.0, |f| f.measured_hz.unwrap_or(f.expected_hz));
     // A defect that turns with the shaft, or with the cage, comes and goes under the load.
     let side_hz = match family.name {
-        "BPFI" => shaft_hz,
-        "BSF" => cage_hz,
-        _ => 0.0,
+        Defect::Bpfi => shaft_hz,
+        Defect::Bsf => cage_hz,
+        Defect::Bpfo | Defect::Ftf => 0.0,
     };
     for n in 1..=5 {
         let at = f64::from(n) * hz;

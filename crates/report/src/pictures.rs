@@ -14,8 +14,8 @@ use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir};
 
 use crate::Error;
-use stribeck_analysis::findings::Findings;
 use crate::plot::{Picture, Sheet};
+use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 
 /// All pictures that the run can yield, by the section that shows them.

@@ -173,4 +173,3 @@ fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
         }
     }
 }
-

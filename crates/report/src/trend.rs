@@ -8,9 +8,9 @@ use stribeck_scene::run_dir::write_atomic;
 
 use crate::Error;
 use crate::page::{head, json};
-use stribeck_analysis::measured::alarm::{Judged, Limit, Quantity, State};
-use stribeck_analysis::measured::{Family, Findings};
 use crate::plot::{Axis, Colour, Figure, Level, Series};
+use stribeck_analysis::measured::alarm::{Judged, Limit, Quantity, State};
+use stribeck_analysis::measured::{Defect, Family, MeasuredFindings};
 
 /// One record of a trend.
 #[derive(Debug, Serialize)]
@@ -20,7 +20,7 @@ pub struct TrendEntry {
     /// Folder of its own page, below that of the trend.
     pub folder: String,
     /// Its findings; `null` where it could not be analysed.
-    pub findings: Option<Findings>,
+    pub findings: Option<MeasuredFindings>,
     /// Why it could not be.
     pub error: Option<String>,
     /// How its levels stand to the limits.
@@ -65,7 +65,7 @@ fn page(entries: &[TrendEntry], limits: &[Limit]) -> Result<Markup, Error> {
 
 fn table(entries: &[TrendEntry]) -> Markup {
     let number = |x: f64| format!("{x:.4}");
-    let level = |findings: &Findings, name: &str| {
+    let level = |findings: &MeasuredFindings, name: Defect| {
         let family = findings.families.iter().find(|f| f.name == name);
         let db = family.and_then(|f| f.level_db).map(|db| format!("{db:.1}"));
         (db.unwrap_or_else(|| "–".to_owned()), family.is_some_and(|f| f.claimed))
@@ -83,7 +83,7 @@ fn table(entries: &[TrendEntry]) -> Markup {
                         td { a href=(format!("{}/report.html", entry.folder)) { (entry.file) } }
                         td { (format!("{:.2}", findings.duration_s)) } td { (number(findings.health.rms)) }
                         td { (number(findings.health.crest_factor)) } td { (number(findings.health.kurtosis)) }
-                        @for name in ["BPFO", "BPFI", "BSF", "FTF"] {
+                        @for name in Defect::ALL {
                             @let (db, claimed) = level(findings, name);
                             td { @if claimed { strong { (db) } } @else { (db) } }
                         }
@@ -135,7 +135,7 @@ fn alarms(entries: &[TrendEntry], limits: &[Limit]) -> Markup {
 }
 
 fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
-    let over = |of: &dyn Fn(&Findings) -> Option<f64>| -> Vec<f64> {
+    let over = |of: &dyn Fn(&MeasuredFindings) -> Option<f64>| -> Vec<f64> {
         entries.iter().map(|e| e.findings.as_ref().and_then(of).unwrap_or(f64::NAN)).collect()
     };
     let chart = |id: &str, title: &str, axis: Axis| {
@@ -162,8 +162,8 @@ fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
     };
     let unit =
         entries.iter().find_map(|e| e.findings.as_ref()?.unit.clone()).unwrap_or_else(|| "unit".to_owned());
-    let level = |name: &'static str| {
-        over(&|f: &Findings| {
+    let level = |name: Defect| {
+        over(&|f: &MeasuredFindings| {
             let of = |family: &Family| family.level_db.filter(|_| family.is_there());
             f.families.iter().find(|family| family.name == name).and_then(of)
         })
@@ -184,13 +184,12 @@ fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
         let figure = figure.with(points("velocity", Colour::Blue, velocity));
         figures.push(limited(figure, &[Quantity::VelocityMmS]));
     }
-    let families =
-        [("BPFO", Colour::Blue), ("BPFI", Colour::Orange), ("BSF", Colour::Green), ("FTF", Colour::Purple)];
+    let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
     let mut levels = chart("levels", "Defect families that are there", Axis::plain("Level", "dB"));
-    for (name, colour) in families {
+    for (name, colour) in Defect::ALL.into_iter().zip(colours) {
         let y = level(name);
         if y.iter().any(|db| db.is_finite()) {
-            levels = levels.with(points(name, colour, y));
+            levels = levels.with(points(name.name(), colour, y));
         }
     }
     if !levels.series.is_empty() {

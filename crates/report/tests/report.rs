@@ -5,8 +5,8 @@ mod synthetic;
 use std::fs;
 use std::path::Path;
 
-use stribeck_report as report;
 use stribeck_analysis::summary::Summary;
+use stribeck_report as report;
 use stribeck_scene::housing::{HousingScene, RigidHousingScene};
 use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::run_info::Status;

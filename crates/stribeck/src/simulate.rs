@@ -7,10 +7,10 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_report as report;
 use stribeck_bearing::ranks::Ranks;
 use stribeck_bearing::simulation::{Progress, follow};
 use stribeck_reduced::simulation;
+use stribeck_report as report;
 use stribeck_scene::Error;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status, clock};

@@ -196,5 +196,5 @@ fn print(agreement: &Agreement) {
 /// The difference and its limit.
 fn words(row: &Row) -> String {
     let range = row.range().map_or(String::new(), |[low, high]| format!(" ({low:+.3} to {high:+.3})"));
-    format!("{:+.3}{range} {}, limit {}", row.difference.mean, row.unit, row.limit)
+    format!("{:+.3}{range} {}, limit {}", row.difference.mean, row.scale.unit(), row.limit)
 }

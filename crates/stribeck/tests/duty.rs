@@ -3,9 +3,9 @@
 use std::{f64::consts::TAU, path::Path, process::Command};
 
 use stribeck_analysis::{duty, enveloping, record::Record, summary::Summary, tones};
-use stribeck_report as report;
 use stribeck_bearing::simulation::Host;
 use stribeck_reduced::simulation::simulate;
+use stribeck_report as report;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},
     kinematics::Kinematics,

@@ -2,10 +2,10 @@
 
 use super::super::figures::{Item, about_the_tone, mark};
 use super::strips;
+use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 use stribeck_analysis::ensemble::{EnsembleFindings, Merged};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::paper;
-use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 use stribeck_analysis::statistic::quantile;
 use stribeck_analysis::summary::Event;
 

@@ -1,10 +1,10 @@
 //! Pictures with a dot for every start: levels by phase, times of events.
 
 use super::tables::PHASES;
+use crate::plot::{Anchor, Colour, Picture, Sheet, ticks};
 use stribeck_analysis::ensemble::EnsembleFindings;
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::paper;
-use crate::plot::{Anchor, Colour, Picture, Sheet, ticks};
 use stribeck_analysis::statistic::Statistic;
 use stribeck_analysis::summary::{Event, PhaseLevels};
 

@@ -2,9 +2,9 @@
 
 use super::{mark, sampled, transient};
 use crate::Error;
+use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
 use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper;
-use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::{Event, PhaseLevels};
 use stribeck_analysis::words::gravities;

@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_analysis::paper::{CURSOR_HZ, EQUATION_2_HZ};
 use crate::plot::{Axis, Colour, Figure, Series};
+use stribeck_analysis::paper::{CURSOR_HZ, EQUATION_2_HZ};
 use stribeck_analysis::reading;
 
 /// Sample rate of the paper's output [Hz], and the length of its record [samples].

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use stribeck_analysis::duty::LOAD;
 use stribeck_analysis::findings::Findings;
-use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use stribeck_analysis::record::Record;
 
 /// Multiples of the family that the spectrum of orders shows.

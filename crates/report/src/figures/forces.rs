@@ -1,8 +1,8 @@
 //! Contact forces over time (the paper's Fig. 8), and their sum against the load.
 
 use super::{mark, sampled, transient};
-use stribeck_analysis::findings::{CrossingForce, Findings};
 use crate::plot::{Axis, Colour, Figure, Level, Series};
+use stribeck_analysis::findings::{CrossingForce, Findings};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Event;
 

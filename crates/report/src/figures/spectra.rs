@@ -5,11 +5,11 @@
 use stribeck_dsp::Spectrum;
 
 use super::{mark, spoken};
+use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use stribeck_analysis::artefacts;
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::{FamilyFinding, SIDEBANDS};
 use stribeck_analysis::findings::Findings;
-use crate::plot::{Axis, Colour, Figure, Mark, Series};
 use stribeck_analysis::tones;
 
 /// How far below its highest value a spectrum is drawn [dB]; rounding noise lies lower.

@@ -3,8 +3,8 @@
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::scene::Scene;
 
-use stribeck_analysis::findings::Findings;
 use crate::plot::{Anchor, Colour, Picture, Sheet};
+use stribeck_analysis::findings::Findings;
 use stribeck_analysis::words::kilonewtons;
 
 const SIZE: f64 = 620.0;

@@ -8,8 +8,8 @@ use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
 
 use crate::Error;
-use stribeck_analysis::findings::Findings;
 use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};
+use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::stress::{Cell, Lame, cells};
 use stribeck_analysis::summary::Event;
