@@ -77,6 +77,23 @@ pub struct Agreement {
     pub notes: Vec<String>,
 }
 
+/// On which scale a quantity is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Scale {
+    /// Forces, relative to the largest one.
+    #[serde(rename = "% of the largest")]
+    OfLargestForce,
+    /// A number of the reduced model, relative to that of the full one.
+    #[serde(rename = "%")]
+    Relative,
+    /// The time of an event.
+    #[serde(rename = "ms")]
+    EventTime,
+    /// Levels of third octaves.
+    #[serde(rename = "dB")]
+    ThirdOctaves,
+}
+
 /// One quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
@@ -84,8 +101,9 @@ pub struct Row {
     pub name: String,
     /// In words.
     pub quantity: String,
-    /// Unit of the difference.
-    pub unit: String,
+    /// What is compared; in files its unit.
+    #[serde(rename = "unit")]
+    pub scale: Scale,
     /// The difference, reduced less full; over the starts, or for third octaves over the bands.
     pub difference: Statistic,
     /// Largest difference that is still agreement.
@@ -148,15 +166,27 @@ impl Peak {
     }
 }
 
+impl Scale {
+    /// Unit of a difference.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::OfLargestForce => "% of the largest",
+            Self::Relative => "%",
+            Self::EventTime => "ms",
+            Self::ThirdOctaves => "dB",
+        }
+    }
+}
+
 impl Row {
     /// Of the differences over the starts.
-    fn over_starts(name: String, quantity: String, unit: &str, difference: Statistic, limit: f64) -> Self {
+    fn over_starts(name: String, quantity: String, scale: Scale, difference: Statistic, limit: f64) -> Self {
         let told = difference
             .low
             .zip(difference.high)
             .is_some_and(|(low, high)| low.abs().max(high.abs()) <= limit || low > limit || high < -limit);
         let within = difference.mean.abs() <= limit;
-        Self { name, quantity, unit: unit.to_owned(), within, told, difference, limit }
+        Self { name, quantity, scale, within, told, difference, limit }
     }
 
     /// The verdict in words.
@@ -179,7 +209,7 @@ impl Row {
 
     /// Whether values are those of bands, not of starts.
     pub fn over_bands(&self) -> bool {
-        self.unit == "dB"
+        self.scale == Scale::ThirdOctaves
     }
 }
 
@@ -464,7 +494,7 @@ fn forces(sides: &[[Side; 2]]) -> Option<Row> {
     };
     let difference = statistic(sides.iter().map(off), sides.len())?;
     let quantity = format!("forces on the rollers, rms, means over {:.2} ms", 1e3 * MEAN_S);
-    Some(Row::over_starts("forces_percent".to_owned(), quantity, "% of the largest", difference, 1.0))
+    Some(Row::over_starts("forces_percent".to_owned(), quantity, Scale::OfLargestForce, difference, 1.0))
 }
 
 /// A relative difference [%].
@@ -477,7 +507,7 @@ fn share(
 ) -> Option<Row> {
     let off = |[full, reduced]: &[Side; 2]| Some(100.0 * (of(reduced)? / of(full)? - 1.0));
     let difference = statistic(sides.iter().map(off), sides.len())?;
-    Some(Row::over_starts(format!("{name}_percent"), quantity.to_owned(), "%", difference, limit))
+    Some(Row::over_starts(format!("{name}_percent"), quantity.to_owned(), Scale::Relative, difference, limit))
 }
 
 /// When rollers unload and reload.
@@ -500,7 +530,7 @@ fn events(sides: &[[Side; 2]]) -> Vec<Row> {
             let Some(difference) = statistic(sides.iter().map(off), sides.len()) else { continue };
             let name = format!("roller_{}{suffix}_{what}_ms", event.roller);
             let quantity = format!("roller {} {what}{again}", event.roller);
-            rows.push(Row::over_starts(name, quantity, "ms", difference, LIMIT_MS));
+            rows.push(Row::over_starts(name, quantity, Scale::EventTime, difference, LIMIT_MS));
         }
     }
     rows
@@ -598,7 +628,7 @@ impl Octaves {
         Some(Row {
             name: format!("octaves_{}_db", self.sensor),
             quantity: format!("third octaves at the sensor {}, 0.5 to 10 kHz", self.sensor),
-            unit: "dB".to_owned(),
+            scale: Scale::ThirdOctaves,
             within: difference.most.max(-difference.least) <= BAND_LIMIT_DB,
             told,
             difference,
@@ -633,6 +663,13 @@ mod tests {
         assert_eq!(of([0.8, 0.004]), ["0.800 s", "0.0040 s", "200 times less"]);
         assert_eq!(of([0.8, 0.0]), ["0.800 s", "less than 0.002 s", "more than 400 times less"]);
         assert_eq!(of([0.0, 0.0])[2], "too little to compare");
+    }
+
+    #[test]
+    fn invariant_a_scale_is_its_unit_in_files() {
+        for scale in [Scale::OfLargestForce, Scale::Relative, Scale::EventTime, Scale::ThirdOctaves] {
+            assert_eq!(serde_json::to_value(scale).unwrap(), scale.unit());
+        }
     }
 
     /// Four correlations whose mean is 0.922: an interval about it by Student's t reaches 1.018.

@@ -11,7 +11,7 @@ use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
-use crate::measured::{Analysis, Family, Machine, sidebands_seen};
+use crate::measured::{Analysis, Defect, Family, Machine, sidebands_seen};
 use crate::record::Record;
 
 /// Verdict on a record, beside the truth.
@@ -125,14 +125,16 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
     let (present, steady) = (scene.faults(), !scene.operation.speed_varies());
     let families = analysis.findings.families.iter().map(|family| {
         let sides = match family.name {
-            "BPFO" if motion.outer_ring_hz > 0.0 => Some(("outer ring", motion.outer_ring_hz)),
-            "BPFI" if motion.shaft_hz > 0.0 => Some(("shaft", motion.shaft_hz)),
-            "BSF" if !family.in_passages => Some(("cage", motion.cage_hz.unwrap_or(motion.expected_cage_hz))),
+            Defect::Bpfo if motion.outer_ring_hz > 0.0 => Some(("outer ring", motion.outer_ring_hz)),
+            Defect::Bpfi if motion.shaft_hz > 0.0 => Some(("shaft", motion.shaft_hz)),
+            Defect::Bsf if !family.in_passages => {
+                Some(("cage", motion.cage_hz.unwrap_or(motion.expected_cage_hz)))
+            }
             _ => None,
         };
         let sidebands = sides.and_then(|(of, hz)| sidebands(family, analysis.band_of(family)?, of, hz));
         DiagnosedFamily {
-            name: family.name.to_owned(),
+            name: family.name.to_string(),
             expected_hz: family.expected_hz,
             from_motion_hz: from_motion(family.name, family.in_passages, motion, &present, steady),
             measured_hz: family.measured_hz,
@@ -140,7 +142,7 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
             in_passages: family.in_passages,
             claimed: family.claimed,
             present: present.iter().any(|on| family_of(*on) == family.name),
-            reason: family.reason.clone(),
+            reason: family.reason.to_string(),
             sidebands,
         }
     });
@@ -153,45 +155,43 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
 }
 
 /// The family of a defect on a surface.
-pub fn family_of(on: RollingSurface) -> &'static str {
+pub fn family_of(on: RollingSurface) -> Defect {
     match on {
-        RollingSurface::Outer => "BPFO",
-        RollingSurface::Inner => "BPFI",
-        RollingSurface::Roller(_) => "BSF",
+        RollingSurface::Outer => Defect::Bpfo,
+        RollingSurface::Inner => Defect::Bpfi,
+        RollingSurface::Roller(_) => Defect::Bsf,
     }
 }
 
 /// Frequency of a family by the recorded motion [Hz], with what is `present`.
 fn from_motion(
-    name: &str,
+    defect: Defect,
     in_passages: bool,
     motion: &KinematicsFinding,
     present: &[RollingSurface],
     steady: bool,
 ) -> Option<f64> {
-    match name {
-        "BPFO" => motion.bpfo_hz,
+    match defect {
+        Defect::Bpfo => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
-        "BPFI" => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
+        Defect::Bpfi => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
         // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of the cage to the next its phase goes
         // on by all that its roller has turned, outside the load zone as well: lines stand at the mean spin.
-        "BSF" if in_passages => motion.roller_spin_hz,
-        "BSF" => {
+        Defect::Bsf if in_passages => motion.roller_spin_hz,
+        Defect::Bsf => {
             let damaged = |roller: &&RollerMotion| present.contains(&RollingSurface::Roller(roller.roller));
             let own = mean(motion.rollers.iter().filter(damaged).map(|roller| roller.spin_hz));
             own.or(motion.roller_spin_hz)
         }
         // Turns in space, but for speeds that change: orders are those beside an outer ring that stands still.
-        _ if steady => motion.cage_hz,
-        _ => motion.cage_on_outer_hz[0].or(motion.cage_hz),
+        Defect::Ftf if steady => motion.cage_hz,
+        Defect::Ftf => motion.cage_on_outer_hz[0].or(motion.cage_hz),
     }
 }
 
 /// Lines beside the harmonics of a family that is there.
 fn sidebands(family: &Family, band: &BandEnvelope, of: &str, spacing_hz: f64) -> Option<Sidebands> {
-    // A spot on a rolling element strikes twice a turn.
-    let times = if family.name == "BSF" { 2.0 } else { 1.0 };
-    let fundamental_hz = times * family.measured_hz?;
+    let fundamental_hz = family.name.shocks_per_period() * family.measured_hz?;
     let spectrum = Whitened::new(&band.values, band.grid_hz, band.segments).ok()?;
     Some(Sidebands {
         of: of.to_owned(),
@@ -216,10 +216,11 @@ mod tests {
             rollers: vec![spins(1, 79.7), spins(2, 36.7)],
             ..KinematicsFinding::default()
         };
-        let of = |name: &str, present: &[RollingSurface]| from_motion(name, false, &motion, present, true);
-        assert_eq!((of("FTF", &[]), of("BSF", &[])), (Some(5.3), Some(79.7)));
-        assert_eq!(from_motion("FTF", false, &motion, &[], false), Some(15.3));
+        let of =
+            |defect: Defect, present: &[RollingSurface]| from_motion(defect, false, &motion, present, true);
+        assert_eq!((of(Defect::Ftf, &[]), of(Defect::Bsf, &[])), (Some(5.3), Some(79.7)));
+        assert_eq!(from_motion(Defect::Ftf, false, &motion, &[], false), Some(15.3));
         // Lines of a damaged roller stand at all that it turns.
-        assert_eq!(of("BSF", &[RollingSurface::Roller(2)]), Some(36.7));
+        assert_eq!(of(Defect::Bsf, &[RollingSurface::Roller(2)]), Some(36.7));
     }
 }

@@ -39,7 +39,7 @@ const FINER: usize = 4;
 const LEAST_STEPS: usize = 256;
 
 /// Load on the housing along its direction, recorded where it changes.
-pub(crate) const LOAD: &str = "adapter.load_n";
+pub const LOAD: &str = "adapter.load_n";
 
 /// What a run whose speed or load changes says of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

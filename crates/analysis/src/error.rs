@@ -1,8 +1,6 @@
-//! What can go wrong between a run directory and its report.
+//! What can go wrong between samples and what they show.
 
-use std::path::PathBuf;
-
-/// Why an analysis or a report cannot be made.
+/// Why an analysis cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -18,23 +16,7 @@ pub enum Error {
     /// There is nothing to analyse.
     #[error("nothing to analyse: {0}")]
     NoSignal(String),
-    /// A figure cannot be drawn.
-    #[error("figure `{figure}` cannot be drawn: {why}")]
-    Drawing {
-        /// Name of the figure.
-        figure: String,
-        /// What the drawing library said.
-        why: String,
-    },
-    /// The numbers cannot be written as JSON.
+    /// The summaries of an ensemble cannot be merged.
     #[error("summary.json cannot be made: {0}")]
     Summary(#[source] serde_json::Error),
-    /// A file of the report cannot be written.
-    #[error("{} cannot be written: {why}; check that the folder is writable and the disk is not full", .path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        why: std::io::Error,
-    },
 }

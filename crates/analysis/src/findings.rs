@@ -19,7 +19,7 @@ use crate::film::FilmFinding;
 use crate::filtering::Filter;
 use crate::kinematics::{self, Turning};
 use crate::levels::STANDARD_GRAVITY;
-use crate::load::{Carried, Distribution};
+use crate::load::{Carried, Distribution, LoadFinding};
 use crate::paper;
 use crate::prediction::{Prediction, StaticCurve};
 use crate::reading::CursorReading;
@@ -74,8 +74,8 @@ pub struct Findings {
     pub orders: Option<Spectrum>,
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
-    /// What the families of facet lines were judged by: recorded motion and accelerations [g].
-    pub heard: (Motion, Vec<Channel>),
+    /// Recorded motion and accelerations [g] that the families of facet lines were fitted to.
+    pub family_signals: (Motion, Vec<Channel>),
     filter: Option<Filter>,
 }
 
@@ -149,8 +149,7 @@ impl Findings {
         let span = end_s - begin_s;
         // Ten periods, or nothing could be said of a record.
         let long = span * prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
-        let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
-        let leading = vertical.find(|name| run.trace.names().contains(name));
+        let leading = leading_channel(run);
         // The transforms of a whole record come before the signals of all sensors are in memory.
         let analysis = match leading.as_ref().filter(|_| steady && long) {
             Some(name) => diagnosis::analysis(&run.scene, record, &prediction.kinematics, name)?,
@@ -181,15 +180,9 @@ impl Findings {
             line.from_motion_hz = motion.ratio(&line.name).map(|ratio| ratio * line.predicted_hz);
         }
         let measured = measured_tones(&sensors, &lines, &mut notes)?;
-        let ((tracks, channels), early) = heard(record, &prediction, &motion, &sensors)?;
+        let (tracks, channels) =
+            tracks_and_channels(record, &prediction, &motion, &sensors, steady, &mut notes)?;
         let candidates = if steady { prediction.candidates(&run.scene, &run.info.mesh) } else { Vec::new() };
-        if early > 0 && steady {
-            let sought_s = record.interval_s() * (time.len() - early) as f64;
-            notes.push(format!(
-                "the mesh\u{2019}s families of lines are sought in the last {sought_s:.3} s of the record, {:.0} periods of BPFO",
-                families::MOST_PERIODS
-            ));
-        }
         let families = families::identify(&tracks, &candidates, &channels)?;
         let filter = if steady {
             filter(run, record, &prediction, &sensors, (&measured, &families), &mut notes)?
@@ -201,13 +194,7 @@ impl Findings {
         }
 
         let expected_n = duty::expected_support_n(run, record);
-        let static_curve = match prediction.static_curve(&run.scene, expected_n) {
-            Ok(curve) => Some(curve),
-            Err(why) => {
-                notes.push(format!("no static load distribution: {why}"));
-                None
-            }
-        };
+        let static_curve = static_curve(run, &prediction, expected_n, &mut notes);
         let fullest_n = static_curve.as_ref().map_or(0.0, |curve| curve.largest_sound_n);
         let mut events = passages.events(record, fullest_n, &mut notes)?;
         let levels = level_finding(time, &sensors, &mut events, filter.as_ref(), &mut notes);
@@ -218,12 +205,7 @@ impl Findings {
         let notch = filter.as_ref().zip(sensors.first());
         let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, of_paper));
         let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
-        let mut load = carried.finding(record, expected_n);
-        load.static_max_roller_n = static_curve.as_ref().map(|c| c.largest_sound_n);
-        load.static_max_roller_defect_n = static_curve.as_ref().map(|c| c.largest_n);
-        load.static_loaded_rollers = static_curve.as_ref().map(|c| c.loaded_rollers);
-        let least = |curve| rolling::least_support_n(&run.scene, curve, load.expected_n);
-        load.least_rolling_n = static_curve.as_ref().and_then(least);
+        let load = load_finding(&carried, record, expected_n, static_curve.as_ref());
         notes.extend(rolling::warnings(load.expected_n, load.least_rolling_n, &motion));
         let cage = record.channel("cage.x_m").zip(record.channel("cage.y_m"));
         notes.extend(cage.and_then(|(x, y)| rolling::straying(&run.scene, x, y)));
@@ -233,13 +215,8 @@ impl Findings {
         };
         let artefacts = match sensors.first().zip(spectrum).filter(|_| steady) {
             Some((sensor, density)) => {
-                let seen = artefacts::Seen {
-                    tones: &measured,
-                    families: &families,
-                    sensor: &sensor.name,
-                    density,
-                    fine: fine.as_ref(),
-                };
+                let (sensor, fine) = (sensor.name.as_str(), fine.as_ref());
+                let seen = artefacts::Seen { tones: &measured, families: &families, sensor, density, fine };
                 artefacts::ledger(&run.scene, &prediction, &motion, &seen)?
             }
             None => Vec::new(),
@@ -263,22 +240,14 @@ impl Findings {
             notes.extend(duty::note(&run.scene));
             orders = order_spectrum(run, record, &motion, &sensors, duty.as_mut(), &mut notes)?;
         }
-        let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&run.scene).element_size);
-        let cursor = of_paper
-            .then(|| CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair))
-            .flatten();
+        let cursor = of_paper.then(|| cursor(record, &prediction)).flatten();
 
         let mut summary = Summary {
             scene: run.scene.name.clone(),
             status: run.info.status,
             mesh: run.info.mesh.clone(),
             run: RunCost::of(&run.info, record.len(), span),
-            energy: EnergyFinding {
-                max_relative_error: run.info.energy.max_relative_error,
-                peak_strain_j: run.info.energy.peak_strain_j,
-                heat_j: run.info.energy.heat_j,
-                share_of_heat: run.info.energy.share_of_heat(),
-            },
+            energy: EnergyFinding::of(&run.info.energy),
             kinematics: motion,
             duty,
             events,
@@ -318,7 +287,7 @@ impl Findings {
             envelope,
             orders,
             static_curve,
-            heard: (tracks, channels),
+            family_signals: (tracks, channels),
             filter,
             prediction,
         })
@@ -338,6 +307,50 @@ impl Findings {
     pub fn transient_s(&self) -> f64 {
         self.summary.notch.as_ref().map_or(0.0, |n| n.transient_s)
     }
+}
+
+/// Which channel is the vertical acceleration of the first sensor that was recorded?
+fn leading_channel(run: &Run) -> Option<String> {
+    let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
+    vertical.find(|name| run.trace.names().contains(name))
+}
+
+/// How do rigid rings share the load?
+fn static_curve(
+    run: &Run,
+    prediction: &Prediction,
+    expected_n: f64,
+    notes: &mut Vec<String>,
+) -> Option<StaticCurve> {
+    match prediction.static_curve(&run.scene, expected_n) {
+        Ok(curve) => Some(curve),
+        Err(why) => {
+            notes.push(format!("no static load distribution: {why}"));
+            None
+        }
+    }
+}
+
+/// What do rollers carry, beside rigid rings?
+fn load_finding(
+    carried: &Carried,
+    record: &Record<'_>,
+    expected_n: f64,
+    curve: Option<&StaticCurve>,
+) -> LoadFinding {
+    let mut load = carried.finding(record, expected_n);
+    load.static_max_roller_n = curve.map(|c| c.largest_sound_n);
+    load.static_max_roller_defect_n = curve.map(|c| c.largest_n);
+    load.static_loaded_rollers = curve.map(|c| c.loaded_rollers);
+    load.least_rolling_n =
+        curve.and_then(|curve| rolling::least_support_n(&record.run().scene, curve, load.expected_n));
+    load
+}
+
+/// What can the paper's cursor read at this sample rate?
+fn cursor(record: &Record<'_>, prediction: &Prediction) -> Option<CursorReading> {
+    let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&record.run().scene).element_size);
+    CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair)
 }
 
 /// What must be said before any number is read.
@@ -415,17 +428,26 @@ fn sensor_signals(
     Ok(signals)
 }
 
-/// Motion and accelerations of the part of a record in which families of facet lines are sought, and the sample where it begins.
-fn heard(
+/// Motion and accelerations of the part of a record in which families of facet lines are sought; a note where that is not all of it.
+fn tracks_and_channels(
     record: &Record<'_>,
     prediction: &Prediction,
     motion: &kinematics::KinematicsFinding,
     sensors: &[SensorSignal],
-) -> Result<((Motion, Vec<Channel>), usize), Error> {
+    steady: bool,
+    notes: &mut Vec<String>,
+) -> Result<(Motion, Vec<Channel>), Error> {
     let interval_s = record.interval_s();
     let bpfo_hz = motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz);
     let early = families::too_early(record.len(), interval_s, bpfo_hz).unwrap_or(0);
-    // Families are told of a shaft that turns clockwise; one that turns the other way is seen in a mirror.
+    if early > 0 && steady {
+        notes.push(format!(
+            "the mesh\u{2019}s families of lines are sought in the last {:.3} s of the record, {:.0} periods of BPFO",
+            interval_s * (record.len() - early) as f64,
+            families::MOST_PERIODS
+        ));
+    }
+    // Families are defined for a shaft that turns clockwise; one that turns the other way is mirrored.
     let sense = prediction.kinematics.sense();
     let numbers = record.roller_numbers();
     let (start, late) = (record.at_start(&numbers)?, record.with_rollers(&numbers, early..record.len())?);
@@ -449,5 +471,5 @@ fn heard(
             values: values.get(early..).unwrap_or_default().to_vec(),
         })
     });
-    Ok(((tracks, channels.filter(|channel| !channel.values.is_empty()).collect()), early))
+    Ok((tracks, channels.filter(|channel| !channel.values.is_empty()).collect()))
 }

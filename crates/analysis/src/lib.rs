@@ -1,11 +1,14 @@
-//! What a run shows: kinematics, events, loads, tones, levels, and the report made of them.
+//! What a bearing's vibration shows: kinematics, events, loads, tones, levels and defect families.
 //!
-//! [`report::write`] turns a run directory into `report.html`, `summary.json` and `figures/*.svg`. The steps on the way
-//! are public and take plain slices, so that a measured signal can go through them as well. Nothing here meshes or
-//! simulates: what a report draws is what the run has kept.
+//! [`findings::Findings::of`] analyses a run directory; [`measured::Analysis::of`] a measured record. The steps on the way
+//! are public and take plain slices. Nothing here meshes, simulates or draws: the crate `stribeck-report` makes pages of it.
 //!
 //! ```no_run
-//! let summary = stribeck_analysis::report::write("runs/singh2014".as_ref())?;
+//! use stribeck_analysis::{findings::Findings, record::Record};
+//! use stribeck_scene::run_dir::Run;
+//!
+//! let run = Run::read("runs/singh2014".as_ref())?;
+//! let summary = Findings::of(&Record::whole(&run)?)?.summary;
 //! for tone in summary.tones.iter().filter(|tone| tone.level_g.is_some()) {
 //!     println!("{}: {} no. {} at {:?} Hz", tone.sensor, tone.name, tone.harmonic, tone.measured_hz);
 //! }
@@ -24,7 +27,7 @@
 //! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What does a measured record show, and may one call it a defect? | [`measured`] |
-//! | What does all of it come to? | [`findings`], [`summary`], [`paper`], [`report`], [`plot`] |
+//! | What does all of it come to? | [`findings`], [`summary`], [`paper`] |
 //!
 //! # A measured gearbox
 //!
@@ -86,11 +89,9 @@ pub mod findings;
 pub mod paper;
 pub mod statistic;
 
-pub mod plot;
-pub mod report;
+pub mod words;
 
 mod error;
-mod words;
 
 pub use error::Error;
 

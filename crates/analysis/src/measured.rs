@@ -4,7 +4,7 @@
 //! seconds. THEORY §7.9 says what is computed.
 //!
 //! ```
-//! use stribeck_analysis::measured::{Analysis, Machine};
+//! use stribeck_analysis::measured::{Analysis, Defect, Machine};
 //! use stribeck_formats::Channel;
 //! use stribeck_scene::catalogue::CatalogueBearing;
 //!
@@ -25,14 +25,15 @@
 //!     ..Machine::default()
 //! };
 //! let analysis = Analysis::of(&Channel::held("housing", samples), rate_hz, &machine)?;
-//! let claimed: Vec<&str> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
-//! assert_eq!(claimed, ["BPFO"]);
+//! let claimed: Vec<Defect> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+//! assert_eq!(claimed, [Defect::Bpfo]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 pub mod alarm;
 mod angular;
 mod course;
+mod defect;
 mod enhanced;
 mod length;
 mod passage;
@@ -52,11 +53,12 @@ use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 use crate::Error;
 pub use angular::over_angle;
 pub use course::Course;
+pub use defect::Defect;
 pub use enhanced::Enhanced;
 pub use screening::Health;
 use screening::Screening;
-pub use verdict::Family;
 pub(crate) use verdict::sidebands_seen;
+pub use verdict::{Family, Reason};
 
 /// What is known of the machine.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -82,7 +84,7 @@ impl Machine {
 
 /// What `findings.json` says. What a record cannot yield is `null`, with the reason in `notes`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Findings {
+pub struct MeasuredFindings {
     /// The channel.
     pub channel: String,
     /// Its unit, if known.
@@ -126,11 +128,11 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// Findings and the curves that a report draws.
+/// MeasuredFindings and the curves that a report draws.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// The numbers.
-    pub findings: Findings,
+    pub findings: MeasuredFindings,
     /// The first samples, for a picture.
     pub beginning: Vec<f64>,
     /// Power spectral density: frequencies [Hz] and values [unit²/Hz].
@@ -279,7 +281,7 @@ impl Analysis {
         let highest_hz = if highest_hz > 0.0 { HARMONICS * highest_hz } else { UNKNOWN_HZ };
         let enhanced = enhanced::of(&kept, rate_hz, highest_hz)?;
         Ok(Self {
-            findings: Findings {
+            findings: MeasuredFindings {
                 channel: channel.name.clone(),
                 unit: channel.unit.clone(),
                 rate_hz,

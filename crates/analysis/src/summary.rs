@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::Resolution;
-use stribeck_scene::run_info::{MeshInfo, RunInfo, Status};
+use stribeck_scene::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
 use stribeck_scene::scene::DefectRing;
 
 use crate::artefacts::Artefact;
@@ -322,6 +322,18 @@ impl Event {
     /// Re-stressing after the centre would stand over the trailing edge without slip [ms].
     pub fn exit_off_ms(&self) -> Option<f64> {
         Some(self.exit_ms? - self.expected_exit_ms)
+    }
+}
+
+impl EnergyFinding {
+    /// From the run's own account.
+    pub fn of(energy: &EnergyInfo) -> Self {
+        Self {
+            max_relative_error: energy.max_relative_error,
+            peak_strain_j: energy.peak_strain_j,
+            heat_j: energy.heat_j,
+            share_of_heat: energy.share_of_heat(),
+        }
     }
 }
 

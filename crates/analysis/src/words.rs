@@ -1,7 +1,7 @@
 //! Numbers in words, with as many digits as say something.
 
 /// To so many significant digits, without zeros at the end; digits before the point all stand.
-pub(crate) fn significant(value: f64, digits: i32) -> String {
+pub fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value:.0}");
     }
@@ -18,22 +18,22 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
 }
 
 /// A level without its unit: whole numbers from 10 on, two digits below.
-pub(crate) fn level(value: f64) -> String {
+pub fn level(value: f64) -> String {
     significant(value, 2)
 }
 
 /// A level in multiples of gravity.
-pub(crate) fn gravities(g: f64) -> String {
+pub fn gravities(g: f64) -> String {
     format!("{} g", level(g))
 }
 
 /// A force in kilonewtons, to four digits.
-pub(crate) fn kilonewtons(force_n: f64) -> String {
+pub fn kilonewtons(force_n: f64) -> String {
     format!("{} kN", significant(1e-3 * force_n, 4))
 }
 
 /// A stress in the unit that suits it.
-pub(crate) fn pascals(stress_pa: f64) -> String {
+pub fn pascals(stress_pa: f64) -> String {
     if stress_pa >= 1e8 {
         format!("{:.2} GPa", 1e-9 * stress_pa)
     } else {

@@ -7,7 +7,7 @@ use stribeck_formats::{Channel, Recording};
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 use stribeck_testing::Noise;
 
-use stribeck_analysis::measured::{Analysis, Family, Findings, Machine};
+use stribeck_analysis::measured::{Analysis, Defect, Family, Machine, MeasuredFindings};
 
 const RATE_HZ: f64 = 12_800.0;
 const SAMPLES: usize = 65_536;
@@ -53,12 +53,12 @@ fn knocks(hz: f64, samples: usize, strength: impl Fn(f64) -> f64) -> Vec<f64> {
     signal
 }
 
-fn analysed(samples: Vec<f64>, rpm: f64) -> Findings {
+fn analysed(samples: Vec<f64>, rpm: f64) -> MeasuredFindings {
     Analysis::of(&Channel::held("test", samples), RATE_HZ, &machine(rpm)).unwrap().findings
 }
 
-fn claimed(findings: &Findings) -> Vec<&'static str> {
-    findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect()
+fn claimed(findings: &MeasuredFindings) -> Vec<&'static str> {
+    findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect()
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn example_each_defect_is_told_from_the_others_with_slip() {
         let signal = knocks.iter().zip(coloured(5, SAMPLES)).map(|(a, b)| a + b).collect();
         let findings = analysed(signal, 60.0 * shaft_hz);
         assert_eq!(claimed(&findings), [name], "{findings:#?}");
-        let family = findings.families.iter().find(|f| f.name == name).unwrap();
+        let family = findings.families.iter().find(|f| f.name.name() == name).unwrap();
         // Half a line of 0.2 Hz.
         assert!((family.measured_hz.unwrap() - order * shaft_hz).abs() < 0.1, "{family:?}");
         assert!(family.depth.unwrap() > 0.5 && family.p_value < 1e-3);
@@ -112,7 +112,7 @@ fn example_a_second_defect_is_told_from_the_sidebands_of_the_first() {
     let findings = analysed(both.zip(coloured(5, SAMPLES)).map(|(a, b)| a + b).collect(), 60.0 * shaft_hz);
     assert_eq!(claimed(&findings), ["BPFO", "BPFI"], "{findings:#?}");
     let second = &findings.families[1];
-    assert_eq!(second.over, Some("BPFO"));
+    assert_eq!(second.over, Some(Defect::Bpfo));
     // Half a line of 0.2 Hz.
     assert!((second.measured_hz.unwrap() - inner_hz).abs() < 0.1, "{second:?}");
     assert!(
@@ -164,7 +164,7 @@ fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage(
     let element = passages(cage_hz, |knock, [turn, _]| (knock as f64 - 2.0 + 0.5 * turn) / knocks_hz);
     let findings = analysed(element, 60.0 * shaft_hz);
     assert_eq!(claimed(&findings), ["BSF"], "{findings:#?}");
-    let family = findings.families.iter().find(|f| f.name == "BSF").unwrap();
+    let family = findings.families.iter().find(|f| f.name == Defect::Bsf).unwrap();
     assert!(family.in_passages && (family.measured_hz.unwrap() / (0.5 * knocks_hz) - 1.0).abs() < 0.01);
     assert!(findings.verdict.contains("a defect of a rolling element"), "{}", findings.verdict);
     // As many as close together, without a rhythm.
@@ -183,7 +183,7 @@ fn issue_a_cage_is_expected_by_its_turns_in_space() {
             .findings
             .families
             .iter()
-            .find(|f| f.name == "FTF")
+            .find(|f| f.name == Defect::Ftf)
             .map(|f| f.expected_hz)
             .expect("looked for")
     };
@@ -272,9 +272,9 @@ fn example_a_shallow_modulation_is_seen_and_not_called_a_defect() {
 #[test]
 fn example_a_short_record_says_how_long_it_should_be() {
     let findings = analysed(coloured(1, 12_800), 300.0);
-    let cage = findings.families.iter().find(|f| f.name == "FTF").unwrap();
+    let cage = findings.families.iter().find(|f| f.name == Defect::Ftf).unwrap();
     // The cage turns 1.99 times a second: ten periods take 5.0 s.
-    assert!(cage.reason.contains("holds 2.0 periods; 5.0 s"), "{}", cage.reason);
+    assert!(cage.reason.to_string().contains("holds 2.0 periods; 5.0 s"), "{}", cage.reason);
     assert!(findings.verdict.contains("It cannot speak of FTF"), "{}", findings.verdict);
 }
 
@@ -329,8 +329,8 @@ fn measured(folder: &str) -> Option<PathBuf> {
     found
 }
 
-/// Findings of a record; the channel whose name contains `part`.
-fn of_file(file: &std::path::Path, part: &str, rate_hz: f64, rpm: f64) -> Findings {
+/// MeasuredFindings of a record; the channel whose name contains `part`.
+fn of_file(file: &std::path::Path, part: &str, rate_hz: f64, rpm: f64) -> MeasuredFindings {
     let recording = Recording::open(file).unwrap();
     let channel = recording.channels.iter().find(|c| c.name.contains(part) && c.len > 1000).unwrap();
     let found = Analysis::of(channel, rate_hz, &machine(rpm)).unwrap().findings;
@@ -365,7 +365,7 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
             let mut last = 0.0;
             for size in [2, 5, 8] {
                 let found = of_file(&folder.join(format!("{fault}{size}_{speed}.mat")), "", 51_200.0, speed);
-                let family = found.families.iter().find(|f| f.name == name).unwrap();
+                let family = found.families.iter().find(|f| f.name.name() == name).unwrap();
                 let near = (family.measured_hz.unwrap_or(0.0) / family.expected_hz - 1.0).abs() < 0.0105;
                 // Raceways of 46.98 and 31.10 mm.
                 let truth = f64::from(size) / 360.0 * std::f64::consts::PI * [46.98, 31.10][at];

@@ -41,7 +41,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             "`{}` is an ensemble: --from-s and --to-s choose from the record of one run; name one of its starts",
             shown(&folder)
         );
-        for note in stribeck_analysis::report::write_ensemble(&folder)?.notes {
+        for note in stribeck_report::write_ensemble(&folder)?.notes {
             eprintln!("warning: {note}");
         }
         say!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
@@ -51,7 +51,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     for missing in Run::read(dir.path())?.damage() {
         eprintln!("warning: {missing}");
     }
-    stribeck_analysis::report::write_between(dir.path(), time_s)?;
+    stribeck_report::write_between(dir.path(), time_s)?;
     say!("report: {}", shown(&dir.report()));
     Ok(ExitCode::SUCCESS)
 }

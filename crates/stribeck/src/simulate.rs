@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::report;
+use stribeck_report as report;
 use stribeck_run::{host::Progress, ranks::Ranks};
 use stribeck_scene::Error;
 use stribeck_scene::run_dir::RunDir;

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::agreement::{Agreement, FINE_S, FROM_S, LEAST_S, Row};
-use stribeck_analysis::report;
+use stribeck_report as report;
 use stribeck_scene::ensemble::{folder_name, start};
 use stribeck_scene::run_dir::{Run, State, check_folder};
 use stribeck_scene::run_info::Status;
@@ -196,5 +196,5 @@ fn print(agreement: &Agreement) {
 /// The difference and its limit.
 fn words(row: &Row) -> String {
     let range = row.range().map_or(String::new(), |[low, high]| format!(" ({low:+.3} to {high:+.3})"));
-    format!("{:+.3}{range} {}, limit {}", row.difference.mean, row.unit, row.limit)
+    format!("{:+.3}{range} {}, limit {}", row.difference.mean, row.scale.unit(), row.limit)
 }

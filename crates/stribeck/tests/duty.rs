@@ -2,7 +2,8 @@
 
 use std::{f64::consts::TAU, path::Path, process::Command};
 
-use stribeck_analysis::{duty, enveloping, record::Record, report, summary::Summary, tones};
+use stribeck_analysis::{duty, enveloping, record::Record, summary::Summary, tones};
+use stribeck_report as report;
 use stribeck_run::host::Host;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},

@@ -4,10 +4,10 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use stribeck_analysis::plan::{MeshFacts, Plan};
-use stribeck_analysis::report;
 use stribeck_bearing::assembly::Assembly;
 use stribeck_run::host::Host;
 use stribeck_simulation::simulate;
+use stribeck_report as report;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status};

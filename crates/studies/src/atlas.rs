@@ -309,7 +309,7 @@ fn claimed_in_noise(cell: &Cell<'_>) -> Option<Vec<&'static str>> {
     let record = Record::new(&read).ok()?;
     let expected = Kinematics::of(&run.scene);
     let judged = analysis_in_noise(&run.scene, &record, &expected, channel, NOISE).ok()??;
-    Some(judged.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect())
+    Some(judged.findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect())
 }
 
 fn claimed_rightly(cell: &Cell<'_>) -> bool {

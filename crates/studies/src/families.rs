@@ -176,7 +176,7 @@ fn tally(runs: &[Finished]) -> Result<Tally> {
     let mut tally = Tally { highest: f64::NEG_INFINITY, ..Tally::default() };
     for run in runs.iter().filter(|run| run.numbers().is_some()) {
         let findings = Findings::of(&Record::new(&Run::read(&run.folder)?)?)?;
-        let (motion, accelerations) = &findings.heard;
+        let (motion, accelerations) = &findings.family_signals;
         let kinematics = &findings.prediction.kinematics;
         let count = findings.summary.mesh.roller_facets as f64;
         let vertices = Candidate { name: "roller_vertices".into(), source: Source::RotatedVertices(count) };

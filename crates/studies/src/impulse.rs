@@ -7,10 +7,10 @@ mod variants;
 use anyhow::Result;
 use stribeck_analysis::levels::impulse_span;
 use stribeck_analysis::noise;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::signal::{smoothed_peak, smoothed_rms};
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_scene::run_dir::Run;
 
 use self::statistics::{Sample, correlation_within, ratio};

@@ -6,9 +6,9 @@ pub(super) mod variants;
 use anyhow::Result;
 use stribeck_analysis::filtering::Filter;
 use stribeck_analysis::noise::{Noise, force_ripple, measure, spectrum_g};
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_scene::run_dir::Run;
 
 use crate::table::number;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::agreement::{Agreement, BAND_LIMIT_DB, Octaves, Row};
+use stribeck_analysis::agreement::{Agreement, BAND_LIMIT_DB, Octaves, Row, Scale};
 use stribeck_scene::scene::Scene;
 
 use crate::table::{figures, number};
@@ -313,7 +313,7 @@ fn forces(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("Forces, events, cage");
     let of = |Compared { words, agreement, .. }: &Compared| {
         let by_name = |name: &str| agreement.rows.iter().find(|row| row.name == name);
-        let events = agreement.rows.iter().filter(|row| row.unit == "ms");
+        let events = agreement.rows.iter().filter(|row| row.scale == Scale::EventTime);
         let size = |row: &Row| row.difference.mean.abs();
         let worst = events.max_by(|a, b| size(a).total_cmp(&size(b)));
         let alike = |below_hz: f64| {
@@ -465,14 +465,14 @@ fn outside(sheet: &mut Sheet, all: &[Compared]) {
         let kept = agreement.rows.iter().filter(|row| row.told && row.within).count();
         let failed = agreement.rows.iter().filter(|row| !row.over_bands() && row.told && !row.within);
         let mut outside: Vec<String> =
-            failed.map(|row| format!("{}: {} {}", row.quantity, cell(row, 3), row.unit)).collect();
+            failed.map(|row| format!("{}: {} {}", row.quantity, cell(row, 3), row.scale.unit())).collect();
         let bands = || agreement.sensors.iter().flat_map(Band::all_of).filter(Band::is_outside);
         let of_band = |band: Band<'_>| format!("{}: {} dB", band.place(), band.off());
         outside.extend(bands().filter(Band::is_told).map(of_band));
         let mut open: Vec<String> = agreement
             .open()
             .filter(|row| !row.over_bands() && !row.within)
-            .map(|row| format!("{}: {} {}", row.quantity, cell(row, 3), row.unit))
+            .map(|row| format!("{}: {} {}", row.quantity, cell(row, 3), row.scale.unit()))
             .collect();
         open.extend(bands().filter(|band| !band.is_told()).map(of_band));
         let said = |list: Vec<String>| if list.is_empty() { NONE.to_owned() } else { list.join("; ") };

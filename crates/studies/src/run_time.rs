@@ -4,9 +4,9 @@ mod variants;
 
 use anyhow::Result;
 use stribeck_analysis::noise;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::ModelScene;
 

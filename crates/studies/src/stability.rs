@@ -12,7 +12,7 @@ pub(super) use limit::split;
 pub(super) use materials::{cylinder, cylinder_of};
 
 use anyhow::Result;
-use stribeck_analysis::plot::Figure;
+use stribeck_report::plot::Figure;
 
 use crate::{Answer, Flags, Host, Runner, Sheet};
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use stribeck_analysis::plot::Figure;
+use stribeck_report::plot::Figure;
 
 use crate::Finished;
 

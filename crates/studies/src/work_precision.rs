@@ -5,7 +5,7 @@ mod vibration;
 mod waves;
 
 use anyhow::Result;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 
 use crate::{Answer, Host, Sheet};
 

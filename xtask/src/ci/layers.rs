@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 18] = [
+const LAYERS: [(&str, &[&str]); 19] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -24,9 +24,13 @@ const LAYERS: [(&str, &[&str]); 18] = [
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
-    ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
-    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "run", "scene", "simulation"]),
-    ("python", &["analysis", "dsp", "formats", "run", "scene", "simulation"]),
+    ("report", &["analysis", "dsp", "scene"]),
+    ("studies", &["analysis", "contact", "mesh", "report", "scene", "solver", "system"]),
+    (
+        "stribeck",
+        &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "report", "run", "scene", "simulation"],
+    ),
+    ("python", &["analysis", "dsp", "formats", "report", "run", "scene", "simulation"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.

@@ -192,7 +192,7 @@ impl Baseband {
         self.of_samples(|n| (values[n], 0.0), values.len())
     }
 
-    /// What takes out of signals of so many `values` that which lies in the band once they are shifted up by `hz`.
+    /// Band-pass filter for signals of `values` samples, after a shift up by `hz`.
     pub(super) fn shift(&self, hz: f64, values: usize) -> Shift<'_> {
         Shift::new(hz, self.interval_s, values, &self.filter.taps, self.filter.step)
     }

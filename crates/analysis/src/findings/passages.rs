@@ -445,7 +445,7 @@ impl Event {
     }
 
     /// The passage as the levels see it.
-    pub(crate) fn visit(&self) -> Visit {
+    pub fn visit(&self) -> Visit {
         let ([from_s, until_s], [entry, exit]) = (self.extent_s(), self.on_path_ms());
         Visit {
             from_s,

@@ -6,8 +6,8 @@
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::Findings;
 use super::velocity::is_acceleration;
+use super::{Defect, MeasuredFindings};
 
 /// What a limit is set on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -103,23 +103,22 @@ impl Quantity {
     }
 
     /// Its value in a record; `None` where the record does not have it.
-    pub fn of(self, findings: &Findings) -> Option<f64> {
+    pub fn of(self, findings: &MeasuredFindings) -> Option<f64> {
         let health = &findings.health;
         match self {
             Self::Rms => Some(health.rms),
             Self::VelocityMmS => findings.velocity_mm_s,
             Self::Kurtosis => Some(health.kurtosis),
             Self::CrestFactor => Some(health.crest_factor),
-            Self::Bpfo | Self::Bpfi | Self::Bsf | Self::Ftf => {
-                // Sound records have a level, too: that of the noise at the family's lines, by whose scatter a limit is set.
-                let family = findings.families.iter().find(|f| f.name == self.name())?;
-                family.level_db.filter(|db| db.is_finite())
-            }
+            Self::Bpfo => level_db(findings, Defect::Bpfo),
+            Self::Bpfi => level_db(findings, Defect::Bpfi),
+            Self::Bsf => level_db(findings, Defect::Bsf),
+            Self::Ftf => level_db(findings, Defect::Ftf),
         }
     }
 
     /// Why a record does not have it, and what to give.
-    pub fn missing(self, findings: &Findings) -> &'static str {
+    pub fn missing(self, findings: &MeasuredFindings) -> &'static str {
         match self {
             Self::VelocityMmS if !is_acceleration(findings.unit.as_deref()) => {
                 "the samples have no unit of an acceleration; give `--unit g` or `--unit m/s²`"
@@ -183,7 +182,7 @@ impl Limit {
     }
 
     /// How a record stands to it; `None` where the record does not have the quantity.
-    pub fn judge(self, findings: &Findings) -> Option<Judged> {
+    pub fn judge(self, findings: &MeasuredFindings) -> Option<Judged> {
         let value = self.quantity.of(findings)?;
         let state = if value >= self.alarm {
             State::Alarm
@@ -194,6 +193,12 @@ impl Limit {
         };
         Some(Judged { limit: self, value, state })
     }
+}
+
+/// Level of a family [dB]. Sound records have one, too: that of the noise at the family's lines, by whose scatter a limit is set.
+fn level_db(findings: &MeasuredFindings, defect: Defect) -> Option<f64> {
+    let family = findings.families.iter().find(|f| f.name == defect)?;
+    family.level_db.filter(|db| db.is_finite())
 }
 
 #[cfg(test)]

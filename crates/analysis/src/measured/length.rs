@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use stribeck_dsp::{EventSpacing, event_spacing};
 use stribeck_scene::catalogue::CatalogueBearing;
 
-use super::{Family, Interval, Machine};
+use super::{Defect, Family, Interval, Machine};
 use crate::Error;
 
 /// Events closer than this are not told from the ringing of one [s].
@@ -27,7 +27,8 @@ pub(super) fn estimate(
         let why = if claimed.is_empty() { "no defect is claimed" } else { "more than one defect is claimed" };
         return Ok((None, Some(format!("no length of a spall: {why}"))));
     };
-    let Some(passing_hz) = family.measured_hz.filter(|_| matches!(family.name, "BPFO" | "BPFI")) else {
+    let Some(passing_hz) = family.measured_hz.filter(|_| matches!(family.name, Defect::Bpfo | Defect::Bpfi))
+    else {
         return Ok((None, Some("no length of a spall: it is estimated on raceways only".to_owned())));
     };
     let speed = contact_speed_mm_s(bearing, family.name, passing_hz);
@@ -65,9 +66,9 @@ pub(super) fn estimate(
 }
 
 /// Speed of the contact along the damaged raceway [mm/s].
-fn contact_speed_mm_s(bearing: &CatalogueBearing, family: &str, passing_hz: f64) -> f64 {
+fn contact_speed_mm_s(bearing: &CatalogueBearing, family: Defect, passing_hz: f64) -> f64 {
     let elements = f64::from(bearing.elements.unwrap_or(1));
     let across = bearing.diameter_mm * bearing.angle_deg.to_radians().cos();
-    let diameter = if family == "BPFO" { bearing.pitch_mm + across } else { bearing.pitch_mm - across };
+    let diameter = if family == Defect::Bpfo { bearing.pitch_mm + across } else { bearing.pitch_mm - across };
     PI * diameter * passing_hz / elements
 }

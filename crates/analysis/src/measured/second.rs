@@ -7,7 +7,8 @@
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::unrelated::SLIP;
-use super::verdict::{ALPHA, Family, First, KNOCK, MODULATED, decibel, rank, sidebands_seen, times_of};
+use super::verdict::{ALPHA, Family, First, KNOCK, MODULATED, decibel, rank, sidebands_seen};
+use super::{Defect, Reason};
 
 /// Where a family knocks most over the period of the first.
 struct Beside {
@@ -33,7 +34,7 @@ pub(super) fn tell(
     let asked = families.iter().enumerate().filter(|(at, family)| {
         // A family that was not looked for is not there, either.
         *at != first.at
-            && family.name != "FTF"
+            && family.name != Defect::Ftf
             && family.band_hz.is_some()
             && family.not_told_apart_from.is_none()
     });
@@ -41,7 +42,7 @@ pub(super) fn tell(
     let Some(second) = told.max_by(|a, b| a.comb.height.total_cmp(&b.comb.height)) else { return };
     let name = families[first.at].name;
     let family = &mut families[second.at];
-    family.measured_hz = Some(second.comb.fundamental_hz / times_of(family.name));
+    family.measured_hz = Some(second.comb.fundamental_hz / family.name.shocks_per_period());
     family.level_db = Some(decibel(second.comb.ratios[0]));
     family.p_value = second.p_value;
     family.rank = Some(0.0);
@@ -49,15 +50,15 @@ pub(super) fn tell(
     family.band_hz = Some(second.band_hz);
     family.over = Some(name);
     family.claimed = true;
-    family.reason = format!(
+    family.reason = Reason::Decided(format!(
         "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated comb stands as high, and the \
          power swings by {:.0} %",
         100.0 * second.depth
-    );
+    ));
 }
 
-/// A family that passes in the band in which its swing is deepest, of those in which it is more than noise: what the first family has been
-/// divided by says how loud a band is no more.
+/// A family that passes in the band in which its power is modulated most, of those in which it is more than noise: normalised by the
+/// first family, the power of bands is not comparable.
 fn beside(
     at: usize,
     family: &Family,
@@ -65,7 +66,7 @@ fn beside(
     whole: Option<&BandEnvelope>,
     bands: &[(&BandEnvelope, Whitened)],
 ) -> Option<Beside> {
-    let comb_hz = times_of(family.name) * family.expected_hz;
+    let comb_hz = family.name.shocks_per_period() * family.expected_hz;
     let search = |spectrum: &Whitened, hz: f64| {
         CombTest::FOUR_OF_FIVE.search(spectrum, (1.0 - SLIP) * hz, (1.0 + SLIP) * hz).ok()
     };
@@ -82,14 +83,14 @@ fn beside(
     let remains = search(spectrum, first.comb_hz).map_or(0.0, |left| left.height);
     let own = match family.name {
         // A spot on an element comes under the load once a turn of the cage.
-        "BSF" => sidebands_seen(spectrum, comb.fundamental_hz, first.cage_hz) >= MODULATED,
+        Defect::Bsf => sidebands_seen(spectrum, comb.fundamental_hz, first.cage_hz) >= MODULATED,
         // Sound elements pass as well, and with the louder family gone they may be all there is to hear: beside it, a defect is to be
         // loud in the whole range.
-        "BPFO" => {
+        Defect::Bpfo => {
             let loud = whole.is_some_and(|whole| whole.depth(comb.fundamental_hz) >= KNOCK);
             family.is_there() && loud && !first.takes(comb.fundamental_hz)
         }
-        _ => !first.takes(comb.fundamental_hz),
+        Defect::Bpfi | Defect::Ftf => !first.takes(comb.fundamental_hz),
     };
     let told = depth >= KNOCK
         && own

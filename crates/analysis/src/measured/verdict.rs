@@ -11,17 +11,19 @@
 //!
 //! The highest that passes is claimed, and what knocks beside it is told by `second.rs`.
 
-use serde::Serialize;
+use std::fmt;
+
+use serde::{Serialize, Serializer};
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::unrelated::{SLIP, is_the_same, unrelated_hz};
-use super::{HIGHEST_HZ, LOWEST, Machine, passage};
+use super::{Defect, HIGHEST_HZ, LOWEST, Machine, passage};
 
 /// One defect family.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Family {
-    /// `BPFO`, `BPFI`, `BSF` or `FTF`.
-    pub name: &'static str,
+    /// Whose family it is.
+    pub name: Defect,
     /// Frequency without slip [Hz].
     pub expected_hz: f64,
     /// Frequency at which the family stands highest [Hz]; `null` when it is not there.
@@ -43,17 +45,47 @@ pub struct Family {
     pub in_passages: bool,
     /// The family that stands higher, over whose period everything that is said of this one is taken
     /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
-    pub over: Option<&'static str>,
+    pub over: Option<Defect>,
     /// The family whose lines stand at the same places, so that the record does not tell which of both it is.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub not_told_apart_from: Option<&'static str>,
+    pub not_told_apart_from: Option<Defect>,
     /// Whether this is called a defect.
     pub claimed: bool,
     /// Why, or why not.
-    pub reason: String,
+    pub reason: Reason,
     /// Height of the family [dB], for comparison with others.
     #[serde(skip)]
     height_db: f64,
+}
+
+/// Why a family is called a defect, or not; text in files.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Reason {
+    /// It has not been judged yet.
+    Undecided,
+    /// In words.
+    Decided(String),
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Undecided => Ok(()),
+            Self::Decided(why) => out.write_str(why),
+        }
+    }
+}
+
+impl Serialize for Reason {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl From<String> for Reason {
+    fn from(why: String) -> Self {
+        Self::Decided(why)
+    }
 }
 
 /// Families and conclusion.
@@ -87,19 +119,6 @@ const MOST_AS_HIGH: f64 = 0.1;
 pub(super) const KNOCK: f64 = 0.5;
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
-/// What is looked for: the name, and the order of the comb over that of the name.
-const FAMILIES: [(&str, &str, f64); 4] = [
-    ("BPFO", "the outer raceway", 1.0),
-    ("BPFI", "the inner raceway", 1.0),
-    // A spot on a rolling element strikes both raceways once a turn.
-    ("BSF", "a rolling element", 2.0),
-    ("FTF", "the cage", 1.0),
-];
-
-/// The order of the comb of a family over that of its name.
-pub(super) fn times_of(name: &str) -> f64 {
-    FAMILIES.iter().find(|f| f.0 == name).map_or(1.0, |f| f.2)
-}
 
 /// The families, of which one at most is claimed; [`Judged::conclude`] says the rest.
 pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Judged {
@@ -133,10 +152,10 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         .collect();
     // Load and sensor stand still: what they hear of the cage are its turns in space.
     let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
-    let looked: Vec<(Family, Option<Standing>)> = FAMILIES
+    let looked: Vec<(Family, Option<Standing>)> = Defect::ALL
         .into_iter()
         .zip([orders.bpfo * shaft_hz, orders.bpfi * shaft_hz, orders.bsf * shaft_hz, cage_hz])
-        .map(|((name, _, times), hz)| look(name, hz, times, &whitened, record_s, segment_s))
+        .map(|(name, hz)| look(name, hz, &whitened, record_s, segment_s))
         .collect();
     let first = first(looked.iter().map(|(family, _)| family));
     let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
@@ -188,13 +207,13 @@ struct Standing {
 
 /// Looks for one family in all bands.
 fn look(
-    name: &'static str,
+    name: Defect,
     expected_hz: f64,
-    times: f64,
     bands: &[(&BandEnvelope, Whitened)],
     record_s: f64,
     segment_s: f64,
 ) -> (Family, Option<Standing>) {
+    let times = name.shocks_per_period();
     let comb_hz = times * expected_hz;
     let mut family = Family {
         name,
@@ -210,15 +229,15 @@ fn look(
         over: None,
         not_told_apart_from: None,
         claimed: false,
-        reason: String::new(),
+        reason: Reason::Undecided,
         height_db: f64::NEG_INFINITY,
     };
     if segment_s * comb_hz < PERIODS {
-        family.reason = format!(
+        family.reason = Reason::Decided(format!(
             "the record of {record_s:.2} s holds {:.1} periods; {:.1} s would hold the ten that are needed",
             record_s * comb_hz,
             PERIODS / comb_hz
-        );
+        ));
         return (family, None);
     }
     let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
@@ -229,7 +248,7 @@ fn look(
         .collect();
     let searched = found.len() as f64;
     let Some((n, comb)) = found.into_iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
-        family.reason = too_narrow(comb_hz, !bands.is_empty());
+        family.reason = Reason::Decided(too_narrow(comb_hz, !bands.is_empty()));
         return (family, None);
     };
     let (band, spectrum) = &bands[n];
@@ -288,8 +307,8 @@ pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_h
 
 /// Whether what may be a spot on a rolling element comes under the load once a turn of the cage, as one must.
 fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whitened)]) -> bool {
-    let of = |name: &str| families.iter().find(|family| family.name == name);
-    let (Some(element), Some(cage)) = (of("BSF"), of("FTF")) else { return false };
+    let of = |name: Defect| families.iter().find(|family| family.name == name);
+    let (Some(element), Some(cage)) = (of(Defect::Bsf), of(Defect::Ftf)) else { return false };
     let Some(hz) = element.measured_hz else { return false };
     let band = bands.iter().find(|(band, _)| element.band_hz == Some((band.low_hz, band.high_hz)));
     let spacing_hz = cage.measured_hz.unwrap_or(cage.expected_hz);
@@ -299,15 +318,16 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
 /// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage is
 /// heard in them: `modulated`. Where both have their places within a resolution, neither is told from the other.
 fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
-    let cannot_be = |family: &Family| family.name == "BSF" && !modulated;
+    let cannot_be = |family: &Family| family.name == Defect::Bsf && !modulated;
     let comb = |family: &Family| {
         Some((
-            times_of(family.name) * family.measured_hz?,
+            family.name.shocks_per_period() * family.measured_hz?,
             (family.measured_hz? / family.expected_hz - 1.0).abs(),
         ))
     };
     let combs: Vec<Option<(f64, f64)>> = families.iter().map(comb).collect();
-    let places: Vec<f64> = families.iter().map(|family| times_of(family.name) * family.expected_hz).collect();
+    let places: Vec<f64> =
+        families.iter().map(|family| family.name.shocks_per_period() * family.expected_hz).collect();
     for (at, own) in combs.iter().enumerate() {
         let Some((hz, off)) = own else { continue };
         let shares =
@@ -335,19 +355,22 @@ fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
         } else {
             "which are nearer to their place"
         };
-        families[at].reason = format!("its lines are those of {}, {why}", families[other].name);
+        families[at].reason =
+            Reason::Decided(format!("its lines are those of {}, {why}", families[other].name));
     }
 }
 
 /// The defect that stands for itself, but for the cage: its place and its comb [Hz].
 fn claimed_first(families: &[Family]) -> Option<(usize, f64)> {
-    let at = families.iter().position(|f| f.claimed && f.name != "FTF")?;
-    Some((at, times_of(families[at].name) * families[at].measured_hz?))
+    let at = families.iter().position(|f| f.claimed && f.name != Defect::Ftf)?;
+    Some((at, families[at].name.shocks_per_period() * families[at].measured_hz?))
 }
 
 /// The family that knocks and stands highest, but for the cage's and those whose lines are another's.
 fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
-    let knocking = families.enumerate().filter(|(_, f)| f.name != "FTF" && f.reason.is_empty() && f.knocks());
+    let knocking = families
+        .enumerate()
+        .filter(|(_, f)| f.name != Defect::Ftf && f.reason == Reason::Undecided && f.knocks());
     knocking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
 }
 
@@ -356,9 +379,9 @@ fn decide(families: &mut [Family]) {
     // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that stands lower
     // than another is not the first, even if the other one is not believed.
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
-    for family in families.iter_mut().filter(|f| f.reason.is_empty()) {
+    for family in families.iter_mut().filter(|f| f.reason == Reason::Undecided) {
         let (p, depth, rank) = (family.p_value, family.depth.unwrap_or(0.0), family.rank.unwrap_or(1.0));
-        family.reason = if p >= ALPHA {
+        let why = if p >= ALPHA {
             format!("noise of this colour makes as much with a probability of {}", probability(p))
         } else if rank > MOST_AS_HIGH {
             format!("{:.0} % of unrelated combs in this record stand as high", 100.0 * rank)
@@ -367,7 +390,7 @@ fn decide(families: &mut [Family]) {
                 "it is there, but the power of the band swings by {:.0} % only, as sound bearings do",
                 100.0 * depth
             )
-        } else if first_db.is_finite() && family.name == "FTF" {
+        } else if first_db.is_finite() && family.name == Defect::Ftf {
             "it is there, as the cage's share in a family that stands for itself".to_owned()
         } else if family.height_db < first_db {
             "it is there, but another family stands higher, of which it may be sidebands".to_owned()
@@ -378,14 +401,15 @@ fn decide(families: &mut [Family]) {
             });
             format!("{} harmonics stand, the power swings by {:.0} %{other}", family.harmonics, 100.0 * depth)
         };
+        family.reason = Reason::Decided(why);
     }
 }
 
 /// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a rolling element that knocks
 /// twice a spin, by the whole range or by the band in which the cage stands highest.
 fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
-    let place = |name: &str| families.iter().position(|family| family.name == name);
-    let (Some(element), Some(cage)) = (place("BSF"), place("FTF")) else { return };
+    let place = |name: Defect| families.iter().position(|family| family.name == name);
+    let (Some(element), Some(cage)) = (place(Defect::Bsf), place(Defect::Ftf)) else { return };
     // A spot on a rolling element meets both raceways in a turn.
     let knocks_hz = 2.0 * families[element].expected_hz;
     let is_taken = families.iter().any(|f| f.is_there() && is_the_same(f.expected_hz, knocks_hz));
@@ -404,18 +428,17 @@ fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
     family.band_hz = Some(band_hz);
     family.in_passages = true;
     family.claimed = true;
-    family.reason = format!(
+    family.reason = Reason::Decided(format!(
         "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an element, which no unrelated rhythm \
          does as much; from turn to turn it loses its phase, so that it has no lines"
-    );
+    ));
     let cage = &mut families[cage];
     cage.claimed = false;
-    "it is there, as the rhythm in which one rolling element passes under the load"
-        .clone_into(&mut cage.reason);
+    cage.reason =
+        "it is there, as the rhythm in which one rolling element passes under the load".to_owned().into();
 }
 
 fn conclude(families: &[Family]) -> String {
-    let part = |family: &Family| FAMILIES.iter().find(|f| f.0 == family.name).map_or("", |f| f.1);
     // Of two that are not told apart the first speaks for both.
     let spoken_for = |at: usize, family: &Family| {
         families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))
@@ -429,14 +452,14 @@ fn conclude(families: &[Family]) -> String {
             let off = 100.0 * (hz / f.expected_hz - 1.0);
             let other = families.iter().find(|other| f.not_told_apart_from == Some(other.name));
             match other {
-                None => format!("a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its place)", part(f), f.name),
+                None => format!("a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its place)", f.name.part(), f.name),
                 Some(other) => format!(
                     "a defect of {} or of {}, which it does not tell apart ({} at {hz:.2} Hz, {off:+.1} % from its place, and {} times {} \
                      stand within a resolution)",
-                    part(f),
-                    part(other),
+                    f.name.part(),
+                    other.name.part(),
                     f.name,
-                    times_of(other.name) / times_of(f.name),
+                    other.name.shocks_per_period() / f.name.shocks_per_period(),
                     other.name
                 ),
             }
@@ -453,8 +476,8 @@ fn conclude(families: &[Family]) -> String {
             highest.name
         );
     }
-    let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name).collect();
-    let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name).collect();
+    let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name.name()).collect();
+    let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name.name()).collect();
     if unheard.len() == families.len() {
         return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, for every family. The reasons \
                 say which length or rate would do."
@@ -501,7 +524,7 @@ mod tests {
     use super::*;
 
     /// Found at `measured_hz`, far above noise and anything else.
-    fn found(name: &'static str, expected_hz: f64, measured_hz: f64) -> Family {
+    fn found(name: Defect, expected_hz: f64, measured_hz: f64) -> Family {
         Family {
             name,
             expected_hz,
@@ -516,7 +539,7 @@ mod tests {
             over: None,
             not_told_apart_from: None,
             claimed: false,
-            reason: String::new(),
+            reason: Reason::Undecided,
             height_db: 25.0,
         }
     }
@@ -524,23 +547,29 @@ mod tests {
     /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move either.
     #[test]
     fn example_one_line_is_claimed_for_one_family() {
-        let mut families = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 53.081)];
+        let mut families = [found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
         share_out(&mut families, 1.25, true);
         decide(&mut families);
         assert!(families[0].claimed && !families[1].claimed, "{families:?}");
-        assert!(families[1].reason.contains("those of BPFO, which are nearer"), "{}", families[1].reason);
+        assert!(
+            families[1].reason.to_string().contains("those of BPFO, which are nearer"),
+            "{}",
+            families[1].reason
+        );
         // A cage that slips takes BPFO to where the element would be; only a turn of the cage makes it one.
-        for (modulated, claimed) in [(true, "BSF"), (false, "BPFO")] {
-            let mut families = [found("BPFO", 106.328, 105.153), found("BSF", 52.304, 52.576)];
+        for (modulated, claimed) in [(true, Defect::Bsf), (false, Defect::Bpfo)] {
+            let mut families = [found(Defect::Bpfo, 106.328, 105.153), found(Defect::Bsf, 52.304, 52.576)];
             share_out(&mut families, 1.25, modulated);
             decide(&mut families);
-            let names: Vec<&str> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+            let names: Vec<Defect> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
         }
         // Diameters of 1 to 5 put twice BSF on BPFO: whatever is measured, the record does not tell.
         for measured_hz in [94.404, 96.3] {
-            let mut families =
-                [found("BPFO", 96.0048, measured_hz), found("BSF", 48.0104, 0.5 * measured_hz + 0.02)];
+            let mut families = [
+                found(Defect::Bpfo, 96.0048, measured_hz),
+                found(Defect::Bsf, 48.0104, 0.5 * measured_hz + 0.02),
+            ];
             families[0].height_db = 24.9;
             share_out(&mut families, 1.0, true);
             decide(&mut families);
@@ -550,14 +579,14 @@ mod tests {
             assert!(verdict.contains("2 times BSF") && !verdict.contains(" and a defect"), "{verdict}");
             // Without the cage in them, they are the raceway's.
             let mut families =
-                [found("BPFO", 96.0048, measured_hz), found("BSF", 48.0104, 0.5 * measured_hz)];
+                [found(Defect::Bpfo, 96.0048, measured_hz), found(Defect::Bsf, 48.0104, 0.5 * measured_hz)];
             share_out(&mut families, 1.0, false);
             decide(&mut families);
             assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         }
         // Lines of their own are not shared.
-        let mut apart = [found("BPFO", 106.328, 106.163), found("BSF", 52.304, 52.2)];
+        let mut apart = [found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 52.2)];
         share_out(&mut apart, 1.25, true);
-        assert!(apart.iter().all(|family| family.reason.is_empty()), "{apart:?}");
+        assert!(apart.iter().all(|family| family.reason == Reason::Undecided), "{apart:?}");
     }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Result, bail, ensure};
-use stribeck_analysis::report;
+use stribeck_report as report;
 use stribeck_scene::ensemble::{Ensemble, is_start_of, start};
 use stribeck_scene::run_dir::{RunDir, State};
 use stribeck_scene::scene::Scene;

@@ -2,8 +2,8 @@
 
 use anyhow::Result;
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Mark, Series};
 use stribeck_analysis::signal::density_of_start;
+use stribeck_report::plot::{Axis, Colour, Figure, Mark, Series};
 
 use crate::Sheet;
 

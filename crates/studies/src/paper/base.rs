@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use anyhow::Result;
 use stribeck_analysis::paper as theirs;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Level, Series};
 use stribeck_analysis::record::Record;
+use stribeck_report::plot::{Axis, Colour, Figure, Level, Series};
 use stribeck_scene::run_dir::Run;
 
 use super::{LEAN, LONG, SHORT, tone};

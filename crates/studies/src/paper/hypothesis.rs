@@ -4,10 +4,10 @@
 use anyhow::Result;
 use stribeck_analysis::load::support;
 use stribeck_analysis::lumped::{Lumped, pattern_hz};
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::signal::{self, Line};
 use stribeck_analysis::tones::LEAST_PROMINENCE_DB;
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_scene::run_dir::Run;
 
 use super::{LEAN, LONG};

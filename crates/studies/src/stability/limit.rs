@@ -1,9 +1,9 @@
 //! The time step: where instability sets in, per element type and with contact, against the computed limit.
 
 use anyhow::Result;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_contact::Method;
 use stribeck_mesh::{Annulus, Disc, Part};
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_solver::Motion;
 use stribeck_system::{Plan, Preload, Snapshot, System};
 

@@ -1,9 +1,9 @@
 //! Long runs: a free spinning roller, vibration without end, a thousand bounces, a long stick; loads that go away.
 
 use anyhow::Result;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_contact::Method;
 use stribeck_mesh::Disc;
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_solver::Motion;
 use stribeck_system::{Plan, System};
 

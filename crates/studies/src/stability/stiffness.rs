@@ -1,8 +1,8 @@
 //! Contact stiffness from soft to hard, and contrasts between bodies.
 
 use anyhow::Result;
-use stribeck_analysis::plot::{Axis, Colour, Figure, Series};
 use stribeck_contact::Method;
+use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_solver::{Elastic, Motion};
 use stribeck_system::Plan;
 

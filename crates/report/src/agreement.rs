@@ -1,0 +1,254 @@
+//! How far the reduced model is from the full one: the page of a validation, and what the report of a reduced run says of it.
+
+use std::fs;
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, html};
+use serde_json::Value;
+use stribeck_scene::run_dir::write_atomic;
+use stribeck_scene::scene::{ModelScene, Scene};
+
+use crate::Error;
+use crate::page::{head, json, sentence};
+use crate::plot::{Axis, Colour, Figure, Series};
+use stribeck_analysis::agreement::{Agreement, Octaves, Row};
+
+/// Name of the file in the folder of a validation.
+const FILE: &str = "validation.json";
+/// Fields by which a scene differs from a validated one that are listed by name.
+const MOST_LISTED: usize = 6;
+
+/// Writes `validation.json` and `report.html` into `folder`.
+///
+/// # Errors
+/// [`Error::Run`] when a file cannot be written, [`Error::Drawing`].
+pub fn write_agreement(folder: &Path, agreement: &Agreement) -> Result<(), Error> {
+    write_atomic(&folder.join(FILE), json(agreement)?.as_bytes())?;
+    let figures = agreement.sensors.iter().map(|s| octaves(s).to_html()).collect::<Result<Vec<_>, _>>()?;
+    let title = format!("{}: the reduced model beside the full one", agreement.scene);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&title))
+            body {
+                h1 { (title) }
+                p class="lead" { (lead(agreement)) }
+                p { strong { (verdict(agreement)) } }
+                (table(agreement))
+                @for note in &agreement.notes { p class="hint" { (sentence(note)) } }
+                @for figure in figures { (figure) }
+            }
+        }
+    };
+    write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
+    Ok(())
+}
+
+fn lead(agreement: &Agreement) -> String {
+    let [full, reduced, times] = agreement.cost();
+    format!(
+        "{} by both models, {:.0} ms each. A simulated millisecond takes {full} of processor time by the full model and {reduced} by the \
+         reduced one: {times}.",
+        starts(agreement.starts),
+        agreement.simulated_ms
+    )
+}
+
+fn starts(count: usize) -> String {
+    if count == 1 { "One start".to_owned() } else { format!("{count} starts") }
+}
+
+fn verdict(agreement: &Agreement) -> String {
+    let failures: Vec<&str> = agreement.failures().map(|row| row.quantity.as_str()).collect();
+    let (all, open) = (agreement.rows.len(), agreement.open().count());
+    let cannot = match open {
+        0 => String::new(),
+        _ => format!(" Of {open} so many starts cannot tell: there chance may be larger than the limit."),
+    };
+    match failures.len() {
+        0 if open == 0 => format!("All {all} quantities are within their limits."),
+        0 => format!("{} of {all} quantities are within their limits, none is outside.{cannot}", all - open),
+        n => format!("{n} of {all} quantities are not within their limits: {}.{cannot}", failures.join("; ")),
+    }
+}
+
+fn table(agreement: &Agreement) -> Markup {
+    html! {
+        table {
+            tr { th { "Quantity" } th { "Reduced less full" } th { "95 % interval, or range" } th { "Limit" } th { "Kept" } }
+            @for row in &agreement.rows {
+                tr {
+                    td { (row.quantity) }
+                    td { (format!("{:+.3} {}", row.difference.mean, row.scale.unit())) @if row.over_bands() { ", mean of the bands" } }
+                    td { (interval(row)) }
+                    td { (format!("{} {}", row.limit, row.scale.unit())) }
+                    td { @if row.told && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
+                }
+            }
+        }
+        p class="hint" {
+            "Pairs of runs have the same start. Third octaves are levels of the mean power over the starts, both components together, and \
+             their range is that of the bands. A limit is kept or not where the interval, or twice the standard error of each band, \
+             leaves no other answer."
+        }
+        @if !agreement.correlations.is_empty() {
+            p class="hint" { (alike(agreement)) }
+        }
+        (peaks(agreement))
+    }
+}
+
+/// Largest accelerations, which have no limit.
+fn peaks(agreement: &Agreement) -> Markup {
+    let Some(first) = agreement.peaks.first() else { return html! {} };
+    html! {
+        table {
+            tr { th { "Largest acceleration" } th { "Full, g" } th { "Reduced, g" } th { "Reduced less full" } }
+            @for peak in &agreement.peaks {
+                tr {
+                    td { (peak.sensor) }
+                    @for level in peak.levels() { td { (level) } }
+                    td { (peak.difference()) }
+                }
+            }
+        }
+        p class="hint" {
+            (format!(
+                "Magnitude of both components below {:.0} kHz, as a recorder shows it: means of the largest of each start with their \
+                 95 % intervals, and how far the means are apart with one standard error. It has no limit, because it is that of a single \
+                 impact. Above that the modes of the reduced model end, and peaks of raw samples do not compare.",
+                1e-3 * first.below_hz
+            ))
+        }
+    }
+}
+
+/// How alike waveforms are.
+fn alike(agreement: &Agreement) -> String {
+    let each = agreement
+        .correlations
+        .iter()
+        .map(|c| format!("{:.2} below {:.1} kHz", c.value.mean, 1e-3 * c.below_hz));
+    format!(
+        "Waveforms of the first sensor, a_y, correlate by {}; above a few kilohertz the waveform of one impact is chaotic in both models.",
+        each.collect::<Vec<_>>().join(" and ")
+    )
+}
+
+fn interval(row: &Row) -> String {
+    row.range().map_or("one start".to_owned(), |[low, high]| format!("{low:+.3} to {high:+.3}"))
+}
+
+fn octaves(octaves: &Octaves) -> Figure {
+    let hz: Vec<f64> = octaves.centres_hz.iter().map(|hz| hz.log10()).collect();
+    let line = |name: &str, colour, y: &[f64]| Series::listed(name, colour, hz.clone(), y.to_vec());
+    let id = format!(
+        "octaves-{}",
+        octaves.sensor.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-")
+    );
+    let mut figure = Figure::new(
+        &id,
+        &format!("Third octaves at {}", octaves.sensor),
+        Axis::decades("Frequency", "Hz"),
+        Axis::plain("Level", "dB re 1 g"),
+    )
+    .caption("Power of both components in third octaves, mean over the starts.")
+    .with(line("full", Colour::Grey, &octaves.full_db))
+    .with(line("reduced", Colour::Blue, &octaves.reduced_db));
+    if let Some(largest) = octaves.error_db.iter().copied().reduce(f64::max) {
+        figure = figure.note(format!("By the scatter of the starts the difference is known to {largest:.1} dB at worst (one standard error)."));
+    }
+    figure
+}
+
+/// What is known of the error of a reduced run: the validation next to it of the scene that is nearest.
+pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
+    if scene.model == ModelScene::Full {
+        return html! {};
+    }
+    // The folder of a name alone is the present one.
+    let beside = run_dir.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
+    let found = beside.into_iter().flat_map(fs::read_dir).flatten().flatten().filter_map(|entry| {
+        let agreement: Agreement = serde_json::from_slice(&fs::read(entry.path().join(FILE)).ok()?).ok()?;
+        let other = Scene::read(entry.path().join("reduced/start-001/scene.ron")).ok()?;
+        Some((differences(scene, &other), agreement))
+    });
+    let nearest = found.min_by_key(|(differences, agreement)| (differences.len(), agreement.scene.clone()));
+    html! {
+        h2 #model { "Beside the full model" }
+        @match nearest {
+            None => p {
+                "This is a reduced model, and no validation of a scene like it lies beside the run. "
+                code { "stribeck validate SCENE" } " runs both models from the same starts and says how far apart they are."
+            },
+            Some((differences, agreement)) => {
+                p { (distance(&differences, &agreement)) " " (lead(&agreement)) " " strong { (verdict(&agreement)) } }
+                (table(&agreement))
+            }
+        }
+    }
+}
+
+fn distance(differences: &[String], agreement: &Agreement) -> String {
+    if differences.is_empty() {
+        return format!("The nearest scene that was validated is this one ({}).", agreement.scene);
+    }
+    let listed = differences.iter().take(MOST_LISTED).cloned().collect::<Vec<_>>().join(", ");
+    let more = differences.len().saturating_sub(MOST_LISTED);
+    let rest = if more > 0 { format!(" and {more} more") } else { String::new() };
+    format!("The nearest scene that was validated, {}, differs in {listed}{rest}.", agreement.scene)
+}
+
+/// Fields in which two scenes differ, with this scene's value and the other's. What a start draws, names, lengths of records and
+/// guards make no other model.
+fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
+    let plain = |scene: &Scene| {
+        let mut scene = scene.clone();
+        let default = Scene::default();
+        scene.name = default.name;
+        scene.bearing.first_roller_deg = default.bearing.first_roller_deg;
+        scene.mesh.roller_phase_deg = default.mesh.roller_phase_deg;
+        scene.solver.duration_ms = default.solver.duration_ms;
+        scene.guards = default.guards;
+        scene.output = default.output;
+        if let Some(cage) = &mut scene.cage {
+            cage.roller_offsets_um.clear();
+        }
+        serde_json::to_value(scene).unwrap_or_default()
+    };
+    let mut found = Vec::new();
+    compare("", &plain(scene), &plain(other), &mut found);
+    found
+}
+
+fn compare(path: &str, ours: &Value, theirs: &Value, found: &mut Vec<String>) {
+    match (ours, theirs) {
+        (Value::Object(a), Value::Object(b)) => {
+            for key in a.keys().chain(b.keys().filter(|key| !a.contains_key(*key))) {
+                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+                compare(&path, a.get(key).unwrap_or(&Value::Null), b.get(key).unwrap_or(&Value::Null), found);
+            }
+        }
+        (a, b) if a == b => {}
+        (a, b) => found.push(format!("{path} ({a} here, {b} there)")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn example_scenes_differ_by_what_makes_another_model() {
+        let scene = Scene::default();
+        let mut other = scene.clone();
+        other.name = "other".to_owned();
+        other.solver.duration_ms *= 2.0;
+        other.bearing.first_roller_deg += 0.1;
+        assert!(differences(&scene, &other).is_empty());
+        other.operation.load_n = 30_000.0;
+        assert_eq!(differences(&scene, &other), ["operation.load_n (50000.0 here, 30000.0 there)"]);
+        other.defect = None;
+        assert_eq!(differences(&scene, &other).len(), 2);
+    }
+}

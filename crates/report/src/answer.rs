@@ -1,0 +1,302 @@
+//! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to trust it.
+
+use maud::{Markup, html};
+use stribeck_dsp::PeriodCount;
+use stribeck_scene::deviation::{DeviationScene, RollingSurface};
+use stribeck_scene::run_dir::Run;
+use stribeck_scene::run_info::imbalance;
+use stribeck_scene::scene::DefectRing;
+
+use stribeck_analysis::artefacts::{Artefact, Family};
+use stribeck_analysis::duty::DutyFinding;
+use stribeck_analysis::families::FamilyFinding;
+use stribeck_analysis::rolling;
+use stribeck_analysis::summary::{EnergyFinding, PhaseLevels, Summary};
+use stribeck_analysis::words::{gravities, significant};
+
+/// Rollers that are named one by one, at most.
+const NAMED: usize = 6;
+
+/// The first paragraphs of the page.
+pub(super) fn paragraphs(run: &Run, summary: &Summary) -> Markup {
+    html! {
+        div #summary class="answer" {
+            p { strong { "The defect. " } (defect(run, summary)) }
+            p { strong { "The mesh. " } (mesh(summary)) }
+            p { strong { "The physics. " } (physics(run, summary)) }
+            p { strong { "How far to trust it. " } (trust(summary)) }
+            @for warning in rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, &summary.kinematics) {
+                p { strong { "Warning. " } (crate::page::sentence(&warning)) }
+            }
+        }
+    }
+}
+
+/// Number and noun.
+fn count(number: usize, noun: &str) -> String {
+    format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
+}
+
+fn defect(run: &Run, summary: &Summary) -> String {
+    let faults = run.scene.faults();
+    if faults.is_empty() {
+        let level = summary.levels.phases.gap_g.map_or(String::new(), |g| {
+            let along = across_the_load(run).then(|| radial(summary)?.gap_g).flatten();
+            let along =
+                along.map_or(String::new(), |g| format!(", and {} along the radius there", gravities(g)));
+            format!(
+                " The acceleration a_y at sensor “{}” reaches {} after the start-up{along}.",
+                sensor(summary),
+                gravities(g)
+            )
+        });
+        let deviations: Vec<String> = run.scene.defects.iter().map(DeviationScene::spoken).collect();
+        return match deviations.len() {
+            0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
+            _ => format!("There is no spall or dent to see, but {}.{level}", deviations.join(", ")),
+        };
+    }
+    let events = &summary.events;
+    let spalls = run.scene.spalls();
+    let families: Vec<String> = faults
+        .iter()
+        .map(|on| match on {
+            RollingSurface::Outer => "that of the outer raceway, BPFO".to_owned(),
+            RollingSurface::Inner => "that of the inner raceway, which turns with the shaft, BPFI".to_owned(),
+            RollingSurface::Roller(roller) => {
+                format!("that of roller {roller}, which strikes both raceways, twice BSF")
+            }
+        })
+        .collect();
+    if spalls.is_empty() {
+        return format!(
+            "Entries and exits are picked for spalls of raceways, and there is none. Look for the families in the spectra: {}.",
+            families.join("; ")
+        );
+    }
+    let it = if spalls.len() == 1 { "it" } else { "them" };
+    let picked = |on: &RollingSurface| match on {
+        RollingSurface::Outer => spalls.iter().any(|spall| spall.ring == DefectRing::Outer),
+        RollingSurface::Inner => spalls.iter().any(|spall| spall.ring == DefectRing::Inner),
+        RollingSurface::Roller(_) => false,
+    };
+    let others =
+        faults.iter().zip(&families).filter(|(on, _)| !picked(on)).map(|(_, family)| family.as_str());
+    let others = match others.collect::<Vec<&str>>().join("; ") {
+        none if none.is_empty() => String::new(),
+        others => format!(" The scene has others, whose families are in the spectra: {others}."),
+    };
+    if events.is_empty()
+        && unsteady(summary).is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
+    {
+        return "The rings turn back on the way, and passages are foretold of one sense of rotation only."
+            .into();
+    }
+    if events.is_empty() {
+        return format!("No roller reaches {it} under load on this record.{others}");
+    }
+    let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
+    let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
+    let floors: Vec<String> =
+        events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
+    let rollers = run.scene.rollers_in_place().count();
+    let crossed = match events.len() {
+        1 => format!("1 roller crosses {it}"),
+        times if times > rollers || spalls.len() > 1 => format!("Rollers cross {it} {times} times"),
+        few => format!("{few} rollers cross {it}"),
+    };
+    let floor = match floors.len() {
+        0 => "none touches the floor".to_owned(),
+        1 => format!("roller {} touches the floor", floors[0]),
+        many if many > NAMED => format!("{many} times one touches the floor"),
+        _ => format!("rollers {} touch the floor", floors.join(", ")),
+    };
+    let floor = match (entries + exits, floors.len()) {
+        (0, 1..) => format!("{floor}: it carries them, and none comes free of half its load"),
+        _ => floor,
+    };
+    let heard = match reads(&summary.levels.phases) {
+        Some(all) => {
+            let along = across_the_load(run).then(|| radial(summary).and_then(reads)).flatten();
+            let along =
+                along.map_or(String::new(), |reads| format!(" Along the radius there it reads {reads}."));
+            format!(" Sensor “{}” reads {all} (a_y, peak).{along}", sensor(summary))
+        }
+        None => " The record is too short to set exits beside gaps.".into(),
+    };
+    format!(
+        "{crossed}; the contact forces show {} and {}, and {floor}.{heard}{others}",
+        if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
+        count(exits, "exit"),
+    )
+}
+
+/// Peaks at exits, entries and in the gaps, in words; `None` without the first or the last of them.
+fn reads(levels: &PhaseLevels) -> Option<String> {
+    let (exit, gap) = levels.exit_g.zip(levels.gap_g)?;
+    let entry = levels.entry_g.map_or(String::new(), |g| format!(", {} at entries", gravities(g)));
+    Some(format!("{} at exits{entry} and {} in the gaps", gravities(exit), gravities(gap)))
+}
+
+/// Whether the load acts more along x than along y, so that a_y has little of it.
+fn across_the_load(run: &Run) -> bool {
+    let [x, y] = run.scene.load_direction();
+    x.abs() > y.abs()
+}
+
+/// Levels along the radius at the leading sensor.
+fn radial(summary: &Summary) -> Option<&PhaseLevels> {
+    let sensor = summary.levels.sensors.first()?;
+    sensor.components.iter().find(|c| c.component == "radial").map(|c| &c.phases)
+}
+
+fn mesh(summary: &Summary) -> String {
+    if let Some(duty) = unsteady(summary) {
+        let (least, most) = duty.relative_speed_rpm;
+        return format!(
+            "The speed of the {} goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and are not looked for.",
+            duty.over()
+        )
+        .replace('-', "−");
+    }
+    let families = &summary.families;
+    if summary.kinematics.relative_hz == 0.0 {
+        return "Nothing turns, so that no facets pass a contact.".into();
+    }
+    if families.iter().all(|f| f.lead.is_none()) {
+        return "This record is too short, or sampled too slowly, to tell a family of facet lines from anything else.".into();
+    }
+    let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
+    let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
+    // Of families that are there, which have a carrier.
+    let place = |f: &FamilyFinding| {
+        let level = f.level_g.map_or(String::new(), |g| format!(", up to {}", gravities(g)));
+        let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
+        format!(
+            "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands every {spacing_hz:.1} Hz{level}",
+            f.carrier_hz.unwrap_or(f64::NAN)
+        )
+        .replace('-', "−")
+    };
+    let mut said: Vec<String> = families
+        .iter()
+        .filter(|f| f.found)
+        .map(|f| format!("The {} make {}.", f.spoken(), place(f)))
+        .collect();
+    if let Some(first) = families.iter().find(|f| !f.not_told_apart_from.is_empty()) {
+        said.push(format!("The {} make {}; this record does not tell which.", first.spoken(), place(first)));
+    }
+    if said.is_empty() {
+        return "No family of facet lines is there, neither in the accelerations nor in the roller forces."
+            .into();
+    }
+    let absent: Vec<String> =
+        families.iter().filter(|f| f.carrier_hz.is_none()).map(FamilyFinding::spoken).collect();
+    if !absent.is_empty() {
+        said.push(format!("No lines of the {} are found.", absent.join(" or the ")));
+    }
+    format!(
+        "{} Facet lines are artefacts: a real bearing has none, and another mesh moves them.",
+        said.join(" ")
+    )
+}
+
+/// The duty of a run whose speed changes.
+fn unsteady(summary: &Summary) -> Option<&DutyFinding> {
+    summary.duty.as_ref().filter(|duty| duty.is_unsteady())
+}
+
+/// What the envelope shows over the angle of the shaft.
+fn orders(duty: &DutyFinding) -> String {
+    let Some(envelope) = &duty.envelope else {
+        return format!("No family was sought over the angle of the {}.", duty.over());
+    };
+    let seen: Vec<String> =
+        envelope.lines.iter().filter(|l| l.measured.is_some()).map(|l| format!("×{}", l.harmonic)).collect();
+    let order = envelope.lines.first().map_or(0.0, |line| line.predicted);
+    if seen.is_empty() {
+        return format!(
+            "Over the angle of the {} nothing stands at {} ({order:.3} a turn) or its multiples.",
+            duty.over(),
+            envelope.family
+        );
+    }
+    let (family, at) = (&envelope.family, envelope.lines.first().and_then(|line| line.measured));
+    let at = at.map_or(String::new(), |at| format!(" at {at:.3}"));
+    format!(
+        "Over the angle of the {} {family} ({order:.3} a turn) stands{at}, of its multiples {}.",
+        duty.over(),
+        seen.join(", ")
+    )
+}
+
+fn physics(run: &Run, summary: &Summary) -> String {
+    if let Some(duty) = unsteady(summary) {
+        return format!(
+            "Bursts at entries and exits and the forces of the rollers follow from load and geometry. {}",
+            orders(duty)
+        );
+    }
+    let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Family::Defect).collect();
+    let seen: Vec<String> =
+        of_defect.iter().filter(|a| a.measured_hz.is_some()).map(|a| format!("×{}", a.harmonic)).collect();
+    let lines = of_defect.iter().find(|a| a.harmonic == 1).map(|first| {
+        let (name, hz) = (&first.name, first.from_motion_hz.unwrap_or(first.predicted_hz));
+        let periods = 1e-3 * summary.run.simulated_ms * hz;
+        if hz == 0.0 {
+            String::new()
+        } else if !seen.is_empty() {
+            format!(" {name} ({hz:.1} Hz) stands in the spectrum with its multiples {}.", seen.join(", "))
+        } else if periods < PeriodCount::ENOUGH {
+            format!(
+                " {name} ({hz:.1} Hz) cannot stand as a line of the spectrum: the record holds {periods:.1} of its periods, {:.0} are needed.",
+                PeriodCount::ENOUGH
+            )
+        } else {
+            format!(
+                " {name} ({hz:.1} Hz) does not stand as a line of the spectrum, though the record holds {periods:.1} of its periods: look at the \
+                 envelope."
+            )
+        }
+    });
+    let bursts = if summary.events.is_empty() { "The" } else { "Bursts at entries and exits and the" };
+    format!(
+        "{bursts} forces of the rollers follow from load and geometry.{} {}",
+        lines.unwrap_or_default(),
+        if run.scene.housing.is_rigid() {
+            "The outer ring is rigid and has no natural frequency of its own."
+        } else {
+            "No line is booked as a natural frequency of the ring, because a place near one proves nothing."
+        }
+    )
+}
+
+fn trust(summary: &Summary) -> String {
+    let EnergyFinding { max_relative_error, share_of_heat, .. } = summary.energy;
+    let energy = format!("Energy balances to {}", imbalance(max_relative_error, share_of_heat));
+    let load = summary
+        .load
+        .relative_error
+        .map_or(String::new(), |e| format!(", the mean load to {:.2} %", 100.0 * e.abs()));
+    let spectrum = summary.spectrum.as_ref().map_or(String::new(), |s| {
+        let good = format!(" Frequencies are good to {} Hz, one over", significant(s.resolution_hz, 2));
+        let defect = s.fine_resolution_hz.map_or(String::new(), |hz| {
+            format!("; those of the defect\u{2019}s family to {} Hz, one over the record", significant(hz, 2))
+        });
+        match s.segments {
+            1 => format!("{good} the record{defect}."),
+            n => format!(
+                "{good} each of the {n} segments of {} s that the spectra average{defect}.",
+                significant(s.segment_s, 3)
+            ),
+        }
+    });
+    format!(
+        "{energy}{load}.{spectrum} Peaks are those of one start: another start angle moves them by tens of per cent. They also \
+         depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
+    )
+}
+
+fn sensor(summary: &Summary) -> &str {
+    summary.levels.sensor.as_deref().unwrap_or("none")
+}

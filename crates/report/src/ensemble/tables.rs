@@ -1,0 +1,425 @@
+//! The tables of an ensemble's page.
+
+use maud::{Markup, html};
+
+use super::super::figures::spoken;
+use super::super::tables::cell;
+use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
+use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
+use stribeck_analysis::summary::Event;
+use stribeck_analysis::words;
+
+/// Part of itself to which a mean is worth knowing.
+const WORTH: f64 = 0.1;
+
+/// Phases of a record, as fields of `levels`, and in words.
+pub(super) const PHASES: [(&str, &str); 5] = [
+    ("start", "start-up"),
+    ("entry", "entries"),
+    ("defect", "in the defect"),
+    ("exit", "exits"),
+    ("gap", "gaps"),
+];
+
+/// A number of the summary and how it is shown.
+struct Row {
+    name: String,
+    path: String,
+    factor: f64,
+    decimals: usize,
+    /// Its scatter is worth setting beside its mean.
+    scatters: bool,
+}
+
+impl Row {
+    fn new(name: impl Into<String>, path: impl Into<String>, factor: f64, decimals: usize) -> Self {
+        Self { name: name.into(), path: path.into(), factor, decimals, scatters: false }
+    }
+
+    fn level(name: impl Into<String>, path: impl Into<String>, decimals: usize) -> Self {
+        Self { scatters: true, ..Self::new(name, path, 1.0, decimals) }
+    }
+}
+
+/// `value` with a true minus sign.
+pub(super) fn shown(value: f64, decimals: usize) -> String {
+    format!("{value:.decimals$}").replace('-', "−")
+}
+
+/// `136 ± 8`: the mean and how well it is known.
+pub(super) fn mean(s: &Statistic, factor: f64, decimals: usize) -> String {
+    let mean = shown(factor * s.mean, decimals);
+    match s.high {
+        Some(high) => format!("{mean} ± {}", shown(factor.abs() * (high - s.mean), decimals)),
+        None => mean,
+    }
+}
+
+/// Decimals of a level: as many as given, or more where the interval of its mean, of a single start a tenth of the level, is smaller
+/// than those show.
+pub(super) fn decimals(s: &Statistic, least: usize) -> usize {
+    const MOST: usize = 6;
+    let half = s.high.map(|high| high - s.mean).filter(|half| *half > 1e-9 * s.mean.abs());
+    let first = -half.unwrap_or(0.1 * s.mean.abs()).log10().floor();
+    // Of zero there is no first digit.
+    if first.is_finite() { (first.max(0.0) as usize).clamp(least, MOST) } else { least }
+}
+
+/// A level [g] with as many decimals.
+pub(super) fn level(s: &Statistic, least: usize) -> String {
+    mean(s, 1.0, decimals(s, least))
+}
+
+/// The numbers that an engineer asks for first.
+pub(super) fn main(summary: &EnsembleSummary) -> Markup {
+    if summary.count(Ended::Complete) == 0 {
+        return html! {};
+    }
+    let sensor = summary.ensemble.text("levels.sensor").unwrap_or("none");
+    let peak =
+        PHASES.map(|(field, words)| Row::level(format!("Peak, {words} [g]"), format!("levels.{field}_g"), 0));
+    let rms = PHASES
+        .map(|(field, words)| Row::level(format!("RMS, {words} [g]"), format!("levels.{field}_rms_g"), 1));
+    let notched = [Row::level("Peak, gaps, behind the notch [g]", "levels.between_filtered_g", 0)];
+    let levels: Vec<Row> = peak.into_iter().chain(rms).chain(notched).collect();
+    let forces = [
+        Row::new("Largest roller force, without facet tone [kN]", "load.max_roller_n", 1e-3, 2),
+        Row::new("Mean load off the applied one [%]", "load.relative_error", 100.0, 3),
+    ];
+    let motion = [
+        Row::new("BPFO [Hz]", "kinematics.bpfo_hz", 1.0, 2),
+        Row::new("Spin of loaded rollers [Hz]", "kinematics.roller_spin_hz", 1.0, 3),
+    ];
+    let cost = [
+        Row::new("Energy off balance [%]", "energy.max_relative_error", 100.0, 3),
+        Row::new("Wall-clock time, set-up left out [s]", "run.wall_s", 1.0, 1),
+        Row::new("Set-up: mesh and preload [s]", "run.setup_s", 1.0, 1),
+    ];
+    html! {
+        div class="scroll" {
+            table class="numbers" {
+                thead {
+                    tr {
+                        th { "Quantity" } th class="n" { "Mean ± " (format!("{:.0} %", 100.0 * CONFIDENCE)) }
+                        th class="n" { "10 % to 90 % of starts" } th class="n" { "Least to most" } th class="n" { "Scatter" }
+                        th class="n" { "Starts for ±10 %" } th class="n" { "In" }
+                    }
+                }
+                tbody {
+                    (group(&format!("Acceleration a_y at sensor “{sensor}”"), summary, &levels))
+                    (group("Forces", summary, &forces))
+                    (group("Motion", summary, &motion))
+                    (group("Balance and cost", summary, &cost))
+                }
+            }
+        }
+        p class="hint" {
+            "± is the 95 % interval of the mean by Student's t: it narrows with more starts. 10 % to 90 % is what a single start does. Scatter: \
+             standard deviation over mean. Every other number of the summary is in summary.json, likewise."
+        }
+    }
+}
+
+fn group(name: &str, summary: &EnsembleSummary, rows: &[Row]) -> Markup {
+    let known: Vec<(&Row, &Statistic)> =
+        rows.iter().filter_map(|row| Some((row, summary.number(&row.path)?))).collect();
+    html! {
+        @if !known.is_empty() { tr class="group" { td colspan="7" { (name) } } }
+        @for (row, s) in known {
+            @let decimals = if row.scatters { decimals(s, row.decimals) } else { row.decimals };
+            tr {
+                td { (row.name) }
+                td class="n" { (mean(s, row.factor, decimals)) }
+                td class="n" { (span(s.q10, s.q90, row.factor, decimals)) }
+                td class="n" { (span(s.least, s.most, row.factor, decimals)) }
+                (cell(s.deviation.filter(|_| row.scatters).map(|d| format!("{:.0} %", 100.0 * d / s.mean.abs()))))
+                (cell(s.starts_for(WORTH).filter(|_| row.scatters).map(|n| n.to_string())))
+                td class="n" { (s.count) "/" (s.of) }
+            }
+        }
+    }
+}
+
+fn span(low: f64, high: f64, factor: f64, decimals: usize) -> String {
+    format!("{} to {}", shown(factor * low, decimals), shown(factor * high, decimals))
+}
+
+/// Peaks by phase at every sensor.
+pub(super) fn sensors(summary: &EnsembleSummary) -> Markup {
+    let sensors = summary.ensemble.items("levels.sensors");
+    if sensors.is_empty() {
+        return html! {};
+    }
+    let of = |sensor: &Merged, component: Option<&str>, field: &str| {
+        let path = format!("{field}_g");
+        let found = match component {
+            None => sensor.number(&path),
+            Some(component) => sensor
+                .items("components")
+                .iter()
+                .find(|c| c.text("component") == Some(component))
+                .and_then(|c| c.number(&path)),
+        };
+        found.map(|s| level(s, 0))
+    };
+    html! {
+        h3 { "Peaks by phase at every sensor [g], mean ± 95 %" }
+        div class="scroll" {
+            table {
+                thead { tr { th { "Sensor" } th { "Component" } @for (_, words) in PHASES { th class="n" { (words) } } } }
+                tbody {
+                    @for sensor in sensors {
+                        @for (component, name) in [(None, "a_y"), (Some("radial"), "radial"), (Some("tangential"), "tangential")] {
+                            tr {
+                                td { (sensor.text("sensor").unwrap_or("–")) } td { (name) }
+                                @for (field, _) in PHASES { (cell(of(sensor, component, field))) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Verdicts on the families of facet lines.
+pub(super) fn families(summary: &EnsembleSummary) -> Markup {
+    let families = summary.ensemble.items("families");
+    if families.is_empty() {
+        return html! {};
+    }
+    html! {
+        div class="scroll" {
+            table class="ledger" {
+                thead {
+                    tr {
+                        th { "Family of facet lines" } th class="n" { "Found in" } th class="n" { "Predicted Hz" } th class="n" { "Carrier Hz" }
+                        th class="n" { "Off, resolutions" } th class="n" { "Largest g" }
+                    }
+                }
+                tbody {
+                    @for family in families {
+                        tr {
+                            td { (spoken(family.text("name").unwrap_or("–"))) }
+                            (cell(share(family)))
+                            (cell(family.number("predicted_hz").map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("carrier_hz").map(|s| mean(s, 1.0, 1))))
+                            (cell(family.number("offset_resolutions").map(|s| mean(s, 1.0, 2))))
+                            (cell(family.number("level_g").map(|s| level(s, 1))))
+                        }
+                    }
+                }
+            }
+        }
+        p class="hint" { "Each start is judged by itself, against its own recorded motion (THEORY §7.7); shares with their 95 % interval." }
+    }
+}
+
+/// `7/12 (32–81 %)` of the starts hold a family.
+fn share(family: &Merged) -> Option<String> {
+    let Some(Merged::Share(s)) = family.get("found") else { return None };
+    if family.number("lead").is_none() {
+        return Some("not judged".to_owned());
+    }
+    Some(format!("{}/{} ({:.0}–{:.0} %)", s.count, s.of, 100.0 * s.low, 100.0 * s.high))
+}
+
+/// The events of every roller that crosses the defect.
+pub(super) fn events(findings: &EnsembleFindings) -> Markup {
+    let summary = &findings.summary;
+    let events = summary.ensemble.items("events");
+    if events.is_empty() {
+        return html! {};
+    }
+    let count = |event: &Merged, path: &str| event.number(path).map_or(0, |s| s.count);
+    let of = summary.count(Ended::Complete);
+    let off = |event: &Merged, of: fn(&Event) -> Option<f64>| {
+        findings.over_events(&roller(event), of).map(|s| mean(&s, 1.0, 3))
+    };
+    html! {
+        div class="scroll" {
+            table {
+                thead {
+                    tr {
+                        th { "Roller" } th class="n" { "#1 unloads" } th class="n" { "off ms" } th class="n" { "#2 floor" } th class="n" { "at ms" }
+                        th class="n" { "kN" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
+                        th class="n" { "off ms" } th class="n" { "Impulse g" }
+                    }
+                }
+                tbody {
+                    @for event in events {
+                        tr {
+                            td { (roller(event)) }
+                            td class="n" { (count(event, "entry_ms")) "/" (of) }
+                            (cell(off(event, Event::entry_off_ms)))
+                            td class="n" { (count(event, "floor_ms")) "/" (of) }
+                            (cell(event.number("floor_ms").map(|s| mean(s, 1.0, 2))))
+                            (cell(event.number("floor_n").map(|s| mean(s, 1e-3, 2))))
+                            td class="n" { (count(event, "compensation_ms")) "/" (of) }
+                            (cell(event.number("compensation_gain").map(|s| mean(s, 1.0, 2))))
+                            td class="n" { (count(event, "exit_ms")) "/" (of) }
+                            (cell(off(event, Event::exit_off_ms)))
+                            (cell(event.number("impulse_g").map(|s| level(s, 0))))
+                        }
+                    }
+                }
+            }
+        }
+        p class="hint" {
+            "Starts that show the event, and means ± 95 % of those. Off: after the centre would stand over the edge without slip. #3: what the roller \
+             carries while a neighbour is in the defect, over what it carried before."
+        }
+    }
+}
+
+/// Number of the roller of an event.
+pub(super) fn roller(event: &Merged) -> String {
+    match event.get("roller") {
+        Some(Merged::Same(number)) => number.to_string(),
+        _ => "–".to_owned(),
+    }
+}
+
+/// What the paper measures, beside ours over the starts. What is given stands on the page of any start.
+pub(super) fn paper(summary: &EnsembleSummary) -> Markup {
+    let measured = |row: &&Merged| row.text("part") != Some("Model") && row.number("ours_value").is_some();
+    let mut part = "";
+    let rows: Vec<(bool, &Merged)> = summary
+        .ensemble
+        .items("paper")
+        .iter()
+        .filter(measured)
+        .map(|row| {
+            let of = row.text("part").unwrap_or_default();
+            (std::mem::replace(&mut part, of) != of, row)
+        })
+        .collect();
+    html! {
+        p class="hint" {
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage pockets, \
+             damping nor the place of its sensor, so its levels are no test of this model. Where a number is the same in every start, the page of \
+             any of them says more."
+        }
+        div class="scroll" {
+            table class="numbers" {
+                thead {
+                    tr {
+                        th { "Quantity" } th class="n" { "Paper" } th class="n" { "Mean ± 95 %" } th class="n" { "10 % to 90 % of starts" } th class="n" { "In" }
+                        th { "The paper's number lies" }
+                    }
+                }
+                tbody {
+                    @for (first, row) in rows {
+                        @if first { tr class="group" { td colspan="6" { (row.text("part").unwrap_or_default()) } } }
+                        (paper_row(row))
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn paper_row(row: &Merged) -> Markup {
+    let Some(s) = row.number("ours_value") else { return html! {} };
+    let unit = row.text("unit").unwrap_or_default();
+    let decimals = match s.mean.abs() {
+        m if m >= 100.0 => 0,
+        m if m >= 1.0 => 2,
+        _ => 4,
+    };
+    let place = row.number("paper_value").map(|paper| place(paper.mean, s));
+    html! {
+        tr {
+            td { (row.text("quantity").unwrap_or_default()) }
+            td class="n" { (row.text("paper").unwrap_or("–")) }
+            td class="n" { (mean(s, 1.0, decimals)) " " (unit) }
+            td class="n" { (shown(s.q10, decimals)) " to " (shown(s.q90, decimals)) }
+            td class="n" { (s.count) "/" (s.of) }
+            td class="why" { (place.unwrap_or("–")) }
+        }
+    }
+}
+
+/// Where a number lies among the starts.
+fn place(number: f64, s: &Statistic) -> &'static str {
+    // What all starts agree on to rounding is one number.
+    let same = (number - s.mean).abs() <= 1e-9 * s.mean.abs();
+    match (s.low, s.high) {
+        _ if same => "at ours",
+        (Some(low), Some(high)) if (low..=high).contains(&number) => "in the interval of the mean",
+        _ if (s.q10..=s.q90).contains(&number) => "among single starts, not at their mean",
+        _ if (s.least..=s.most).contains(&number) => "at the edge of the starts",
+        _ if number > s.most => "above every start",
+        _ => "below every start",
+    }
+}
+
+/// Every start: what was drawn, how it ended.
+pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
+    let ended = |ended: Ended| match ended {
+        Ended::Complete => "complete",
+        Ended::Diverged => "diverged",
+        Ended::Early => "ended early",
+        Ended::Failed => "failed",
+        Ended::Missing => "not begun",
+    };
+    html! {
+        div class="scroll" {
+            table {
+                thead {
+                    tr {
+                        th { "Folder" } th class="n" { "Roller 1 at °" } th class="n" { "Phase °" } th { "Ended" } th class="n" { "Exit g" }
+                        th class="n" { "Gap g" } th class="n" { "Energy %" } th class="n" { "Wall s" } th class="n" { "Warnings" }
+                    }
+                }
+                tbody {
+                    @for start in &summary.starts {
+                        tr {
+                            td { a href={ (start.folder) "/scene.ron" } { (start.folder) } }
+                            (cell(start.first_roller_deg.map(|deg| shown(deg, 4))))
+                            (cell(start.roller_phase_deg.map(|deg| shown(deg, 4))))
+                            td { (ended(start.ended)) }
+                            (cell(start.exit_g.map(words::level)))
+                            (cell(start.gap_g.map(words::level)))
+                            (cell(start.energy_error.map(|e| shown(100.0 * e, 3))))
+                            (cell(start.wall_s.map(|s| shown(s, 1))))
+                            td class="n" { (start.warnings.len()) }
+                        }
+                    }
+                }
+            }
+        }
+        p class="hint" {
+            "A start is a run of its own: `stribeck report` in its folder makes its page, and `stribeck simulate` with its scene.ron gives the same \
+             samples again. Places in the pockets stand in its scene as `cage.roller_offsets_um`."
+        }
+    }
+}
+
+/// Where the numbers come from.
+pub(super) fn provenance(findings: &EnsembleFindings) -> Markup {
+    let ensemble = &findings.ensemble;
+    let rows = [
+        ("Program", format!("stribeck {} ({})", ensemble.version, ensemble.commit)),
+        ("Seed", ensemble.seed.to_string()),
+        ("Scene", ensemble.scene_hash.clone()),
+        ("Starts asked for", ensemble.starts.to_string()),
+        ("Complete", findings.complete.len().to_string()),
+    ];
+    html! { table class="pairs" { tbody { @for (name, value) in rows { tr { td { (name) } td { (value) } } } } } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The page of a quiet ensemble said "gaps 0 ± 0 g".
+    #[test]
+    fn issue_quiet_levels_have_as_many_digits_as_their_scatter() {
+        let of = |values: &[f64]| level(&Statistic::of(values, values.len()).expect("some"), 0);
+        assert_eq!(of(&[130.0, 136.0, 142.0]), "136 ± 15");
+        assert_eq!(of(&[0.030, 0.031, 0.032]), "0.031 ± 0.002");
+        assert_eq!(of(&[0.031]), "0.031");
+        assert_eq!((of(&[2.0, 2.0]), of(&[0.0, 0.0])), ("2.0 ± 0.0".into(), "0 ± 0".into()));
+    }
+}

@@ -1,0 +1,34 @@
+//! What can go wrong between an analysis and its page.
+
+use std::path::PathBuf;
+
+/// Why a report cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The run cannot be analysed.
+    #[error(transparent)]
+    Analysis(#[from] stribeck_analysis::Error),
+    /// The run cannot be read, or a file of its folder cannot be written.
+    #[error(transparent)]
+    Run(#[from] stribeck_scene::Error),
+    /// A figure cannot be drawn.
+    #[error("figure `{figure}` cannot be drawn: {why}")]
+    Drawing {
+        /// Name of the figure.
+        figure: String,
+        /// What the drawing library said.
+        why: String,
+    },
+    /// The numbers cannot be written as JSON.
+    #[error("summary.json cannot be made: {0}")]
+    Summary(#[source] serde_json::Error),
+    /// A file of the report cannot be written.
+    #[error("{} cannot be written: {why}; check that the folder is writable and the disk is not full", .path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        why: std::io::Error,
+    },
+}

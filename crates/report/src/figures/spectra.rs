@@ -1,0 +1,325 @@
+//! Spectra: the paper's Figs. 3 and 7, the other sensors, low frequencies, the envelope.
+//!
+//! Colours say where a line comes from: green, purple and teal are the mesh, red is the defect, brown is the ring.
+
+use stribeck_dsp::Spectrum;
+
+use super::{mark, spoken};
+use crate::plot::{Axis, Colour, Figure, Mark, Series};
+use stribeck_analysis::artefacts;
+use stribeck_analysis::duty::DutyFinding;
+use stribeck_analysis::families::{FamilyFinding, SIDEBANDS};
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::tones;
+
+/// How far below its highest value a spectrum is drawn [dB]; rounding noise lies lower.
+const DEPTH_DB: f64 = 120.0;
+/// Upper end of the low frequencies [Hz].
+const LOW_HZ: f64 = 2_500.0;
+/// Multiples of the defect's frequency that are marked.
+const FAMILY: usize = 10;
+/// Where each colour of the marks comes from, of those that are drawn.
+fn legend(findings: &Findings) -> String {
+    let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, purple nodes of the outer and \
+                teal of the inner raceway";
+    let kinds = [
+        (!unsteady(findings), mesh),
+        (findings.prediction.family.is_some(), "red: the defect"),
+        (!findings.modes.is_empty(), "brown: modes of the free outer ring"),
+    ];
+    let drawn: Vec<&str> = kinds.into_iter().filter(|(drawn, _)| *drawn).map(|(_, words)| words).collect();
+    if drawn.is_empty() { String::new() } else { format!("Upright: {}. ", drawn.join("; ")) }
+}
+
+/// The leading sensor, as recorded (the paper's Fig. 3).
+pub(super) fn raw(findings: &Findings) -> Option<Figure> {
+    let leading = findings.sensors.first()?;
+    let raw = leading.raw_density.as_ref()?;
+    let title = format!("Power spectral density of a_y at sensor “{}”", leading.name);
+    let mut figure = over_frequency("spectrum", &title, (0.0, 0.5 * raw.sample_rate_hz()))
+        .with(density("raw", Colour::Blue, raw))
+        .caption(found(findings))
+        .note(legend(findings) + &stated(raw));
+    figure.marks = harmonic_marks(findings);
+    Some(figure)
+}
+
+/// Whether the speed changes: lines at constant frequencies are then neither looked for nor taken out.
+fn unsteady(findings: &Findings) -> bool {
+    findings.summary.duty.as_ref().is_some_and(DutyFinding::is_unsteady)
+}
+
+/// Which families were found, in one sentence.
+fn found(findings: &Findings) -> String {
+    if unsteady(findings) {
+        return "The speed changes: what stands here are resonances, and lines are smeared.".into();
+    }
+    let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", f.spoken(), f.carrier_hz?));
+    let all: Vec<String> = findings.summary.families.iter().filter_map(name).collect();
+    if all.is_empty() {
+        "No family of facet lines is there.".into()
+    } else {
+        format!("Mesh: {}, with sidebands at multiples of BPFO.", all.join(", "))
+    }
+}
+
+/// Raw and notched, whole and about the tone (the paper's Figs. 7a and 7b).
+pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
+    let Some(leading) = findings.sensors.first().filter(|_| !unsteady(findings)) else { return Vec::new() };
+    let (Some(raw), Some(filtered)) = (&leading.raw_density, &leading.filtered_density) else {
+        return Vec::new();
+    };
+    let overlay = |id: &str, title: &str, range: (f64, f64)| {
+        // Drawn first, so that the raw curve stays visible where both agree.
+        let figure = over_frequency(id, title, range).with(density("notched", Colour::Orange, filtered));
+        figure.with(density("raw", Colour::Blue, raw))
+    };
+    let attenuation = findings.summary.notch.as_ref().and_then(|n| n.attenuation_db);
+    let mut whole = overlay("spectrum-notched", "Raw and notched", (0.0, 0.5 * raw.sample_rate_hz()))
+        .caption("The notch removes the carrier and leaves its sidebands and harmonics.")
+        .note(stated(raw));
+    whole.marks = harmonic_marks(findings);
+    let zoom = zoom(findings, raw);
+    let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
+    let mut zoomed = overlay("spectrum-zoom", &title, zoom)
+        .caption(match (tone(findings), attenuation) {
+            (Some(_), Some(db)) => format!("At its centre the notch lowers the density by {db:.0} dB."),
+            _ => "The notch stands where a tone is predicted; none stands out at this sensor.".into(),
+        })
+        .note(format!(
+            "{}{} Lines closer than {:.0} Hz merge.",
+            legend(findings),
+            stated(raw),
+            raw.resolution().width_6db_hz
+        ));
+    zoomed.marks = line_marks(findings);
+    vec![whole, zoomed]
+}
+
+/// All sensors about the tone, the low frequencies of the leading one, its envelope.
+pub(super) fn others(findings: &Findings) -> Vec<Figure> {
+    let Some(raw) = findings.sensors.first().and_then(|s| s.raw_density.as_ref()) else { return Vec::new() };
+    let mut figures = Vec::new();
+    if findings.sensors.len() > 1 && !unsteady(findings) {
+        figures.push(all_sensors(findings, zoom(findings, raw), raw));
+    }
+    figures.push(low(findings, raw));
+    figures.extend(envelope(findings));
+    figures
+}
+
+/// Frequency of the dominant tone at the leading sensor [Hz].
+fn tone(findings: &Findings) -> Option<f64> {
+    let leading = findings.sensors.first()?;
+    tones::dominant(&findings.summary.tones, &leading.name)?.measured_hz
+}
+
+fn zoom(findings: &Findings, raw: &Spectrum) -> (f64, f64) {
+    let notch_hz = findings.summary.notch.as_ref().map(|n| n.centre_hz);
+    about_the_tone(notch_hz, &line_marks(findings), 0.5 * raw.sample_rate_hz())
+}
+
+/// Where a spectrum is drawn close: about the notch, or without one about the carriers among `marks`, those that are there first. The
+/// paper zooms to 4–6 kHz; a coarser mesh has its tone elsewhere.
+pub(in super::super) fn about_the_tone(notch_hz: Option<f64>, marks: &[Mark], half_hz: f64) -> (f64, f64) {
+    const PAPER_HZ: (f64, f64) = (4000.0, 6000.0);
+    const AROUND_HZ: f64 = 1000.0;
+    let dashed = marks.iter().all(|mark| mark.dashed);
+    let carriers = marks.iter().filter(|mark| mark.dashed == dashed && (0.0..half_hz).contains(&mark.x));
+    let [low, high] = match notch_hz {
+        Some(hz) => [hz, hz],
+        None => carriers.fold([f64::INFINITY, 0.0], |[low, high], mark| [mark.x.min(low), mark.x.max(high)]),
+    };
+    if half_hz >= PAPER_HZ.1 && (low > high || PAPER_HZ.0 <= low && high < PAPER_HZ.1) {
+        return PAPER_HZ;
+    }
+    // Without any, the top of what is sampled.
+    let low = low.min(half_hz);
+    ((low - AROUND_HZ).max(0.0), (high.max(low) + AROUND_HZ).min(half_hz))
+}
+
+/// What a spectrum can tell apart, in one sentence.
+fn stated(spectrum: &Spectrum) -> String {
+    format!("Welch: {}.", spectrum.resolution())
+}
+
+fn low(findings: &Findings, raw: &Spectrum) -> Figure {
+    // The lines of a slow bearing stand in the spectrum of the whole record alone.
+    let raw = findings.fine.as_ref().unwrap_or(raw);
+    let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
+    let drawn = (top / raw.resolution().grid_hz) as usize + 2;
+    let shown =
+        [(findings.prediction.family.is_some(), "the defect"), (!findings.modes.is_empty(), "the ring")];
+    let shown: Vec<&str> = shown.into_iter().filter(|(shown, _)| *shown).map(|(_, what)| what).collect();
+    let title = match shown.join(" and ") {
+        none if none.is_empty() => "Low frequencies".to_owned(),
+        shown => format!("Low frequencies: {shown}"),
+    };
+    let mut figure =
+        over_frequency("spectrum-low", &title, (0.0, top)).with(decibels("raw", Colour::Blue, raw, drawn));
+    let unsteady = unsteady(findings);
+    let caption = match findings.prediction.family {
+        None if unsteady => {
+            "The speed changes: what comes once a passage is smeared here, and stands over the angle."
+                .to_owned()
+        }
+        None => "There is no defect whose lines could stand here.".to_owned(),
+        Some((name, hz)) if artefacts::shows_family(raw, hz) => {
+            format!("The record is long enough to separate the multiples of {name}.")
+        }
+        Some((name, hz)) => format!(
+            "{name} and its multiples belong at the red lines; this record holds {:.1} of its periods, too few to show them.",
+            raw.resolution().record_s * hz
+        ),
+    };
+    figure = figure.caption(caption).note(legend(findings) + &stated(raw));
+    figure.marks = physics_marks(findings, top);
+    figure
+}
+
+fn envelope(findings: &Findings) -> Option<Figure> {
+    let (spectrum, finding) = findings.envelope.as_ref().zip(findings.summary.envelope.as_ref())?;
+    let (name, hz) = findings.prediction.family?;
+    let top = (FAMILY as f64 + 1.0) * hz;
+    let power = Axis::plain("Squared envelope spectrum", "dB re 1 g⁴");
+    let mut figure =
+        Figure::new("envelope", "Envelope spectrum", Axis::si("Frequency", "Hz").over(0.0, top), power)
+            .with(density("squared envelope", Colour::Blue, spectrum));
+    let seen: Vec<String> = finding
+        .lines
+        .iter()
+        .filter(|l| l.measured_hz.is_some())
+        .map(|l| format!("×{}", l.harmonic))
+        .collect();
+    figure = figure
+        .caption(if seen.is_empty() {
+            format!("No multiple of {name} stands 10 dB above its surroundings.")
+        } else {
+            format!(
+                "Knocks come at {name}: of its multiples {} stand 10 dB above their surroundings.",
+                seen.join(", ")
+            )
+        })
+        .note(format!(
+            "Envelope of {:.0} to {:.0} Hz, {:.1} periods of {name} on record. {}",
+            finding.band_hz.0,
+            finding.band_hz.1,
+            finding.periods,
+            stated(spectrum)
+        ));
+    figure.marks = physics_marks(findings, top);
+    Some(figure)
+}
+
+/// The defect's family and the ring's modes below `top`.
+fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    if let Some((name, hz)) = findings.prediction.family {
+        let text = |n: usize| if n == 1 { format!("{name} {hz:.1} Hz") } else { format!("×{n}") };
+        marks.extend((1..=FAMILY).map(|n| mark(n as f64 * hz, &text(n), Colour::Red, true)));
+    }
+    marks.extend(
+        findings
+            .modes
+            .iter()
+            .filter(|m| m.1 < top)
+            .map(|(n, hz)| mark(*hz, &format!("ring n = {n}, {hz:.0} Hz"), Colour::Brown, true)),
+    );
+    marks
+}
+
+fn all_sensors(findings: &Findings, zoom: (f64, f64), raw: &Spectrum) -> Figure {
+    let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple, Colour::Red, Colour::Teal];
+    let mut figure = over_frequency("spectrum-sensors", "All sensors, raw", zoom)
+        .caption(
+            "The comb has the same spacing everywhere; which of its lines is strongest depends on the place.",
+        )
+        .note(legend(findings) + &stated(raw));
+    for (sensor, colour) in findings.sensors.iter().zip(colours.into_iter().cycle()) {
+        if let Some(spectrum) = &sensor.raw_density {
+            figure = figure.with(density(&sensor.name, colour, spectrum));
+        }
+    }
+    figure.marks = line_marks(findings);
+    figure
+}
+
+fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {
+    let density = Axis::plain("Power spectral density", "dB re 1 g²/Hz");
+    Figure::new(id, title, Axis::si("Frequency", "Hz").over(from, to), density)
+}
+
+/// A spectrum in decibels, cut [`DEPTH_DB`] below its highest value.
+fn density(name: &str, colour: Colour, spectrum: &Spectrum) -> Series {
+    decibels(name, colour, spectrum, spectrum.values().len())
+}
+
+/// Its first `most` values.
+fn decibels(name: &str, colour: Colour, spectrum: &Spectrum, most: usize) -> Series {
+    let decibels: Vec<f64> = spectrum.values().iter().take(most).map(|p| 10.0 * p.log10()).collect();
+    let highest = decibels.iter().copied().filter(|d| d.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    let floored = decibels.iter().map(|d| d.max(highest - DEPTH_DB)).collect();
+    Series::sampled(name, colour, 0.0, spectrum.resolution().grid_hz, floored)
+}
+
+/// The harmonics of every facet line. The raceway's stand so close to the rollers' that they carry no label at this scale.
+fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
+    let colours = [Colour::Green, Colour::Purple, Colour::Teal];
+    let label = |index: usize, harmonic: usize| match (index, harmonic) {
+        (0, 1) => "roller vertices ×1".to_owned(),
+        (0, more) => format!("×{more}"),
+        _ => String::new(),
+    };
+    let mut marks = Vec::new();
+    for (index, (name, _)) in findings.prediction.facet_lines.iter().enumerate().rev() {
+        let of_name = findings.lines.iter().filter(|l| l.name == *name);
+        marks.extend(
+            of_name.map(|l| mark(l.predicted_hz, &label(index, l.harmonic), colours[index % 3], true)),
+        );
+    }
+    let ring = findings.modes.iter().filter(|m| m.1 > LOW_HZ);
+    marks.extend(ring.map(|(n, hz)| mark(*hz, &format!("ring n = {n}"), Colour::Brown, true)));
+    marks
+}
+
+/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not, by geometry where no motion
+/// tells it.
+fn line_marks(findings: &Findings) -> Vec<Mark> {
+    let bpfo = findings.summary.kinematics.bpfo_hz.unwrap_or(findings.prediction.kinematics.bpfo_hz);
+    let mut marks = Vec::new();
+    let families = findings.summary.families.iter().zip(&findings.prediction.facet_lines);
+    for ((family, (_, geometry_hz)), colour) in families.zip([Colour::Green, Colour::Purple, Colour::Teal]) {
+        let Some(carrier) = family.carrier_hz else {
+            let (hz, word) = family.predicted_hz.map_or((*geometry_hz, "by geometry"), |hz| (hz, "absent"));
+            marks.push(mark(hz, &format!("{} {word}", spoken(&family.name)), colour, true));
+            continue;
+        };
+        for m in -SIDEBANDS..=SIDEBANDS {
+            let label = match m {
+                0 => format!("{} {carrier:.0} Hz", family.spoken()),
+                _ => format!("{m:+}").replace('-', "−"),
+            };
+            marks.push(mark(carrier + f64::from(m) * bpfo, &label, colour, false));
+        }
+    }
+    marks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without a notch the zoom was 4 to 6 kHz, whose marks lay elsewhere.
+    #[test]
+    fn issue_the_close_spectrum_is_about_the_carriers() {
+        let at = |hz: f64, dashed: bool| mark(hz, "", Colour::Green, dashed);
+        let zoom = |notch_hz, marks: &[Mark]| about_the_tone(notch_hz, marks, 50_000.0);
+        assert_eq!(zoom(None, &[at(1500.0, true), at(1800.0, true)]), (500.0, 2800.0));
+        assert_eq!(zoom(None, &[at(1500.0, true), at(9000.0, false)]), (8000.0, 10_000.0));
+        assert_eq!(zoom(Some(1700.0), &[at(9000.0, false)]), (700.0, 2700.0));
+        // The paper's carriers lie where it looks, and so does a record without any.
+        assert_eq!(zoom(None, &[at(4545.0, true), at(4671.0, true)]), (4000.0, 6000.0));
+        assert_eq!(zoom(None, &[]), (4000.0, 6000.0));
+        assert_eq!(about_the_tone(None, &[], 5000.0), (4000.0, 5000.0));
+    }
+}

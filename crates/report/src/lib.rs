@@ -1,0 +1,54 @@
+//! The page of a run: figures, tables and words in one file that needs no network.
+//!
+//! [`write()`] turns a run directory into `report.html`, `summary.json` and `figures/`. The numbers are those of
+//! [`stribeck_analysis`]; nothing is concluded here, and nothing simulates. The same directory gives the same bytes.
+//!
+//! ```no_run
+//! let summary = stribeck_report::write("runs/singh2014".as_ref())?;
+//! for tone in summary.tones.iter().filter(|tone| tone.level_g.is_some()) {
+//!     println!("{}: {} no. {} at {:?} Hz", tone.sensor, tone.name, tone.harmonic, tone.measured_hz);
+//! }
+//! # Ok::<(), stribeck_report::Error>(())
+//! ```
+//!
+//! | page of | function | files |
+//! |---|---|---|
+//! | a run, or a stretch of it | [`write()`], [`write_between`] | `report.html`, `summary.json`, `figures/` |
+//! | many starts of a scene | [`write_ensemble`] | `report.html`, `summary.json`, `figures/` |
+//! | the reduced model beside the full one | [`write_agreement`] | `report.html`, `validation.json` |
+//! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
+//! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
+//!
+//! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG, PNG).
+
+pub mod plot;
+
+mod page;
+
+mod lead;
+
+mod answer;
+mod course;
+mod figures;
+mod pictures;
+mod sections;
+mod tables;
+
+mod agreement;
+mod ensemble;
+mod measured;
+mod run;
+mod trend;
+
+mod error;
+
+pub use agreement::write_agreement;
+pub use ensemble::write_ensemble;
+pub use error::Error;
+pub use measured::write_measured;
+pub use run::{write, write_between};
+pub use trend::{TrendEntry, write_trend};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,251 @@
+//! The page of a measured record: verdict, families, the spectra that they stand in.
+
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, html};
+use stribeck_dsp::BandEnvelope;
+use stribeck_scene::run_dir::write_atomic;
+
+use crate::page::{head, json, sentence};
+use crate::plot::{Axis, Colour, Figure, Mark, Series};
+use crate::{Error, course};
+use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, Interval};
+
+/// Lowest cyclic frequency drawn [Hz].
+const LOWEST_CYCLIC_HZ: f64 = 2.0;
+
+/// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made.
+///
+/// # Errors
+/// [`Error::Write`] and [`Error::Run`] when the folder or its files cannot be written, [`Error::Drawing`].
+pub fn write_measured(folder: &Path, file: &str, analysis: &Analysis) -> Result<(), Error> {
+    std::fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
+    write_atomic(&folder.join("findings.json"), json(&analysis.findings)?.as_bytes())?;
+    let page = page(file, analysis)?.into_string();
+    write_atomic(&folder.join("report.html"), page.as_bytes())?;
+    Ok(())
+}
+
+fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
+    let findings = &analysis.findings;
+    let unit = findings.unit.as_deref().unwrap_or("unit");
+    let figures = figures(analysis, unit).iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+    let course = course::picture(&analysis.course, unit).to_html()?;
+    let title = format!("{file}, {}", findings.channel);
+    let number = |x: f64| format!("{x:.4}");
+    let health = &findings.health;
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&title))
+            body {
+                h1 { (title) }
+                p class="lead" {
+                    (format!("{:.2} s at {} Hz", findings.duration_s, findings.rate_hz))
+                    @if let Some(rpm) = findings.speed_rpm { (format!("; the shaft turns at {rpm:.1} rpm")) }
+                    @if let Some(bearing) = &findings.bearing { "; " (bearing) }
+                    "."
+                }
+                p { strong { (findings.verdict) } }
+                @if let Some(spall) = &findings.spall_mm { p { (spall_in_words(spall)) } }
+                h2 #families { "Defect families" }
+                @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
+                h2 #signal { "Signal" }
+                table {
+                    tr { th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } th { "Spectral entropy" } @if findings.velocity_mm_s.is_some() { th { "Velocity, 10–1000 Hz (mm/s)" } } }
+                    tr {
+                        td { (number(health.mean)) } td { (number(health.rms)) } td { (number(health.peak)) } td { (number(health.crest_factor)) }
+                        td { (number(health.kurtosis)) } td { (number(health.skewness)) } td { (number(health.impulse_factor)) }
+                        td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
+                    }
+                }
+                @for figure in figures { (figure) }
+                (course)
+                h2 #notes { "Notes" }
+                ul class="notes" { @for note in &findings.notes { li { (sentence(note)) } } }
+            }
+        }
+    })
+}
+
+/// The length of a spall with its interval.
+fn spall_in_words(spall: &Interval) -> String {
+    if spall.low > 0.0 {
+        format!(
+            "Length of the spall: {:.2} mm, 90 % between {:.2} and {:.2} mm.",
+            spall.value, spall.low, spall.high
+        )
+    } else {
+        format!(
+            "Length of the spall: {:.2} mm if entry and exit both knock, else anything up to {:.1} mm.",
+            spall.value, spall.high
+        )
+    }
+}
+
+fn families(families: &[Family]) -> Markup {
+    let hz = |value: Option<f64>| value.map_or("–".to_owned(), |hz| format!("{hz:.2}"));
+    html! {
+        table {
+            tr {
+                th { "Family" } th { "Expected (Hz)" } th { "Measured (Hz)" } th { "Harmonics of 5" } th { "Level (dB)" }
+                th { "Depth" } th { "False alarm" } th { "Band (Hz)" } th { "Defect" } th { "Why" }
+            }
+            @for f in families {
+                tr {
+                    td { (f.name.name()) }
+                    td { (format!("{:.2}", f.expected_hz)) }
+                    td { (hz(f.measured_hz)) }
+                    td { (f.harmonics) }
+                    td { (f.level_db.map_or("–".to_owned(), |db| format!("{db:.1}"))) }
+                    td { (f.depth.map_or("–".to_owned(), |d| format!("{d:.2}"))) }
+                    td { (f.false_alarm()) }
+                    td { (f.band_hz.map_or("–".to_owned(), |(low, high)| format!("{low:.0}–{high:.0}"))) }
+                    td { @if f.claimed { strong { "yes" } } @else { "no" } }
+                    td { (f.reason.to_string()) }
+                }
+            }
+        }
+    }
+}
+
+fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
+    let findings = &analysis.findings;
+    let waveform = Figure::new("waveform", "Signal", Axis::si("Time", "s"), Axis::plain("Level", unit))
+        .caption("The beginning of the record.")
+        .with(Series::sampled(
+            "signal",
+            Colour::Blue,
+            0.0,
+            1.0 / findings.rate_hz,
+            analysis.beginning.clone(),
+        ));
+    let (frequencies, density) = &analysis.density;
+    let step = frequencies.get(1).copied().unwrap_or(1.0);
+    let spectrum = Figure::new(
+        "density",
+        "Power spectral density",
+        Axis::si("Frequency", "Hz"),
+        Axis::plain("Density", &format!("dB re 1 ({unit})²/Hz")),
+    )
+    .caption("Welch's average over the whole record, Hann window.")
+    .with(Series::sampled(
+        "density",
+        Colour::Blue,
+        0.0,
+        step,
+        density.iter().map(|p| decibel(*p)).collect(),
+    ));
+    let mut figures = vec![waveform, spectrum];
+    let shown: Vec<&Family> = findings.families.iter().filter(|f| f.claimed).collect();
+    let there: Vec<&Family> = findings.families.iter().filter(|f| f.is_there()).collect();
+    for family in if shown.is_empty() { there } else { shown } {
+        figures.extend(analysis.band_of(family).map(|band| envelope(band, family, findings)));
+    }
+    if figures.len() == 2 {
+        // Nothing to show: the band that knocks most.
+        let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
+        figures.extend(most.map(|band| spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0)));
+    }
+    figures.extend(analysis.enhanced.as_ref().map(|spectrum| enhanced(spectrum, &findings.families)));
+    figures
+}
+
+/// The enhanced envelope spectrum with the places of all families: dashed where they are expected, solid where found.
+fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
+    // Slow changes of level fill the beginning.
+    let first = ((LOWEST_CYCLIC_HZ / spectrum.grid_hz) as usize).clamp(1, spectrum.values.len().max(2) - 1);
+    let mut figure = Figure::new(
+        "enhanced",
+        "Enhanced envelope spectrum",
+        Axis::si("Cyclic frequency", "Hz"),
+        Axis::plain("Mean coherence", ""),
+    )
+    .caption(
+        "How surely each part of the spectrum comes and goes at a rate, averaged over all parts. It shows what knocks where the \
+         signal is weak; the verdict does not rest on it.",
+    )
+    .note(format!(
+        "From the first {:.2} s: cyclic lines {:.3} Hz apart, carriers {:.1} Hz apart. Dashed where a family is expected, solid \
+         where it was found.",
+        spectrum.duration_s, spectrum.grid_hz, spectrum.carrier_hz
+    ))
+    .with(Series::sampled(
+        "coherence",
+        Colour::Blue,
+        first as f64 * spectrum.grid_hz,
+        spectrum.grid_hz,
+        spectrum.values[first..].to_vec(),
+    ));
+    let colours = [Colour::Red, Colour::Orange, Colour::Green, Colour::Purple];
+    let end_hz = spectrum.grid_hz * spectrum.values.len() as f64;
+    for (family, colour) in families.iter().zip(colours) {
+        let found = family.measured_hz.filter(|_| family.is_there());
+        let hz = found.unwrap_or(family.expected_hz) * family.name.shocks_per_period();
+        let name = if family.name == Defect::Bsf { "2×BSF" } else { family.name.name() };
+        let shown = if found.is_some() { 3 } else { 1 };
+        for n in (1..=shown).filter(|n| f64::from(*n) * hz < end_hz) {
+            let label = if n == 1 { name.to_owned() } else { format!("{n}× {name}") };
+            figure.marks.push(Mark { x: f64::from(n) * hz, label, colour, dashed: found.is_none() });
+        }
+    }
+    figure
+}
+
+/// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its sidebands.
+fn envelope(
+    band: &BandEnvelope,
+    family: &Family,
+    findings: &stribeck_analysis::measured::MeasuredFindings,
+) -> Figure {
+    let hz = family.name.shocks_per_period() * family.measured_hz.unwrap_or(family.expected_hz);
+    let id = format!("envelope-{}", family.name.name().to_lowercase());
+    let mut figure =
+        spectrum_of(band, &id, &format!("Squared envelope spectrum about {}", family.name), 5.6 * hz)
+            .caption(format!("{}. {}", family.name, sentence(&family.reason.to_string())));
+    let shaft_hz = findings.speed_rpm.unwrap_or(0.0) / 60.0;
+    let cage_hz = findings
+        .families
+        .iter()
+        .find(|f| f.name == Defect::Ftf)
+        .map_or(0.0, |f| f.measured_hz.unwrap_or(f.expected_hz));
+    // A defect that turns with the shaft, or with the cage, comes and goes under the load.
+    let side_hz = match family.name {
+        Defect::Bpfi => shaft_hz,
+        Defect::Bsf => cage_hz,
+        Defect::Bpfo | Defect::Ftf => 0.0,
+    };
+    for n in 1..=5 {
+        let at = f64::from(n) * hz;
+        figure.marks.push(Mark { x: at, label: format!("{n}×"), colour: Colour::Red, dashed: false });
+        if side_hz > 0.0 && n <= 2 {
+            for side in [at - side_hz, at + side_hz] {
+                figure.marks.push(Mark {
+                    x: side,
+                    label: String::new(),
+                    colour: Colour::Orange,
+                    dashed: true,
+                });
+            }
+        }
+    }
+    figure
+}
+
+fn spectrum_of(band: &BandEnvelope, id: &str, title: &str, to_hz: f64) -> Figure {
+    let lines = ((to_hz / band.grid_hz) as usize + 1).min(band.values.len());
+    let values = band.values.iter().take(lines).skip(1).map(|v| decibel(*v)).collect();
+    Figure::new(id, title, Axis::si("Frequency", "Hz"), Axis::plain("Power over the mean power²", "dB"))
+        .note(format!(
+            "Band {:.0} to {:.0} Hz, {}, resolution {:.3} Hz, Hann window.",
+            band.low_hz,
+            band.high_hz,
+            if band.segments == 1 { "one segment".to_owned() } else { format!("{} segments", band.segments) },
+            band.grid_hz
+        ))
+        .with(Series::sampled("envelope", Colour::Blue, band.grid_hz, band.grid_hz, values))
+}
+
+fn decibel(power: f64) -> f64 {
+    10.0 * power.max(1e-30).log10()
+}

@@ -1,0 +1,337 @@
+//! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
+
+use std::f64::consts::PI;
+use std::ops::RangeInclusive;
+
+use stribeck_scene::frames::{Frame, Window};
+use stribeck_scene::geometry::Geometry;
+use stribeck_scene::mesh_file::RunMesh;
+
+use crate::Error;
+use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
+use stribeck_analysis::stress::{Cell, Lame, cells};
+use stribeck_analysis::summary::Event;
+use stribeck_analysis::words::{kilonewtons, pascals};
+
+/// Part of the cells whose stress the scale leaves above its end: single corners would take all colours.
+const ABOVE: f64 = 0.002;
+/// Side of an animated picture [px].
+const SIDE: u16 = 480;
+/// Half the side of what a picture of a moment shows [m].
+const HALF: f64 = 3e-3;
+/// Time for one animated picture [1/100 s].
+const HUNDREDTHS: u16 = 9;
+
+/// A moment: what stands there, its cells, and the point to look at, in the window's own axes [m].
+struct Moment {
+    title: String,
+    /// What stands at the focus, in words.
+    at: &'static str,
+    time_s: f64,
+    cells: Vec<Cell>,
+    focus: [f64; 2],
+    /// What Hertz has for the contact at the focus; `None` at an edge.
+    hertz: Option<Hertz>,
+}
+
+/// A line contact of a roller with the outer raceway (Johnson 1985, §4.2).
+#[derive(Debug, Clone, Copy)]
+struct Hertz {
+    /// Largest pressure [Pa].
+    pressure: f64,
+    /// Half-width [m].
+    half_width: f64,
+}
+
+/// Highest von Mises stress under a line contact over its largest pressure, for ν = 0.3: yield begins at p₀ = 1.79 Y
+/// (Johnson 1985, §6.1).
+const VON_MISES_OF_PRESSURE: f64 = 1.0 / 1.79;
+
+impl Hertz {
+    fn of(geometry: &Geometry, force: f64) -> Self {
+        let (load, modulus) = (force / geometry.thickness, geometry.material.contact_modulus());
+        let half_width = (4.0 * load * geometry.outer_contact_radius() / (PI * modulus)).sqrt();
+        Self { pressure: 2.0 * load / (PI * half_width), half_width }
+    }
+
+    /// Beside the highest stress of the picture.
+    fn beside(&self, von_mises: f64) -> String {
+        let expected = VON_MISES_OF_PRESSURE * self.pressure;
+        format!(
+            "Hertz has a pressure of {:.2} GPa over a half-width of {:.2} mm under this load, and a highest von Mises stress of {:.2} GPa \
+             below it: the picture shows {:.0} % of that.",
+            1e-9 * self.pressure,
+            1e3 * self.half_width,
+            1e-9 * expected,
+            100.0 * von_mises / expected
+        )
+    }
+}
+
+pub(super) fn pictures(
+    record: &Record<'_>,
+    findings: &Findings,
+    mesh: &RunMesh,
+    window: &Window,
+    frames: &[Frame],
+) -> Result<Vec<Picture>, Error> {
+    let geometry = Geometry::of(&record.run().scene);
+    let lame = Lame::of(&geometry.material);
+    let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
+    let mut pictures = Vec::new();
+    let moments = moments(record, &geometry, findings, window, &all)?;
+    if moments.iter().any(|moment| moment.cells.iter().any(|cell| is_near(moment, cell, window))) {
+        pictures.push(still(&moments, window));
+    }
+    if all.len() > 2 {
+        pictures.push(moving(record, findings, window, &all)?);
+    }
+    Ok(pictures)
+}
+
+/// The first frame with the roller that crosses first, seen where it touches the outer raceway, and the frame with the highest stress near the
+/// trailing edge while the roller climbs out.
+fn moments(
+    record: &Record<'_>,
+    geometry: &Geometry,
+    findings: &Findings,
+    window: &Window,
+    all: &[(f64, Vec<Cell>)],
+) -> Result<Vec<Moment>, Error> {
+    let radius = geometry.outer_race_radius;
+    let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
+    let mut moments = Vec::new();
+    let number = findings.summary.events.first().map(|event| event.roller);
+    let sample =
+        |time: f64| record.time_s().partition_point(|t| *t < time).min(record.len().saturating_sub(1));
+    let [from, to] = [all.first(), all.last()].map(|frame| frame.map_or(0, |(time, _)| sample(*time)));
+    let rollers = record.with_rollers(&number.into_iter().collect::<Vec<_>>(), from..to + 1)?;
+    let roller = number.and_then(|number| rollers.roller(number));
+    let loaded = roller.and_then(|roller| {
+        let normal = roller.outer_normal();
+        all.iter().find_map(|(time, cells)| {
+            let n = sample(*time) - from;
+            let focus = on_race(roller.y.get(n)?.atan2(*roller.x.get(n)?).to_degrees());
+            // Frames may be over before a roller comes.
+            if focus.iter().any(|away| away.abs() > window.half) {
+                return None;
+            }
+            let force = *normal.get(n)?;
+            Some(Moment {
+                title: format!("roller {} carries {}", roller.number, kilonewtons(force)),
+                at: "the contact",
+                time_s: *time,
+                cells: cells.clone(),
+                focus,
+                hertz: (force > 0.0).then(|| Hertz::of(geometry, force)),
+            })
+        })
+    });
+    moments.extend(loaded);
+    let exit = findings
+        .prediction
+        .standing()
+        .zip(findings.summary.first_passages().first().copied())
+        .and_then(|(edges, event)| {
+            let focus = on_race(edges.trailing_deg);
+            let exit_s = 1e-3 * event.exit_ms?;
+            let half_ms = 0.5e-3;
+            let near = |cell: &&Cell| distance(centre(cell, window), focus) < 2e-3;
+            let highest = |cells: &[Cell]| cells.iter().filter(near).map(|c| c.von_mises).fold(0.0, f64::max);
+            let about = all.iter().filter(|f| (f.0 - exit_s).abs() <= half_ms);
+            let (time_s, cells) = about.max_by(|a, b| highest(&a.1).total_cmp(&highest(&b.1)))?;
+            let title = format!("roller {} at the exit edge", event.roller);
+            Some(Moment { title, at: "the edge", time_s: *time_s, cells: cells.clone(), focus, hertz: None })
+        });
+    moments.extend(exit);
+    Ok(moments)
+}
+
+fn centre(cell: &Cell, window: &Window) -> [f64; 2] {
+    let count = cell.corners.len() as f64;
+    let sum = cell.corners.iter().fold([0.0; 2], |s, c| [s[0] + c[0], s[1] + c[1]]);
+    window.place(sum[0] / count, sum[1] / count)
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// Stress that all but a few cells stay below [Pa].
+fn end_of_scale<'a>(cells: impl Iterator<Item = &'a Cell>) -> f64 {
+    let mut stress: Vec<f64> = cells.map(|c| c.von_mises).collect();
+    stress.sort_unstable_by(f64::total_cmp);
+    let at = ((1.0 - ABOVE) * stress.len() as f64) as usize;
+    stress.get(at.min(stress.len().saturating_sub(1))).copied().unwrap_or(1.0).max(1.0)
+}
+
+/// Whether a picture of the moment shows a cell.
+fn is_near(moment: &Moment, cell: &Cell, window: &Window) -> bool {
+    let at = centre(cell, window);
+    (0..2).all(|axis| (at[axis] - moment.focus[axis]).abs() < 1.2 * HALF)
+}
+
+fn still(moments: &[Moment], window: &Window) -> Picture {
+    let (side, half, top) = (430.0, HALF, 34.0);
+    let near = |m: &Moment, c: &Cell| is_near(m, c, window);
+    let shown = moments.iter().flat_map(|m| m.cells.iter().filter(move |c| near(m, c)));
+    let end = end_of_scale(shown);
+    let mut sheet = Sheet::new(20.0 + (side + 10.0) * moments.len() as f64, side + top + 60.0);
+    for (n, moment) in moments.iter().enumerate() {
+        let left = 10.0 + (side + 10.0) * n as f64;
+        let scale = 0.5 * side / half;
+        let place = |c: &[f64; 2]| {
+            let [x, y] = window.place(c[0], c[1]);
+            [
+                left + 0.5 * side + scale * (x - moment.focus[0]),
+                top + 0.5 * side - scale * (y - moment.focus[1]),
+            ]
+        };
+        let words = format!("{:.2} ms: {}", 1e3 * moment.time_s, moment.title);
+        sheet.text([left, 22.0], 14.0, Anchor::Start, "#000", &words);
+        sheet.clipped(&format!("stress-{n}"), [left, top], [side, side], |sheet| {
+            for cell in moment.cells.iter().filter(|c| near(moment, c)) {
+                let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
+                let [r, g, b] = shade_rgb(cell.von_mises / end);
+                sheet.path(
+                    &corners,
+                    true,
+                    &format!("fill:#{r:02x}{g:02x}{b:02x};stroke:#fff;stroke-width:0.3"),
+                );
+            }
+        });
+        super::scale_bar(&mut sheet, [left + 8.0, top + side - 12.0], 1e-3, scale, "1 mm");
+    }
+    scale_of_colours(&mut sheet, [10.0, side + top + 14.0], end);
+    let mut picture = Picture::new("stress", "Stress under a roller and at the exit edge", sheet);
+    // Where each moment has its highest stress, from the point that it looks at, and what Hertz has there.
+    let mut places = Vec::new();
+    let mut hertz = String::new();
+    for m in moments {
+        let cells = m.cells.iter().filter(|c| near(m, c));
+        let Some(cell) = cells.max_by(|a, b| a.von_mises.total_cmp(&b.von_mises)) else { continue };
+        let away = distance(centre(cell, window), m.focus);
+        places.push(format!(
+            "{} at {:.2} ms, {:.2} mm from {}",
+            pascals(cell.von_mises),
+            1e3 * m.time_s,
+            1e3 * away,
+            m.at
+        ));
+        hertz.extend(m.hertz.map(|h| format!(" {}", h.beside(cell.von_mises))));
+    }
+    picture.caption = format!("The highest stress is {}.{hertz}", places.join(" and "));
+    picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this model. A penalty softer than the \
+                    material and elements wider than the contact spread the pressure; a sharp edge has as much stress as its elements resolve."
+        .into();
+    picture
+}
+
+/// A strip of the scale with its ends in words.
+fn scale_of_colours(sheet: &mut Sheet, at: [f64; 2], end: f64) {
+    for n in 0..60 {
+        let [r, g, b] = shade_rgb(f64::from(n) / 59.0);
+        let x = at[0] + 4.0 * f64::from(n);
+        let cell = [[x, at[1]], [x + 4.3, at[1]], [x + 4.3, at[1] + 12.0], [x, at[1] + 12.0]];
+        sheet.path(&cell, true, &format!("fill:#{r:02x}{g:02x}{b:02x}"));
+    }
+    sheet.text([at[0], at[1] + 27.0], 12.0, Anchor::Start, "#000", "0");
+    let words = format!("{} and more, von Mises", pascals(end));
+    sheet.text([at[0] + 246.0, at[1] + 11.0], 12.0, Anchor::Start, "#000", &words);
+}
+
+/// The first passage that frames of these times show from its entry to its exit, its roller in the window half-way.
+fn crossing<'a>(
+    record: &Record<'_>,
+    findings: &'a Findings,
+    window: &Window,
+    frames_s: RangeInclusive<f64>,
+) -> Result<Option<&'a Event>, Error> {
+    for event in &findings.summary.events {
+        let Some([entry_s, exit_s]) = event.entry_ms.zip(event.exit_ms).map(|(a, b)| [1e-3 * a, 1e-3 * b])
+        else {
+            continue;
+        };
+        if !frames_s.contains(&entry_s) || !frames_s.contains(&exit_s) {
+            continue;
+        }
+        let middle = record.time_s().partition_point(|t| *t < 0.5 * (entry_s + exit_s));
+        let part = record.with_rollers(&[event.roller], middle..middle + 1)?;
+        let roller = part.roller(event.roller);
+        let centre = roller.and_then(|roller| Some([*roller.x.first()?, *roller.y.first()?]));
+        if centre.is_some_and(|[x, y]| window.holds(x, y)) {
+            return Ok(Some(event));
+        }
+    }
+    Ok(None)
+}
+
+fn moving(
+    record: &Record<'_>,
+    findings: &Findings,
+    window: &Window,
+    all: &[(f64, Vec<Cell>)],
+) -> Result<Picture, Error> {
+    let end = end_of_scale(all.iter().flat_map(|f| &f.1));
+    let half = 0.97 * window.half;
+    let scale = 0.5 * f64::from(SIDE) / half;
+    let place = |c: &[f64; 2]| {
+        let [x, y] = window.place(c[0], c[1]);
+        [0.5 * f64::from(SIDE) + scale * x, 0.5 * f64::from(SIDE) - scale * y]
+    };
+    let (first, last) = (all[0].0, all[all.len() - 1].0);
+    let canvases: Vec<Canvas> = all
+        .iter()
+        .map(|(time, cells)| {
+            let mut canvas = Canvas::new(SIDE, SIDE);
+            for cell in cells {
+                let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
+                canvas.fill(&corners, cell.von_mises / end);
+            }
+            // Time runs along the lower edge.
+            let bar = f64::from(SIDE) * (time - first) / (last - first).max(f64::MIN_POSITIVE);
+            for row in 1..4 {
+                let y = f64::from(SIDE) - f64::from(row);
+                canvas.line([0.0, y], [bar, y]);
+            }
+            canvas
+        })
+        .collect();
+    let bytes = gif("crossing", &canvases, HUNDREDTHS)?;
+    // Paper cannot move: it gets the middle of the crossing.
+    let mut sheet = Sheet::new(f64::from(SIDE), f64::from(SIDE) + 40.0);
+    let (time, middle) = &all[all.len() / 2];
+    sheet.clipped("crossing-window", [0.0, 0.0], [f64::from(SIDE); 2], |sheet| {
+        for cell in middle {
+            let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
+            let [r, g, b] = shade_rgb(cell.von_mises / end);
+            sheet.path(&corners, true, &format!("fill:#{r:02x}{g:02x}{b:02x}"));
+        }
+    });
+    scale_of_colours(&mut sheet, [8.0, f64::from(SIDE) + 8.0], end);
+    let crossing = crossing(record, findings, window, first..=last)?;
+    let title = if crossing.is_some() { "A roller crosses the defect" } else { "Stress about the defect" };
+    let mut picture = Picture::new("crossing", title, sheet);
+    picture.dense = true;
+    picture.animation = Some(bytes);
+    picture.caption = match crossing {
+        Some(event) => format!(
+            "Roller {} unloads over the leading edge, its neighbours take its load, and it is caught again by the trailing edge; watch the \
+             stress run into the rings.",
+            event.roller
+        ),
+        None => "No roller unloads over the spall and is loaded again here while frames are kept.".to_owned(),
+    };
+    picture.note = format!(
+        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {} von Mises and more. On paper: {:.1} ms.",
+        all.len(),
+        1e3 * first,
+        1e3 * last,
+        0.01 * f64::from(HUNDREDTHS) * (all.len() - 1) as f64 / (last - first).max(f64::MIN_POSITIVE),
+        pascals(end),
+        1e3 * time
+    );
+    Ok(picture)
+}

@@ -1,0 +1,175 @@
+//! From a run directory to `report.html`, `summary.json` and figures. Nothing here simulates: the same
+//! directory gives the same bytes.
+
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, html};
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
+use stribeck_analysis::summary::Summary;
+use stribeck_scene::run_dir::{Run, write_atomic};
+use stribeck_scene::run_info::Status;
+use stribeck_scene::scene::ModelScene;
+
+use crate::figures::{self, Figures, Item};
+use crate::lead::lead;
+use crate::page::{head, json, section, sentence, write_figures};
+use crate::pictures::Pictures;
+use crate::{Error, agreement, answer, sections, tables};
+
+/// Writes the report of the run in `run_dir` into that directory and returns its numbers.
+///
+/// An interrupted or diverged run gives a report of what exists, with a banner.
+///
+/// # Errors
+/// [`Error::Run`] when the directory is not a run, its scene was changed, a file cannot be understood or the report cannot be written,
+/// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
+pub fn write(run_dir: &Path) -> Result<Summary, Error> {
+    write_between(run_dir, f64::NEG_INFINITY..f64::INFINITY)
+}
+
+/// The same of a stretch of time [s].
+///
+/// # Errors
+/// As [`write`].
+pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Error> {
+    let run = Run::read(run_dir)?;
+    run.check_scene(run_dir)?;
+    let record = Record::between(&run, time_s)?;
+    let mut findings = Findings::of(&record)?.with_crossings(&record, figures::CROSSINGS)?;
+    findings.summary.notes.splice(0..0, run.damage());
+    let pictures = Pictures::of(&record, &findings, run_dir)?;
+    findings.summary.notes.append(&mut pictures.notes.clone());
+    write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
+    let figures = Figures::of(&record, &findings, pictures)?;
+    let all: Vec<&Item> = figures.all().collect();
+    write_figures(&all, &run_dir.join("figures"))?;
+    // The scene as written, comments and all; a run without it was refused above.
+    let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
+    let page = page(&run, run_dir, &findings, &figures, &scene)?.into_string();
+    write_atomic(&run_dir.join("report.html"), page.as_bytes())?;
+    Ok(findings.summary)
+}
+
+fn page(
+    run: &Run,
+    run_dir: &Path,
+    findings: &Findings,
+    figures: &Figures,
+    scene: &str,
+) -> Result<Markup, Error> {
+    let summary = &findings.summary;
+    let family = findings.prediction.family.map_or("BPFO", |(name, _)| name);
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&summary.scene))
+            body {
+                h1 { (summary.scene) }
+                p class="lead" { (lead(&run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
+                (banner(run))
+                (answer::paragraphs(run, summary))
+                (contents(findings.of_paper, run.scene.model != ModelScene::Full, summary.duty.is_some()))
+                (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
+                @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
+                (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
+                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
+                (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary, findings.prediction.standing_spalls().next().is_some()), "No roller was recorded.")?)
+                (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
+                (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
+                h2 #artefacts { "All lines of the leading sensor" }
+                details {
+                    summary { "Each line, and what makes it" }
+                    (sections::artefacts(summary))
+                    (tables::notch(summary))
+                }
+                (agreement::of_run(&run.scene, run_dir))
+                @if findings.of_paper { (appendix(summary, figures)?) }
+                (closing(run, summary, scene))
+            }
+        }
+    })
+}
+
+fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
+    let entries = [
+        ("summary", "Summary"),
+        ("acceleration", "Acceleration"),
+        ("duty", "Speed and load"),
+        ("spectra", "Spectrum"),
+        ("forces", "Forces"),
+        ("bearing", "Load and slip"),
+        ("stress", "Mesh and stress"),
+        ("energy", "Energy"),
+        ("artefacts", "All lines"),
+        ("model", "The full model"),
+        ("numbers", "Appendix: the paper"),
+        ("notes", "Notes"),
+        ("provenance", "Provenance"),
+    ];
+    let shown = entries.into_iter().filter(|(id, _)| match *id {
+        "numbers" => of_paper,
+        "duty" => varies,
+        "model" => reduced,
+        _ => true,
+    });
+    html! { nav aria-label="Contents" { @for (id, name) in shown { a href={ "#" (id) } { (name) } } } }
+}
+
+/// The paper's numbers and the figures that only it needs, for a scene of its dimensions.
+fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
+    let drawn = figures.paper.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        h2 #numbers { "Appendix: the paper beside this run" }
+        p class="hint" {
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage \
+             pockets, damping nor the place of its sensor, so its levels are no test of this model."
+        }
+        details {
+            summary { "Each number of the paper, and ours" }
+            (sections::paper(summary))
+            (sections::readings(summary))
+        }
+        @for figure in drawn { (figure) }
+    })
+}
+
+/// Says loudly when a run did not complete.
+fn banner(run: &Run) -> Markup {
+    let what = match run.info.status {
+        Status::Complete => return html! {},
+        Status::Running => "This run is still going, or was killed.",
+        Status::Interrupted => "This run was interrupted.",
+        Status::Diverged => "This run diverged and was stopped.",
+    };
+    let why = run.info.stop_reason.as_deref().unwrap_or_default();
+    html! {
+        div class="banner" role="alert" {
+            strong { (what) } " " (why) @if !why.is_empty() { ". " } "The report shows what exists: "
+            (run.info.steps) " of " (run.info.steps_planned) " steps."
+        }
+    }
+}
+
+fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
+    html! {
+        h2 #notes { "Notes" }
+        p class="hint" {
+            "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a name in a legend hides its \
+             curve."
+        }
+        @if summary.notes.is_empty() && run.info.warnings.is_empty() { p { "None." } }
+        ul class="notes" {
+            @for note in &summary.notes { li { (sentence(note)) } }
+            @for warning in &run.info.warnings { li { "Warning of the run: " (warning) } }
+        }
+        h2 #provenance { "Provenance" }
+        (tables::provenance(&run.info, summary))
+        details {
+            summary { "The scene, with every default" }
+            pre { (scene) }
+        }
+    }
+}
