@@ -24,7 +24,6 @@ use stribeck_system::{Limits, Scale, System, Words};
 use crate::assembly::{Assembly, Machine};
 use stribeck_scene::{
     advice,
-    duty::Duty,
     geometry::Geometry,
     run_info::RunInfo,
     scene::{GuardsScene, Scene},
@@ -78,7 +77,7 @@ struct Softness {
 impl Softness {
     fn of(scene: &Scene, g: &Geometry) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
-        let [_, most] = Duty::of(scene).load_range_n(g.duration);
+        let [_, most] = scene.duty().load_range_n(g.duration);
         let load = RigidRings::new(g).distribute(most, &angles_to_load_deg(scene));
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);

@@ -47,7 +47,7 @@ impl Tacho {
     /// Of a scene.
     pub fn of(scene: &Scene) -> Self {
         let o = &scene.operation;
-        Self { duty: Duty::varying(scene), outer: o.varies() && o.outer_turns(), load: o.load_varies() }
+        Self { duty: scene.varying_duty(), outer: o.varies() && o.outer_turns(), load: o.load_varies() }
     }
 
     /// Names of its columns.

@@ -19,7 +19,6 @@ use crate::{
     time_loop::Run,
 };
 use stribeck_scene::{
-    duty::Duty,
     geometry::Geometry,
     mesh_file::REFERENCE,
     run_dir::{RunDir, write_atomic},
@@ -337,7 +336,7 @@ fn may_go_on(dir: &RunDir, scene: &Scene) -> Result<Option<String>, Error> {
 fn expected_support(scene: &Scene, machine: &Machine) -> f64 {
     let system = &machine.system;
     let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
-    let load = Duty::of(scene).mean_load_n(Geometry::of(scene).duration);
+    let load = scene.duty().mean_load_n(Geometry::of(scene).duration);
     let [_, up] = scene.load_direction();
     let held = std::iter::once(machine.outer).chain(machine.housing);
     load - up * scene.operation.gravity_m_s2 * held.map(mass).sum::<f64>()

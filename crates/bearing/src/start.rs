@@ -6,7 +6,7 @@ use crate::{
     assembly::{Machine, roller_angle},
     error::Error,
 };
-use stribeck_scene::{duty::Duty, geometry::Geometry, kinematics::Kinematics, scene::Scene};
+use stribeck_scene::{geometry::Geometry, kinematics::Kinematics, scene::Scene};
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;
@@ -50,7 +50,7 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });
     }
     let mut preload = Preload {
-        load: Some(Duty::of(scene).load_n(0.0).max(1.0)),
+        load: Some(scene.duty().load_n(0.0).max(1.0)),
         undecided,
         acceleration: rolling_acceleration(machine, k),
         ..Preload::default()
@@ -64,7 +64,7 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
         format!(
             "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a little. A softer \
              `contact.penalty_scale` converges better",
-            force / Duty::of(scene).load_n(0.0)
+            force / scene.duty().load_n(0.0)
         )
     }))
 }

@@ -252,7 +252,7 @@ impl Bearing {
             gravity: g.gravity,
             outer_turns: scene.operation.outer_turns(),
             kinematics,
-            duty: Duty::varying(scene),
+            duty: scene.varying_duty(),
             tacho: Tacho::of(scene),
             cage: cage.flatten(),
             polygon: Polygon::new(rims[0].outline.len(), rims[0].top),

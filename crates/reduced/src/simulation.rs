@@ -9,7 +9,6 @@ use stribeck_bearing::{
     time_loop::Run,
 };
 use stribeck_scene::{
-    duty::Duty,
     geometry::Geometry,
     run_dir::{RunDir, write_atomic},
     run_info::{ReducedInfo, RunInfo},
@@ -50,7 +49,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     };
     let assembly = Assembly::of(scene, &reduction.parts)?;
     let [_, up] = scene.load_direction();
-    let expected = Duty::of(scene).mean_load_n(Geometry::of(scene).duration)
+    let expected = scene.duty().mean_load_n(Geometry::of(scene).duration)
         - up * scene.operation.gravity_m_s2 * reduction.structure_mass;
     let (bearing, steps) = in_steps(scene, reduced, reduction)?;
     let (step, most) = (bearing.time_step, bearing.critical_time_step());

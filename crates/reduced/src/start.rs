@@ -55,7 +55,7 @@ impl Bearing {
     fn equilibrium(&self, scene: &Scene, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
         let k = &self.kinematics;
-        let at_start = Duty::of(scene).load_n(0.0);
+        let at_start = scene.duty().load_n(0.0);
         let load = at_start.max(1.0);
         let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
         let [mass, _] = self.reduction.roller_inertia;

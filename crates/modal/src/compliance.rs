@@ -1,5 +1,4 @@
-//! What bodies give way beside a contact, beyond penalty and modes: a small static contact problem at several loads, and the
-//! curve that it leaves (THEORY §9.3).
+//! How much bodies give way beside a contact, beyond penalty and modes, as a curve over the force (THEORY §9.3).
 
 use serde::{Deserialize, Serialize};
 
@@ -81,7 +80,7 @@ impl Compliance {
 }
 
 /// Length 2a [m] of a round contact with the relative radius R [m] under a load F [N] on a penalty k t [N/m²]: F = ⅔ k t a³/R.
-pub(crate) fn contact_length(load: f64, penalty: f64, radius: f64) -> f64 {
+pub fn contact_length(load: f64, penalty: f64, radius: f64) -> f64 {
     2.0 * (1.5 * load * radius / penalty).cbrt()
 }
 
@@ -140,132 +139,6 @@ impl Curve {
         let g = first + slope * (y - self.spacing * piece as f64);
         [force * g, g + 0.5 * y * slope]
     }
-}
-
-/// Two surfaces that are pressed together at a place: what each gives way at its nodes.
-#[derive(Debug, Clone)]
-pub struct Pressed<'a> {
-    /// Distance of the nodes of raceway and roller [m].
-    pub spacing: [f64; 2],
-    /// Displacement of node i by a unit force at node j [m/N], square, by rows; the middle one is under the contact.
-    pub flexibility: [&'a [Vec<f64>]; 2],
-    /// Relative radius of curvature [m].
-    pub radius: f64,
-    /// Penalty stiffness times thickness [N/m²].
-    pub penalty: f64,
-}
-
-/// The sag of the surfaces at a point [m], and its shares of two nodes of each.
-type Point = (f64, [[(usize, f64); 2]; 2]);
-
-/// Integration points on a facet, or on half the contact where that is shorter.
-const POINTS: usize = 16;
-
-impl Pressed<'_> {
-    /// Force [N] at the approach `delta` [m], with the middle nodes off the contact's middle by these shares of a facet.
-    pub fn force(&self, delta: f64, phase: [f64; 2]) -> f64 {
-        let n = self.flexibility.map(<[_]>::len);
-        let touching = (2.0 * self.radius * delta).sqrt();
-        let step = (self.spacing[0].min(self.spacing[1]).min(touching)) / POINTS as f64;
-        let half = touching + step;
-        let points = (2.0 * half / step).ceil() as usize;
-        // Nodes and shares of each point on both surfaces.
-        let share = |body: usize, x: f64| {
-            let at = x / self.spacing[body] - phase[body] + (n[body] / 2) as f64;
-            let i = (at.floor().max(0.0) as usize).min(n[body].saturating_sub(2));
-            let t = (at - i as f64).clamp(0.0, 1.0);
-            [(i, 1.0 - t), (i + 1, t)]
-        };
-        let all: Vec<Point> = (0..points)
-            .map(|i| (i as f64 + 0.5) * step - half)
-            .map(|x| (x * x / (2.0 * self.radius), [share(0, x), share(1, x)]))
-            .collect();
-        let weight = self.penalty * step;
-        let total = n[0] + n[1];
-        // Nodal forces f; the surfaces give way by A f, and f follows from the gaps: Newton on f.
-        let mut f = vec![0.0; total];
-        let mut result = 0.0;
-        for _ in 0..60 {
-            let mut gives = vec![0.0; total];
-            for (body, first) in [(0, 0), (1, n[0])] {
-                for i in 0..n[body] {
-                    gives[first + i] =
-                        (0..n[body]).map(|j| self.flexibility[body][i][j] * f[first + j]).sum();
-                }
-            }
-            let mut load = vec![0.0; total];
-            let mut tangent = vec![vec![0.0; total]; total];
-            result = 0.0;
-            for (sag, shares) in &all {
-                let places = [
-                    (shares[0][0].0, shares[0][0].1),
-                    (shares[0][1].0, shares[0][1].1),
-                    (n[0] + shares[1][0].0, shares[1][0].1),
-                    (n[0] + shares[1][1].0, shares[1][1].1),
-                ];
-                let given: f64 = places.iter().map(|&(i, s)| s * gives[i]).sum();
-                let depth = delta - sag - given;
-                if depth <= 0.0 {
-                    continue;
-                }
-                result += weight * depth;
-                for &(i, s) in &places {
-                    load[i] += weight * s * depth;
-                    for &(j, r) in &places {
-                        tangent[i][j] += weight * s * r;
-                    }
-                }
-            }
-            // load(f) − f = 0 with d load = −T A df: (1 + T A) df = load − f.
-            let mut matrix = vec![vec![0.0; total + 1]; total];
-            let mut worst = 0.0_f64;
-            for i in 0..total {
-                for (body, first) in [(0, 0), (1, n[0])] {
-                    for j in 0..n[body] {
-                        matrix[i][first + j] =
-                            (0..n[body]).map(|k| tangent[i][first + k] * self.flexibility[body][k][j]).sum();
-                    }
-                }
-                matrix[i][i] += 1.0;
-                matrix[i][total] = load[i] - f[i];
-                worst = worst.max(matrix[i][total].abs());
-            }
-            if worst <= 1e-10 * result.max(1e-9) {
-                break;
-            }
-            let df = eliminate(matrix);
-            f.iter_mut().zip(df).for_each(|(f, df)| *f += df);
-        }
-        result
-    }
-
-    /// Approach of rigid surfaces on the penalty alone at a force [m]: q = k ∫(δ − x²/2R) dx = (4/3) k δ √(2Rδ).
-    pub fn rigid(&self, force: f64) -> f64 {
-        (0.75 * force / (self.penalty * (2.0 * self.radius).sqrt())).powf(2.0 / 3.0)
-    }
-}
-
-/// Gauss' elimination with pivots; the last column is the right-hand side.
-fn eliminate(mut a: Vec<Vec<f64>>) -> Vec<f64> {
-    let n = a.len();
-    for c in 0..n {
-        let pivot = (c..n).max_by(|&i, &j| a[i][c].abs().total_cmp(&a[j][c].abs())).unwrap_or(c);
-        a.swap(c, pivot);
-        let (above, below) = a.split_at_mut(c + 1);
-        let row = &above[c];
-        for other in below {
-            let factor = other[c] / row[c];
-            if factor != 0.0 {
-                other[c..].iter_mut().zip(&row[c..]).for_each(|(o, r)| *o -= factor * r);
-            }
-        }
-    }
-    let mut x = vec![0.0; n];
-    for i in (0..n).rev() {
-        let known: f64 = (i + 1..n).map(|j| a[i][j] * x[j]).sum();
-        x[i] = (a[i][n] - known) / a[i][i];
-    }
-    x
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
-//! Reductions that earlier runs made, beside their folders: one serves every start, speed and duration of the same mesh under the
+//! Reduced meshes of earlier runs, kept beside their folders: one serves every start, speed and duration of the same mesh under the
 //! same load.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
-    duty::{Duty, LONGEST_RUN_S},
+    duty::LONGEST_RUN_S,
     run_dir::write_atomic,
     scene::{
         CageScene, ContactFormula, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene,
@@ -13,16 +13,16 @@ use stribeck_scene::{
     },
 };
 
-use crate::{error::Error, reduction::Reduction};
+use crate::{error::Error, reduce::ReducedMesh, structure::modes_khz};
 
 /// Folder of the reductions, in the parent of a run's folder.
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced vC\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced vD\n";
 
-/// The scene that a reduction of `scene` is made from: what matters neither to mesh nor to preload has its default. Rollers
-/// stand in the middle between their places, so that none is in the first groove.
+/// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have their defaults. Rollers
+/// are half a spacing from their places, so that none is in the first groove.
 pub fn reference(scene: &Scene) -> Scene {
     let ContactScene {
         method,
@@ -48,7 +48,7 @@ pub fn reference(scene: &Scene) -> Scene {
     Scene {
         name: "reduction".to_owned(),
         model: ModelScene::Reduced(ReducedScene {
-            modes_khz: Reduction::khz(scene),
+            modes_khz: modes_khz(scene),
             ..ReducedScene::default()
         }),
         bearing,
@@ -82,9 +82,9 @@ pub fn reference(scene: &Scene) -> Scene {
     }
 }
 
-/// At rest, half-way between the least and the largest load of a profile: what is linear about the preload is then nearest to all of
-/// them. What the speed adds, a few newtons by which idle rollers press outwards, is in the equilibrium that a run starts from, so that
-/// one reduction serves all speeds.
+/// At rest, half-way between the least and the largest load of a profile: linearised there, the reduction errs least over all of them.
+/// The speed adds a few newtons by which idle rollers press outwards; they are in the equilibrium that a run starts from, so that one
+/// reduction serves all speeds.
 fn between(scene: &Scene) -> OperationScene {
     let fields = OperationScene {
         speed_rpm: 0.0,
@@ -95,45 +95,45 @@ fn between(scene: &Scene) -> OperationScene {
         rotating_load: None,
         ..scene.operation.clone()
     };
-    let Some(duty) = Duty::varying(scene) else { return fields };
+    let Some(duty) = scene.varying_duty() else { return fields };
     let [least, most] = duty.load_range_n(LONGEST_RUN_S);
     OperationScene { load_n: 0.5 * (least + most), ..fields }
 }
 
-/// The reduction of a scene, and whether it was there already. `runs` is where the folder of the run lies. Of several that ask for the
-/// same one at once, the first makes it and the others wait.
+/// The reduced mesh of a scene, and whether it was cached. `runs` is the parent of the run's folder. Of several processes that ask for
+/// the same one at once, the first makes it and the others wait.
 ///
 /// # Errors
-/// When it cannot be made. One that cannot be kept is made again next time.
-pub fn reduction(scene: &Scene, runs: Option<&Path>) -> Result<(Reduction, bool), Error> {
+/// When it cannot be made. One that cannot be cached is made again next time.
+pub fn reduced_mesh(scene: &Scene, runs: Option<&Path>) -> Result<(ReducedMesh, bool), Error> {
     let reference = reference(scene);
     let Some(file) = runs.map(|runs| file(runs, &reference.hash())) else {
-        return Ok((Reduction::new(&reference)?, false));
+        return Ok((ReducedMesh::new(&reference)?, false));
     };
     if let Some(found) = read(&file) {
         return Ok((found, true));
     }
-    // What cannot be kept or locked costs time, no result.
+    // Without a cache or a lock it takes longer; the result is the same.
     let _ = fs::create_dir_all(file.parent().unwrap_or(&file));
     let lock = file.with_extension("lock");
-    let held = hold(&lock);
-    if let Some(found) = held.as_ref().and_then(|_| read(&file)) {
+    let locked = acquire(&lock);
+    if let Some(found) = locked.as_ref().and_then(|_| read(&file)) {
         return Ok((found, true));
     }
-    let made = Reduction::new(&reference);
+    let made = ReducedMesh::new(&reference);
     if let Some(bytes) = made.as_ref().ok().and_then(|made| postcard::to_extend(made, MAGIC.to_vec()).ok()) {
         let checksum = crc32fast::hash(&bytes[MAGIC.len()..]);
         let _ = write_atomic(&file, &[bytes, checksum.to_le_bytes().to_vec()].concat());
     }
-    if held.is_some() {
-        // Who waits for it holds it all the same, and finds what has been made.
+    if locked.is_some() {
+        // Waiting processes still acquire the lock, and find the file.
         let _ = fs::remove_file(lock);
     }
     Ok((made?, false))
 }
 
-/// Holds a file by its lock, which ends with the process, until it is dropped.
-fn hold(lock: &Path) -> Option<fs::File> {
+/// Locks a file until the returned handle is dropped or the process ends.
+fn acquire(lock: &Path) -> Option<fs::File> {
     let file = fs::File::create(lock).ok()?;
     file.lock().ok()?;
     Some(file)
@@ -143,8 +143,8 @@ fn file(runs: &Path, hash: &str) -> PathBuf {
     runs.join(FOLDER).join(format!("{hash}.modes"))
 }
 
-/// What the file holds, if it is whole.
-fn read(file: &Path) -> Option<Reduction> {
+/// Content of the file, if it is complete.
+fn read(file: &Path) -> Option<ReducedMesh> {
     let bytes = fs::read(file).ok()?;
     let (content, checksum) = bytes.strip_prefix(MAGIC)?.split_last_chunk()?;
     if crc32fast::hash(content) != u32::from_le_bytes(*checksum) {

@@ -1,10 +1,28 @@
-//! Outer ring and housing as a reduction sees them: in natural modes, or as one piece (THEORY §9.1).
+//! Outer ring and housing: in natural modes with their residual flexibility, or as one piece (THEORY §9.1).
 
 use faer::{Accum, Mat, MatMut, MatRef, Par, linalg::matmul::matmul};
+use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
 use stribeck_solver::{
+    Dynamics,
     state::NodeForces,
-    statics::{Modes, SmallMotions, Spring},
+    statics::{Modes, SmallMotions, Spring, modes_below},
 };
+
+use crate::{
+    error::Error,
+    extraction::{Extraction, Preload},
+};
+
+/// Shift of the factorised matrix K + σM [rad²/s²]: (2π · 200 Hz)², far above rounding and far below the lowest mode that bends.
+pub(crate) const SHIFT: f64 = 1.6e6;
+
+/// Frequency below which a scene keeps modes [kHz].
+pub(crate) fn modes_khz(scene: &Scene) -> f64 {
+    match &scene.model {
+        ModelScene::Reduced(reduced) => reduced.modes_khz,
+        ModelScene::Full => ReducedScene::default().modes_khz,
+    }
+}
 
 /// Outer ring and housing, and how they move.
 pub(crate) enum Structure {
@@ -15,6 +33,23 @@ pub(crate) enum Structure {
 }
 
 impl Structure {
+    /// The modes of outer ring and housing on the springs of a preload.
+    pub(crate) fn of(
+        scene: &Scene,
+        extraction: &Extraction,
+        preload: &Preload,
+        dynamics: &Dynamics,
+    ) -> Result<Self, Error> {
+        let slots = extraction.slots(&extraction.nodes.structure);
+        if scene.housing.is_rigid() {
+            return Ok(Self::Rigid { root_mass: extraction.structure_mass.sqrt(), slots });
+        }
+        let springs = [&preload.seat[..], &preload.suspension].concat();
+        let mut motions = SmallMotions::new(dynamics, &slots, &springs, SHIFT)?;
+        let modes = modes_below(&mut motions, 1e3 * modes_khz(scene))?;
+        Ok(Self::Elastic { motions: Box::new(motions), modes, slots })
+    }
+
     /// ω² of each mode [rad²/s²].
     pub(crate) fn squares(&self) -> &[f64] {
         match self {
@@ -23,7 +58,7 @@ impl Structure {
         }
     }
 
-    /// Takes sums of the modes for modes: `turned` has those of the new ones in its columns, `squares` their ω².
+    /// Replaces the modes by linear combinations of them: those of each new mode are a column of `turned`, `squares` are their ω².
     pub(crate) fn turn(&mut self, turned: MatRef<'_, f64>, squares: Vec<f64>) {
         let Self::Elastic { modes, .. } = self else { return };
         let n = modes.shapes.first().map_or(0, Vec::len);
@@ -51,7 +86,7 @@ impl Structure {
         shape
     }
 
-    /// What forces by slot do to each mode [N/√kg].
+    /// Generalised forces of forces by slot on each mode [N/√kg].
     pub(crate) fn generalised(&self, force: &NodeForces, padded: usize) -> Vec<f64> {
         let mut sums = vec![0.0; padded];
         match self {
@@ -71,8 +106,7 @@ impl Structure {
         sums
     }
 
-    /// What springs of a direction in every slot do to each mode, a unit of stretch, and what a unit of each mode stretches them by
-    /// [1/√kg].
+    /// Stretch of a spring by a unit of each mode [1/√kg], which is also the generalised force of a unit tension.
     pub(crate) fn stretch(&self, spring: &Spring, padded: usize) -> Vec<f64> {
         let mut stretch = vec![0.0; padded];
         for (&slot, along) in spring.slots.iter().zip(spring.direction.chunks_exact(2)) {
@@ -83,7 +117,7 @@ impl Structure {
         stretch
     }
 
-    /// Displacements of slots `at` [m] by each of some forces, beyond the modes.
+    /// Residual displacements, beyond the modes, of slots `at` [m] by each of some forces.
     pub(crate) fn residuals(&mut self, forces: &[NodeForces], at: &[u32]) -> Vec<Vec<[f64; 2]>> {
         let Self::Elastic { motions, modes, slots } = self else {
             return vec![vec![[0.0; 2]; at.len()]; forces.len()];
@@ -96,7 +130,7 @@ impl Structure {
         each_response(motions, Some(modes), &fields, &seen)
     }
 
-    /// As [`flexibility`], beyond the modes.
+    /// Residual flexibility, beyond the modes: see [`flexibility`].
     pub(crate) fn flexibility(
         &mut self,
         nodes: &[u32],
@@ -125,8 +159,8 @@ fn field(motions: &SmallMotions, slots: &[u32], force: &NodeForces) -> Vec<f64> 
     field
 }
 
-/// What is `seen` of the displacements by each of some fields of forces; with modes, of those that the modes do not hold,
-/// (K + σM)⁻¹ (1 − MΦΦᵀ) f. Eight fields at a time, because modes and factor are larger than what a cache holds.
+/// Applies `seen` to the displacements by each of some fields of forces; with modes, to the residual ones, (K + σM)⁻¹ (1 − MΦΦᵀ) f.
+/// Eight fields at a time, because modes and factor are larger than a cache.
 fn each_response<T>(
     motions: &mut SmallMotions,
     modes: Option<&Modes>,
@@ -206,8 +240,6 @@ mod tests {
 
     use super::*;
 
-    /// (2π · 200 Hz)², as reductions take it.
-    const SHIFT: f64 = 1.6e6;
     const FACETS: usize = 96;
 
     /// The paper's outer ring, free, and the slots of its nodes.
@@ -240,8 +272,8 @@ mod tests {
         *slots.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
     }
 
-    /// Two opposite forces from within on a free ring: what modes and what lies beyond them give under one of them is the
-    /// deflection of all elements, however few modes there are, and the more there are the less lies beyond.
+    /// Two opposite forces from within on a free ring: modal plus residual displacement under one of them equals the full static one,
+    /// however few modes there are, and the residual falls with their number.
     #[test]
     fn converges_a_static_deflection_is_that_of_all_elements() {
         const TOLERANCE: f64 = 1e-3;
@@ -280,7 +312,7 @@ mod tests {
             let mut structure = Structure::Elastic { motions: Box::new(motions), modes, slots };
             let beyond = structure.residuals(std::slice::from_ref(&force), &[right])[0][0][0];
             compare(
-                &format!("ring under two forces, deflection by modes below {khz} kHz and what lies beyond"),
+                &format!("ring under two forces, deflection by modes below {khz} kHz and residual"),
                 "all elements: K u = f, own",
                 "m",
                 by_modes + beyond,

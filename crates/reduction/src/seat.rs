@@ -1,19 +1,15 @@
-//! The seat of the outer ring in its housing: where it holds, opens and slips (THEORY §9.1).
+//! The panels of the seat of the outer ring in its housing (THEORY §9.1).
 //!
-//! The seat is divided into panels, each with a spring across it, which cannot pull, and one along it, which friction holds. Tensions of
-//! all springs follow from the modes, and from how far panels have opened and slipped.
-
-mod hold;
+//! Each panel has a normal spring, which cannot pull, and a tangential one, which friction holds. Tensions of all springs follow from the
+//! modes and from how far panels have opened and slipped.
 
 use faer::{Mat, Side, linalg::solvers::Solve};
-use serde::{Deserialize, Serialize};
-use stribeck_simd::lanes::LANES;
+use stribeck_modal::{GROUP, STICKING, Seat};
 use stribeck_solver::{state::NodeForces, statics::Spring};
 
-pub use self::hold::Hold;
-pub(crate) use self::hold::{Answers, Springs};
 use crate::{
     error::Error,
+    raceway::RacewayNode,
     structure::{Structure, product},
 };
 
@@ -21,49 +17,19 @@ use crate::{
 const PANELS: [f64; 2] = [8.0, 31.0];
 const WIDTH: f64 = 0.7;
 
-/// Tangential over normal stiffness of contact, as in the full model (THEORY §4.3).
-pub(crate) const STICKING: f64 = 0.8;
-
-/// The seat as a reduction has it. Springs are across all panels, then along them, each filled up with zeros to whole groups.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Seat {
-    /// Panels.
-    pub panels: usize,
-    /// The same, filled up to whole groups.
-    pub padded: usize,
-    /// Force that presses each panel at the preload [N].
-    pub pressed: Vec<f64>,
-    /// Stiffness across each panel [N/m].
-    pub across: Vec<f64>,
-    /// Tension of each spring by a unit of every mode when nothing opens or slips [N/(√kg m)], mode by mode.
-    pub tension: Vec<f64>,
-    /// Tension of each spring beyond the modes by a unit force towards the outside at each vertex of the raceway, vertex by vertex.
-    pub by_rollers: Vec<f64>,
-    /// The same by the rollers of the preload [N].
-    pub at_preload: Vec<f64>,
-    /// Loss of tension of each spring by a unit that another opens or slips [N/m], spring by spring.
-    pub stiffness: Vec<f64>,
-    /// Force on the ring by a unit tension of each spring.
-    pub on_ring: Vec<[f64; 2]>,
-    /// What of each mode's displacement of the raceway to the outside the tensions along the seat take back [1/√kg], vertex by vertex.
-    pub taken_back: Vec<f64>,
-    /// Displacement of each sensor beyond the modes by a unit tension of each spring [m/N]; across the seat, of tension that is missing.
-    pub heard: Vec<Vec<[f64; 2]>>,
-}
-
-/// What the seat is made of, while the mesh is still there.
+/// The seat in the mesh.
 pub(crate) struct Parts<'a> {
-    /// Springs across the seat, one for each contact point that carries.
+    /// Normal springs, one for each contact point that carries.
     pub(crate) springs: &'a [Spring],
-    /// Whether there is friction along it.
+    /// Whether there is friction.
     pub(crate) friction: bool,
     /// Places by slot [m].
     pub(crate) x: &'a [f64],
     pub(crate) y: &'a [f64],
     /// Slots of the ring's back, with the force of the seat on each at the preload [N].
     pub(crate) back: &'a [(u32, [f64; 2])],
-    /// Slots of the raceway, the direction to the outside at each, and the force of the rollers on it at the preload along that [N].
-    pub(crate) raceway: &'a [(u32, [f64; 2], f64)],
+    /// Nodes of the raceway.
+    pub(crate) raceway: &'a [RacewayNode],
     /// Slots of the sensors.
     pub(crate) sensors: &'a [u32],
     /// Whether a slot is one of the ring.
@@ -72,45 +38,102 @@ pub(crate) struct Parts<'a> {
     pub(crate) thickness: f64,
 }
 
-/// What bodies do whose seat slides: stretches of its springs, across, then along.
+/// Stretches of the springs of a seat that slides freely: normal springs, then tangential ones.
 struct Responses {
     /// By a unit of each mode [1/√kg].
     by_modes: Mat<f64>,
-    /// By a unit tension of each spring, beyond the modes [m/N].
+    /// Residual, by a unit tension of each spring [m/N].
     flexibility: Mat<f64>,
-    /// By a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
+    /// Residual, by a unit force towards the outside at each vertex of the raceway [m/N].
     by_rollers: Mat<f64>,
     /// Force on the ring by a unit tension of each spring.
     on_ring: Vec<[f64; 2]>,
-    /// Displacement of each sensor by the same, beyond the modes [m/N].
-    heard: Vec<Vec<[f64; 2]>>,
+    /// Residual displacement of each sensor by the same [m/N].
+    at_sensors: Vec<Vec<[f64; 2]>>,
 }
 
-/// Springs of the panels and what they do, before friction holds any.
+/// Springs of the panels.
 struct Panels {
     count: usize,
     padded: usize,
-    /// Across, then along: the springs of a panel and their stiffness [N/m].
+    /// Normal, then tangential: the springs of a panel and their stiffness [N/m].
     members: Vec<Vec<Spring>>,
     stiffness: Vec<f64>,
     pressed: Vec<f64>,
 }
 
-impl Seat {
-    /// Divides the seat into panels, and turns the modes of a structure whose seat slides into those of one whose seat holds. `None`
-    /// where there is no seat.
-    ///
-    /// # Errors
-    /// When the modes of the held seat are not found.
-    pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<Self>, Error> {
-        let Some(panels) = Panels::of(parts) else { return Ok(None) };
-        let (p, stiffness) = (panels.padded, &panels.stiffness);
-        let Responses { by_modes, flexibility, by_rollers, on_ring, heard } =
-            Responses::of(structure, parts, &panels);
-        let (modes, vertices) = (by_modes.ncols(), parts.raceway.len());
+/// What tangential springs hold: A τ = stretch − slip, with A their own flexibility and that of the bodies (9.1b).
+struct Tangential {
+    /// A⁻¹ [N/m].
+    inverse: Mat<f64>,
+    /// Stretches by a unit of each mode [1/√kg].
+    slides: Mat<f64>,
+    /// Change of each normal tension by a unit of each tangential one.
+    coupling: Mat<f64>,
+    /// Tensions by a unit of each mode, and by a unit force at each vertex of the raceway.
+    held: Mat<f64>,
+    held_by_rollers: Mat<f64>,
+}
 
-        // Tensions along the seat hold it: A τ = stretch − slip, A their own flexibility and that of the bodies (9.1b).
-        let along = |i: usize| p + i;
+/// Divides the seat into panels, and turns the modes of a structure whose seat slides into those of one whose seat holds. `None`
+/// where there is no seat.
+///
+/// # Errors
+/// When the modes of the held seat are not found.
+pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<Seat>, Error> {
+    let Some(panels) = Panels::of(parts) else { return Ok(None) };
+    let responses = Responses::of(structure, parts, &panels);
+    let tangential = Tangential::of(&panels, &responses);
+    let by_rollers = tangential.by_rollers(&panels, &responses);
+    let forces = Mat::from_fn(parts.raceway.len(), 1, |vertex, _| parts.raceway[vertex].force);
+    let at_preload = product(by_rollers.as_ref(), forces.as_ref());
+    let taken_back = product(tangential.held_by_rollers.transpose(), tangential.slides.as_ref());
+    let loss = tangential.loss(&panels, &responses);
+    let turned = tangential.modes(structure)?;
+    let tension = product(tangential.tension(&panels, &responses).as_ref(), turned.as_ref());
+    let taken_back = product(turned.transpose(), taken_back.transpose());
+    Ok(Some(Seat {
+        panels: panels.count,
+        padded: panels.padded,
+        pressed: panels.pressed,
+        across: panels.stiffness[..panels.padded].to_vec(),
+        tension: listed(&tension),
+        by_rollers: listed(&by_rollers),
+        at_preload: listed(&at_preload),
+        stiffness: listed(&loss),
+        on_ring: responses.on_ring,
+        taken_back: listed(&taken_back),
+        at_sensors: responses.at_sensors,
+        flexibility: Vec::new(),
+    }))
+}
+
+/// Displacement of the raceway at each vertex under a unit force there [m/N], beyond the modes, if all springs let go.
+pub(crate) fn flexibility(seat: &Seat) -> Vec<f64> {
+    let n = 2 * seat.padded;
+    let gives: Vec<usize> = (0..n).filter(|at| seat.stiffness[at * n + at] > 0.0).collect();
+    let of = |i: usize, j: usize| seat.stiffness[gives[i] * n + gives[j]];
+    let vertices = seat.by_rollers.len() / n;
+    if gives.is_empty() {
+        return vec![0.0; vertices];
+    }
+    let stiffness = Mat::from_fn(gives.len(), gives.len(), of);
+    let pulled = Mat::from_fn(gives.len(), vertices, |i, vertex| seat.by_rollers[vertex * n + gives[i]]);
+    let given = stiffness.partial_piv_lu().solve(&pulled);
+    let under = |at: usize| (0..gives.len()).map(|i| pulled[(i, at)] * given[(i, at)]).sum();
+    (0..vertices).map(under).collect()
+}
+
+/// Columns one after the other.
+fn listed(of: &Mat<f64>) -> Vec<f64> {
+    (0..of.ncols()).flat_map(|j| (0..of.nrows()).map(move |i| of[(i, j)])).collect()
+}
+
+impl Tangential {
+    fn of(panels: &Panels, responses: &Responses) -> Self {
+        let Panels { padded: p, stiffness, .. } = panels;
+        let Responses { by_modes, flexibility, by_rollers, .. } = responses;
+        let (p, along) = (*p, |i: usize| p + i);
         let own = Mat::from_fn(p, p, |i, j| {
             let spring = match (i == j, stiffness[along(i)]) {
                 (false, _) => 0.0,
@@ -123,89 +146,78 @@ impl Seat {
         let inverse = own.partial_piv_lu().solve(Mat::<f64>::identity(p, p));
         let inverse =
             Mat::from_fn(p, p, |i, j| holds(i) * holds(j) * 0.5 * (inverse[(i, j)] + inverse[(j, i)]));
-        let slides = Mat::from_fn(p, modes, |i, mode| by_modes[(along(i), mode)]);
-        let coupling = Mat::from_fn(p, p, |i, j| stiffness[i] * flexibility[(i, along(j))]);
-        let held = product(inverse.as_ref(), slides.as_ref());
-        let held_by_rollers = product(inverse.as_ref(), by_rollers.get(p.., ..));
-        let lifted_by_rollers = product(coupling.as_ref(), held_by_rollers.as_ref());
-        let taken_back = product(held_by_rollers.transpose(), slides.as_ref());
-        let by_rollers = Mat::from_fn(2 * p, vertices, |i, vertex| {
-            if i < p {
-                stiffness[i] * by_rollers[(i, vertex)] - lifted_by_rollers[(i, vertex)]
+        let slides = Mat::from_fn(p, by_modes.ncols(), |i, mode| by_modes[(along(i), mode)]);
+        Self {
+            coupling: Mat::from_fn(p, p, |i, j| stiffness[i] * flexibility[(i, along(j))]),
+            held: product(inverse.as_ref(), slides.as_ref()),
+            held_by_rollers: product(inverse.as_ref(), by_rollers.get(p.., ..)),
+            inverse,
+            slides,
+        }
+    }
+
+    /// Tension of each spring by a unit force at each vertex of the raceway.
+    fn by_rollers(&self, panels: &Panels, responses: &Responses) -> Mat<f64> {
+        let Panels { padded: p, stiffness, .. } = panels;
+        let by_rollers = &responses.by_rollers;
+        let lifted = product(self.coupling.as_ref(), self.held_by_rollers.as_ref());
+        Mat::from_fn(2 * p, by_rollers.ncols(), |i, vertex| {
+            if i < *p {
+                stiffness[i] * by_rollers[(i, vertex)] - lifted[(i, vertex)]
             } else {
-                held_by_rollers[(i - p, vertex)]
+                self.held_by_rollers[(i - p, vertex)]
             }
-        });
-        let forces = Mat::from_fn(vertices, 1, |vertex, _| parts.raceway[vertex].2);
-        let at_preload = product(by_rollers.as_ref(), forces.as_ref());
-        let crossed = product(coupling.as_ref(), inverse.as_ref());
-        let opened = product(crossed.as_ref(), coupling.transpose());
-        let lifted = product(coupling.as_ref(), held.as_ref());
-        let loss = Mat::from_fn(2 * p, 2 * p, |i, j| match (i < p, j < p) {
+        })
+    }
+
+    /// Tension of each spring by a unit of each mode of the sliding seat.
+    fn tension(&self, panels: &Panels, responses: &Responses) -> Mat<f64> {
+        let Panels { padded: p, stiffness, .. } = panels;
+        let by_modes = &responses.by_modes;
+        let lifted = product(self.coupling.as_ref(), self.held.as_ref());
+        Mat::from_fn(2 * p, by_modes.ncols(), |i, mode| {
+            if i < *p {
+                stiffness[i] * by_modes[(i, mode)] - lifted[(i, mode)]
+            } else {
+                self.held[(i - p, mode)]
+            }
+        })
+    }
+
+    /// Loss of tension of each spring by a unit opening or slip of another [N/m].
+    fn loss(&self, panels: &Panels, responses: &Responses) -> Mat<f64> {
+        let Panels { padded: p, stiffness, .. } = panels;
+        let (p, flexibility) = (*p, &responses.flexibility);
+        let crossed = product(self.coupling.as_ref(), self.inverse.as_ref());
+        let opened = product(crossed.as_ref(), self.coupling.transpose());
+        Mat::from_fn(2 * p, 2 * p, |i, j| match (i < p, j < p) {
             (true, true) => {
                 let spring = if i == j { stiffness[i] } else { 0.0 };
                 spring - stiffness[i] * flexibility[(i, j)] * stiffness[j] + opened[(i, j)]
             }
             (true, false) => -crossed[(i, j - p)],
             (false, true) => -crossed[(j, i - p)],
-            (false, false) => inverse[(i - p, j - p)],
-        });
+            (false, false) => self.inverse[(i - p, j - p)],
+        })
+    }
 
-        // The modes of what holds, made of those of what slides.
+    /// Turns the modes of the structure into those of a seat that holds; returns them as combinations of the old ones, in columns.
+    fn modes(&self, structure: &mut Structure) -> Result<Mat<f64>, Error> {
         let squares = structure.squares();
-        let stiffer = product(slides.transpose(), held.as_ref());
+        let modes = squares.len();
+        let stiffer = product(self.slides.transpose(), self.held.as_ref());
         let matrix =
             Mat::from_fn(modes, modes, |i, j| stiffer[(i, j)] + if i == j { squares[i] } else { 0.0 });
         let eigen = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Error::NoModes)?;
         let squares: Vec<f64> = (0..modes).map(|i| eigen.S()[i].max(0.0)).collect();
         structure.turn(eigen.U(), squares);
-        let tension = Mat::from_fn(2 * p, modes, |i, mode| {
-            if i < p { stiffness[i] * by_modes[(i, mode)] - lifted[(i, mode)] } else { held[(i - p, mode)] }
-        });
-        let tension = product(tension.as_ref(), eigen.U());
-        let taken_back = product(eigen.U().transpose(), taken_back.transpose());
-        let listed = |of: &Mat<f64>| -> Vec<f64> {
-            (0..of.ncols()).flat_map(|j| (0..of.nrows()).map(move |i| of[(i, j)])).collect()
-        };
-        Ok(Some(Self {
-            panels: panels.count,
-            padded: p,
-            pressed: panels.pressed,
-            across: panels.stiffness[..p].to_vec(),
-            tension: listed(&tension),
-            by_rollers: listed(&by_rollers),
-            at_preload: listed(&at_preload),
-            stiffness: listed(&loss),
-            on_ring,
-            taken_back: listed(&taken_back),
-            heard,
-        }))
-    }
-}
-
-impl Seat {
-    /// Displacement of the raceway at each vertex under a unit force there [m/N], beyond the modes, if the springs from `first` on give
-    /// way: all of them, or those along the seat.
-    pub(crate) fn give(&self, first: usize) -> Vec<f64> {
-        let n = 2 * self.padded;
-        let gives: Vec<usize> = (first..n).filter(|at| self.stiffness[at * n + at] > 0.0).collect();
-        let of = |i: usize, j: usize| self.stiffness[gives[i] * n + gives[j]];
-        let vertices = self.by_rollers.len() / n;
-        if gives.is_empty() {
-            return vec![0.0; vertices];
-        }
-        let stiffness = Mat::from_fn(gives.len(), gives.len(), of);
-        let pulled = Mat::from_fn(gives.len(), vertices, |i, vertex| self.by_rollers[vertex * n + gives[i]]);
-        let given = stiffness.partial_piv_lu().solve(&pulled);
-        let under = |at: usize| (0..gives.len()).map(|i| pulled[(i, at)] * given[(i, at)]).sum();
-        (0..vertices).map(under).collect()
+        Ok(eigen.U().to_owned())
     }
 }
 
 impl Responses {
     fn of(structure: &mut Structure, parts: &Parts<'_>, panels: &Panels) -> Self {
-        let Panels { padded: p, members, stiffness, .. } = panels;
-        let p = *p;
+        let p = panels.padded;
         let modes = structure.squares().len();
         let mut slots: Vec<u32> = parts.springs.iter().flat_map(|s| s.slots.iter().copied()).collect();
         slots.sort_unstable();
@@ -215,58 +227,38 @@ impl Responses {
         let mut index = vec![usize::MAX; parts.x.len()];
         slots.iter().enumerate().for_each(|(i, slot)| index[*slot as usize] = i);
         slots.extend(parts.sensors);
-        slots.extend(parts.raceway.iter().map(|(slot, ..)| slot));
+        slots.extend(parts.raceway.iter().map(|node| node.slot));
 
-        // Stretches by modes, and by unit tensions beyond them.
-        let mut by_modes = Mat::<f64>::zeros(2 * p, modes);
-        let mut flexibility = Mat::<f64>::zeros(2 * p, 2 * p);
-        let vertices = parts.raceway.len();
-        let mut by_rollers = Mat::<f64>::zeros(2 * p, vertices);
-        let mut on_ring = vec![[0.0; 2]; 2 * p];
-        let mut heard = vec![vec![[0.0; 2]; 2 * p]; parts.sensors.len()];
-        let shares = |at: usize| {
-            members[at].iter().flat_map(move |spring| {
-                let share = spring.stiffness / stiffness[at];
-                let along = spring.direction.chunks_exact(2);
-                spring.slots.iter().zip(along).map(move |(slot, d)| (*slot, [share * d[0], share * d[1]]))
-            })
+        let mut all = Self {
+            by_modes: Mat::zeros(2 * p, modes),
+            flexibility: Mat::zeros(2 * p, 2 * p),
+            by_rollers: Mat::zeros(2 * p, parts.raceway.len()),
+            on_ring: panels.on_ring(parts),
+            at_sensors: vec![vec![[0.0; 2]; 2 * p]; parts.sensors.len()],
         };
-        let there: Vec<usize> = (0..2 * p).filter(|at| !members[*at].is_empty()).collect();
-        let mut units = Vec::with_capacity(there.len());
-        for &at in &there {
-            let mut opening = NodeForces::zeros(parts.x.len());
-            for (slot, [fx, fy]) in shares(at) {
-                opening.fx[slot as usize] += fx;
-                opening.fy[slot as usize] += fy;
-                if (parts.of_ring)(slot) {
-                    on_ring[at] = [on_ring[at][0] - fx, on_ring[at][1] - fy];
-                }
-            }
-            units.push(opening);
-        }
+        let there: Vec<usize> = (0..2 * p).filter(|at| !panels.members[*at].is_empty()).collect();
+        let units: Vec<NodeForces> = there.iter().map(|&at| panels.unit(at, parts.x.len())).collect();
         let responses = structure.residuals(&units, &slots);
-        for ((&at, opening), moved) in there.iter().zip(&units).zip(&responses) {
-            for (mode, stretch) in structure.generalised(opening, modes).into_iter().enumerate() {
-                by_modes[(at, mode)] = stretch;
+        for ((&at, unit), moved) in there.iter().zip(&units).zip(&responses) {
+            for (mode, stretch) in structure.generalised(unit, modes).into_iter().enumerate() {
+                all.by_modes[(at, mode)] = stretch;
             }
-            for (heard, [x, y]) in heard.iter_mut().zip(&moved[at_sensors..]) {
-                heard[at] = [-x, -y];
+            for (sensor, [x, y]) in all.at_sensors.iter_mut().zip(&moved[at_sensors..]) {
+                sensor[at] = [-x, -y];
             }
-            for (vertex, ((_, [nx, ny], _), [x, y])) in
-                parts.raceway.iter().zip(&moved[at_raceway..]).enumerate()
-            {
-                by_rollers[(at, vertex)] = nx * x + ny * y;
+            for (vertex, (node, [x, y])) in parts.raceway.iter().zip(&moved[at_raceway..]).enumerate() {
+                let [nx, ny] = node.normal;
+                all.by_rollers[(at, vertex)] = nx * x + ny * y;
             }
             for other in 0..2 * p {
-                flexibility[(other, at)] = shares(other)
-                    .map(|(slot, [dx, dy])| {
-                        let [x, y] = moved[index[slot as usize]];
-                        dx * x + dy * y
-                    })
-                    .sum();
+                let stretch = |(slot, [dx, dy]): (u32, [f64; 2])| {
+                    let [x, y] = moved[index[slot as usize]];
+                    dx * x + dy * y
+                };
+                all.flexibility[(other, at)] = panels.shares(other).map(stretch).sum();
             }
         }
-        Self { by_modes, flexibility, by_rollers, on_ring, heard }
+        all
     }
 }
 
@@ -298,7 +290,7 @@ impl Panels {
             let share = (from_middle(angle) - 0.5 * (first + last)) / (last - first).max(f64::MIN_POSITIVE);
             (half + (share * count as f64).round().clamp(-half, half)) as usize
         };
-        let padded = count.next_multiple_of(LANES);
+        let padded = count.next_multiple_of(GROUP);
         let mut stiffness = vec![0.0; 2 * padded];
         let mut members: Vec<Vec<Spring>> = vec![Vec::new(); 2 * padded];
         for (spring, angle) in &springs {
@@ -315,6 +307,34 @@ impl Panels {
         }
         pressed.iter_mut().for_each(|force| *force = force.max(0.0));
         Some(Self { count, padded, members, stiffness, pressed })
+    }
+
+    /// Slots that a spring reaches, with the forces of a unit stretch's share of the panel.
+    fn shares(&self, at: usize) -> impl Iterator<Item = (u32, [f64; 2])> {
+        self.members[at].iter().flat_map(move |spring| {
+            let share = spring.stiffness / self.stiffness[at];
+            let along = spring.direction.chunks_exact(2);
+            spring.slots.iter().zip(along).map(move |(slot, d)| (*slot, [share * d[0], share * d[1]]))
+        })
+    }
+
+    /// Forces that stretch a spring with a unit tension.
+    fn unit(&self, at: usize, count: usize) -> NodeForces {
+        let mut unit = NodeForces::zeros(count);
+        for (slot, [fx, fy]) in self.shares(at) {
+            unit.fx[slot as usize] += fx;
+            unit.fy[slot as usize] += fy;
+        }
+        unit
+    }
+
+    /// Force on the ring by a unit tension of each spring.
+    fn on_ring(&self, parts: &Parts<'_>) -> Vec<[f64; 2]> {
+        let of = |at: usize| {
+            let of_ring = self.shares(at).filter(|(slot, _)| (parts.of_ring)(*slot));
+            of_ring.fold([0.0; 2], |[x, y], (_, [fx, fy])| [x - fx, y - fy])
+        };
+        (0..2 * self.padded).map(of).collect()
     }
 }
 
