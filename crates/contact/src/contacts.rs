@@ -14,16 +14,13 @@ use stribeck_solver::{
 
 use crate::{
     broad_phase::Tree,
-    error::Error,
-    foot::Push,
     kernel::evaluate::Sum,
-    law::Law,
     memory::Memory,
     pass::Pass,
     pass_law::{LEAST_SPEED, MOST_STEPS_APART, PassLaw, SPEED_MARGIN},
     points::{Method, Points},
-    surface::Surface,
 };
+use stribeck_surface::{Error, Law, Surface, foot::Push};
 
 /// Two surfaces that may touch.
 #[derive(Debug, Clone, Copy)]
