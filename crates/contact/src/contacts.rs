@@ -167,7 +167,7 @@ impl Contacts {
     ) -> Result<Self, Error> {
         check(&surfaces, pairs, thickness, x.len().min(y.len()))?;
         let shortest =
-            surfaces.iter().flat_map(|s| &s.length).copied().fold(f64::INFINITY, f64::min).min(1.0);
+            surfaces.iter().flat_map(|s| s.lengths()).copied().fold(f64::INFINITY, f64::min).min(1.0);
         let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
         let skin = 0.4 * mean.max(shortest);
         let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin + s.largest_sag())).collect();

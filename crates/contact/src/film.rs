@@ -8,7 +8,7 @@ mod divided;
 
 use serde::{Deserialize, Serialize};
 
-use stribeck_film::{Bed, FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
+use stribeck_film::{Bed, FilmLaw, Land, Layer, Oil, Place, Pushed, Spring, WIDEST};
 use stribeck_solver::{
     Force,
     force::RankOne,
