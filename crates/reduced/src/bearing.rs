@@ -1,7 +1,6 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
 use stribeck_bearing::recorder::Tacho;
-use stribeck_contact::Law;
 use stribeck_mesh::{Circle, FormDeviation};
 use stribeck_scene::{
     deviation::Relief,
@@ -12,6 +11,7 @@ use stribeck_scene::{
 };
 use stribeck_simd::lanes::{LANES, Number};
 use stribeck_solver::structural_damping::{Branch, StructuralDamping};
+use stribeck_surface::Law;
 
 use crate::{
     cage::Cage,

@@ -7,12 +7,13 @@ mod give;
 mod nearest;
 
 use serde::{Deserialize, Serialize};
-use stribeck_contact::{Error as ContactError, FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
+use stribeck_film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
 use stribeck_scene::{
     geometry::Geometry,
     lubrication::{self, LoadedFilm},
     scene::Scene,
 };
+use stribeck_surface::Error as SurfaceError;
 
 use crate::{compliance::Compliance, error::Error, outline::Outline};
 use give::Give;
@@ -120,7 +121,7 @@ impl Lubrication {
                 let relative = curvature + land.curvature;
                 if relative <= 0.0 {
                     let reason = "is too narrow for its rollers: a film needs a larger radius than `bearing.roller_diameter_mm` has";
-                    return Err(ContactError::BadSurface { name: name.to_owned(), reason });
+                    return Err(SurfaceError::BadSurface { name: name.to_owned(), reason });
                 }
                 let give = Give::new(penalty, 1.0 / relative, compliance);
                 Ok(FilmLaw::new(oil, 1.0 / relative, g.thickness, give))

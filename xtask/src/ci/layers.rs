@@ -8,17 +8,19 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 16] = [
+const LAYERS: [(&str, &[&str]); 18] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
     ("solver", &["mesh", "simd"]),
     ("mpi", &["solver"]),
-    ("contact", &["mesh", "simd", "solver"]),
+    ("surface", &["simd"]),
+    ("film", &["surface"]),
+    ("contact", &["film", "mesh", "simd", "solver", "surface"]),
     ("scene", &[]),
     ("system", &["contact", "mesh", "solver"]),
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
-    ("reduced", &["bearing", "contact", "mesh", "scene", "simd", "solver", "system"]),
+    ("reduced", &["bearing", "film", "mesh", "scene", "simd", "solver", "surface", "system"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),

@@ -1,6 +1,6 @@
 //! What roller and raceway give under a film: penalty on a round contact, and in series with it the bodies behind (THEORY §9.3).
 
-use stribeck_contact::Spring;
+use stribeck_film::Spring;
 
 use crate::compliance::{Compliance, Curve};
 

@@ -1,6 +1,7 @@
 //! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast both sweep past there.
 
-use stribeck_contact::{Error as ContactError, Land, Place, Point, Smoothing, Surface};
+use stribeck_film::{Land, Place, Point};
+use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
 
 use crate::{error::Error, outline::Outline};
 
@@ -67,7 +68,7 @@ impl Curved {
         if lands.is_empty() {
             let reason = "has nothing but corners, which no film lies across: oil needs facets that meet at less than 20°, by `mesh.size_mm`, \
                           `mesh.outer_facets` and `mesh.inner_facets`";
-            return Err(ContactError::BadSurface { name: name.to_owned(), reason }.into());
+            return Err(SurfaceError::BadSurface { name: name.to_owned(), reason }.into());
         }
         Ok(Self { x, y, surface, lands })
     }
@@ -79,7 +80,7 @@ impl Curved {
     pub(crate) fn rim(outline: &Outline) -> Result<Self, Error> {
         let name = "rim of a roller";
         let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more `mesh.roller_facets`, 19 at least";
-        let corners = || ContactError::BadSurface { name: name.to_owned(), reason };
+        let corners = || SurfaceError::BadSurface { name: name.to_owned(), reason };
         let curved = Self::new(name, outline, false).map_err(|_| corners())?;
         if curved.lands.len() == 1 { Ok(curved) } else { Err(corners().into()) }
     }

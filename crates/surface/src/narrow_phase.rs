@@ -48,7 +48,7 @@ fn projected<F: Facet>(
 
 /// The foot of `p`, walking on to the facet where it is; `None` beyond the ends of an open surface.
 #[inline(always)]
-pub(crate) fn find_foot<F: Facet>(
+pub fn find_foot<F: Facet>(
     facet: &mut F,
     surface: &Surface,
     x: &[f64],

@@ -9,23 +9,25 @@ use crate::{
 };
 
 /// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as that.
-pub(crate) const JOINT: f64 = 1e-9;
+pub const JOINT: f64 = 1e-9;
 
 /// A foot is found when less than this part of a facet is left to it.
-pub(crate) const FOUND: f64 = 1e-12;
+pub const FOUND: f64 = 1e-12;
 
 /// A facet's curve: a cubic in the plane and a cubic height above it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Patch<N> {
-    pub(crate) curve: Polynomial<N, 4>,
+pub struct Patch<N> {
+    /// The cubic in the plane [m].
+    pub curve: Polynomial<N, 4>,
     height: [N; 4],
     /// Chord over its squared length [1/m].
     chord: [N; 2],
 }
 
 impl Patch<f64> {
+    /// From the coefficients of the curve and of the height above it [m].
     #[inline(always)]
-    pub(crate) fn new(curve: Polynomial<f64, 4>, height: [f64; 4]) -> Self {
+    pub fn new(curve: Polynomial<f64, 4>, height: [f64; 4]) -> Self {
         let Polynomial(c) = curve;
         let chord = [c[1][0] + c[2][0] + c[3][0], c[1][1] + c[2][1] + c[3][1]];
         let square = dot(chord, chord);
@@ -34,7 +36,7 @@ impl Patch<f64> {
 
     /// The same in all lanes.
     #[inline(always)]
-    pub(crate) fn spread<N: Number>(&self, like: N) -> Patch<N> {
+    pub fn spread<N: Number>(&self, like: N) -> Patch<N> {
         let [e, f, g, h] = self.height;
         Patch {
             curve: spread(&self.curve, like),
@@ -46,7 +48,7 @@ impl Patch<f64> {
 
 /// The same polynomial in all lanes.
 #[inline(always)]
-pub(crate) fn spread<N: Number>(Polynomial(c): &Polynomial<f64, 4>, like: N) -> Polynomial<N, 4> {
+pub fn spread<N: Number>(Polynomial(c): &Polynomial<f64, 4>, like: N) -> Polynomial<N, 4> {
     let mut lanes = [[like; 2]; 4];
     for k in 0..4 {
         lanes[k] = [like.constant(c[k][0]), like.constant(c[k][1])];
@@ -56,7 +58,7 @@ pub(crate) fn spread<N: Number>(Polynomial(c): &Polynomial<f64, 4>, like: N) -> 
 
 /// Coefficients `yes` where the flag is one, `no` where it is zero.
 #[inline(always)]
-pub(crate) fn choose_all<N: Number>(
+pub fn choose_all<N: Number>(
     flag: N,
     Polynomial(yes): &Polynomial<N, 4>,
     Polynomial(no): &Polynomial<N, 4>,
@@ -71,7 +73,7 @@ pub(crate) fn choose_all<N: Number>(
 impl<N: Number> Patch<N> {
     /// `yes` where the flag is one, `no` where it is zero.
     #[inline(always)]
-    pub(crate) fn chosen(flag: N, yes: &Self, no: &Self) -> Self {
+    pub fn chosen(flag: N, yes: &Self, no: &Self) -> Self {
         let mut height = yes.height;
         for k in 0..4 {
             height[k] = choose(flag, yes.height[k], no.height[k]);
@@ -82,7 +84,7 @@ impl<N: Number> Patch<N> {
 
     /// The point at a place and a height.
     #[inline(always)]
-    pub(crate) fn point(&self, place: N, height: N) -> FacetPoint<N> {
+    pub fn point(&self, place: N, height: N) -> FacetPoint<N> {
         let c = self.curve.value(place);
         let (normal, inverse) = unit_normal(self.curve.slope(place));
         let at = [height.times_plus(normal[0], c[0]), height.times_plus(normal[1], c[1])];
@@ -101,7 +103,7 @@ impl<N: Number> Patch<N> {
     /// Foot of `p` on the curve, which goes on beyond its ends, and what part of a facet is left to it. Corrections end
     /// when the feet of all that are `wanted` are found, or after so many.
     #[inline(always)]
-    pub(crate) fn foot(&self, p: [N; 2], wanted: N, corrections: usize) -> (Foot<N>, N) {
+    pub fn foot(&self, p: [N; 2], wanted: N, corrections: usize) -> (Foot<N>, N) {
         let (half, one, small) = (p[0].constant(0.5), p[0].constant(1.0), p[0].constant(FOUND));
         // Far beyond the facet's ends its polynomial is no guide.
         let (low, high) = (p[0].constant(-2.0), p[0].constant(3.0));
@@ -144,7 +146,7 @@ impl<N: Number> Patch<N> {
 
 /// A place within the facet, or at a smooth joint: the flag where it is so, zero elsewhere.
 #[inline(always)]
-pub(crate) fn within_patch<N: Number>(place: N, flag: N) -> N {
+pub fn within_patch<N: Number>(place: N, flag: N) -> N {
     let (zero, joint) = (flag.constant(0.0), flag.constant(JOINT));
     let above = (-joint).choose_below(place, flag, zero);
     place.choose_below(flag.constant(1.0) + joint, above, zero)

@@ -13,60 +13,62 @@ use crate::{
 };
 
 /// A force on a node: slot, x [N], y [N].
-pub(crate) type Push = (u32, [f64; 2]);
+pub type Push = (u32, [f64; 2]);
 
 /// A point of a facet in present positions.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct FacetPoint<N> {
+pub struct FacetPoint<N> {
     /// Position [m].
-    pub(crate) at: [N; 2],
-    pub(crate) place: N,
+    pub at: [N; 2],
+    /// Place on the facet, 0 at its first node, 1 at its second.
+    pub place: N,
     /// Height above the polynomial [m].
-    pub(crate) height: N,
+    pub height: N,
     /// Unit normal of the polynomial there.
-    pub(crate) normal: [N; 2],
+    pub normal: [N; 2],
     /// One over the length of its derivative [1/m].
-    pub(crate) inverse: N,
+    pub inverse: N,
 }
 
 /// Where a point projects on a facet.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Foot<N> {
+pub struct Foot<N> {
     /// Signed, see [`Projection`](crate::Projection).
-    pub(crate) gap: N,
+    pub gap: N,
     /// Gradient of the gap with respect to the point.
-    pub(crate) normal: [N; 2],
-    pub(crate) place: N,
+    pub normal: [N; 2],
+    /// Place on the facet, 0 at its first node, 1 at its second.
+    pub place: N,
     /// How the gap falls as the facet's polynomial turns: −∂gap/∂(n·c′) [-].
-    pub(crate) turn: N,
+    pub turn: N,
     /// Height of the foot above the polynomial [m].
-    pub(crate) height: N,
+    pub height: N,
     /// Unit normal of the polynomial there.
-    pub(crate) curve_normal: [N; 2],
+    pub curve_normal: [N; 2],
     /// One over the length of its derivative [1/m].
-    pub(crate) inverse: N,
+    pub inverse: N,
 }
 
 /// How a point moves against its foot.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sliding<N> {
+pub struct Sliding<N> {
     /// Rate of the gap [m/s].
-    pub(crate) opening: N,
+    pub opening: N,
     /// Tangential velocity, to the left of the normal [m/s].
-    pub(crate) along: N,
+    pub along: N,
 }
 
 impl<N: Number> FacetPoint<N> {
     /// Velocity [m/s], of a facet whose polynomial moves with these coefficients.
     #[inline(always)]
-    pub(crate) fn velocity(&self, motion: &impl Coefficients<N>) -> [N; 2] {
+    pub fn velocity(&self, motion: &impl Coefficients<N>) -> [N; 2] {
         let swing = dot(self.normal, motion.slope(self.place));
         off_curve(motion.value(self.place), swing * self.height * self.inverse, self.normal)
     }
 
     /// Adds a force on the point to those on its facet.
     #[inline(always)]
-    pub(crate) fn push(&self, f: [N; 2], forces: &mut impl Coefficients<N>) {
+    pub fn push(&self, f: [N; 2], forces: &mut impl Coefficients<N>) {
         let n = self.normal;
         let lever = -(self.height * self.inverse * cross(n, f));
         forces.add(self.place, f, [lever * n[0], lever * n[1]]);
@@ -76,7 +78,7 @@ impl<N: Number> FacetPoint<N> {
 impl<N: Number> Foot<N> {
     /// How a point with the velocity `v` moves against this foot, on a facet that moves with these coefficients.
     #[inline(always)]
-    pub(crate) fn sliding(&self, v: [N; 2], motion: &impl Coefficients<N>) -> Sliding<N> {
+    pub fn sliding(&self, v: [N; 2], motion: &impl Coefficients<N>) -> Sliding<N> {
         let swing = dot(self.curve_normal, motion.slope(self.place));
         let u = motion.value(self.place);
         let opening = dot(self.normal, minus(v, u)) - self.turn * swing;
@@ -86,14 +88,14 @@ impl<N: Number> Foot<N> {
 
     /// Moment by which the reaction to a pressure and a shear force [N] turns the facet's polynomial.
     #[inline(always)]
-    pub(crate) fn lever(&self, pressure: N, shear: N) -> N {
+    pub fn lever(&self, pressure: N, shear: N) -> N {
         // The shear's own direction, (−n_y, n_x), along the curve's tangent, (−m_y, m_x).
         self.height * self.inverse * shear * dot(self.normal, self.curve_normal) - self.turn * pressure
     }
 
     /// Adds the reaction to the force `f` with its lever to the forces on the facet.
     #[inline(always)]
-    pub(crate) fn push(&self, f: [N; 2], lever: N, forces: &mut impl Coefficients<N>) {
+    pub fn push(&self, f: [N; 2], lever: N, forces: &mut impl Coefficients<N>) {
         let [mx, my] = self.curve_normal;
         forces.add(self.place, [-f[0], -f[1]], [lever * mx, lever * my]);
     }

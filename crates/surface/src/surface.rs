@@ -123,13 +123,45 @@ impl Surface {
         Ok(self)
     }
 
+    /// Length of each facet in the reference positions [m].
+    #[inline(always)]
+    pub fn lengths(&self) -> &[f64] {
+        &self.length
+    }
+
+    /// Whether the polyline turns by a corner at each vertex, in the reference positions.
+    #[inline(always)]
+    pub fn corners(&self) -> &[bool] {
+        &self.corner
+    }
+
+    /// Whether each facet has a corner at either end.
+    #[inline(always)]
+    pub fn beside_corner(&self) -> &[bool] {
+        &self.beside_corner
+    }
+
+    /// How each facet's curve rises above its chord [m].
+    #[inline(always)]
+    pub fn rises(&self) -> &[Rise] {
+        &self.rise
+    }
+
+    /// The spline that carries the curve; `None` when each facet moves with its own two nodes.
+    #[inline(always)]
+    pub fn spline(&self) -> Option<&Spline> {
+        self.spline.as_ref()
+    }
+
     /// Number of facets.
+    #[inline]
     pub fn facets(&self) -> usize {
         self.length.len()
     }
 
     /// Whether every facet is its chord, and hangs on its own two nodes.
-    pub(crate) fn is_flat(&self) -> bool {
+    #[inline]
+    pub fn is_flat(&self) -> bool {
         self.flat
     }
 
@@ -146,13 +178,14 @@ impl Surface {
     }
 
     /// Steepest slope of the curve against its chords [-].
-    pub(crate) fn steepest(&self) -> f64 {
+    pub fn steepest(&self) -> f64 {
         let slope = |(r, l): (&Rise, &f64)| r[0].abs().max(r[1].abs()) / l;
         self.rise.iter().zip(&self.length).map(slope).fold(0.0, f64::max)
     }
 
     /// Height of the curve at a place of a facet, above what moves with the nodes [m].
-    pub(crate) fn height(&self, facet: usize, place: f64) -> f64 {
+    #[inline]
+    pub fn height(&self, facet: usize, place: f64) -> f64 {
         match &self.spline {
             Some(spline) => spline.height(facet, place),
             None => height(self.rise[facet], place),
@@ -160,7 +193,8 @@ impl Surface {
     }
 
     /// Vertices that a point hangs on, with their shares.
-    pub(crate) fn shares(&self, facet: usize, place: f64) -> [(usize, f64); 6] {
+    #[inline]
+    pub fn shares(&self, facet: usize, place: f64) -> [(usize, f64); 6] {
         match &self.spline {
             Some(spline) => spline.shares(facet, place),
             None => {
@@ -172,7 +206,7 @@ impl Surface {
 
     /// What shares of both signs add to a bound on forces dealt out to each vertex [-]: one, but beside corners of a
     /// spline.
-    pub(crate) fn unevenness(&self) -> Vec<f64> {
+    pub fn unevenness(&self) -> Vec<f64> {
         let mut most = vec![1.0_f64; self.slots.len()];
         for f in (0..self.facets()).filter(|_| self.spline.is_some()) {
             for s in [0.0, 0.25, 0.5, 0.75, 1.0] {
@@ -186,29 +220,30 @@ impl Surface {
 
     /// Slots of the two ends of a facet.
     #[inline(always)]
-    pub(crate) fn ends(&self, facet: usize) -> (usize, usize) {
+    pub fn ends(&self, facet: usize) -> (usize, usize) {
         (self.slots[facet] as usize, self.slots[self.second(facet)] as usize)
     }
 
     /// Number of the second vertex of a facet; the first has the facet's number.
     #[inline(always)]
-    pub(crate) fn second(&self, facet: usize) -> usize {
+    pub fn second(&self, facet: usize) -> usize {
         if facet + 1 == self.slots.len() { 0 } else { facet + 1 }
     }
 
     /// The facet after (`+1`) or before (`−1`), if there is one.
     #[inline(always)]
-    pub(crate) fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
+    pub fn neighbour(&self, facet: usize, forward: bool) -> Option<usize> {
         neighbour(self.facets(), self.closed, facet, forward)
     }
 
     /// Whether two facets are one or have a vertex in common.
-    pub(crate) fn adjoin(&self, a: usize, b: usize) -> bool {
+    #[inline]
+    pub fn adjoin(&self, a: usize, b: usize) -> bool {
         a == b || [true, false].iter().any(|&forward| self.neighbour(a, forward) == Some(b))
     }
 
     /// Length that belongs to each vertex [m]: half of each facet that meets there.
-    pub(crate) fn tributary(&self) -> Vec<f64> {
+    pub fn tributary(&self) -> Vec<f64> {
         let mut v = vec![0.0; self.slots.len()];
         for (f, l) in self.length.iter().enumerate() {
             v[f] += 0.5 * l;

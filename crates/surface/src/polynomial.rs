@@ -4,13 +4,15 @@ use stribeck_simd::lanes::Number;
 
 /// A polynomial in the plane, coefficients of s⁰, s¹ …; as a sum of forces, what each coefficient gets.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Polynomial<N, const K: usize>(pub(crate) [[N; 2]; K]);
+pub struct Polynomial<N, const K: usize>(pub [[N; 2]; K]);
 
 /// What facets of any degree ask of their polynomials.
-pub(crate) trait Coefficients<N>: Copy {
+pub trait Coefficients<N>: Copy {
     /// All zero, of the kind of `like`.
     fn zero(like: N) -> Self;
+    /// Value at a place.
     fn value(&self, s: N) -> [N; 2];
+    /// Derivative by the place.
     fn slope(&self, s: N) -> [N; 2];
     /// Adds a force that acts on the value, and one that acts on the slope at `s`.
     fn add(&mut self, s: N, on_value: [N; 2], on_slope: [N; 2]);
@@ -78,12 +80,12 @@ fn times<N: Number>(k: usize, x: N) -> N {
 
 /// Value of a cubic.
 #[inline(always)]
-pub(crate) fn cubic<N: Number>(c: &[N; 4], s: N) -> N {
+pub fn cubic<N: Number>(c: &[N; 4], s: N) -> N {
     c[3].times_plus(s, c[2]).times_plus(s, c[1]).times_plus(s, c[0])
 }
 
 /// Derivative of a cubic.
 #[inline(always)]
-pub(crate) fn cubic_slope<N: Number>(c: &[N; 4], s: N) -> N {
+pub fn cubic_slope<N: Number>(c: &[N; 4], s: N) -> N {
     times(3, c[3]).times_plus(s, times(2, c[2])).times_plus(s, c[1])
 }

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
+use crate::{
     reynolds::{EMPTY, Pressed, left_of_land},
     spring::Spring,
 };

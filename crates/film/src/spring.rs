@@ -46,12 +46,14 @@ impl Bed {
     }
 
     /// Stiffness [N/m].
-    pub(crate) fn stiffness(&self, depth: f64) -> f64 {
+    #[inline]
+    pub fn stiffness(&self, depth: f64) -> f64 {
         1.5 * self.hardness * depth.min(DEEPEST).sqrt()
     }
 }
 
 impl Spring for Bed {
+    #[inline]
     fn force(&self, depth: f64) -> f64 {
         if depth < DEEPEST {
             self.hardness * depth * depth.sqrt()
@@ -60,6 +62,7 @@ impl Spring for Bed {
         }
     }
 
+    #[inline]
     fn depth(&self, force: f64) -> (f64, f64) {
         if force < self.bend {
             let root = (force / self.hardness).cbrt();
@@ -69,10 +72,12 @@ impl Spring for Bed {
         }
     }
 
+    #[inline]
     fn stiffest(&self) -> f64 {
         self.stiffest
     }
 
+    #[inline]
     fn energy(&self, depth: f64) -> f64 {
         let (curved, rest) = (depth.min(DEEPEST), (depth - DEEPEST).max(0.0));
         0.4 * self.hardness * curved * curved * curved.sqrt()

@@ -2,7 +2,7 @@
 
 use parry2d_f64::{math::Vector, query::PointQueryWithLocation, shape::Polyline};
 use proptest::{prelude::*, test_runner::RngSeed};
-use stribeck_contact::{Projection, Surface, project};
+use stribeck_surface::{Projection, Surface, project};
 
 /// Rounding of coordinates of order one.
 const ROUNDING: f64 = 1e-12;

@@ -22,7 +22,7 @@ type Columns = [[f64; 8]; SUPPORT];
 
 /// How every facet of a surface hangs on its nodes.
 #[derive(Debug, Clone)]
-pub(crate) struct Spline {
+pub struct Spline {
     facets: Vec<Support>,
     matrices: Vec<(Rows, Columns)>,
 }
@@ -39,7 +39,7 @@ struct Support {
 
 impl Spline {
     /// For a polyline of these slots and corners; its facets have no heights yet.
-    pub(crate) fn new(slots: &[u32], corners: &[bool], facets: usize) -> Self {
+    pub fn new(slots: &[u32], corners: &[bool], facets: usize) -> Self {
         let mut spline = Self { facets: Vec::new(), matrices: Vec::new() };
         let n = slots.len() as i64;
         for f in 0..facets {
@@ -62,19 +62,19 @@ impl Spline {
     }
 
     /// Sets the height of a facet's curve above the spline [m] at its places 0, 1/3, 2/3 and 1.
-    pub(crate) fn set_height(&mut self, facet: usize, at: [f64; 4]) {
+    pub fn set_height(&mut self, facet: usize, at: [f64; 4]) {
         self.facets[facet].height = through(at);
     }
 
     /// A facet in given positions.
     #[inline(always)]
-    pub(crate) fn patch(&self, x: &[f64], y: &[f64], facet: usize) -> Patch<f64> {
+    pub fn patch(&self, x: &[f64], y: &[f64], facet: usize) -> Patch<f64> {
         Patch::new(self.gather(x, y, facet), self.facets[facet].height)
     }
 
     /// Coefficients of a node field on a facet.
     #[inline(always)]
-    pub(crate) fn gather(&self, x: &[f64], y: &[f64], facet: usize) -> Polynomial<f64, 4> {
+    pub fn gather(&self, x: &[f64], y: &[f64], facet: usize) -> Polynomial<f64, 4> {
         let Support { slots, matrix, .. } = &self.facets[facet];
         let (_, columns) = &self.matrices[*matrix as usize];
         let mut c = [0.0; 8];
@@ -90,7 +90,7 @@ impl Spline {
 
     /// Hands forces on coefficients over to the nodes: the transpose of `gather`.
     #[inline(always)]
-    pub(crate) fn scatter(&self, facet: usize, forces: &Polynomial<f64, 4>, push: &mut Vec<Push>) {
+    pub fn scatter(&self, facet: usize, forces: &Polynomial<f64, 4>, push: &mut Vec<Push>) {
         let Support { slots, matrix, .. } = &self.facets[facet];
         let (rows, _) = &self.matrices[*matrix as usize];
         let (mut fx, mut fy) = ([0.0; SUPPORT], [0.0; SUPPORT]);
@@ -106,12 +106,14 @@ impl Spline {
     }
 
     /// Height above the spline [m].
-    pub(crate) fn height(&self, facet: usize, s: f64) -> f64 {
+    #[inline]
+    pub fn height(&self, facet: usize, s: f64) -> f64 {
         cubic(&self.facets[facet].height, s)
     }
 
     /// Vertices that a point hangs on, with their shares; near corners shares may be negative.
-    pub(crate) fn shares(&self, facet: usize, s: f64) -> [(usize, f64); SUPPORT] {
+    #[inline]
+    pub fn shares(&self, facet: usize, s: f64) -> [(usize, f64); SUPPORT] {
         let Support { vertices, matrix, .. } = &self.facets[facet];
         let (rows, _) = &self.matrices[*matrix as usize];
         std::array::from_fn(|j| {
@@ -121,7 +123,7 @@ impl Spline {
     }
 
     /// Largest height above or below the spline [m].
-    pub(crate) fn largest_height(&self) -> f64 {
+    pub fn largest_height(&self) -> f64 {
         let at = |f: &Support| [0.0, 0.5, 1.0].map(|s| cubic(&f.height, s).abs());
         self.facets.iter().flat_map(at).fold(0.0, f64::max)
     }

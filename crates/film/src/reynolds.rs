@@ -24,6 +24,7 @@ pub(crate) struct Pressed {
 }
 
 /// ∫ Xᵏ/(1 + X²)³ from −∞ to c, for k = 0 … 3, and the angle π/2 + arctan c.
+#[inline]
 fn moments(c: f64) -> ([f64; 4], f64) {
     let angle = FRAC_PI_2 + c.atan();
     let inverse = 1.0 / (1.0 + c * c);
@@ -56,6 +57,7 @@ impl Pressed {
 /// slope of the land there over √(2h/R).
 ///
 /// Pure squeeze with no pressure at the end. Beyond the end a fit of the quadrature, good to 4 %.
+#[inline]
 pub(crate) fn left_of_land(edge: f64) -> f64 {
     const AT_END: f64 = 0.229_810_2;
     if edge > 0.0 {

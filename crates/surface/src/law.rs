@@ -69,7 +69,7 @@ impl Law {
 
 /// The parabola with which the pressure sets in, over any [`Number`] (THEORY §4.2).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Onset<N> {
+pub struct Onset<N> {
     gap: N,
     quarter: N,
     work: N,
@@ -78,7 +78,7 @@ pub(crate) struct Onset<N> {
 impl<N: Number> Onset<N> {
     /// Of the kind of `like`; `None` for the sharp corner.
     #[inline(always)]
-    pub(crate) fn new(like: N, gap: f64) -> Option<Self> {
+    pub fn new(like: N, gap: f64) -> Option<Self> {
         // No closure, see `plane.rs`.
         if gap > 0.0 {
             let [quarter, work] = [0.25 / gap, gap * gap / 6.0];
@@ -90,7 +90,7 @@ impl<N: Number> Onset<N> {
 
     /// Effective penetration [m], its fall with the gap [-] and its work, all per stiffness, at gaps below the onset.
     #[inline(always)]
-    pub(crate) fn depth(&self, gap: N) -> [N; 3] {
+    pub fn depth(&self, gap: N) -> [N; 3] {
         let Self { gap: e, quarter, work } = *self;
         let t = e - gap;
         let (rising, slope) = (quarter * t * t, (quarter + quarter) * t);

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
+use stribeck_surface::{
+    Surface,
     plane::{cross, dot, minus, unit_normal},
     polyline::Vertices,
     smooth::{Rise, bend, height, slope},
-    surface::Surface,
 };
 
 /// A land of fewer facets is a wall or a chamfer, and carries no film.
@@ -44,7 +44,7 @@ pub struct Point {
     /// Where on the surface.
     pub place: Place,
     /// Slots of the nodes that it hangs on.
-    pub(crate) ends: [u32; 2],
+    pub ends: [u32; 2],
     /// Position [m].
     pub at: [f64; 2],
     /// Outward normal of the surface.
@@ -59,7 +59,7 @@ impl Land {
     /// All lands of a surface whose positions are the reference.
     pub fn of(surface: &Surface, x: &[f64], y: &[f64]) -> Vec<Self> {
         let (facets, n) = (surface.facets(), surface.slots.len());
-        let starts: Vec<usize> = (0..facets).filter(|&f| surface.corner[f]).collect();
+        let starts: Vec<usize> = (0..facets).filter(|&f| surface.corners()[f]).collect();
         let mut lands = if starts.is_empty() {
             vec![Self { first: 0, facets, closed: surface.closed, curvature: 0.0 }]
         } else {
@@ -91,7 +91,7 @@ impl Land {
             // Between the middles of the first facet and the last.
             let length: f64 = (0..joints)
                 .map(|i| land.first + i)
-                .map(|f| 0.5 * (surface.length[f % facets] + surface.length[(f + 1) % facets]))
+                .map(|f| 0.5 * (surface.lengths()[f % facets] + surface.lengths()[(f + 1) % facets]))
                 .sum();
             land.curvature = turn / length;
         }
@@ -111,6 +111,7 @@ impl Land {
     }
 
     /// The place nearest to `p`, walking on from another; ends are never passed.
+    #[inline]
     pub fn nearest(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], from: Place) -> Point {
         let (mut facet, mut before) = (from.facet as usize, None);
         loop {
@@ -138,13 +139,14 @@ impl Land {
     }
 
     /// Distance along the land from a place to its first and its last end [m]; infinite without ends.
+    #[inline]
     pub fn to_ends(&self, surface: &Surface, place: Place) -> [f64; 2] {
         if self.closed {
             return [f64::INFINITY; 2];
         }
         let whole = surface.facets();
         let before = (place.facet as usize + whole - self.first) % whole;
-        let mean = surface.length[place.facet as usize];
+        let mean = surface.lengths()[place.facet as usize];
         // Ends that are many facets away need not be known to the last digit.
         let first = (before as f64 + place.along) * mean;
         let last = ((self.facets - before) as f64 - place.along) * mean;
@@ -169,10 +171,18 @@ impl Arc {
         let (normal, inverse) = unit_normal(along);
         let tangent = along.map(|t| t * inverse);
         let ends = [a as u32, b as u32];
-        Self { ends, origin: [x[a], y[a]], length: 1.0 / inverse, tangent, normal, rise: surface.rise[facet] }
+        Self {
+            ends,
+            origin: [x[a], y[a]],
+            length: 1.0 / inverse,
+            tangent,
+            normal,
+            rise: surface.rises()[facet],
+        }
     }
 
     /// Where the curve, which goes on beyond its ends, is nearest to `p`.
+    #[inline]
     fn nearest(&self, p: [f64; 2]) -> f64 {
         let from = minus(p, self.origin);
         let (along, off) = (dot(from, self.tangent), dot(from, self.normal));
@@ -203,12 +213,14 @@ impl Arc {
 
 impl Point {
     /// Sine of the angle from the surface's normal here to another direction.
+    #[inline]
     pub fn tilt(&self, direction: [f64; 2]) -> f64 {
         cross(self.normal, direction)
     }
 
     /// Forces on the facet's two nodes that are worth the force `f` on the point, which turns with its chord.
-    pub(crate) fn shares(&self, f: [f64; 2]) -> [[f64; 2]; 2] {
+    #[inline]
+    pub fn shares(&self, f: [f64; 2]) -> [[f64; 2]; 2] {
         let lever = -self.height / self.length * cross(self.chord, f);
         let second = [0, 1].map(|k| self.place.along * f[k] + lever * self.chord[k]);
         [minus(f, second), second]
@@ -217,19 +229,21 @@ impl Point {
 
 impl Place {
     /// The point so far on along the facet's curve [m], which goes on beyond its ends.
-    pub(crate) fn ahead(self, surface: &Surface, x: &[f64], y: &[f64], by: f64) -> Point {
+    #[inline]
+    pub fn ahead(self, surface: &Surface, x: &[f64], y: &[f64], by: f64) -> Point {
         let facet = self.facet as usize;
         let arc = Arc::new(surface, x, y, facet);
         arc.point(facet, self.along + by / arc.length)
     }
 
     /// Distance along the surface from another place, the shorter way round [m].
-    pub(crate) fn since(self, surface: &Surface, other: Self) -> f64 {
+    #[inline]
+    pub fn since(self, surface: &Surface, other: Self) -> f64 {
         let facets = surface.facets() as f64;
         let mut by = f64::from(self.facet) - f64::from(other.facet) + self.along - other.along;
         if surface.closed {
             by -= facets * (by / facets).round();
         }
-        by * surface.length[self.facet as usize]
+        by * surface.lengths()[self.facet as usize]
     }
 }

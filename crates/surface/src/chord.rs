@@ -17,10 +17,10 @@ const NEAR_END: f64 = 0.25;
 
 /// A chord in present positions.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct ChordFacet {
+pub struct ChordFacet {
     number: usize,
     /// Slots of its ends.
-    pub(crate) ends: (usize, usize),
+    pub ends: (usize, usize),
     /// Its first node [m].
     origin: [f64; 2],
     /// From its first node to its second [m].
@@ -28,14 +28,14 @@ pub(crate) struct ChordFacet {
     /// One over its length [1/m].
     inverse: f64,
     /// Unit normal of the chord, outwards.
-    pub(crate) normal: [f64; 2],
+    pub normal: [f64; 2],
     rise: Rise,
 }
 
 /// A foot so far within a chord of the length 1/`inverse` that no neighbour is nearer: the flag where it is so, zero
 /// elsewhere.
 #[inline(always)]
-pub(crate) fn within_chord<N: Number>(place: N, gap: N, inverse: N, flag: N) -> N {
+pub fn within_chord<N: Number>(place: N, gap: N, inverse: N, flag: N) -> N {
     let (zero, one) = (flag.constant(0.0), flag.constant(1.0));
     let margin = flag.constant(NEAR_END) * magnitude(gap) * inverse;
     margin.choose_below(place, place.choose_below(one - margin, flag, zero), zero)
@@ -88,6 +88,7 @@ impl Facet for ChordFacet {
     }
 
     /// Beyond the line that halves the angle between the two chords.
+    #[inline]
     fn is_past(&self, _foot: &Foot<f64>, other: &Self, forward: bool, p: [f64; 2]) -> bool {
         let vertex = if forward { other.origin } else { self.origin };
         let t = [0, 1].map(|k| self.along[k] * self.inverse + other.along[k] * other.inverse);
@@ -112,7 +113,7 @@ impl Facet for ChordFacet {
 impl ChordFacet {
     /// Foot of `p`, of which the place is known.
     #[inline(always)]
-    pub(crate) fn foot_at(&self, p: [f64; 2], place: f64) -> Foot<f64> {
+    pub fn foot_at(&self, p: [f64; 2], place: f64) -> Foot<f64> {
         let Self { origin, along: [tx, ty], inverse, normal, rise, .. } = *self;
         let off = dot(minus(p, origin), normal);
         let (h, dh) = (height(rise, place), slope(rise, place));

@@ -22,31 +22,32 @@ pub enum Smoothing {
 const LEAN: f64 = 1e-3;
 
 /// Vertices where the smoothed curve still turns by more than this keep the rules of a polyline's vertex [rad].
-pub(crate) const KINK: f64 = 1e-3;
+pub const KINK: f64 = 1e-3;
 
 /// Height of the curve above its chord, towards the outward normal, as a function of the place s on the facet:
 /// h = s(1−s)(r₀(1−s) − r₁s), the cubic that leaves its ends with slopes r₀ and r₁ [m per facet].
-pub(crate) type Rise = [f64; 2];
+pub type Rise = [f64; 2];
 
 /// Height [m] of the curve at a place.
 #[inline(always)]
-pub(crate) fn height([r0, r1]: Rise, s: f64) -> f64 {
+pub fn height([r0, r1]: Rise, s: f64) -> f64 {
     s * (1.0 - s) * (r0 * (1.0 - s) - r1 * s)
 }
 
 /// Slope of the height [m per facet].
 #[inline(always)]
-pub(crate) fn slope([r0, r1]: Rise, s: f64) -> f64 {
+pub fn slope([r0, r1]: Rise, s: f64) -> f64 {
     r0 * (1.0 - s) * (1.0 - 3.0 * s) - r1 * s * (2.0 - 3.0 * s)
 }
 
 /// Rate of the slope [m per facet, per facet].
-pub(crate) fn bend([r0, r1]: Rise, s: f64) -> f64 {
+#[inline]
+pub fn bend([r0, r1]: Rise, s: f64) -> f64 {
     r0 * (6.0 * s - 4.0) + r1 * (6.0 * s - 2.0)
 }
 
 /// Rise of every facet of a polyline, given its corners.
-pub(crate) fn rises(smoothing: Smoothing, at: &Vertices<'_>, corner: &[bool]) -> Vec<Rise> {
+pub fn rises(smoothing: Smoothing, at: &Vertices<'_>, corner: &[bool]) -> Vec<Rise> {
     match smoothing {
         Smoothing::Facet => vec![[0.0; 2]; at.facets()],
         Smoothing::Arc { centre } => (0..at.facets()).map(|f| arc(at, f, centre)).collect(),

@@ -13,9 +13,10 @@ const MOST_CORRECTIONS: usize = 6;
 
 /// A facet of a spline.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct SplineFacet {
+pub struct SplineFacet {
     number: usize,
-    pub(crate) patch: Patch<f64>,
+    /// Its curve in present positions.
+    pub patch: Patch<f64>,
 }
 
 impl Facet for SplineFacet {
@@ -42,6 +43,7 @@ impl Facet for SplineFacet {
         self.patch.foot(p, 1.0, MOST_CORRECTIONS).0
     }
 
+    #[inline]
     fn closest(&self, p: [f64; 2]) -> Closest {
         let foot = self.foot(p);
         let inside = (0.0..=1.0).contains(&foot.place);
@@ -55,6 +57,7 @@ impl Facet for SplineFacet {
         within_patch(foot.place, 1.0) > 0.0
     }
 
+    #[inline]
     fn is_past(&self, foot: &Foot<f64>, _other: &Self, forward: bool, _p: [f64; 2]) -> bool {
         if forward { foot.place > 1.0 } else { foot.place < 0.0 }
     }
