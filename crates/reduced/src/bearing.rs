@@ -1,29 +1,23 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
-use stribeck_bearing::recorder::Tacho;
-use stribeck_mesh::{Circle, FormDeviation};
-use stribeck_scene::{
-    deviation::Relief,
-    duty::Duty,
-    geometry::Geometry,
-    kinematics::Kinematics,
-    scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
+use stribeck_duty::Duty;
+use stribeck_modal::{
+    ModalBearing, OVERLOAD, Parameters, Reduction, STICKING,
+    compliance::{Compliance, Curve, contact_length},
+    outline::per_angle,
+    parameters::{Branch, DampingFrame, RollerStart, Speeds},
 };
 use stribeck_simd::lanes::{LANES, Number};
-use stribeck_solver::structural_damping::{Branch, StructuralDamping};
-use stribeck_surface::Law;
 
 use crate::{
     cage::Cage,
-    compliance::{Compliance, Curve, contact_length},
     error::Error,
     oil::Lubrication,
     outline::Outline,
     overlap::Sides,
     polygon::Polygon,
-    reduction::{OVERLOAD, Reduction},
     row::{Row, Single, in_single, largest_of},
-    seat::{STICKING, Springs},
+    seat::Springs,
     sensors::Sensors,
     state::State,
 };
@@ -35,8 +29,6 @@ pub struct Bearing {
     pub time_step: f64,
     /// Rollers.
     pub rollers: usize,
-    /// The pocket of each of them, from 0.
-    pub(crate) pockets: Vec<usize>,
     /// The reduced rings.
     pub reduction: Reduction,
     /// Their shapes at the vertices of the outer raceway again, in rows.
@@ -57,8 +49,9 @@ pub struct Bearing {
     pub(crate) polygon: Polygon,
     /// Which of them each roller has.
     pub(crate) rim_of: Vec<u32>,
-    /// Angle of vertex 0 of each roller at the start [rad].
-    pub(crate) vertex_angle: Vec<f64>,
+    /// Rollers at the start, and the radius of the circle that their centres are on [m].
+    pub(crate) starts: Vec<RollerStart>,
+    path: f64,
     /// Normal and tangential stiffness and damping a metre of contact: [N/m²], [N/m²], [N s/m²].
     pub(crate) penalty: f64,
     pub(crate) sticking: f64,
@@ -75,7 +68,7 @@ pub struct Bearing {
     /// Branches of the structural damping of outer ring and adapter.
     pub(crate) branches: Vec<Branch>,
     pub(crate) gravity: f64,
-    pub(crate) kinematics: Kinematics,
+    pub(crate) speeds: Speeds,
     /// Whether the outer ring turns.
     pub(crate) outer_turns: bool,
     pub(crate) cage: Option<Cage>,
@@ -85,7 +78,8 @@ pub struct Bearing {
     pub(crate) oil: Option<Lubrication>,
     /// Speeds and load, where they change.
     pub(crate) duty: Option<Duty>,
-    pub(crate) tacho: Tacho,
+    /// Load at the start [N].
+    pub(crate) load_at_start: f64,
 }
 
 /// The rim of a roller.
@@ -129,135 +123,62 @@ impl Track {
 }
 
 impl Bearing {
-    /// The bearing of a scene whose rings have been reduced.
+    /// The bearing that moves in steps of `time_step` [s].
     ///
     /// # Errors
-    /// When the structural damping cannot be fitted.
-    pub fn new(scene: &Scene, reduction: Reduction, time_step: f64) -> Result<Self, Error> {
-        let g = Geometry::of(scene);
-        let [outer, inner, roller] = reduction.outlines();
-        let outer = formed(&outer, g.outer_relief.as_ref(), Circle::Inner);
-        let inner = formed(&inner, g.inner_relief.as_ref(), Circle::Outer);
-        let arcs = scene.contact.surface != ContactSurface::Facet;
-        let law = Law::penalty(g.penalty_stiffness)
-            .and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass));
-        let law = law?;
-        let radius = g.roller_radius;
-        let n = roller.len() as f64;
-        let sag = |radius: f64, facets: f64| {
-            if arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
-        };
-        let [kr, ko, ki] = [1.0 / radius, 1.0 / g.outer_race_radius, 1.0 / g.inner_race_radius];
-        let sides = |along: bool, relative: f64| Sides {
-            along,
-            bulge: if arcs { 0.5 * relative } else { 0.0 },
-            curvature: if arcs { kr } else { 0.0 },
-        };
-        let radii = |outline: &Outline| {
-            outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
-        };
-        let sag_of_outer = sag(g.outer_race_radius, outer.len() as f64);
-        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min) - sag_of_outer;
-        let farthest = radii(&inner).into_iter().fold(0.0, f64::max);
-        let track =
-            |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
-                sides: sides(along, relative),
-                angle: per_angle(&outline),
-                outline,
-                curve: compliance.curve(),
-                compliance: compliance.clone(),
-                bound,
-                bounds: Vec::new(),
-                relative: 1.0 / relative,
-            };
-        let pockets: Vec<usize> = scene.rollers_in_place().map(|number| number - 1).collect();
-        let vertex_angle: Vec<f64> = pockets
-            .iter()
-            .map(|&pocket| match scene.mesh.roller_copies {
-                RollerCopies::Translated => g.roller_phase,
-                RollerCopies::Rotated => g.roller_angle(pocket) + g.roller_phase,
-            })
-            .collect();
-        // Vertex 0 of the outline lies on the x axis.
-        let round = Rim { top: roller.x[0], outline: roller.clone() };
-        let (mut rims, mut rim_of) = (vec![round], vec![0; pockets.len()]);
-        for (of, relief) in &g.roller_reliefs {
-            let Some(i) = pockets.iter().position(|pocket| pocket == of) else { continue };
-            // A rim is seen from its vertex 0.
-            let own = formed(&roller, Some(&relief.turned(-vertex_angle[i])), Circle::Outer);
-            rim_of[i] = rims.len() as u32;
-            rims.push(Rim { top: radii(&own).into_iter().fold(0.0, f64::max), outline: own });
-        }
-        let branches = match (&scene.solver.structural_damping, g.structural_damping) {
-            (Some(chosen), Some(band)) => {
-                StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
-                    .branches()
-                    .to_vec()
-            }
-            _ => Vec::new(),
-        };
-        let cage = reduction.cage.map(|(inertia, centre)| {
-            Cage::new(&g, &pockets, inertia, centre, &reduction.wall_compliance, scene)
-        });
-        let kinematics = Kinematics::of(scene);
-        let mut reduction = reduction;
-        let angles = per_angle(&outer);
-        level_walls(&mut reduction.shapes, &angles);
-        reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
-        let frame = scene.solver.damping_frame;
-        let alpha = scene.solver.mass_damping_per_s;
-        // As in the full model, what moves as one piece is not damped by its mass.
-        let undamped = frame == DampingFrame::RigidMotion || scene.housing.is_rigid();
-        let mode_alpha = if undamped { 0.0 } else { alpha };
-        if let Some(frame) = &reduction.frame {
-            for shape in frame.shape.chunks_exact(reduction.padded) {
-                for (row, a) in reduction.dampers.chunks_exact_mut(reduction.padded).zip(shape) {
-                    row.iter_mut().zip(shape).for_each(|(sum, b)| *sum -= mode_alpha * frame.mass * a * b);
-                }
-            }
-        }
-        let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let shapes = in_single(&mut reduction.shapes);
-        let bounds = nearest_about(&outer, BESIDE * radius, 1.0 / (kr - ko));
-        let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
-        let mut outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
-        outer.bounds = bounds;
-        let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
-        let penalty = law.stiffness * g.thickness;
+    /// When oil finds no smooth surface to lie on.
+    pub fn new(modal: ModalBearing, time_step: f64) -> Result<Self, Error> {
+        let ModalBearing { reduction, parameters } = modal;
+        let Parameters { outlines, radii, thickness, contact, damping, .. } = &parameters;
+        let [outer, inner] = tracks(&parameters, &reduction);
+        let rims: Vec<Rim> = outlines.rims.iter().enumerate().map(|(n, rim)| Rim::new(rim, n == 0)).collect();
+        let facets = rims[0].outline.len() as f64;
+        let penalty = contact.stiffness * thickness;
         let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
         let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
-        let oil = Lubrication::new(scene, raceways, &rounded, penalty)?;
-        let seat = reduction.springs.as_mut();
-        let friction = scene.contact.seat_friction;
-        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, friction, time_step));
+        let oil = match &parameters.oil {
+            Some(oil) => Some(Lubrication::new(oil, raceways, &rounded, (penalty, *thickness))?),
+            None => None,
+        };
+        let seat = reduction.springs.as_ref();
+        let seat =
+            seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
+        let cage = match (reduction.cage, &parameters.pockets) {
+            (Some((inertia, centre)), Some(pockets)) => {
+                Some(Cage::new(pockets, inertia, centre, &reduction.wall_compliance))
+            }
+            _ => None,
+        };
+        let shapes = in_single(&reduction.shapes);
+        let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
         Ok(Self {
             time_step,
             seat,
-            rollers: pockets.len(),
-            pockets,
+            rollers: parameters.rollers.len(),
             oil,
             outer,
             inner,
-            vertex_angle,
+            path: radii.outer - radii.roller,
             penalty,
-            sticking: STICKING * law.stiffness * g.thickness,
-            damping: law.damping * g.thickness,
-            friction: scene.contact.friction,
-            arm: radius - 2.0 / 3.0 * sag(radius, n),
-            alpha,
-            mode_alpha,
-            frame,
-            beta: g.stiffness_damping,
-            branches,
-            gravity: g.gravity,
-            outer_turns: scene.operation.outer_turns(),
-            kinematics,
-            duty: scene.varying_duty(),
-            tacho: Tacho::of(scene),
-            cage: cage.flatten(),
+            sticking: STICKING * contact.stiffness * thickness,
+            damping: contact.damping * thickness,
+            friction: contact.friction,
+            arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
+            alpha: damping.mass,
+            mode_alpha: damping.mass_of_modes,
+            frame: damping.frame,
+            beta: damping.stiffness,
+            branches: damping.branches.clone(),
+            gravity: parameters.gravity,
+            outer_turns: parameters.outer_turns,
+            speeds: parameters.speeds,
+            load_at_start: parameters.load_at_start,
+            cage,
             polygon: Polygon::new(rims[0].outline.len(), rims[0].top),
             rims,
-            rim_of,
+            rim_of: parameters.outlines.rim_of,
+            starts: parameters.rollers,
+            duty: parameters.duty,
             shapes,
             farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
             sensors: Sensors::new(&reduction),
@@ -322,10 +243,7 @@ impl Bearing {
     }
 
     /// A state before its first step, not in equilibrium yet.
-    pub fn rest(&self, scene: &Scene) -> State {
-        let g = Geometry::of(scene);
-        let path = g.outer_race_radius - g.roller_radius;
-        let k = &self.kinematics;
+    pub fn rest(&self) -> State {
         let r = self.reduction.padded;
         let n = self.rollers;
         let mut state = State {
@@ -337,8 +255,8 @@ impl Bearing {
             vx: vec![0.0; n],
             vy: vec![0.0; n],
             angle: vec![0.0; n],
-            turned: self.vertex_angle.iter().map(|angle| [angle.cos(), angle.sin()]).collect(),
-            spin: vec![k.roller_rad_s; n],
+            turned: self.starts.iter().map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()]).collect(),
+            spin: vec![self.speeds.roller; n],
             slip: [vec![0.0; n], vec![0.0; n]],
             wall_slip: vec![[0.0; 2]; n],
             passive: [vec![[0.0; 3]; n], vec![[0.0; 3]; n]],
@@ -347,16 +265,16 @@ impl Bearing {
             growth: [vec![0.0; n], vec![0.0; n]],
             hints: [vec![[0; 2]; n], vec![[0; 2]; n]],
             cage: [0.0; 3],
-            cage_velocity: [0.0, 0.0, k.cage_rad_s],
+            cage_velocity: [0.0, 0.0, self.speeds.cage],
             shaft: 0.0,
             work: Default::default(),
             seat: None,
             films: None,
             steps: 0,
         };
-        for (i, &pocket) in self.pockets.iter().enumerate() {
-            let (s, c) = g.roller_angle(pocket).sin_cos();
-            (state.x[i], state.y[i]) = (path * c, path * s);
+        for (i, start) in self.starts.iter().enumerate() {
+            let (s, c) = start.angle.sin_cos();
+            (state.x[i], state.y[i]) = (self.path * c, self.path * s);
         }
         state.seat = self.seat.as_ref().map(|seat| seat.at_rest(r, n));
         state.hints = self.first_hints(&state);
@@ -376,7 +294,7 @@ impl Bearing {
             (0..state.x.len())
                 .map(|i| {
                     let at = state.y[i].atan2(state.x[i]);
-                    let own = at - state.angle[i] - self.vertex_angle[i]
+                    let own = at - state.angle[i] - self.starts[i].vertex_angle
                         + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
                     let of = |angle: f64| [angle.cos(), angle.sin()];
@@ -388,31 +306,58 @@ impl Bearing {
     }
 }
 
-/// A boundary with what deviates from round.
-fn formed(outline: &Outline, relief: Option<&Relief>, circle: Circle) -> Outline {
-    let Some(relief) = relief else { return outline.clone() };
-    let mut vertices: Vec<[f64; 2]> = outline.x.iter().zip(&outline.y).map(|(x, y)| [*x, *y]).collect();
-    let (depth, corners) = (|angle: f64| relief.depth(angle), relief.corners());
-    FormDeviation { depth: &depth, corners: &corners, circle }.of_polygon(&mut vertices);
-    Outline::new(&vertices)
-}
-
-/// Gives both ends of a wall the mean of what belongs to them, vertex by vertex: a roller that passes over it has no height to tell them
-/// apart by.
-fn level_walls(of_vertices: &mut [f64], per_angle: &[f64]) {
-    let n = per_angle.len();
-    let width = of_vertices.len() / n;
-    for (a, _) in per_angle.iter().enumerate().filter(|(_, angle)| **angle == 0.0) {
-        let b = (a + 1) % n;
-        for k in 0..width {
-            let mean = 0.5 * (of_vertices[a * width + k] + of_vertices[b * width + k]);
-            (of_vertices[a * width + k], of_vertices[b * width + k]) = (mean, mean);
-        }
+impl Rim {
+    /// Of vertices from its centre [m]; the first one of a round rim lies on the x axis.
+    fn new(vertices: &[[f64; 2]], round: bool) -> Self {
+        let outline = Outline::new(vertices);
+        let top = if round { outline.x[0] } else { outline.radii().fold(0.0, f64::max) };
+        Self { outline, top }
     }
 }
 
-/// A facet that takes less than this share of the mean angle is a wall.
-const WALL: f64 = 0.05;
+/// Largest distance of a straight facet from the circle through its vertices [m], where facets do not stand for arcs.
+fn sag(parameters: &Parameters, radius: f64, facets: f64) -> f64 {
+    if parameters.outlines.arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
+}
+
+/// The outer and the inner raceway.
+fn tracks(parameters: &Parameters, reduction: &Reduction) -> [Track; 2] {
+    let Parameters { outlines, radii, .. } = parameters;
+    let [kr, ko, ki] = [1.0 / radii.roller, 1.0 / radii.outer, 1.0 / radii.inner];
+    let [outer, inner] = [&outlines.outer, &outlines.inner].map(|vertices| Outline::new(vertices));
+    let sag_of_outer = sag(parameters, radii.outer, outer.len() as f64);
+    let nearest = outer.radii().fold(f64::INFINITY, f64::min) - sag_of_outer;
+    let farthest = inner.radii().fold(0.0, f64::max);
+    let bounds = nearest_about(&outer, BESIDE * radii.roller, 1.0 / (kr - ko));
+    let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
+    let sides = |along: bool, relative: f64| Sides {
+        along,
+        bulge: if outlines.arcs { 0.5 * relative } else { 0.0 },
+        curvature: if outlines.arcs { kr } else { 0.0 },
+    };
+    [
+        Track {
+            sides: sides(true, kr - ko),
+            angle: per_angle(&outlines.outer),
+            outline: outer,
+            curve: reduction.outer_compliance.curve(),
+            compliance: reduction.outer_compliance.clone(),
+            bound: nearest,
+            bounds,
+            relative: 1.0 / (kr - ko),
+        },
+        Track {
+            sides: sides(false, kr + ki),
+            angle: per_angle(&outlines.inner),
+            outline: inner,
+            curve: reduction.inner_compliance.curve(),
+            compliance: reduction.inner_compliance.clone(),
+            bound: farthest,
+            bounds: Vec::new(),
+            relative: 1.0 / (kr + ki),
+        },
+    ]
+}
 
 /// On even ground no contact reaches farther to either side than this share of the roller's radius: it would be a fortieth of it deep.
 const BESIDE: f64 = 0.25;
@@ -449,65 +394,4 @@ fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {
         nearest
     };
     (0..outline.len()).map(about).collect()
-}
-
-/// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls.
-fn per_angle(outline: &Outline) -> Vec<f64> {
-    let n = outline.len();
-    (0..n)
-        .map(|i| {
-            let j = (i + 1) % n;
-            let sine = outline.x[i] * outline.y[j] - outline.y[i] * outline.x[j];
-            let cosine = outline.x[i] * outline.x[j] + outline.y[i] * outline.y[j];
-            let angle = sine.atan2(cosine);
-            if angle > WALL * std::f64::consts::TAU / n as f64 { 1.0 / angle } else { 0.0 }
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use stribeck_testing::ledger::compare;
-
-    use super::*;
-
-    /// A ring of the mass m in a frame of M on soft springs, which bounce against each other: α brakes the ring alone and takes α M/(m + M)
-    /// of such a motion's momentum a second. In a rigid housing it takes nothing. With the housing's mass braked, too, the paper's ring in
-    /// one of 10 kg had 25 dB too little where it bounces on its rollers.
-    /// Source: two masses on a spring, Meirovitch 2001, §5.1.
-    #[test]
-    fn analytic_mass_damping_brakes_no_frame() {
-        const TOLERANCE: f64 = 0.01;
-        let of = |housing: &str| {
-            let text = format!(
-                "(bearing: \"NU 205\", model: reduced(modes_khz: 30), film: None, defect: None, operation: (load_n: 100), housing: {housing},
-                  mesh: (size_mm: 0.7, roller_facets: 64), solver: (mass_damping_per_s: 2000, structural_damping: None))"
-            );
-            let scene = Scene::parse(&text, "here").expect("a sound scene");
-            let reduction = Reduction::new(&scene).expect("modes");
-            Bearing::new(&scene, reduction, 1e-6).expect("a bearing")
-        };
-        let frame = 1.5;
-        let bearing = of("springs(stiffness_n_um: 1, damping_n_s_m: 0, mass_kg: 1.5)");
-        let reduction = &bearing.reduction;
-        let ring = reduction.structure_mass - frame;
-        let hz = (1e6 * (1.0 / ring + 1.0 / frame)).sqrt() / std::f64::consts::TAU;
-        let bounces = |n: &usize| {
-            (reduction.squares[*n].max(0.0).sqrt() / std::f64::consts::TAU / hz - 1.0).abs() < 0.05
-        };
-        // The third turns them against each other.
-        for n in (0..reduction.modes).filter(bounces).take(2) {
-            let braked = bearing.mode_alpha + reduction.dampers[n * reduction.padded + n];
-            let expected = 2000.0 * frame / (ring + frame);
-            compare(
-                "mass damping of a ring in its frame",
-                "two masses on a spring, Meirovitch 2001, §5.1",
-                "1/s",
-                braked,
-                expected,
-                TOLERANCE,
-            );
-        }
-        assert_eq!(of("rigid(mass_kg: 10)").mode_alpha, 0.0);
-    }
 }

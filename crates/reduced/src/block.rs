@@ -94,7 +94,7 @@ pub(crate) struct Contacts {
     pub(crate) shift: Row,
     pub(crate) give: Row,
     pub(crate) reach: Row,
-    /// The piece of the compliance there, as [`crate::compliance::Curve::piece_at`] says.
+    /// The piece of the compliance there, as [`stribeck_modal::compliance::Curve::piece_at`] says.
     pub(crate) knot: Row,
     pub(crate) first: Row,
     pub(crate) slope: Row,
@@ -188,7 +188,7 @@ impl Block {
         }
         if (self.first..self.first + self.count).contains(&anew) {
             let lane = anew - self.first;
-            let (s, c) = (self.angle[lane] + bearing.vertex_angle[anew]).sin_cos();
+            let (s, c) = (self.angle[lane] + bearing.starts[anew].vertex_angle).sin_cos();
             (self.turned[0][lane], self.turned[1][lane]) = (c, s);
         }
     }

@@ -1,17 +1,12 @@
 //! The cage as a reduced bearing has it: a rigid body with the walls of its pockets.
 
-use stribeck_bearing::assembly::CAGE_ELEMENT_MM;
-use stribeck_scene::{
-    geometry::{Geometry, pocket_half_width},
-    scene::{ContactMethod, Scene},
+use stribeck_modal::{
+    compliance::{Compliance, Curve},
+    parameters::Pockets,
 };
 use stribeck_simd::lanes::LANES;
 
-use crate::{
-    compliance::{Compliance, Curve},
-    corner::Corner,
-    row::Rows,
-};
+use crate::{corner::Corner, row::Rows};
 
 /// The cage as a rigid body with corners and walls.
 #[derive(Debug, Clone)]
@@ -76,24 +71,19 @@ impl Wall {
 }
 
 impl Cage {
-    /// Of rollers in these pockets, from its mass and moment of inertia and its centre of mass; `None` without a cage. On a wall rollers give
-    /// way by `compliance`.
+    /// From its pockets, mass and moment of inertia and centre of mass. On a wall rollers give way by `compliance`.
     pub(crate) fn new(
-        g: &Geometry,
-        pockets: &[usize],
+        pockets: &Pockets,
         [mass, inertia]: [f64; 2],
         centre: [f64; 2],
         compliance: &Compliance,
-        scene: &Scene,
-    ) -> Option<Self> {
-        let cage = g.cage.as_ref()?;
-        let path = g.outer_race_radius - g.roller_radius;
-        let [inner, outer] = cage.walls(path, g.roller_radius);
-        let half = pocket_half_width(inner, outer, path, g.roller_radius + cage.pocket_clearance);
+    ) -> Self {
+        let ([inner, outer], half, path) = (pockets.ends, pockets.half_width, pockets.path);
         let walls: Vec<[Wall; 2]> = pockets
+            .angles
             .iter()
-            .map(|&pocket| {
-                let (s, c) = g.pocket_angle(pocket).sin_cos();
+            .map(|angle| {
+                let (s, c) = angle.sin_cos();
                 let wall = |side: f64| {
                     let end = |radius: f64| {
                         let along = (radius * radius - half * half).sqrt();
@@ -105,19 +95,14 @@ impl Cage {
                 [wall(-1.0), wall(1.0)]
             })
             .collect();
-        let points = match scene.contact.method {
-            ContactMethod::Integrated => Some(scene.contact.points_per_facet),
-            ContactMethod::Collocated => None,
-        };
-        let rows = (1e3 * (outer - inner) / CAGE_ELEMENT_MM).round().max(1.0);
         // On the x axis, with the wall on the side of +y.
         let corners = [inner, outer].map(|radius: f64| {
             let along = (radius * radius - half * half).sqrt();
-            Corner::new([along - path, half], (outer - inner) / rows, points)
+            Corner::new([along - path, half], pockets.facet, pockets.points_per_facet)
         });
         let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
         let [before, behind] = [inner, outer].map(|radius: f64| (radius * radius - half * half).sqrt());
         let has_flats = before < path && path < behind;
-        Some(Self { mass, inertia, walls, wall_rows, corners, has_flats, curve: compliance.curve() })
+        Self { mass, inertia, walls, wall_rows, corners, has_flats, curve: compliance.curve() }
     }
 }

@@ -8,17 +8,13 @@ pub enum Error {
     #[error(transparent)]
     Bearing(#[from] stribeck_bearing::error::Error),
 
-    /// Modes cannot be found.
-    #[error("solver: {0}")]
-    Solver(#[from] stribeck_solver::Error),
+    /// The bearing cannot be reduced.
+    #[error(transparent)]
+    Reduction(#[from] stribeck_reduction::error::Error),
 
-    /// Modes of the seat that holds cannot be found.
-    #[error("the modes of outer ring and housing cannot be found: their stiffness is no finite number")]
-    NoModes,
-
-    /// Contact's law has impossible numbers.
+    /// Oil finds no smooth surface to lie on.
     #[error("contact: {0}")]
-    Contact(#[from] stribeck_surface::Error),
+    Surface(#[from] stribeck_surface::Error),
 
     /// Start positions in equilibrium cannot be found.
     #[error(

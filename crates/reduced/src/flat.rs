@@ -1,9 +1,8 @@
 //! A roller on a straight wall of its pocket: what of it lies beyond the wall, in series with what it gives way by (THEORY §9.4).
 
-use crate::{
-    compliance::Curve,
-    polygon::{Polygon, Sunk},
-};
+use stribeck_modal::compliance::Curve;
+
+use crate::polygon::{Polygon, Sunk};
 
 /// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its centre.
 #[derive(Debug, Clone, Copy)]
@@ -78,7 +77,7 @@ pub(crate) fn press(shape: Shape<'_>, distance: f64, penalty: f64, curve: &Curve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compliance::Compliance;
+    use stribeck_modal::compliance::Compliance;
 
     const RADIUS: f64 = 9e-3;
     const PENALTY: f64 = 2e12;

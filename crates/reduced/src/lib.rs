@@ -20,11 +20,6 @@
 
 pub mod simulation;
 
-pub mod cache;
-pub mod compliance;
-pub mod reduction;
-mod structure;
-
 pub mod bearing;
 pub mod outline;
 pub mod overlap;

@@ -39,7 +39,7 @@ impl Bearing {
 
     /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former displaced.
     fn seen_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> Seen {
-        let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
+        let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
         let [x, y] = [state.x[i], state.y[i]];
         let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
         Seen { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }

@@ -2,7 +2,7 @@
 //! to them, and how they move on (THEORY §9.3, §9.4).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
@@ -85,8 +85,7 @@ impl Bearing {
         let (mut first, mut second) = ([zero; 4], [zero; 4]);
         let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
         for (((q, v), (ax, ay)), (bx, by)) in q.iter().zip(v).zip(ahead).zip(behind) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let (q, v) = (Vector::load(simd, q, at), Vector::load(simd, v, at));
                 let (x, y) = (ax.load(simd, at), ay.load(simd, at));
                 first[0] = x.times_plus(q, first[0]);
@@ -98,7 +97,6 @@ impl Bearing {
                 second[1] = y.times_plus(q, second[1]);
                 second[2] = x.times_plus(v, second[2]);
                 second[3] = y.times_plus(v, second[3]);
-                at += Vector::<S>::LEN;
             }
         }
         let share = Vector::all(simd, place.share);
@@ -125,14 +123,12 @@ impl Bearing {
         let (sx, sy) = (Vector::all(simd, second * force[0]), Vector::all(simd, second * force[1]));
         let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
         for ((push, (ax, ay)), (bx, by)) in push.iter_mut().zip(ahead).zip(behind) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let here = ax.load(simd, at).times_plus(fx, Vector::load(simd, push, at));
                 let here = ay.load(simd, at).times_plus(fy, here);
                 let there = bx.load(simd, at) * sx;
                 let there = by.load(simd, at).times_plus(sy, there);
                 (here + there).store(push, at);
-                at += Vector::<S>::LEN;
             }
         }
     }
@@ -160,11 +156,9 @@ impl Bearing {
         for (column, v) in columns.zip(v.iter().flat_map(|row| row.iter())) {
             let v = Vector::all(simd, *v);
             for (drag, column) in drag.iter_mut().zip(column) {
-                let mut at = 0;
-                while at < LANES {
+                for at in vector_starts(simd) {
                     let sum = Vector::load(simd, column, at).times_plus(v, Vector::load(simd, drag, at));
                     sum.store(drag, at);
-                    at += Vector::<S>::LEN;
                 }
             }
         }

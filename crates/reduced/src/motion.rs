@@ -1,7 +1,7 @@
 //! A reduced bearing as the time loop drives it: samples, ledger, guards, checkpoint.
 
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::{error::Error, time_loop};
+use stribeck_bearing::{error::Error, recorder::Tacho, time_loop};
 use stribeck_scene::{run_info::RunInfo, scene::Scene};
 use stribeck_system::{Balance, Ledger, Scale};
 
@@ -22,6 +22,7 @@ pub struct Motion {
     guards: Guards,
     row: Vec<f64>,
     off: LedgerError,
+    tacho: Tacho,
 }
 
 /// What a checkpoint holds of it.
@@ -89,6 +90,7 @@ impl Motion {
             guards: Guards::new(scene),
             row: Vec::new(),
             off: LedgerError::default(),
+            tacho: Tacho::of(scene),
         }
     }
 
@@ -114,12 +116,13 @@ impl time_loop::Motion for Motion {
     type Saved = Saved;
 
     fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
-        let Self { bearing, saved: Saved { state, memory, .. }, scratch, row, .. } = self;
+        let Self { bearing, saved: Saved { state, memory, .. }, scratch, row, tacho, .. } = self;
         scratch.begin(bearing, state.steps / steps as u64);
         bearing.advance(state, scratch, steps - 1, false);
         bearing.advance(state, scratch, 1, true);
         scratch.show(state);
         bearing.row(state, scratch, memory, row);
+        row.extend(tacho.sample(state.steps as f64 * bearing.time_step));
         let mut ledger = self.ledger();
         self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);
         self.off = LedgerError::of(&ledger);

@@ -8,14 +8,10 @@ mod nearest;
 
 use serde::{Deserialize, Serialize};
 use stribeck_film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
-use stribeck_scene::{
-    geometry::Geometry,
-    lubrication::{self, LoadedFilm},
-    scene::Scene,
-};
+use stribeck_modal::{compliance::Compliance, parameters as modal};
 use stribeck_surface::Error as SurfaceError;
 
-use crate::{compliance::Compliance, error::Error, outline::Outline};
+use crate::{error::Error, outline::Outline};
 use give::Give;
 pub(crate) use nearest::Seen;
 use nearest::{Curved, Nearest, Rim};
@@ -98,25 +94,22 @@ pub(crate) struct Lifted {
 }
 
 impl Lubrication {
-    /// The oil of a scene between the outer and the inner raceway and these rims, the first of which is round, on a penalty [N/m²];
-    /// `None` without any.
+    /// Oil between the outer and the inner raceway and these rims, the first of which is round, on a penalty [N/m²] of bodies of a
+    /// thickness [m].
     pub(crate) fn new(
-        scene: &Scene,
+        oil: &modal::Oil,
         raceways: [(&Outline, &Compliance); 2],
         rims: &[&Outline],
-        penalty: f64,
-    ) -> Result<Option<Self>, Error> {
-        let g = Geometry::of(scene);
-        let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(None) };
-        let [round, others @ ..] = rims else { return Ok(None) };
-        let curvature = Curved::rim(round)?.lands[0].curvature;
+        (penalty, thickness): (f64, f64),
+    ) -> Result<Self, Error> {
+        let curvature = Curved::rim(rims[0])?.lands[0].curvature;
         let race = |name: &str,
                     (outline, compliance),
                     hollow,
-                    loaded: LoadedFilm|
+                    loaded: modal::Film|
          -> Result<Raceway, Error> {
             let curved = Curved::new(name, outline, hollow)?;
-            let oil = Oil { viscosity: film.viscosity, least: loaded.least };
+            let oil = Oil { viscosity: oil.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
                 if relative <= 0.0 {
@@ -124,21 +117,21 @@ impl Lubrication {
                     return Err(SurfaceError::BadSurface { name: name.to_owned(), reason });
                 }
                 let give = Give::new(penalty, 1.0 / relative, compliance);
-                Ok(FilmLaw::new(oil, 1.0 / relative, g.thickness, give))
+                Ok(FilmLaw::new(oil, 1.0 / relative, thickness, give))
             };
             let films = curved.lands.iter().map(law).collect::<Result<_, _>>()?;
             Ok(Raceway { curved, films, speed: loaded.speed })
         };
-        let ([outer, inner], [on_outer, on_inner]) = (raceways, loaded);
+        let [outer, inner] = raceways;
         let formed = |outline: &&Outline| Curved::rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
-        let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
-        Ok(Some(Self {
+        let others = rims[1..].iter().map(formed).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self {
             raceways: [
-                race("outer raceway", outer, true, on_outer)?,
-                race("inner raceway", inner, false, on_inner)?,
+                race("outer raceway", outer, true, oil.outer)?,
+                race("inner raceway", inner, false, oil.inner)?,
             ],
-            rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
-        }))
+            rims: std::iter::once(Rim::Round(rims[0].x[0])).chain(others).collect(),
+        })
     }
 
     /// The rim of this number.

@@ -59,6 +59,11 @@ impl Outline {
         [&self.back[0], &self.back[1]]
     }
 
+    /// Distances of the vertices from the origin [m].
+    pub(crate) fn radii(&self) -> impl Iterator<Item = f64> {
+        self.x.iter().zip(&self.y).map(|(x, y)| x.hypot(*y))
+    }
+
     /// Vertices.
     pub fn len(&self) -> usize {
         self.x.len()

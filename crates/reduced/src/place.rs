@@ -1,7 +1,7 @@
 //! Where rollers are by both raceways, the outer one moved with the modes (THEORY §9.3).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
@@ -63,8 +63,7 @@ impl Bearing {
         self.see_moved(simd, block);
         // Where a raceway turns, everything is turned back.
         let [on_outer, on_inner] = &mut block.contacts;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let (centre, spin) = (load(simd, &block.centre, at), load(simd, &block.turned, at));
             let by = load(simd, &block.by, at);
             let moved = [centre[0] - by[0], centre[1] - by[1]];
@@ -80,7 +79,6 @@ impl Bearing {
                 store(turning.back(simd, centre), &mut contacts.centre, at);
                 store(turning.back(simd, spin), &mut contacts.spin, at);
             }
-            at += Vector::<S>::LEN;
         }
     }
 
@@ -98,8 +96,7 @@ impl Bearing {
         let (zero, one, dt) = (all(0.0), all(1.0), all(self.time_step));
         let race = all(outer.map_or(0.0, |outer| outer.rate.abs()));
         let mut clear = 0;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let [vx, vy] = load(simd, &block.velocity, at);
             let [tx, ty] = load(simd, &block.tilt, at);
             let speed = vx.times_plus(vx, vy * vy).sqrt();
@@ -112,7 +109,6 @@ impl Bearing {
             let is_clear = (speed.times_plus(dt, drift) + most).choose_below(zero, one, zero);
             all(0.5).choose_below(is_clear, drift, zero).store(&mut block.drift, at);
             clear |= is_clear.bits() << at;
-            at += Vector::<S>::LEN;
         }
         if self.oil.is_some() { 0 } else { clear }
     }
@@ -120,8 +116,7 @@ impl Bearing {
     /// How the outer raceway moves under eight rollers, by what modes and seat displace.
     #[inline(always)]
     fn see_moved<S: Simd>(&self, simd: S, block: &mut Block) {
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let of = |row: &Row| Vector::load(simd, row, at);
             let [bx, by, vx, vy, dx, dy, first, second] = &block.moved;
             let (share, per_angle) = (of(&block.share), of(&block.per_angle));
@@ -139,7 +134,6 @@ impl Bearing {
             store(by, &mut block.by, at);
             store(tilt, &mut block.tilt, at);
             store(moving, &mut block.moving, at);
-            at += Vector::<S>::LEN;
         }
     }
 
@@ -149,8 +143,7 @@ impl Bearing {
     fn see_facets<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<Turning>) -> u64 {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         let mut still = 0;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let [x, y] = load(simd, &block.centre, at);
             let distance = x.times_plus(x, y * y).sqrt();
             let radial = [x / distance, y / distance];
@@ -168,7 +161,6 @@ impl Bearing {
             let share = (a / (a - b)).max(zero).min(one);
             a.choose_below(b, share, zero).store(&mut block.share, at);
             still |= holds.bits() << at;
-            at += Vector::<S>::LEN;
         }
         block.bits & !(still & block.placed)
     }

@@ -1,7 +1,7 @@
 //! A roller in a pocket of the cage (THEORY §9.4).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
@@ -160,8 +160,7 @@ impl Bearing {
         let (c, s) = (all(placed.turn[0]), all(placed.turn[1]));
         let from_cage = [all(placed.at[0] + middle[0]), all(placed.at[1] + middle[1])];
         let mut touch = 0;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let [x, y] = load(simd, centre, at);
             let [x, y] = [x - from_cage[0], y - from_cage[1]];
             let own = [c.times_plus(x, s * y), c.times_plus(y, -(s * x))];
@@ -184,7 +183,6 @@ impl Bearing {
             keep(slip).store(&mut walls.slip, at);
             keep(drag).store(&mut walls.passive[0], at);
             keep(damping).store(&mut walls.passive[1], at);
-            at += Vector::<S>::LEN;
         }
         touch
     }

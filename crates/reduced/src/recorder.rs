@@ -70,7 +70,6 @@ impl Bearing {
             row.extend([centre[0] + state.cage[0], centre[1] + state.cage[1], state.cage[2]]);
         }
         row.extend(self.seat_force(&scratch.modes.tension).into_iter().flatten());
-        row.extend(self.tacho.sample(state.steps as f64 * dt));
     }
 
     /// Force of the housing on the outer ring that sits in it [N].

@@ -3,7 +3,7 @@
 use std::ops::{Deref, DerefMut};
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 /// A number of each of eight, in one line of cache.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,9 +47,8 @@ impl Deref for Single {
     }
 }
 
-/// Rounds a table to single precision, and lists it in rows.
-pub(crate) fn in_single(table: &mut [f64]) -> Vec<Single> {
-    table.iter_mut().for_each(|number| *number = f64::from(*number as f32));
+/// A table in single precision, in rows.
+pub(crate) fn in_single(table: &[f64]) -> Vec<Single> {
     table.as_chunks::<LANES>().0.iter().map(|row| Single(row.map(|number| number as f32))).collect()
 }
 
@@ -100,11 +99,9 @@ pub(crate) fn of_one(from: &Rows, lane: usize) -> [f64; 2] {
 pub(crate) fn largest_sum<S: Simd>(simd: S, sizes: &[Row], others: &[Row]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (size, other) in sizes.iter().zip(others) {
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let other = Vector::load(simd, other, at);
             sum = Vector::load(simd, size, at).times_plus(other.max(-other), sum);
-            at += Vector::<S>::LEN;
         }
     }
     sum.sum()

@@ -4,7 +4,7 @@
 //! other or the middle of the contact, every fifty steps or so; in between their vertices only have to be seen anew, all in vectors.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     outline::{Facet, View},
@@ -61,8 +61,7 @@ impl Seam {
         // All parts may lie on one side of what is looked for.
         let every = (1 << Vector::<S>::LEN) - 1;
         let (mut before, mut behind, mut middle, mut wrong) = (every, every, 0, 0);
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             for group in 0..self.groups {
                 let at = LANES * group + at;
                 let column = |n: usize| Vector::load(simd, &self.columns[n], at);
@@ -79,7 +78,6 @@ impl Seam {
                 let present = Vector::load(simd, &self.present, at);
                 add_between(&mut sum, ends, roller, raceway, sides, shift, present);
             }
-            at += Vector::<S>::LEN;
         }
         sum.store(found, 0);
         wrong == 0 && before != every && behind != every && (middle >> self.middle) & 1 == 1

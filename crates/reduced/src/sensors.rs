@@ -1,9 +1,10 @@
 //! What sensors hear: the modes, and beyond them what rollers press and what the seat does (THEORY §9.1).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_modal::Reduction;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::{heard::Heard, reduction::Reduction, row::Row, seat::Hold, state::State};
+use crate::{heard::Heard, row::Row, seat::Hold, state::State};
 
 /// What moves sensors, each with the components of all of them side by side: x and y of the first, then of the next one, filled up with
 /// zeros to whole rows.
@@ -63,7 +64,7 @@ impl Sensors {
         let (mut by_gap, mut by_tension) = (Vec::new(), Vec::new());
         if let Some(seat) = springs {
             for panel in 0..seat.panels {
-                let of = |spring: usize| seat.heard.iter().flat_map(move |heard| heard[spring]);
+                let of = |spring: usize| seat.at_sensors.iter().flat_map(move |sensor| sensor[spring]);
                 by_gap.extend(row_of(&mut of(panel).map(|heard| -seat.across[panel] * heard)));
                 by_tension.extend(row_of(&mut of(seat.padded + panel)));
             }
@@ -88,8 +89,7 @@ impl Sensors {
         self.hear_modes(simd, state, sound);
         sound.beyond.resize(self.rows, Row::default());
         for (row, beyond) in sound.beyond.iter_mut().enumerate() {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let of = |table: &[Row], n: usize| Vector::load(simd, &table[self.rows * n + row], at);
                 // Four sums, none of which waits for another.
                 let (mut ahead, mut behind, mut by_gaps, mut by_tensions) =
@@ -113,7 +113,6 @@ impl Sensors {
                     }
                 }
                 ((ahead + behind) + (by_gaps + by_tensions)).store(beyond, at);
-                at += Vector::<S>::LEN;
             }
         }
     }
@@ -123,8 +122,7 @@ impl Sensors {
     pub(crate) fn hear_modes<S: Simd>(&self, simd: S, state: &State, sound: &mut Sound) {
         sound.velocity.resize(self.rows, Row::default());
         for (row, velocity) in sound.velocity.iter_mut().enumerate() {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let of = |mode: usize| Vector::load(simd, &self.by_mode[self.rows * mode + row], at);
                 let (mut even, mut odd) = (Vector::all(simd, 0.0), Vector::all(simd, 0.0));
                 for (pair, [v, w]) in state.v.as_chunks().0.iter().enumerate() {
@@ -132,7 +130,6 @@ impl Sensors {
                     odd = of(2 * pair + 1).times_plus(Vector::all(simd, *w), odd);
                 }
                 (even + odd).store(velocity, at);
-                at += Vector::<S>::LEN;
             }
         }
     }

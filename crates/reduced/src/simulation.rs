@@ -15,13 +15,14 @@ use stribeck_scene::{
     scene::{ModelScene, ReducedScene, Scene},
 };
 
+use stribeck_modal::{ModalBearing, Reduction};
+use stribeck_reduction::{cache, dense, modal_bearing};
+
 use crate::{
     bearing::Bearing,
-    cache,
     error::Error,
     guards::Guards,
     motion::{Motion, Saved},
-    reduction::Reduction,
     state::State,
 };
 
@@ -39,21 +40,22 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     let started = (host.wall_s)();
     let mut progress = Progress::begin();
     let _ = watch(&progress);
-    let (reduction, from_cache) = cache::reduction(scene, dir.path().parent())?;
+    let (mesh, from_cache) = cache::reduced_mesh(scene, dir.path().parent())?;
     progress.phase = "preload";
     let _ = watch(&progress);
+    let reduction = mesh.reduction;
     let summary = ReducedInfo {
         modes: reduction.modes,
         highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / std::f64::consts::TAU,
         from_cache,
     };
-    let assembly = Assembly::of(scene, &reduction.parts)?;
+    let assembly = Assembly::of(scene, &mesh.parts)?;
     let [_, up] = scene.load_direction();
     let expected = scene.duty().mean_load_n(Geometry::of(scene).duration)
         - up * scene.operation.gravity_m_s2 * reduction.structure_mass;
     let (bearing, steps) = in_steps(scene, reduced, reduction)?;
     let (step, most) = (bearing.time_step, bearing.critical_time_step());
-    let state = bearing.at_start(scene)?;
+    let state = bearing.at_start(&dense::solve)?;
     let setup = Setup {
         time_step: step,
         critical_time_step: most,
@@ -64,7 +66,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     };
     let mut info = setup.info(scene, host);
     info.reduced = Some(summary);
-    info.warnings.extend(bearing.reduction.warning.clone());
+    info.warnings.extend(mesh.warning.clone());
     if step < 1e-6 * reduced.step_us && most < 1e-6 * reduced.step_us {
         info.warnings.push(format!(
             "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} µs. A smaller `model.modes_khz` or \
@@ -76,7 +78,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
     }
     info.warnings.extend(Guards::before(scene, &bearing));
     dir.start(scene, &info)?;
-    write_mesh(&assembly, scene, &bearing, &state, dir)?;
+    write_mesh(&assembly, scene, &mesh.moved, &state, dir)?;
     let saved = Saved::first(&bearing, state);
     let motion = Motion::new(scene, bearing, saved);
     Ok(Run::start(scene, motion, info, dir)?.finish(dir, &on_one_thread(host), progress, watch)?)
@@ -92,21 +94,22 @@ pub fn steps_in_a_sample(scene: &Scene, runs: Option<&Path>) -> Result<usize, Er
         ModelScene::Reduced(reduced) => reduced.clone(),
         ModelScene::Full => ReducedScene::default(),
     };
-    let (reduction, _) = cache::reduction(scene, runs)?;
-    Ok(in_steps(scene, &reduced, reduction)?.1)
+    let (mesh, _) = cache::reduced_mesh(scene, runs)?;
+    Ok(in_steps(scene, &reduced, mesh.reduction)?.1)
 }
 
 /// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there are in a sample.
 fn in_steps(scene: &Scene, reduced: &ReducedScene, reduction: Reduction) -> Result<(Bearing, usize), Error> {
     let interval = Geometry::of(scene).interval;
     let steps = steps_per_sample(scene, 1e-6 * reduced.step_us);
-    let bearing = Bearing::new(scene, reduction, interval / steps as f64)?;
+    let modal: ModalBearing = modal_bearing(scene, reduction)?;
+    let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
     let most = bearing.critical_time_step();
     if bearing.time_step <= most {
         return Ok((bearing, steps));
     }
     let steps = steps_per_sample(scene, most);
-    Ok((Bearing::new(scene, bearing.reduction, interval / steps as f64)?, steps))
+    Ok((Bearing::new(modal, interval / steps as f64)?, steps))
 }
 
 /// Continues the run in `dir` from its checkpoint, as [`stribeck_bearing::simulation::resume`].
@@ -157,9 +160,9 @@ fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Resul
     let Checkpoint { mut info, motion: saved } = read_saved::<Saved>(dir, &scene)?;
     let progress = Progress::begin();
     let _ = watch(&progress);
-    let (reduction, _) = cache::reduction(&scene, dir.path().parent())?;
-    let elsewhere = info.mesh != Assembly::of(&scene, &reduction.parts)?.mesh_info();
-    let bearing = Bearing::new(&scene, reduction, info.time_step_s)?;
+    let (mesh, _) = cache::reduced_mesh(&scene, dir.path().parent())?;
+    let elsewhere = info.mesh != Assembly::of(&scene, &mesh.parts)?.mesh_info();
+    let bearing = Bearing::new(modal_bearing(&scene, mesh.reduction)?, info.time_step_s)?;
     if elsewhere || !saved.fits(&bearing) {
         return Err(stribeck_bearing::error::Error::Resume {
             path: dir.path().to_owned(),
@@ -182,17 +185,17 @@ fn go_on(dir: &RunDir, scene: Scene, host: &Host<'_>, watch: Watch<'_>) -> Resul
 fn write_mesh(
     assembly: &Assembly,
     scene: &Scene,
-    bearing: &Bearing,
+    moved: &[[f64; 2]],
     state: &State,
     dir: &RunDir,
 ) -> Result<(), Error> {
     let (g, mesh) = (Geometry::of(scene), &assembly.model.mesh);
-    let mut moved = bearing.reduction.moved.clone();
+    let mut moved = moved.to_vec();
     moved.resize(mesh.x.len(), [0.0; 2]);
     let rollers = mesh.bodies.iter().filter(|body| body.name.starts_with("roller "));
-    for ((body, &pocket), (x, y)) in rollers.zip(&bearing.pockets).zip(state.x.iter().zip(&state.y)) {
+    for ((body, number), (x, y)) in rollers.zip(scene.rollers_in_place()).zip(state.x.iter().zip(&state.y)) {
         let path = g.outer_race_radius - g.roller_radius;
-        let (s, c) = g.roller_angle(pocket).sin_cos();
+        let (s, c) = g.roller_angle(number - 1).sin_cos();
         moved[body.nodes.clone()].fill([x - path * c, y - path * s]);
     }
     let file = mesh_file(assembly, &|node| {
@@ -221,14 +224,4 @@ fn on_one_thread<'a>(host: &Host<'a>) -> Host<'a> {
 fn steps_per_sample(scene: &Scene, longest: f64) -> usize {
     // A quotient of 5.000…1 is no sixth step.
     (1e-6 * scene.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize
-}
-
-impl Reduction {
-    /// The modes that a scene asks for [kHz].
-    pub(crate) fn khz(scene: &Scene) -> f64 {
-        match &scene.model {
-            ModelScene::Reduced(reduced) => reduced.modes_khz,
-            ModelScene::Full => ReducedScene::default().modes_khz,
-        }
-    }
 }

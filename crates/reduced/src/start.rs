@@ -1,11 +1,14 @@
 //! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
 
-use faer::{Mat, linalg::solvers::Solve};
 use pulp::Scalar;
-use stribeck_scene::{duty::Duty, scene::Scene};
+use stribeck_duty::Duty;
 use stribeck_simd::lanes::Vector;
 
 use crate::{bearing::Bearing, error::Error, oil::Films, state::State, touch::Near};
+
+/// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings the solver, so that this
+/// crate needs none.
+pub type Solve<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<f64>;
 
 /// Newton iterations for modes and rollers.
 const ITERATIONS: usize = 200;
@@ -28,21 +31,21 @@ impl Bearing {
     ///
     /// # Errors
     /// When the iteration does not converge.
-    pub fn at_start(&self, scene: &Scene) -> Result<State, Error> {
-        let mut state = self.rest(scene);
-        self.equilibrium(scene, &mut state)?;
+    pub fn at_start(&self, solve: Solve<'_>) -> Result<State, Error> {
+        let mut state = self.rest();
+        self.equilibrium(solve, &mut state)?;
         if let Some(seat) = &self.seat {
             // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction holds it.
             for _ in 0..SEATINGS {
                 let State { seat: hold, q, .. } = &mut state;
                 hold.iter_mut().for_each(|hold| seat.slip(hold, q));
-                self.equilibrium(scene, &mut state)?;
+                self.equilibrium(solve, &mut state)?;
             }
         }
         let half = 0.5 * self.time_step;
         for i in 0..self.rollers {
             let [x, y] = [state.x[i], state.y[i]];
-            let (orbit, square) = (self.kinematics.cage_rad_s, self.kinematics.cage_rad_s.powi(2));
+            let (orbit, square) = (self.speeds.cage, self.speeds.cage.powi(2));
             (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
         }
         state.hints = self.first_hints(&state);
@@ -52,18 +55,16 @@ impl Bearing {
     }
 
     /// Brings modes and rollers into equilibrium while the seat stays as it is.
-    fn equilibrium(&self, scene: &Scene, state: &mut State) -> Result<(), Error> {
+    fn equilibrium(&self, solve: Solve<'_>, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
-        let k = &self.kinematics;
-        let at_start = scene.duty().load_n(0.0);
-        let load = at_start.max(1.0);
+        let load = self.load_at_start.max(1.0);
         let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
         let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers];
         let (mut farthest, mut last) = (FARTHEST, vec![0.0; r]);
         for iteration in 0..ITERATIONS {
             let mut force = self.reduction.constant.clone();
-            let mut matrix = Mat::<f64>::zeros(r, r);
+            let mut matrix = vec![0.0; r * r];
             if let Some(hold) = &state.seat {
                 force.iter_mut().zip(&hold.push).for_each(|(force, push)| *force += push);
             }
@@ -71,7 +72,7 @@ impl Bearing {
                 force[n] += further[0] * self.reduction.load.along[n]
                     + further[1] * self.reduction.load.across[n]
                     - self.reduction.squares[n] * state.q[n];
-                matrix[(n, n)] = self.reduction.squares[n] + HOLD;
+                matrix[n * r + n] = self.reduction.squares[n] + HOLD;
             }
             for i in 0..self.rollers {
                 let angle = state.y[i].atan2(state.x[i]);
@@ -80,7 +81,7 @@ impl Bearing {
                 let moved = self.shapes_under(state, i, [c, s], under);
                 let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
                 // The roller's own balance: pressed outwards by the inner raceway and its orbit.
-                let inertia = |rho: f64| mass * (k.cage_rad_s * k.cage_rad_s * rho - self.gravity * s);
+                let inertia = |rho: f64| mass * (self.speeds.cage * self.speeds.cage * rho - self.gravity * s);
                 let mut at = state.x[i].hypot(state.y[i]);
                 let balance = |state: &mut State, rho: f64| {
                     (state.x[i], state.y[i]) = (rho * c, rho * s);
@@ -130,14 +131,13 @@ impl Bearing {
                 for n in 0..r {
                     force[n] += outer * radial[n];
                     for m in 0..r {
-                        matrix[(n, m)] += together * radial[n] * radial[m];
+                        matrix[n * r + m] += together * radial[n] * radial[m];
                     }
                 }
             }
             // A motion that nothing resists, the turn of ring and adapter, is left to inertia.
-            let step = matrix.partial_piv_lu().solve(&Mat::from_fn(r, 1, |n, _| force[n]));
-            let residual = (0..r).map(|n| (force[n] * step[(n, 0)]).abs()).sum::<f64>();
-            let step: Vec<f64> = (0..r).map(|n| step[(n, 0)]).collect();
+            let step = solve(&matrix, &force);
+            let residual = (0..r).map(|n| (force[n] * step[n]).abs()).sum::<f64>();
             let along =
                 |shapes: &[f64]| shapes.iter().zip(&step).map(|(shape, step)| shape * step).sum::<f64>();
             let moves = shapes.chunks_exact(2 * r).map(|both| along(&both[..r]).hypot(along(&both[r..])));
@@ -190,7 +190,7 @@ impl Bearing {
 
     /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
+        let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
         let (ss, sc) = state.shaft.sin_cos();
         let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
         let centre = [state.x[i], state.y[i]];

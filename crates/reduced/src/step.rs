@@ -4,8 +4,8 @@
 //! roller after the other.
 
 use pulp::{Arch, Simd, WithSimd};
-use stribeck_scene::scene::DampingFrame;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_modal::parameters::DampingFrame;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
@@ -119,7 +119,7 @@ impl Bearing {
         let dt = self.time_step;
         let mut energy = Stored::default();
         scratch.modes.begin(state, &self.reduction.constant);
-        let (mut rate, mut outer_rate) = (self.kinematics.shaft_rad_s, self.kinematics.outer_rad_s);
+        let (mut rate, mut outer_rate) = (self.speeds.shaft, self.speeds.outer);
         let mut outer_angle = outer_rate * dt * state.steps as f64;
         let mut further = [0.0; 2];
         if let Some(duty) = &self.duty {
@@ -272,8 +272,7 @@ impl Bearing {
         let (arm, rate) = (all(self.arm), all(inner.rate));
         let size = |number: Vector<S>| number.max(-number);
         let [on_outer, on_inner] = &mut block.contacts;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let distance = Vector::load(simd, &block.distance, at);
             let (centre, radial) = (load(simd, &block.centre, at), load(simd, &block.radial, at));
             let (velocity, spin) = (load(simd, &block.velocity, at), Vector::load(simd, &block.spin, at));
@@ -319,7 +318,6 @@ impl Bearing {
             // What the roller does to the ring, the drive makes good.
             sums.drive[1] = sums.drive[1] + centre[0] * fy - centre[1] * fx + by_inner.moment;
             (by_outer.moment + by_inner.moment).store(&mut block.moment, at);
-            at += Vector::<S>::LEN;
         }
     }
 
@@ -339,8 +337,7 @@ impl Bearing {
         let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(self.time_step / (1.0 + h)));
         let resisted = all(self.alpha * self.time_step * mass);
         let weight = all(self.gravity * mass);
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let present = Vector::load(simd, &block.present, at);
             let mut force = load(simd, &block.downhill, at);
             force[1] = force[1] - present * weight;
@@ -388,7 +385,6 @@ impl Bearing {
             let by = dt * new[2];
             (Vector::load(simd, &block.angle, at) + by).store(&mut block.angle, at);
             store(turn_by(load(simd, &block.turned, at), by), &mut block.turned, at);
-            at += Vector::<S>::LEN;
         }
     }
 }

@@ -2,7 +2,7 @@
 //! rollers side by side, and one by itself where its force is far from what was expected.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::{Bearing, Rim, Track},
@@ -72,8 +72,7 @@ impl Bearing {
         let zero = all(0.0);
         let outwards = all(track.outwards());
         let mut deep = 0;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let [x, y] = load(simd, &contacts.centre, at);
             let distance = x.times_plus(x, y * y).sqrt();
             let per = outwards / distance;
@@ -85,16 +84,13 @@ impl Bearing {
             store(turned_back(load(simd, &contacts.spin, at), d), &mut contacts.own, at);
             most.store(&mut contacts.most, at);
             deep |= zero.bits_below(most) << at;
-            at += Vector::<S>::LEN;
         }
         contacts.near = deep & present;
         if contacts.near == 0 {
-            at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 (-Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
                 zero.store(&mut contacts.force, at);
                 zero.store(&mut contacts.normal, at);
-                at += Vector::<S>::LEN;
             }
             return;
         }
@@ -115,12 +111,10 @@ impl Bearing {
             contacts.shift[lane] = found.given;
             contacts.overlap.set(lane, &found.overlap);
         }
-        at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let normal = Vector::load(simd, &contacts.normal, at);
             (normal - Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
             normal.store(&mut contacts.force, at);
-            at += Vector::<S>::LEN;
         }
     }
 
@@ -129,14 +123,12 @@ impl Bearing {
     fn expect<S: Simd>(&self, simd: S, track: &Track, contacts: &mut Contacts) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, half) = (all(0.0), all(0.5));
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let (force, growth) =
                 (Vector::load(simd, &contacts.force, at), Vector::load(simd, &contacts.growth, at));
             let start = (force + growth).max(zero);
             start.store(&mut contacts.start, at);
             start.sqrt().store(&mut contacts.root, at);
-            at += Vector::<S>::LEN;
         }
         for lane in lanes(contacts.near) {
             let [knot, first, slope, next] = track.curve.piece_at(contacts.root[lane]);
@@ -145,9 +137,8 @@ impl Bearing {
             contacts.slope[lane] = slope;
             contacts.next[lane] = next;
         }
-        let mut at = 0;
         let mut reaches = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let (start, root) =
                 (Vector::load(simd, &contacts.start, at), Vector::load(simd, &contacts.root, at));
             let (knot, first) =
@@ -160,7 +151,6 @@ impl Bearing {
             (half * root).times_plus(slope, g).store(&mut contacts.give, at);
             track.reach(depth).store(&mut contacts.reach, at);
             reaches |= zero.bits_below(depth) << at;
-            at += Vector::<S>::LEN;
         }
         // Where nothing would overlap at that force, the search begins without one.
         for lane in lanes(contacts.near & !reaches) {
@@ -220,8 +210,7 @@ impl Bearing {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
         let mut again = 0;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let near = Vector::ones(simd, contacts.near >> at);
             let shift = Vector::load(simd, &contacts.shift, at);
             let start = Vector::load(simd, &contacts.start, at);
@@ -257,7 +246,6 @@ impl Bearing {
             give.store(&mut contacts.give, at);
             (shift + further).store(&mut contacts.shift, at);
             found.shifted(further, now).store(&mut contacts.overlap, at);
-            at += Vector::<S>::LEN;
         }
         again
     }

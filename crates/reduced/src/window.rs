@@ -1,7 +1,7 @@
 //! Eight facets of a boundary about a contact, seen at once: in vectors, and only where all of them go by with growing u.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::outline::{Facet, PAD, Parts, View};
 
@@ -40,8 +40,7 @@ impl Window {
         let (dx, dy, minus) = (all(view.d[0]), all(view.d[1]), all(-view.d[1]));
         let (cx, cy) = (all(view.from[0]), all(view.from[1]));
         let mut rising = 0;
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let (x0, y0) = (Vector::load(simd, x, at) - cx, Vector::load(simd, y, at) - cy);
             let (x1, y1) = (Vector::load(simd, x, at + 1) - cx, Vector::load(simd, y, at + 1) - cy);
             let (u0, u1) = (minus.times_plus(x0, dx * y0), minus.times_plus(x1, dx * y1));
@@ -53,7 +52,6 @@ impl Window {
             slope.store(&mut self.slope, at);
             (-slope).times_plus(u0, h0).store(&mut self.base, at);
             rising |= all(0.0).bits_below(width) << at;
-            at += Vector::<S>::LEN;
         }
         rising == (1 << LANES) - 1
     }
@@ -67,10 +65,9 @@ impl Window {
     #[inline(always)]
     fn first<S: Simd>(&self, simd: S, start: f64) -> usize {
         let start = Vector::all(simd, start);
-        let (mut ahead, mut at) = (0, 0);
-        while at < LANES {
+        let mut ahead = 0;
+        for at in vector_starts(simd) {
             ahead += start.bits_below(Vector::load(simd, &self.to, at)).count_ones();
-            at += Vector::<S>::LEN;
         }
         LANES - ahead as usize
     }

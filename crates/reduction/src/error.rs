@@ -18,7 +18,7 @@ pub enum Error {
 
     /// Contact's law has impossible numbers.
     #[error("contact: {0}")]
-    Contact(#[from] stribeck_contact::Error),
+    Contact(#[from] stribeck_surface::Error),
 }
 
 impl From<stribeck_scene::Error> for Error {

@@ -26,6 +26,7 @@
 //! | What do raceway, sensors and loads become? | `raceway.rs`, `sensors.rs`, `loads.rs` |
 //! | How do bodies give way beside a contact? | `compliances.rs`, `local_contact.rs` |
 //! | What does a scene add? | `parameters.rs` |
+//! | How is a dense system solved, for the equilibrium at the start? | `dense.rs` |
 //! | Which reductions are kept, and for which scenes do they serve? | `cache.rs` |
 
 mod reduce;
@@ -40,6 +41,7 @@ mod sensors;
 mod structure;
 
 pub mod cache;
+pub mod dense;
 mod parameters;
 
 pub mod error;

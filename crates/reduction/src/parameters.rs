@@ -1,7 +1,7 @@
 //! The numbers that a scene adds to a reduction, and the tables of a step rounded for them.
 
 use stribeck_bearing::assembly::CAGE_ELEMENT_MM;
-use stribeck_contact::Law;
+use stribeck_surface::Law;
 use stribeck_mesh::{Circle, FormDeviation};
 use stribeck_modal::{
     ModalBearing, Parameters, Reduction,

@@ -86,6 +86,41 @@ impl Number for f64 {
     }
 }
 
+/// Indices at which the vectors of [`LANES`] numbers begin: one for vectors of eight, two for vectors of four.
+///
+/// ```
+/// # use pulp::Scalar;
+/// # use stribeck_simd::lanes::{LANES, Vector, vector_starts};
+/// let (numbers, mut doubled) = ([3.0; LANES], [0.0; LANES]);
+/// for at in vector_starts(Scalar::new()) {
+///     let of = Vector::load(Scalar::new(), &numbers, at);
+///     (of + of).store(&mut doubled, at);
+/// }
+/// assert_eq!(doubled, [6.0; LANES]);
+/// ```
+#[inline(always)]
+pub fn vector_starts<S: Simd>(_: S) -> VectorStarts {
+    VectorStarts { at: 0, step: Vector::<S>::LEN }
+}
+
+/// See [`vector_starts`].
+#[derive(Debug, Clone)]
+pub struct VectorStarts {
+    at: usize,
+    step: usize,
+}
+
+impl Iterator for VectorStarts {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let at = self.at;
+        self.at += self.step;
+        if at < LANES { Some(at) } else { None }
+    }
+}
+
 /// Numbers side by side, in a register of the instruction set `S`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]

@@ -1,8 +1,7 @@
 //! What roller and raceway give under a film: penalty on a round contact, and in series with it the bodies behind (THEORY §9.3).
 
 use stribeck_film::Spring;
-
-use crate::compliance::{Compliance, Curve};
+use stribeck_modal::compliance::{Compliance, Curve};
 
 /// Corrections of the force at a depth at most, and the share of it below which the last one leaves its square: nothing.
 const CORRECTIONS: usize = 30;

@@ -2,12 +2,12 @@
 
 use pulp::{Scalar, Simd};
 use serde::{Deserialize, Serialize};
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_modal::Seat;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     heard::Heard,
     row::{Numbers, Row, Single, bits, in_single, largest_of},
-    seat::Seat,
 };
 
 /// When passes over the panels end.
@@ -105,11 +105,9 @@ struct Answer {
 fn add<S: Simd>(simd: S, to: &mut [Row], rows: &[Row], times: f64) {
     let times = Vector::all(simd, times);
     for (row, to) in rows.iter().zip(to) {
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let had = Vector::load(simd, to, at);
             Vector::load(simd, row, at).times_plus(times, had).store(to, at);
-            at += Vector::<S>::LEN;
         }
     }
 }
@@ -127,8 +125,7 @@ fn add_all<S: Simd, R: AsMut<[f64]>, N: Numbers>(
     let mut first = 0;
     for [a, b, c, d] in fours {
         let [a, b, c, d] = [a.as_mut(), b.as_mut(), c.as_mut(), d.as_mut()];
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let (mut in_a, mut in_b) = (Vector::load(simd, a, at), Vector::load(simd, b, at));
             let (mut in_c, mut in_d) = (Vector::load(simd, c, at), Vector::load(simd, d, at));
             for (column, times) in times.clone() {
@@ -143,21 +140,18 @@ fn add_all<S: Simd, R: AsMut<[f64]>, N: Numbers>(
             in_b.store(b, at);
             in_c.store(c, at);
             in_d.store(d, at);
-            at += Vector::<S>::LEN;
         }
         first += 4;
     }
     for sum in rest {
         let sum = sum.as_mut();
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             let mut in_sum = Vector::load(simd, sum, at);
             for (column, times) in times.clone() {
                 let row = &rows[count * column + first];
                 in_sum = row.load(simd, at).times_plus(Vector::all(simd, times), in_sum);
             }
             in_sum.store(sum, at);
-            at += Vector::<S>::LEN;
         }
         first += 1;
     }
@@ -180,38 +174,36 @@ fn listed(
 fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (row, other) in rows.iter().zip(others) {
-        let mut at = 0;
-        while at < LANES {
+        for at in vector_starts(simd) {
             sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, other, at), sum);
-            at += Vector::<S>::LEN;
         }
     }
     sum.sum()
 }
 
 impl Springs {
-    /// Of a seat, whose tables are rounded.
-    pub(crate) fn new(seat: &mut Seat, modes: usize, friction: f64, time_step: f64) -> Self {
+    /// Of a seat whose tables have been rounded to single precision.
+    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64, time_step: f64) -> Self {
         let n = 2 * seat.padded;
         let rows =
             |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
-        let by_mode = in_single(&mut seat.tension);
-        let by_rollers = in_single(&mut seat.by_rollers);
-        let stiffness = in_single(&mut seat.stiffness);
+        let by_mode = in_single(&seat.tension);
+        let by_rollers = in_single(&seat.by_rollers);
+        let stiffness = in_single(&seat.stiffness);
         let found = seat.tension.len() / n;
         let of =
             |spring: usize, mode: usize| if mode < found { seat.tension[mode * n + spring] } else { 0.0 };
-        let mut by_spring: Vec<f64> =
+        let by_spring: Vec<f64> =
             (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
         let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
         let per_own: Vec<f64> =
             own.iter().map(|stiffness| if *stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }).collect();
-        let give = seat.give(0);
+        let give = &seat.flexibility;
         let mean = seat.pressed.iter().sum::<f64>() / seat.panels as f64;
         Self {
             padded: seat.padded,
             by_mode,
-            by_spring: in_single(&mut by_spring),
+            by_spring: in_single(&by_spring),
             by_rollers,
             at_preload: rows(&seat.at_preload),
             per_own: rows(&per_own),
@@ -301,12 +293,10 @@ impl Springs {
         let [first, second] = self.ends(facet);
         let mut sums = [Vector::all(simd, 0.0); 2];
         for ((first, second), open) in first.iter().zip(second).zip(hold.open.as_chunks::<LANES>().0) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let open = Vector::load(simd, open, at);
                 sums[0] = first.load(simd, at).times_plus(open, sums[0]);
                 sums[1] = second.load(simd, at).times_plus(open, sums[1]);
-                at += Vector::<S>::LEN;
             }
         }
         sums
@@ -318,11 +308,9 @@ impl Springs {
         let mut sum = Vector::all(simd, 0.0);
         let gaps = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
         for (farthest, (open, before)) in self.farthest.iter().zip(gaps) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let by = Vector::load(simd, open, at) - Vector::load(simd, before, at);
                 sum = by.max(-by).times_plus(Vector::load(simd, farthest, at), sum);
-                at += Vector::<S>::LEN;
             }
         }
         sum.sum()
@@ -372,13 +360,11 @@ impl Springs {
             let gaps = hold.open.as_chunks::<LANES>().0;
             let both = ends[0].iter().zip(ends[1]);
             for ((by, gap), (ahead, behind)) in answers.by[first..].iter_mut().zip(gaps).zip(both) {
-                let mut at = 0;
-                while at < LANES {
+                for at in vector_starts(simd) {
                     let (ahead, behind) = (ahead.load(simd, at), behind.load(simd, at));
                     let between = ahead.times_plus(a, behind * b);
                     given = Vector::load(simd, gap, at).times_plus(between, given);
                     between.store(by, at);
-                    at += Vector::<S>::LEN;
                 }
             }
             let expected = roller.next();
@@ -422,11 +408,9 @@ impl Springs {
     ) {
         let lost = hold.lost.as_chunks::<LANES>().0;
         for ((tension, at_preload), lost) in tension.iter_mut().zip(&self.at_preload).zip(lost) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let less = Vector::load(simd, at_preload, at) + Vector::load(simd, lost, at);
                 (-less).store(tension, at);
-                at += Vector::<S>::LEN;
             }
         }
         let modes = q.iter().copied().enumerate().take(self.by_mode.len() / tension.len());
@@ -467,11 +451,9 @@ impl Springs {
         let mut heat = Vector::all(simd, 0.0);
         let slips = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
         for (tension, (open, before)) in tension.iter().zip(slips).skip(self.padded / LANES) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let slip = Vector::load(simd, open, at) - Vector::load(simd, before, at);
                 heat = slip.times_plus(Vector::load(simd, tension, at), heat);
-                at += Vector::<S>::LEN;
             }
         }
         heat.sum()
@@ -496,8 +478,7 @@ impl Springs {
         let mut changes = [0.0; u128::BITS as usize];
         for across in 0..groups {
             let along = groups + across;
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let of = |rows: &[Row], n: usize| Vector::load(simd, &rows[n], at);
                 let gap = |of: &[f64], n: usize| Vector::load(simd, of, LANES * n + at);
                 let these = Vector::load(simd, these, at);
@@ -523,7 +504,6 @@ impl Springs {
                 moved |= u128::from(opening) << (LANES * across + at);
                 moved |= u128::from(slipping) << (LANES * along + at);
                 far |= all(still).bits_below(most);
-                at += Vector::<S>::LEN;
             }
         }
         let moves = listed(moves, moved, |spring| changes[spring]);
@@ -548,15 +528,13 @@ impl Springs {
         let (open, lost) = (hold.open.as_chunks::<LANES>().0, hold.lost.as_chunks::<LANES>().0);
         let mut sum = zero;
         for (n, (open, lost)) in open.iter().zip(lost).enumerate() {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let pressed = match self.pressed.get(n) {
                     Some(pressed) => Vector::load(simd, pressed, at),
                     None => zero,
                 };
                 let held = half.times_plus(Vector::load(simd, lost, at), Vector::load(simd, &tension[n], at));
                 sum = Vector::load(simd, open, at).times_plus(pressed - held, sum);
-                at += Vector::<S>::LEN;
             }
         }
         sum.sum()
@@ -576,7 +554,7 @@ mod tests {
         (stiffness[0], stiffness[padded * n + padded]) = (1e6, 1e6);
         let mut pressed = vec![0.0; padded];
         pressed[0] = 100.0;
-        let mut seat = Seat {
+        let seat = Seat {
             panels: 1,
             padded,
             pressed,
@@ -587,9 +565,10 @@ mod tests {
             stiffness,
             on_ring: vec![[0.0; 2]; n],
             taken_back: Vec::new(),
-            heard: Vec::new(),
+            at_sensors: Vec::new(),
+            flexibility: vec![1e-6],
         };
-        let springs = Springs::new(&mut seat, LANES, friction, 1e-6);
+        let springs = Springs::new(&seat, LANES, friction, 1e-6);
         let hold = springs.at_rest(LANES, 0);
         (springs, hold)
     }
