@@ -13,10 +13,10 @@ use crate::{
     cage::Cage,
     error::Error,
     oil::Lubrication,
-    outline::Outline,
-    overlap::Sides,
-    polygon::Polygon,
-    row::{Row, Single, in_single, largest_of},
+    contact::outline::Outline,
+    contact::penetration::Sides,
+    cage::polygon::Polygon,
+    rollers::row::{Row, Single, in_single, largest_of},
     seat::Springs,
     sensors::Sensors,
     state::State,
@@ -35,14 +35,14 @@ pub struct Bearing {
     pub(crate) shapes: Vec<Single>,
     /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
     pub(crate) farthest: Vec<Row>,
-    /// What sensors hear.
+    /// What sensors measure.
     pub(crate) sensors: Sensors,
     /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
     pub(crate) dampers: Vec<Row>,
     /// Contact with the outer raceway.
-    pub(crate) outer: Track,
+    pub(crate) outer: Raceway,
     /// Contact with the inner raceway.
-    pub(crate) inner: Track,
+    pub(crate) inner: Raceway,
     /// Rims of rollers: the round one first, then those that are not round.
     pub(crate) rims: Vec<Rim>,
     /// The round one as the cage meets it.
@@ -92,7 +92,7 @@ pub(crate) struct Rim {
 
 /// One raceway.
 #[derive(Debug, Clone)]
-pub(crate) struct Track {
+pub(crate) struct Raceway {
     pub(crate) outline: Outline,
     /// One over the angle that each facet takes [1/rad]; 0 for walls.
     pub(crate) angle: Vec<f64>,
@@ -108,7 +108,7 @@ pub(crate) struct Track {
     pub(crate) relative: f64,
 }
 
-impl Track {
+impl Raceway {
     /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before it.
     #[inline(always)]
     pub(crate) fn outwards(&self) -> f64 {
@@ -130,12 +130,12 @@ impl Bearing {
     pub fn new(modal: ModalBearing, time_step: f64) -> Result<Self, Error> {
         let ModalBearing { reduction, parameters } = modal;
         let Parameters { outlines, radii, thickness, contact, damping, .. } = &parameters;
-        let [outer, inner] = tracks(&parameters, &reduction);
+        let [outer, inner] = raceways(&parameters, &reduction);
         let rims: Vec<Rim> = outlines.rims.iter().enumerate().map(|(n, rim)| Rim::new(rim, n == 0)).collect();
         let facets = rims[0].outline.len() as f64;
         let penalty = contact.stiffness * thickness;
         let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
-        let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
+        let raceways = [&outer, &inner].map(|raceway| (&raceway.outline, &raceway.compliance));
         let oil = match &parameters.oil {
             Some(oil) => Some(Lubrication::new(oil, raceways, &rounded, (penalty, *thickness))?),
             None => None,
@@ -195,10 +195,10 @@ impl Bearing {
         let [mass, inertia] = self.reduction.roller_inertia;
         let r = self.reduction.padded;
         let both = [&self.outer, &self.inner];
-        let [outer, inner] = both.map(|track| track.compliance.stiffest(self.penalty, track.relative));
-        let along = |track: &Track| {
-            let fullest = track.compliance.largest_load() / OVERLOAD;
-            let stiffness = self.sticking * contact_length(fullest, self.penalty, track.relative);
+        let [outer, inner] = both.map(|raceway| raceway.compliance.stiffest(self.penalty, raceway.relative));
+        let along = |raceway: &Raceway| {
+            let fullest = raceway.compliance.largest_load() / OVERLOAD;
+            let stiffness = self.sticking * contact_length(fullest, self.penalty, raceway.relative);
             if self.friction > 0.0 { stiffness } else { 0.0 }
         };
         let [along_outer, along_inner] = both.map(along);
@@ -210,7 +210,7 @@ impl Bearing {
         let modes = (0..self.outer.outline.len()).map(under).fold(0.0, f64::max);
         let c = (modes * mass).sqrt();
         let of_roller = ((1.0 + c) * outer + inner) / mass;
-        // Both raceways hold a roller along the track: one way if it spins, the other if it moves on.
+        // Both raceways hold a roller along the raceway: one way if it spins, the other if it moves on.
         let of_friction = 2.0
             * ((1.0 + c) * along_outer).max(along_inner)
             * (1.0 / mass).max(self.arm * self.arm / inertia);
@@ -290,7 +290,7 @@ impl Bearing {
             };
             (0..outline.len()).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0) as u32
         };
-        let hints = |track: &Track, turned: f64, outwards: f64| {
+        let hints = |raceway: &Raceway, turned: f64, outwards: f64| {
             (0..state.x.len())
                 .map(|i| {
                     let at = state.y[i].atan2(state.x[i]);
@@ -298,7 +298,7 @@ impl Bearing {
                         + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
                     let of = |angle: f64| [angle.cos(), angle.sin()];
-                    [nearest(&self.rim(i).outline, of(own)), nearest(&track.outline, of(on_race))]
+                    [nearest(&self.rim(i).outline, of(own)), nearest(&raceway.outline, of(on_race))]
                 })
                 .collect()
         };
@@ -321,7 +321,7 @@ fn sag(parameters: &Parameters, radius: f64, facets: f64) -> f64 {
 }
 
 /// The outer and the inner raceway.
-fn tracks(parameters: &Parameters, reduction: &Reduction) -> [Track; 2] {
+fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
     let Parameters { outlines, radii, .. } = parameters;
     let [kr, ko, ki] = [1.0 / radii.roller, 1.0 / radii.outer, 1.0 / radii.inner];
     let [outer, inner] = [&outlines.outer, &outlines.inner].map(|vertices| Outline::new(vertices));
@@ -336,7 +336,7 @@ fn tracks(parameters: &Parameters, reduction: &Reduction) -> [Track; 2] {
         curvature: if outlines.arcs { kr } else { 0.0 },
     };
     [
-        Track {
+        Raceway {
             sides: sides(true, kr - ko),
             angle: per_angle(&outlines.outer),
             outline: outer,
@@ -346,7 +346,7 @@ fn tracks(parameters: &Parameters, reduction: &Reduction) -> [Track; 2] {
             bounds,
             relative: 1.0 / (kr - ko),
         },
-        Track {
+        Raceway {
             sides: sides(false, kr + ki),
             angle: per_angle(&outlines.inner),
             outline: inner,

@@ -1,12 +1,19 @@
 //! The cage as a reduced bearing has it: a rigid body with the walls of its pockets.
 
+pub(crate) mod pocket;
+
+mod corner;
+mod flat;
+pub(crate) mod polygon;
+
 use stribeck_modal::{
     compliance::{Compliance, Curve},
     parameters::Pockets,
 };
 use stribeck_simd::lanes::LANES;
 
-use crate::{corner::Corner, row::Rows};
+use crate::rollers::row::Rows;
+use corner::Corner;
 
 /// The cage as a rigid body with corners and walls.
 #[derive(Debug, Clone)]

@@ -21,31 +21,20 @@
 pub mod simulation;
 
 pub mod bearing;
-pub mod outline;
-pub mod overlap;
 pub mod start;
 pub mod state;
-pub mod window;
 
-mod block;
+pub mod step;
+
 mod cage;
-mod corner;
-pub mod heard;
-mod lift;
+pub mod contact;
 mod modes;
 pub mod oil;
-mod place;
-mod pocket;
-mod polygon;
-mod raceway;
-mod row;
-mod seam;
+pub mod roller_force;
+mod rollers;
 pub mod seat;
 mod sensors;
-pub mod step;
-mod touch;
 
-mod flat;
 mod guards;
 pub mod motion;
 pub mod recorder;

@@ -6,15 +6,15 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
-    heard::Heard,
-    row::{Numbers, Row, Single},
-    seat::{Answers, Springs},
+    roller_force::RollerForce,
+    rollers::row::{Numbers, Row, Single},
+    seat::{RollerResponses, Springs},
     state::{Spent, State, Stored},
 };
 
 /// A place on a facet of the outer raceway: the share of its second vertex, and the shapes at both of them.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub(crate) struct RacewayPoint<'a> {
     pub(crate) share: f64,
     /// Of x and of y, in groups of modes.
     shapes: [[&'a [Single]; 2]; 2],
@@ -31,7 +31,7 @@ pub(crate) struct Modes {
     /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
     pub(crate) tension: Vec<Row>,
     /// What rollers do to the seat.
-    pub(crate) answers: Answers,
+    pub(crate) responses: RollerResponses,
 }
 
 impl Modes {
@@ -40,7 +40,7 @@ impl Modes {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
         let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
         let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension, answers: Answers::default() }
+        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension, responses: RollerResponses::default() }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -56,30 +56,30 @@ impl Modes {
 
 impl Bearing {
     /// What a roller in this direction presses with `force`, near the facet `hint`.
-    pub(crate) fn heard_at(&self, hint: u32, radial: [f64; 2], force: f64) -> Heard {
+    pub(crate) fn roller_force_at(&self, hint: u32, radial: [f64; 2], force: f64) -> RollerForce {
         let outline = &self.outer.outline;
         let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
-        Heard { facet: facet as u32, share: outline.share(facet, radial), force, ..Heard::default() }
+        RollerForce { facet: facet as u32, share: outline.share(facet, radial), force, ..RollerForce::default() }
     }
 
     /// The place on a facet with this share of its second vertex.
     #[inline(always)]
-    pub(crate) fn place(&self, facet: usize, share: f64) -> Place<'_> {
+    pub(crate) fn raceway_point(&self, facet: usize, share: f64) -> RacewayPoint<'_> {
         let second = if facet + 1 == self.outer.outline.len() { 0 } else { facet + 1 };
         let groups = self.reduction.padded / LANES;
         let shapes = |vertex: usize| {
             let both = &self.shapes[2 * groups * vertex..2 * groups * (vertex + 1)];
             [&both[..groups], &both[groups..2 * groups]]
         };
-        Place { share, shapes: [shapes(facet), shapes(second)] }
+        RacewayPoint { share, shapes: [shapes(facet), shapes(second)] }
     }
 
     /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity [m/s], and by how much more the
     /// second vertex of its facet is displaced than the first [m]. Both vertices are summed over all modes, and what lies between follows.
     #[inline(always)]
-    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, modes: &Modes) -> [Vector<S>; 6] {
+    pub(crate) fn moved<S: Simd>(&self, simd: S, point: &RacewayPoint<'_>, modes: &Modes) -> [Vector<S>; 6] {
         let groups = self.reduction.padded / LANES;
-        let [[ax, ay], [bx, by]] = place.shapes;
+        let [[ax, ay], [bx, by]] = point.shapes;
         let (q, v) = (&modes.q[..groups], &modes.v[..groups]);
         let zero = Vector::all(simd, 0.0);
         let (mut first, mut second) = ([zero; 4], [zero; 4]);
@@ -99,7 +99,7 @@ impl Bearing {
                 second[3] = y.times_plus(v, second[3]);
             }
         }
-        let share = Vector::all(simd, place.share);
+        let share = Vector::all(simd, point.share);
         let [dx, dy] = [second[0] - first[0], second[1] - first[1]];
         let [vx, vy] = [second[2] - first[2], second[3] - first[3]];
         [
@@ -114,11 +114,11 @@ impl Bearing {
 
     /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
     #[inline(always)]
-    pub(crate) fn press<S: Simd>(&self, simd: S, place: &Place<'_>, force: [f64; 2], modes: &mut Modes) {
+    pub(crate) fn press<S: Simd>(&self, simd: S, point: &RacewayPoint<'_>, force: [f64; 2], modes: &mut Modes) {
         let groups = self.reduction.padded / LANES;
-        let [[ax, ay], [bx, by]] = place.shapes;
+        let [[ax, ay], [bx, by]] = point.shapes;
         let push = &mut modes.push[..groups];
-        let [first, second] = [place.share - 1.0, -place.share];
+        let [first, second] = [point.share - 1.0, -point.share];
         let (fx, fy) = (Vector::all(simd, first * force[0]), Vector::all(simd, first * force[1]));
         let (sx, sy) = (Vector::all(simd, second * force[0]), Vector::all(simd, second * force[1]));
         let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
@@ -170,7 +170,7 @@ impl Bearing {
     }
 
     /// Modes move under the forces `push`; `further` is what the load exceeds that of the preload by, as
-    /// [`Bearing::beside_the_preload`] says.
+    /// [`Bearing::load_change`] says.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one motion, with all that it reads and adds to")]
     pub(crate) fn move_modes<S: Simd>(

@@ -6,8 +6,8 @@ use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
-    row::{Row, Rows},
-    sensors::Sound,
+    rollers::row::{Row, Rows},
+    sensors::SensorMotion,
     state::State,
     step::Scratch,
 };
@@ -29,8 +29,8 @@ impl Memory {
 impl Bearing {
     /// Memory before the first step.
     pub(crate) fn first_memory(&self, state: &State) -> Memory {
-        let mut sound = Sound::default();
-        self.sensors.hear_modes(Scalar::new(), state, &mut sound);
+        let mut sound = SensorMotion::default();
+        self.sensors.measure_modes(Scalar::new(), state, &mut sound);
         let of = |sensor: usize| [sound.velocity(2 * sensor), sound.velocity(2 * sensor + 1)];
         Memory { velocity: (0..self.reduction.sensors.len()).map(of).collect() }
     }

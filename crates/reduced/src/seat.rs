@@ -6,8 +6,8 @@ use stribeck_modal::Seat;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
-    heard::Heard,
-    row::{Numbers, Row, Single, bits, in_single, largest_of},
+    roller_force::RollerForce,
+    rollers::row::{Numbers, Row, Single, bits, in_single, largest_of},
 };
 
 /// When passes over the panels end.
@@ -30,9 +30,9 @@ const STILL_IN_STEP: f64 = 2.5e8;
 const EVERY_OTHER: [Row; 2] =
     [Row([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]), Row([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0])];
 
-/// A roller answers to the seat where that takes more than this part of its force if all panels let go. Where less, its force of the
+/// A roller responses to the seat where that takes more than this part of its force if all panels let go. Where less, its force of the
 /// step before serves, taken on as it grew, which is stable up to a third.
-const FELT: f64 = 0.2;
+const RESPONSIVE: f64 = 0.2;
 
 /// What is looked up of the seat in every step, in rows.
 #[derive(Debug, Clone)]
@@ -63,7 +63,7 @@ pub(crate) struct Springs {
 
 /// By how much the seat has opened and slipped, and what comes of it: part of the checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Hold {
+pub struct SeatState {
     /// Gap of each panel, then its slip [m].
     pub(crate) open: Vec<f64>,
     /// The same before the last step.
@@ -73,13 +73,13 @@ pub struct Hold {
     /// What that does to each mode [N/√kg].
     pub(crate) push: Vec<f64>,
     /// What rollers press in the last step.
-    pub(crate) pressed: Vec<Heard>,
+    pub(crate) pressed: Vec<RollerForce>,
 }
 
 /// What rollers press in a step, and how they answer to a seat that gives way.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Answers {
-    rollers: Vec<Answer>,
+pub(crate) struct RollerResponses {
+    rollers: Vec<RollerResponse>,
     /// Tensions by a unit force of each, roller by roller.
     by: Vec<Row>,
     /// Springs that move, and by how much: room for a list.
@@ -88,7 +88,7 @@ pub(crate) struct Answers {
 
 /// What one of them does.
 #[derive(Debug, Clone, Copy)]
-struct Answer {
+struct RollerResponse {
     /// Force on the raceway [N].
     force: f64,
     /// What it is expected to be, which may be below zero, if the seat has given way under it by `given` [m].
@@ -224,19 +224,19 @@ impl Springs {
     }
 
     /// Nothing has opened or slipped yet.
-    pub(crate) fn at_rest(&self, modes: usize, rollers: usize) -> Hold {
+    pub(crate) fn at_rest(&self, modes: usize, rollers: usize) -> SeatState {
         let zeros = vec![0.0; 2 * self.padded];
-        Hold {
+        SeatState {
             open: zeros.clone(),
             before: zeros.clone(),
             lost: zeros,
             push: vec![0.0; modes],
-            pressed: vec![Heard::default(); rollers],
+            pressed: vec![RollerForce::default(); rollers],
         }
     }
 
     /// Whether it may belong to this seat.
-    pub(crate) fn fits(&self, hold: &Hold, modes: usize, rollers: usize) -> bool {
+    pub(crate) fn fits(&self, hold: &SeatState, modes: usize, rollers: usize) -> bool {
         [&hold.open, &hold.before, &hold.lost].iter().all(|v| v.len() == 2 * self.padded)
             && hold.push.len() == modes
             && hold.pressed.len() == rollers
@@ -244,12 +244,12 @@ impl Springs {
     }
 
     /// Lets the seat open and slip where it does at rest, the modes being at `q`.
-    pub(crate) fn slip(&self, hold: &mut Hold, q: &[f64]) {
+    pub(crate) fn slip(&self, hold: &mut SeatState, q: &[f64]) {
         let simd = Scalar::new();
-        let (mut tension, mut answers) = (vec![Row::default(); self.rows()], Answers::default());
-        self.answer(simd, hold, &hold.pressed, &mut answers);
-        self.pull(simd, hold, 0, q, &mut answers, &mut tension);
-        self.settle(simd, hold, 0, &mut tension, &mut answers, self.at_rest);
+        let (mut tension, mut responses) = (vec![Row::default(); self.rows()], RollerResponses::default());
+        self.answer(simd, hold, &hold.pressed, &mut responses);
+        self.tensions(simd, hold, 0, q, &mut responses, &mut tension);
+        self.settle(simd, hold, 0, &mut tension, &mut responses, self.at_rest);
         hold.before.copy_from_slice(&hold.open);
     }
 
@@ -257,20 +257,20 @@ impl Springs {
     /// step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one seat, with all that it reads and adds to")]
-    pub(crate) fn hold<S: Simd>(
+    pub(crate) fn respond<S: Simd>(
         &self,
         simd: S,
-        hold: &mut Hold,
+        hold: &mut SeatState,
         q: &[f64],
-        rollers: &[Heard],
-        answers: &mut Answers,
+        rollers: &[RollerForce],
+        responses: &mut RollerResponses,
         [push, tension]: [&mut [Row]; 2],
         last: bool,
     ) -> [f64; 2] {
-        let moved = self.go_on(simd, hold);
-        self.answer(simd, hold, rollers, answers);
-        self.pull(simd, hold, moved, q, answers, tension);
-        let heat = self.settle(simd, hold, moved, tension, answers, self.in_step);
+        let moved = self.extrapolate(simd, hold);
+        self.answer(simd, hold, rollers, responses);
+        self.tensions(simd, hold, moved, q, responses, tension);
+        let heat = self.settle(simd, hold, moved, tension, responses, self.in_step);
         for (push, more) in push.iter_mut().zip(hold.push.as_chunks::<LANES>().0) {
             for (push, more) in push.iter_mut().zip(more) {
                 *push += more;
@@ -281,7 +281,7 @@ impl Springs {
         }
         // What rollers press is part of the tensions, and its work part of their own energy.
         let mut by_rollers = 0.0;
-        for (roller, by) in answers.rollers.iter().zip(answers.by.chunks_exact(self.rows())) {
+        for (roller, by) in responses.rollers.iter().zip(responses.by.chunks_exact(self.rows())) {
             by_rollers += roller.force * dot(simd, by, hold.open.as_chunks().0);
         }
         [heat, self.stored(simd, hold, tension) + by_rollers]
@@ -289,7 +289,7 @@ impl Springs {
 
     /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m], in parts to be summed.
     #[inline(always)]
-    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &Hold, facet: usize) -> [Vector<S>; 2] {
+    pub(crate) fn under<S: Simd>(&self, simd: S, hold: &SeatState, facet: usize) -> [Vector<S>; 2] {
         let [first, second] = self.ends(facet);
         let mut sums = [Vector::all(simd, 0.0); 2];
         for ((first, second), open) in first.iter().zip(second).zip(hold.open.as_chunks::<LANES>().0) {
@@ -304,7 +304,7 @@ impl Springs {
 
     /// How far a vertex of the raceway moves at most by what has opened and slipped in this step [m].
     #[inline(always)]
-    pub(crate) fn farthest<S: Simd>(&self, simd: S, hold: &Hold) -> f64 {
+    pub(crate) fn farthest<S: Simd>(&self, simd: S, hold: &SeatState) -> f64 {
         let mut sum = Vector::all(simd, 0.0);
         let gaps = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
         for (farthest, (open, before)) in self.farthest.iter().zip(gaps) {
@@ -327,7 +327,7 @@ impl Springs {
     /// Begins a step: what opened and slipped in the last one is taken to go on alike, which leaves few passes to take. Returns the springs
     /// that have moved by that, a bit for each.
     #[inline(always)]
-    fn go_on<S: Simd>(&self, simd: S, hold: &mut Hold) -> u128 {
+    fn extrapolate<S: Simd>(&self, simd: S, hold: &mut SeatState) -> u128 {
         let zero = Vector::all(simd, 0.0);
         let mut moved = 0;
         for at in (0..2 * self.padded).step_by(Vector::<S>::LEN) {
@@ -347,19 +347,19 @@ impl Springs {
     /// What rollers do to the tensions, each by itself: a unit force at its place, the force that is expected if the seat goes on as in the
     /// step before, and how much less it presses where the seat gives way by more.
     #[inline(always)]
-    fn answer<S: Simd>(&self, simd: S, hold: &Hold, rollers: &[Heard], answers: &mut Answers) {
+    fn answer<S: Simd>(&self, simd: S, hold: &SeatState, rollers: &[RollerForce], responses: &mut RollerResponses) {
         let groups = self.rows();
-        answers.rollers.clear();
-        answers.by.clear();
+        responses.rollers.clear();
+        responses.by.clear();
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
             let ends = self.ends(roller.facet as usize);
             let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
             let mut given = Vector::all(simd, 0.0);
-            let first = answers.by.len();
-            answers.by.resize(first + groups, Row::default());
+            let first = responses.by.len();
+            responses.by.resize(first + groups, Row::default());
             let gaps = hold.open.as_chunks::<LANES>().0;
             let both = ends[0].iter().zip(ends[1]);
-            for ((by, gap), (ahead, behind)) in answers.by[first..].iter_mut().zip(gaps).zip(both) {
+            for ((by, gap), (ahead, behind)) in responses.by[first..].iter_mut().zip(gaps).zip(both) {
                 for at in vector_starts(simd) {
                     let (ahead, behind) = (ahead.load(simd, at), behind.load(simd, at));
                     let between = ahead.times_plus(a, behind * b);
@@ -368,21 +368,21 @@ impl Springs {
                 }
             }
             let expected = roller.next();
-            let mut answer = Answer { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
+            let mut answer = RollerResponse { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
             let gain = roller.stiffness * self.give[roller.facet as usize];
-            if gain > FELT {
+            if gain > RESPONSIVE {
                 // Where panels let go a change comes back times −gain, where they hold not at all: halfway between the two.
                 let part = 1.0 / (1.0 + 0.5 * gain);
-                answer = Answer { given: given.sum(), stiffness: roller.stiffness, part, ..answer };
+                answer = RollerResponse { given: given.sum(), stiffness: roller.stiffness, part, ..answer };
             }
-            answers.rollers.push(answer);
+            responses.rollers.push(answer);
         }
     }
 
     /// Lets rollers answer to how far the seat has given way by now.
     #[inline(always)]
-    fn press_again<S: Simd>(&self, simd: S, hold: &Hold, tension: &mut [Row], answers: &mut Answers) {
-        let Answers { rollers, by, .. } = answers;
+    fn update_forces<S: Simd>(&self, simd: S, hold: &SeatState, tension: &mut [Row], responses: &mut RollerResponses) {
+        let RollerResponses { rollers, by, .. } = responses;
         let felt =
             rollers.iter_mut().zip(by.chunks_exact(self.rows())).filter(|(roller, _)| roller.stiffness > 0.0);
         for (roller, by) in felt {
@@ -397,13 +397,13 @@ impl Springs {
     /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost before this step and by the springs that
     /// have `moved` since, a bit for each; across the seat beyond the preload.
     #[inline(always)]
-    fn pull<S: Simd>(
+    fn tensions<S: Simd>(
         &self,
         simd: S,
-        hold: &Hold,
+        hold: &SeatState,
         moved: u128,
         q: &[f64],
-        answers: &mut Answers,
+        responses: &mut RollerResponses,
         tension: &mut [Row],
     ) {
         let lost = hold.lost.as_chunks::<LANES>().0;
@@ -415,9 +415,9 @@ impl Springs {
         }
         let modes = q.iter().copied().enumerate().take(self.by_mode.len() / tension.len());
         add_all(simd, tension, &self.by_mode, modes);
-        let rollers = answers.rollers.iter().map(|roller| roller.force).enumerate();
-        add_all(simd, tension, &answers.by, rollers);
-        let moves = listed(&mut answers.moves, moved, |spring| hold.before[spring] - hold.open[spring]);
+        let rollers = responses.rollers.iter().map(|roller| roller.force).enumerate();
+        add_all(simd, tension, &responses.by, rollers);
+        let moves = listed(&mut responses.moves, moved, |spring| hold.before[spring] - hold.open[spring]);
         add_all(simd, tension, &self.stiffness, moves);
     }
 
@@ -427,27 +427,27 @@ impl Springs {
     fn settle<S: Simd>(
         &self,
         simd: S,
-        hold: &mut Hold,
+        hold: &mut SeatState,
         mut moved: u128,
         tension: &mut [Row],
-        answers: &mut Answers,
+        responses: &mut RollerResponses,
         passes: Passes,
     ) -> f64 {
         // Every other panel at once: neighbours see what those between them have done.
         let mut quiet = 0;
         for half in 0..2 * passes.most {
             let (these, far) =
-                self.let_go(simd, hold, tension, &mut answers.moves, &EVERY_OTHER[half % 2], passes.still);
+                self.release(simd, hold, tension, &mut responses.moves, &EVERY_OTHER[half % 2], passes.still);
             moved |= these;
             quiet = if far { 0 } else { quiet + 1 };
             if half % 2 == 1 {
-                self.press_again(simd, hold, tension, answers);
+                self.update_forces(simd, hold, tension, responses);
             }
             if quiet == 2 {
                 break;
             }
         }
-        self.take_along(simd, hold, &mut answers.moves, moved);
+        self.accumulate(simd, hold, &mut responses.moves, moved);
         let mut heat = Vector::all(simd, 0.0);
         let slips = hold.open.as_chunks::<LANES>().0.iter().zip(hold.before.as_chunks::<LANES>().0);
         for (tension, (open, before)) in tension.iter().zip(slips).skip(self.padded / LANES) {
@@ -462,10 +462,10 @@ impl Springs {
     /// Lets those of some panels that pull open, and those slip that friction does not hold, all at once. Returns which springs have moved,
     /// a bit for each, and whether that changed a tension by more than `still` [N].
     #[inline(always)]
-    fn let_go<S: Simd>(
+    fn release<S: Simd>(
         &self,
         simd: S,
-        hold: &mut Hold,
+        hold: &mut SeatState,
         tension: &mut [Row],
         moves: &mut Vec<(usize, f64)>,
         these: &Row,
@@ -514,8 +514,8 @@ impl Springs {
     /// What follows from the springs that have opened and slipped in this step, a bit for each: what all tensions have lost, and what is done
     /// to the modes.
     #[inline(always)]
-    fn take_along<S: Simd>(&self, simd: S, hold: &mut Hold, moves: &mut Vec<(usize, f64)>, moved: u128) {
-        let Hold { open, before, lost, push, .. } = hold;
+    fn accumulate<S: Simd>(&self, simd: S, hold: &mut SeatState, moves: &mut Vec<(usize, f64)>, moved: u128) {
+        let SeatState { open, before, lost, push, .. } = hold;
         let moves = listed(moves, moved, |spring| open[spring] - before[spring]);
         add_all(simd, lost.as_chunks_mut::<LANES>().0, &self.stiffness, moves.clone());
         add_all(simd, push.as_chunks_mut::<LANES>().0, &self.by_spring, moves);
@@ -523,7 +523,7 @@ impl Springs {
 
     /// Energy of the seat beyond that of one that holds, less the work of rollers [J].
     #[inline(always)]
-    fn stored<S: Simd>(&self, simd: S, hold: &Hold, tension: &[Row]) -> f64 {
+    fn stored<S: Simd>(&self, simd: S, hold: &SeatState, tension: &[Row]) -> f64 {
         let (zero, half) = (Vector::all(simd, 0.0), Vector::all(simd, 0.5));
         let (open, lost) = (hold.open.as_chunks::<LANES>().0, hold.lost.as_chunks::<LANES>().0);
         let mut sum = zero;
@@ -546,7 +546,7 @@ mod tests {
     use super::*;
 
     /// A seat of one panel and two modes, the first of which opens it and the second shifts it: 1 N/µm each, pressed by 100 N.
-    fn one_panel(friction: f64) -> (Springs, Hold) {
+    fn one_panel(friction: f64) -> (Springs, SeatState) {
         let padded = LANES;
         let n = 2 * padded;
         let (mut tension, mut stiffness) = (vec![0.0; n * LANES], vec![0.0; n * n]);
@@ -574,14 +574,14 @@ mod tests {
     }
 
     /// Heat of a step, energy and tensions across and along at the coordinates of both modes [m].
-    fn at(springs: &Springs, hold: &mut Hold, q: [f64; 2]) -> [f64; 4] {
+    fn at(springs: &Springs, hold: &mut SeatState, q: [f64; 2]) -> [f64; 4] {
         let mut all = vec![0.0; LANES];
         all[..2].copy_from_slice(&q);
         let mut tension = vec![Row::default(); springs.rows()];
-        let mut answers = Answers::default();
-        let moved = springs.go_on(Scalar::new(), hold);
-        springs.pull(Scalar::new(), hold, moved, &all, &mut answers, &mut tension);
-        let heat = springs.settle(Scalar::new(), hold, moved, &mut tension, &mut answers, springs.in_step);
+        let mut responses = RollerResponses::default();
+        let moved = springs.extrapolate(Scalar::new(), hold);
+        springs.tensions(Scalar::new(), hold, moved, &all, &mut responses, &mut tension);
+        let heat = springs.settle(Scalar::new(), hold, moved, &mut tension, &mut responses, springs.in_step);
         [
             heat,
             springs.stored(Scalar::new(), hold, &tension),
@@ -597,7 +597,7 @@ mod tests {
         let (springs, mut hold) = one_panel(0.2);
         let (amplitude, limit, stiffness) = (100e-6, 20.0, 1e6);
         let mut heat = 0.0;
-        let cycle = |hold: &mut Hold, heat: &mut f64| {
+        let cycle = |hold: &mut SeatState, heat: &mut f64| {
             for n in 0..4000 {
                 let shift = amplitude * (std::f64::consts::TAU * n as f64 / 4000.0).sin();
                 let [of_step, _, _, along] = at(&springs, hold, [0.0, shift]);

@@ -4,7 +4,7 @@ use pulp::Scalar;
 use stribeck_duty::Duty;
 use stribeck_simd::lanes::Vector;
 
-use crate::{bearing::Bearing, error::Error, oil::Films, state::State, touch::Near};
+use crate::{bearing::Bearing, error::Error, oil::Films, state::State, contact::normal_force::RollerOnRaceway};
 
 /// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings the solver, so that this
 /// crate needs none.
@@ -21,7 +21,7 @@ const FARTHEST: f64 = 10e-6;
 const TOLERANCE: f64 = 1e-9;
 
 /// Holds motions of modes that nothing resists while the iteration runs [rad²/s²].
-const HOLD: f64 = 1e4;
+const REGULARISATION: f64 = 1e4;
 
 /// How often the seat slips and all comes into equilibrium again.
 const SEATINGS: usize = 8;
@@ -58,7 +58,7 @@ impl Bearing {
     fn equilibrium(&self, solve: Solve<'_>, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
         let load = self.load_at_start.max(1.0);
-        let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
+        let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.load_change(duty, 0.0));
         let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers];
         let (mut farthest, mut last) = (FARTHEST, vec![0.0; r]);
@@ -72,7 +72,7 @@ impl Bearing {
                 force[n] += further[0] * self.reduction.load.along[n]
                     + further[1] * self.reduction.load.across[n]
                     - self.reduction.squares[n] * state.q[n];
-                matrix[n * r + n] = self.reduction.squares[n] + HOLD;
+                matrix[n * r + n] = self.reduction.squares[n] + REGULARISATION;
             }
             for i in 0..self.rollers {
                 let angle = state.y[i].atan2(state.x[i]);
@@ -124,7 +124,7 @@ impl Bearing {
                 let inner_stiffness = (b1 - b0) / step;
                 (state.x[i], state.y[i]) = (at * c, at * s);
                 if let Some(hold) = &mut state.seat {
-                    hold.pressed[i] = self.heard_at(state.hints[0][i][1], [c, s], outer);
+                    hold.pressed[i] = self.roller_force_at(state.hints[0][i][1], [c, s], outer);
                 }
                 let both = outer_stiffness + inner_stiffness;
                 let together = if both > 0.0 { outer_stiffness * inner_stiffness / both } else { 0.0 };
@@ -161,7 +161,7 @@ impl Bearing {
 
     /// By what the load exceeds that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of it.
     #[inline(always)]
-    pub(crate) fn beside_the_preload(&self, duty: &Duty, time_s: f64) -> [f64; 2] {
+    pub(crate) fn load_change(&self, duty: &Duty, time_s: f64) -> [f64; 2] {
         let per = 1.0 / self.reduction.load.force;
         [duty.load_n(time_s) * per - 1.0, duty.load_across_n(time_s).map_or(0.0, |across| across * per)]
     }
@@ -203,12 +203,12 @@ impl Bearing {
             let [before, other] = forces;
             let rim = self.rim(i);
             let near =
-                Near { track: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
-            let outer = self.touch(simd, near, &mut hints[0]);
+                RollerOnRaceway { raceway: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
+            let outer = self.normal_force(simd, near, &mut hints[0]);
             let (centre, spin) = (back(centre), back([c, s]));
-            let inner = self.touch(
+            let inner = self.normal_force(
                 simd,
-                Near { track: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },
+                RollerOnRaceway { raceway: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },
                 &mut hints[1],
             );
             let next = [outer.normal, inner.normal];

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{oil::Films, seat::Hold};
+use crate::{oil::Films, seat::SeatState};
 
 /// Positions at one time, velocities half a step earlier.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ pub struct State {
     /// Work since the start.
     pub work: Work,
     /// By how much the seat has opened and slipped; `None` where there is none.
-    pub seat: Option<Hold>,
+    pub seat: Option<SeatState>,
     /// Films of oil; `None` without any.
     pub films: Option<Films>,
     /// Steps taken.

@@ -9,15 +9,15 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
-    block::Block,
-    heard::Heard,
+    rollers::block::Block,
+    roller_force::RollerForce,
     modes::Modes,
-    oil::Now,
-    overlap::Overlap,
-    pocket::PlacedCage,
-    raceway::Rolling,
-    row::{Row, load, of_one, store},
-    sensors::Sound,
+    oil::FilmStep,
+    contact::penetration::Penetration,
+    cage::pocket::PlacedCage,
+    contact::force::Rolling,
+    rollers::row::{Row, load, of_one, store},
+    sensors::SensorMotion,
     state::{Spent, State, Stored, count},
 };
 
@@ -27,16 +27,16 @@ pub struct Scratch {
     /// The rollers during some steps.
     pub(crate) blocks: Vec<Block>,
     /// Overlaps of eight contacts, each by parts.
-    pub(crate) parts: [Overlap<Row>; LANES],
+    pub(crate) parts: [Penetration<Row>; LANES],
     /// The modes during a step.
     pub(crate) modes: Modes,
     /// Steps in the sums of the blocks.
     pub(crate) summed: usize,
     /// Normal forces on the outer raceway [N], and where they are.
-    pub(crate) heard: Vec<Heard>,
-    /// What sensors hear before the last step of a sample and after it.
-    pub(crate) before: Sound,
-    pub(crate) now: Sound,
+    pub(crate) roller_forces: Vec<RollerForce>,
+    /// What sensors measure before the last step of a sample and after it.
+    pub(crate) before: SensorMotion,
+    pub(crate) now: SensorMotion,
     /// Energies at the positions of the last step, when it was asked for.
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
@@ -49,7 +49,7 @@ impl Scratch {
         Self {
             blocks: (0..n).step_by(LANES).map(|first| Block::new(bearing, first)).collect(),
             modes: Modes::new(bearing),
-            heard: vec![Heard::default(); n],
+            roller_forces: vec![RollerForce::default(); n],
             ..Self::default()
         }
     }
@@ -58,7 +58,7 @@ impl Scratch {
     pub(crate) fn load(&mut self, state: &State) {
         self.blocks.iter_mut().for_each(|block| block.load(state));
         if let Some(hold) = &state.seat {
-            self.heard.clone_from(&hold.pressed);
+            self.roller_forces.clone_from(&hold.pressed);
         }
     }
 
@@ -78,7 +78,7 @@ impl Scratch {
     pub(crate) fn store(&self, state: &mut State) {
         self.blocks.iter().for_each(|block| block.store(state));
         if let Some(hold) = &mut state.seat {
-            hold.pressed.clone_from(&self.heard);
+            hold.pressed.clone_from(&self.roller_forces);
         }
     }
 }
@@ -101,8 +101,8 @@ impl WithSimd for Interval<'_> {
             self.bearing.step(simd, self.state, self.scratch, self.last);
         }
         if self.last {
-            let Scratch { heard, modes, now, .. } = self.scratch;
-            self.bearing.sensors.hear(simd, self.state, heard, &modes.tension, now);
+            let Scratch { roller_forces, modes, now, .. } = self.scratch;
+            self.bearing.sensors.measure(simd, self.state, roller_forces, &modes.tension, now);
         }
     }
 }
@@ -128,7 +128,7 @@ impl Bearing {
             if self.outer_turns {
                 (outer_rate, outer_angle) = (duty.mean_outer_rad_s(now, now + dt), duty.outer_rad(now));
             }
-            further = self.beside_the_preload(duty, now);
+            further = self.load_change(duty, now);
             for (share, load) in self.loads(further) {
                 let push = scratch.modes.push.iter_mut().flat_map(|row| row.iter_mut());
                 push.zip(load).for_each(|(push, load)| *push += share * load);
@@ -138,23 +138,23 @@ impl Bearing {
             self.resist(simd, &mut scratch.modes);
         }
         if last {
-            self.sensors.hear(simd, state, &scratch.heard, &scratch.modes.tension, &mut scratch.before);
+            self.sensors.measure(simd, state, &scratch.roller_forces, &scratch.modes.tension, &mut scratch.before);
         }
-        let inner = Turning { rate, turned: turned(state.shaft) };
-        let outer = self.outer_turns.then(|| Turning { rate: outer_rate, turned: turned(outer_angle) });
+        let inner = RingRotation { rate, turned: turned(state.shaft) };
+        let outer = self.outer_turns.then(|| RingRotation { rate: outer_rate, turned: turned(outer_angle) });
         for block in &mut scratch.blocks {
-            self.see_raceway(simd, block, outer);
+            self.follow_facets(simd, block, outer);
             // A roller presses where it is now: what the seat gives way by hangs on that, and work on both.
-            let heard = &mut scratch.heard[block.first..block.first + block.count];
-            for ((heard, facet), share) in heard.iter_mut().zip(&block.facet).zip(block.share.iter()) {
-                (heard.facet, heard.share) = (*facet, *share);
+            let roller_forces = &mut scratch.roller_forces[block.first..block.first + block.count];
+            for ((roller_forces, facet), share) in roller_forces.iter_mut().zip(&block.facet).zip(block.share.iter()) {
+                (roller_forces.facet, roller_forces.share) = (*facet, *share);
             }
         }
         let mut spent = Spent::default();
         if let (Some(seat), Some(hold)) = (&self.seat, &mut state.seat) {
-            let Modes { push, tension, answers, .. } = &mut scratch.modes;
+            let Modes { push, tension, responses, .. } = &mut scratch.modes;
             let [heat, stored] =
-                seat.hold(simd, hold, &state.q, &scratch.heard, answers, [push, tension], last);
+                seat.respond(simd, hold, &state.q, &scratch.roller_forces, responses, [push, tension], last);
             spent.heat[0] += 2.0 * heat / dt;
             energy.strain += stored;
         }
@@ -168,18 +168,18 @@ impl Bearing {
 
         for (b, block) in scratch.blocks.iter_mut().enumerate() {
             let hold = state.seat.as_ref();
-            self.place_rollers(simd, &scratch.modes, hold, farthest, block, [outer, Some(inner)]);
+            self.locate_on_raceways(simd, &scratch.modes, hold, farthest, block, [outer, Some(inner)]);
             let Block { first, top, bits, contacts, .. } = block;
             // One code for both raceways: the step's instructions fill the first cache anyway.
-            for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(contacts) {
-                self.press_together(simd, track, *first, top, *bits, contacts, &mut scratch.parts);
+            for (raceway, contacts) in [&self.outer, &self.inner].into_iter().zip(contacts) {
+                self.normal_forces(simd, raceway, *first, top, *bits, contacts, &mut scratch.parts);
             }
             self.push_rollers(simd, block, outer, inner, &mut sums);
-            let mut lifted = [[0.0; LANES]; 2];
+            let mut by_film = [[0.0; LANES]; 2];
             if let (Some(oil), Some(films)) = (&self.oil, &mut state.films) {
-                let now = Now { step: state.steps, dt, last, felt: self.seat.is_some() };
-                let by_oil = self.lift_rollers(oil, films, block, [outer, Some(inner)], now);
-                lifted = [by_oil.normal, by_oil.stiffness];
+                let now = FilmStep { step: state.steps, dt, last, felt: self.seat.is_some() };
+                let by_oil = self.add_film_forces(oil, films, block, [outer, Some(inner)], now);
+                by_film = [by_oil.normal, by_oil.stiffness];
                 energy.contact += by_oil.stored;
                 for (turning, moment) in [outer, Some(inner)].into_iter().zip(by_oil.drive) {
                     spent.drive += turning.map_or(0.0, |turning| dt * turning.rate * moment);
@@ -189,17 +189,17 @@ impl Bearing {
                 let (facet, share) = (block.facet[lane], block.share[lane]);
                 let force = of_one(&block.force[0], lane);
                 if force != [0.0; 2] {
-                    self.press(simd, &self.place(facet as usize, share), force, &mut scratch.modes);
+                    self.press(simd, &self.raceway_point(facet as usize, share), force, &mut scratch.modes);
                 }
-                let force = block.contacts[0].normal[lane] + lifted[0][lane];
-                let heard = &mut scratch.heard[block.first + lane];
-                let stiffness = block.contacts[0].stiffness(self.penalty, lane) + lifted[1][lane];
-                *heard = Heard { growth: force - heard.force, force, stiffness, ..*heard };
+                let force = block.contacts[0].normal[lane] + by_film[0][lane];
+                let roller_forces = &mut scratch.roller_forces[block.first + lane];
+                let stiffness = block.contacts[0].stiffness(self.penalty, lane) + by_film[1][lane];
+                *roller_forces = RollerForce { growth: force - roller_forces.force, force, stiffness, ..*roller_forces };
             }
-            for (track, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
+            for (raceway, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
                 scratch.deepest = scratch.deepest.max(Self::deepest(contacts));
                 if last {
-                    self.stored_in_contacts(track, contacts, &mut energy);
+                    self.stored_in_contacts(raceway, contacts, &mut energy);
                 }
             }
             block.force[2] = Default::default();
@@ -264,8 +264,8 @@ impl Bearing {
         &self,
         simd: S,
         block: &mut Block,
-        outer: Option<Turning>,
-        inner: Turning,
+        outer: Option<RingRotation>,
+        inner: RingRotation,
         sums: &mut Sums<S>,
     ) {
         let all = |value: f64| Vector::all(simd, value);
@@ -391,14 +391,14 @@ impl Bearing {
 
 /// A ring that turns.
 #[derive(Clone, Copy)]
-pub(crate) struct Turning {
+pub(crate) struct RingRotation {
     /// How fast [rad/s].
     pub(crate) rate: f64,
     /// Cosine and sine of the angle by which it has turned.
     pub(crate) turned: [f64; 2],
 }
 
-impl Turning {
+impl RingRotation {
     /// Not at all.
     pub(crate) const STILL: Self = Self { rate: 0.0, turned: [1.0, 0.0] };
 

@@ -153,7 +153,7 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
     }
 }
 
-/// The outer ring turns about its own centre, which the load has moved: drive and friction see the same velocity of its raceway. Seen
+/// The outer ring turns about its own centre, which the load has moved: drive and friction see the same velocity of its raceway. RollerView
 /// about the middle of the bearing instead, 50 ms of this are off by 1.3 % with steps of any length.
 #[test]
 fn conserves_energy_while_the_outer_ring_turns_under_load() {

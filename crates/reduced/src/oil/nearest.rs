@@ -3,7 +3,7 @@
 use stribeck_film::{Land, Place, Point};
 use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
 
-use crate::{error::Error, outline::Outline};
+use crate::{error::Error, contact::outline::Outline};
 
 /// The smooth curve that an outline stands for, in the frame of its body.
 #[derive(Debug, Clone)]
@@ -26,7 +26,7 @@ pub(crate) enum Rim {
 
 /// A roller as a raceway sees it, in the frame of its outline.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Seen {
+pub(crate) struct RollerView {
     /// Centre [m] and direction of vertex 0.
     pub(crate) centre: [f64; 2],
     pub(crate) spin: [f64; 2],
@@ -99,7 +99,7 @@ impl Curved {
     }
 }
 
-impl Seen {
+impl RollerView {
     /// A point [m] in the frame of the roller.
     fn by_roller(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let ([c, s], x, y) = (self.spin, x - self.centre[0], y - self.centre[1]);
@@ -108,7 +108,7 @@ impl Seen {
 }
 
 /// Places on a land of a raceway and on a rim to search from.
-pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &Seen) -> [Place; 2] {
+pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &RollerView) -> [Place; 2] {
     let on_race = race.begin(land, seen.centre);
     let on_rim = match rim {
         Rim::Round(_) => Place::default(),
@@ -122,7 +122,7 @@ pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &Seen) -> [Plac
 
 impl Nearest {
     /// Of a roller and a land of a raceway, walking on from other places.
-    pub(crate) fn new(race: &Curved, land: &Land, rim: &Rim, seen: &Seen, places: &mut [Place; 2]) -> Self {
+    pub(crate) fn new(race: &Curved, land: &Land, rim: &Rim, seen: &RollerView, places: &mut [Place; 2]) -> Self {
         let foot = race.nearest(land, seen.centre, places[0]);
         places[0] = foot.place;
         let to = [foot.at[0] - seen.centre[0], foot.at[1] - seen.centre[1]];
@@ -143,7 +143,7 @@ impl Nearest {
     }
 
     /// Entrainment speed [m/s]: half of what both surfaces sweep past the closest approach.
-    pub(crate) fn speed(&self, seen: &Seen, land: &Land) -> f64 {
+    pub(crate) fn speed(&self, seen: &RollerView, land: &Land) -> f64 {
         let along = self.d[0] * seen.velocity[1] - self.d[1] * seen.velocity[0];
         let on_land = self.ends.iter().all(|&end| end > 0.0);
         // The closest approach stays at the end of a land, and d turns about it.

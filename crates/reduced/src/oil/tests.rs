@@ -14,7 +14,7 @@ const MASS: f64 = 0.06;
 const PENALTY: f64 = 6e11;
 const FLEXIBILITY: f64 = 2e-9;
 
-fn race(radius: f64, hollow: bool) -> Raceway {
+fn race(radius: f64, hollow: bool) -> OiledRaceway {
     let vertices: Vec<[f64; 2]> = (0..1200)
         .map(|i| TAU * f64::from(i) / 1200.0)
         .map(|angle| [radius * angle.cos(), radius * angle.sin()])
@@ -23,13 +23,13 @@ fn race(radius: f64, hollow: bool) -> Raceway {
     let relative = 1.0 / (1.0 / RADIUS + curved.lands[0].curvature);
     let loads = [1.0, 1e4];
     let compliance = Compliance::through(&loads, &loads.map(|load| FLEXIBILITY * load), 48);
-    let give = Give::new(PENALTY, relative, &compliance);
+    let give = BodySpring::new(PENALTY, relative, &compliance);
     let films = vec![FilmLaw::new(OIL, relative, LENGTH, give)];
-    Raceway { curved, films, speed: 0.0 }
+    OiledRaceway { curved, films, speed: 0.0 }
 }
 
-fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> Seen {
-    Seen { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
+fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> RollerView {
+    RollerView { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
 }
 
 /// What a weight does to a roller between the raceways: place, velocity and thickness of the outer film above the least, by
@@ -88,10 +88,10 @@ fn analytic_a_roller_sinks_through_its_film() {
         let mut step = 0;
         while thickness > 3.5e-6 {
             assert!(step as f64 * dt < 1e-3, "the film stays at {thickness} m");
-            let now = Now { step, dt, last: false, felt: false };
+            let now = FilmStep { step, dt, last: false, felt: false };
             let mut force = Sinking::WEIGHT;
             for (race, films) in raceways.iter().zip(&mut films) {
-                force += race.lift(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
+                force += race.film_forces(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
             }
             thickness = raceways[0].thickness(&films[0], 0);
             off = off.max((thickness / (known.at[2] + OIL.least) - 1.0).abs());

@@ -5,9 +5,9 @@ use stribeck_simd::lanes::{LANES, Vector};
 
 use crate::{
     bearing::Bearing,
-    overlap::Overlap,
-    row::{Row, Rows, lanes, of_one},
-    seam::Seam,
+    contact::penetration::Penetration,
+    rollers::row::{Row, Rows, lanes, of_one},
+    contact::segments::Segments,
     state::State,
 };
 
@@ -49,7 +49,7 @@ pub(crate) struct Block {
     pub(crate) drift: Row,
     /// What these come from: by the modes, as [`Bearing::moved`] says, and by the seat at both vertices, roller by roller in parts, and
     /// summed.
-    pub(crate) sights: [[Row; 8]; LANES],
+    pub(crate) parts_of_motion: [[Row; 8]; LANES],
     pub(crate) moved: [Row; 8],
     /// At outer and inner raceway.
     pub(crate) contacts: [Contacts; 2],
@@ -86,13 +86,13 @@ pub(crate) struct Contacts {
     pub(crate) most: Row,
     /// Those that may touch.
     pub(crate) near: u64,
-    pub(crate) seams: [Seam; LANES],
-    /// What the search for the force begins with: a force [N] and its root, what the bodies give way by at it [m], the derivative of that
+    pub(crate) segments: [Segments; LANES],
+    /// What the search for the force begins with: a force [N] and its root, what the bodies flexibility way by at it [m], the derivative of that
     /// [m/N], and how far from its middle the contact may reach [m].
     pub(crate) start: Row,
     pub(crate) root: Row,
     pub(crate) shift: Row,
-    pub(crate) give: Row,
+    pub(crate) flexibility: Row,
     pub(crate) reach: Row,
     /// The piece of the compliance there, as [`stribeck_modal::compliance::Curve::piece_at`] says.
     pub(crate) knot: Row,
@@ -101,7 +101,7 @@ pub(crate) struct Contacts {
     pub(crate) next: Row,
     /// What it finds: normal force [N], what overlaps at it.
     pub(crate) normal: Row,
-    pub(crate) overlap: Overlap<Row>,
+    pub(crate) overlap: Penetration<Row>,
 }
 
 impl Contacts {
@@ -109,7 +109,7 @@ impl Contacts {
     #[inline(always)]
     pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {
         let own = penalty * self.overlap.length[lane];
-        if self.normal[lane] > 0.0 { own / (1.0 + own * self.give[lane]) } else { 0.0 }
+        if self.normal[lane] > 0.0 { own / (1.0 + own * self.flexibility[lane]) } else { 0.0 }
     }
 }
 
@@ -128,8 +128,8 @@ impl Block {
         // Those that are missing keep clear of both raceways.
         block.centre[0] = Row([bearing.outer.bound; LANES]);
         block.drift = Row([f64::INFINITY; LANES]);
-        for (contacts, track) in block.contacts.iter_mut().zip([&bearing.outer, &bearing.inner]) {
-            contacts.bound = Row([track.bound; LANES]);
+        for (contacts, raceway) in block.contacts.iter_mut().zip([&bearing.outer, &bearing.inner]) {
+            contacts.bound = Row([raceway.bound; LANES]);
         }
         for lane in 0..count {
             block.present[lane] = 1.0;
@@ -140,9 +140,9 @@ impl Block {
 
     /// Sums up how the outer raceway moves under each of the rollers.
     #[inline(always)]
-    pub(crate) fn sum_sights<S: Simd>(&mut self, simd: S) {
+    pub(crate) fn sum_motion<S: Simd>(&mut self, simd: S) {
         for (n, to) in self.moved.iter_mut().enumerate() {
-            Vector::store_sums(simd, self.sights.each_ref().map(|sight| &sight[n][..]), &mut to.0);
+            Vector::store_sums(simd, self.parts_of_motion.each_ref().map(|pose| &pose[n][..]), &mut to.0);
         }
     }
 

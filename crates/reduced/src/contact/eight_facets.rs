@@ -3,7 +3,7 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::outline::{Facet, PAD, Parts, View};
+use crate::contact::outline::{Facet, PAD, Parts, View};
 
 /// Ends of eight facets.
 const ENDS: usize = LANES + 1;
@@ -14,14 +14,14 @@ const BEFORE: usize = 3;
 /// Eight neighbouring facets with growing u.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
-pub struct Window {
+pub struct EightFacets {
     from: [f64; LANES],
     to: [f64; LANES],
     slope: [f64; LANES],
     base: [f64; LANES],
 }
 
-impl Window {
+impl EightFacets {
     /// Sees the facets about that of a view; false where a wall or the far side of the boundary is among them. `along` says
     /// whether vertices go by along +t.
     #[inline(always)]
@@ -79,11 +79,11 @@ impl Window {
 }
 
 /// Goes along roller and raceway up to `reach` [m] to either side, and hands over what lies between two places where neither
-/// has a vertex. False, and nothing handed over, where the windows do not reach so far.
+/// has a vertex. False, and nothing handed over, where the eights do not reach so far.
 #[inline(always)]
 pub(crate) fn segments<S: Simd>(
     simd: S,
-    [roller, raceway]: &[Window; 2],
+    [roller, raceway]: &[EightFacets; 2],
     reach: f64,
     parts: &mut impl Parts,
 ) -> bool {

@@ -5,27 +5,27 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
-    block::Block,
+    rollers::block::Block,
     modes::Modes,
-    row::{Row, lanes, largest_sum, load, of_one, store},
-    seat::Hold,
-    step::Turning,
+    rollers::row::{Row, lanes, largest_sum, load, of_one, store},
+    seat::SeatState,
+    step::RingRotation,
 };
 
 impl Bearing {
     /// Finds the facets of the outer raceway, which may turn, that eight rollers are by.
     #[inline(always)]
-    pub(crate) fn see_raceway<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<Turning>) {
-        let gone = self.see_facets(simd, block, outer);
+    pub(crate) fn follow_facets<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<RingRotation>) {
+        let gone = self.test_facets(simd, block, outer);
         if gone != 0 {
             self.find_facets(block, gone);
-            self.see_facets(simd, block, outer);
+            self.test_facets(simd, block, outer);
         }
     }
 
     /// How far a vertex of the outer raceway moves at most in a step [m].
     #[inline(always)]
-    pub(crate) fn farthest<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&Hold>) -> f64 {
+    pub(crate) fn farthest<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&SeatState>) -> f64 {
         let with_modes = self.time_step * largest_sum(simd, &self.farthest, &modes.v);
         match (&self.seat, hold) {
             (Some(seat), Some(hold)) => with_modes + seat.farthest(simd, hold),
@@ -36,31 +36,31 @@ impl Bearing {
     /// Finds the places of eight rollers, whose facets are known, by raceways that may turn. No vertex of the outer one has moved by more
     /// than `farthest` [m] in this step.
     #[inline(always)]
-    pub(crate) fn place_rollers<S: Simd>(
+    pub(crate) fn locate_on_raceways<S: Simd>(
         &self,
         simd: S,
         modes: &Modes,
-        hold: Option<&Hold>,
+        hold: Option<&SeatState>,
         farthest: f64,
         block: &mut Block,
-        [outer, inner]: [Option<Turning>; 2],
+        [outer, inner]: [Option<RingRotation>; 2],
     ) {
         let clear = self.clear_of_raceway(simd, farthest, block, outer);
         for lane in lanes(block.bits & !clear) {
             let (facet, share) = (block.facet[lane] as usize, block.share[lane]);
-            let sights = &mut block.sights[lane];
-            let moved = self.moved(simd, &self.place(facet, share), modes);
-            for (parts, to) in moved.into_iter().zip(&mut sights[..]) {
+            let parts_of_motion = &mut block.parts_of_motion[lane];
+            let moved = self.moved(simd, &self.raceway_point(facet, share), modes);
+            for (parts, to) in moved.into_iter().zip(&mut parts_of_motion[..]) {
                 parts.store(to, 0);
             }
             if let (Some(seat), Some(hold)) = (&self.seat, hold) {
-                for (parts, to) in seat.under(simd, hold, facet).into_iter().zip(&mut sights[6..]) {
+                for (parts, to) in seat.under(simd, hold, facet).into_iter().zip(&mut parts_of_motion[6..]) {
                     parts.store(to, 0);
                 }
             }
         }
-        block.sum_sights(simd);
-        self.see_moved(simd, block);
+        block.sum_motion(simd);
+        self.raceway_motion(simd, block);
         // Where a raceway turns, everything is turned back.
         let [on_outer, on_inner] = &mut block.contacts;
         for at in vector_starts(simd) {
@@ -90,7 +90,7 @@ impl Bearing {
         simd: S,
         farthest: f64,
         block: &mut Block,
-        outer: Option<Turning>,
+        outer: Option<RingRotation>,
     ) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, dt) = (all(0.0), all(1.0), all(self.time_step));
@@ -115,7 +115,7 @@ impl Bearing {
 
     /// How the outer raceway moves under eight rollers, by what modes and seat displace.
     #[inline(always)]
-    fn see_moved<S: Simd>(&self, simd: S, block: &mut Block) {
+    fn raceway_motion<S: Simd>(&self, simd: S, block: &mut Block) {
         for at in vector_starts(simd) {
             let of = |row: &Row| Vector::load(simd, row, at);
             let [bx, by, vx, vy, dx, dy, first, second] = &block.moved;
@@ -140,7 +140,7 @@ impl Bearing {
     /// How the rays to eight rollers go through the facets of the outer raceway that they went through last. Returns those that have
     /// gone on to another one.
     #[inline(always)]
-    fn see_facets<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<Turning>) -> u64 {
+    fn test_facets<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<RingRotation>) -> u64 {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         let mut still = 0;
         for at in vector_starts(simd) {

@@ -6,9 +6,9 @@ use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
-    outline::{Facet, Parts, View, Walk},
-    row::Row,
-    window::{self, Window},
+    contact::outline::{Facet, Parts, View, Walk},
+    rollers::row::Row,
+    contact::eight_facets::{self, EightFacets},
 };
 
 /// How a raceway lies to a roller.
@@ -32,7 +32,7 @@ impl Sides {
 
 /// Integrals over the overlap, per unit of thickness: of one contact, or of several side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Overlap<N = f64> {
+pub struct Penetration<N = f64> {
     /// ∫ p du [m²].
     pub area: N,
     /// ∫ p h′ du with the slope of the roller [m²]: force along t.
@@ -60,7 +60,7 @@ pub struct Overlap<N = f64> {
     pub deepest: N,
 }
 
-impl<N: Number> Overlap<N> {
+impl<N: Number> Penetration<N> {
     /// Nothing overlaps; `zero` tells the kind of number.
     #[inline(always)]
     pub fn none(zero: N) -> Self {
@@ -116,11 +116,11 @@ impl<N: Number> Overlap<N> {
     }
 }
 
-impl Overlap<Row> {
+impl Penetration<Row> {
     /// The overlaps of the lanes from `at` on.
     #[inline(always)]
-    pub(crate) fn load<S: Simd>(&self, simd: S, at: usize) -> Overlap<Vector<S>> {
-        Overlap {
+    pub(crate) fn load<S: Simd>(&self, simd: S, at: usize) -> Penetration<Vector<S>> {
+        Penetration {
             area: Vector::load(simd, &self.area, at),
             across: Vector::load(simd, &self.across, at),
             moment: Vector::load(simd, &self.moment, at),
@@ -155,7 +155,7 @@ impl Overlap<Row> {
     }
 
     /// Replaces one of them.
-    pub(crate) fn set(&mut self, lane: usize, by: &Overlap) {
+    pub(crate) fn set(&mut self, lane: usize, by: &Penetration) {
         self.area[lane] = by.area;
         self.across[lane] = by.across;
         self.moment[lane] = by.moment;
@@ -171,10 +171,10 @@ impl Overlap<Row> {
     }
 }
 
-impl<S: Simd> Overlap<Vector<S>> {
+impl<S: Simd> Penetration<Vector<S>> {
     /// Writes them to the lanes from `at` on.
     #[inline(always)]
-    pub(crate) fn store(self, to: &mut Overlap<Row>, at: usize) {
+    pub(crate) fn store(self, to: &mut Penetration<Row>, at: usize) {
         self.area.store(&mut to.area, at);
         self.across.store(&mut to.across, at);
         self.moment.store(&mut to.moment, at);
@@ -201,40 +201,40 @@ pub struct Pair<'a, S> {
     /// How the raceway lies to the roller.
     pub sides: Sides,
     /// Roller and raceway again, eight facets at once.
-    windows: &'a [Window; 2],
+    eights: &'a [EightFacets; 2],
     /// Whether they can be seen so.
-    pub in_windows: bool,
+    pub in_eights: bool,
 }
 
 impl<'a, S: Simd> Pair<'a, S> {
-    /// Of two views, looked at in vectors where it can be; `windows` is room for that.
+    /// Of two views, looked at in vectors where it can be; `eights` is room for that.
     #[inline(always)]
     pub fn new(
         simd: S,
         roller: View<'a>,
         raceway: View<'a>,
         sides: Sides,
-        windows: &'a mut [Window; 2],
+        eights: &'a mut [EightFacets; 2],
     ) -> Self {
-        let [first, second] = &mut *windows;
-        let in_windows = first.look(simd, &roller, true) && second.look(simd, &raceway, sides.along);
-        Self { simd, roller, raceway, sides, windows, in_windows }
+        let [first, second] = &mut *eights;
+        let in_eights = first.look(simd, &roller, true) && second.look(simd, &raceway, sides.along);
+        Self { simd, roller, raceway, sides, eights, in_eights }
     }
 
     /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
     #[inline(always)]
-    pub fn overlap(&self, shift: f64, reach: f64) -> Overlap {
+    pub fn penetration(&self, shift: f64, reach: f64) -> Penetration {
         let sides = self.sides;
         if sides.are_round() {
-            self.taken(reach, Arcs { sum: Overlap::default(), sides, shift }).sum
+            self.taken(reach, Arcs { sum: Penetration::default(), sides, shift }).sum
         } else {
-            self.taken(reach, Chords { sum: Overlap::default(), shift }).sum
+            self.taken(reach, Chords { sum: Penetration::default(), shift }).sum
         }
     }
 
     #[inline(always)]
     fn taken<P: Parts>(&self, reach: f64, mut parts: P) -> P {
-        if !(self.in_windows && window::segments(self.simd, self.windows, reach, &mut parts)) {
+        if !(self.in_eights && eight_facets::segments(self.simd, self.eights, reach, &mut parts)) {
             self.walk(reach, &mut parts);
         }
         parts
@@ -272,7 +272,7 @@ impl<'a, S: Simd> Pair<'a, S> {
 
 /// Adds up what lies between straight lines.
 struct Chords {
-    sum: Overlap,
+    sum: Penetration,
     shift: f64,
 }
 
@@ -293,7 +293,7 @@ impl Parts for Chords {
 
 /// Adds up what lies between parabolas.
 struct Arcs {
-    sum: Overlap,
+    sum: Penetration,
     sides: Sides,
     shift: f64,
 }
@@ -318,7 +318,7 @@ impl Parts for Arcs {
 /// Adds what a wall of the roller that leans over does to the overlap, though no part holds it: its upper corner hides what is below,
 /// and there the penetration goes from one value to another [m]. Both come with the height of the roller.
 #[inline(always)]
-fn jump(sum: &mut Overlap, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
+fn jump(sum: &mut Penetration, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
     let [corner, deepest] = [h1.max(h2), p1.max(p2)];
     let (a, b) = (p1.max(0.0), p2.max(0.0));
     let [length, area] = [b - a, 0.5 * (b * b - a * a)];
@@ -333,7 +333,7 @@ fn jump(sum: &mut Overlap, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
 /// Adds what lies in a part, where `present` is one; nothing sinks in elsewhere.
 #[inline(always)]
 pub(crate) fn add_between<N: Number>(
-    sum: &mut Overlap<N>,
+    sum: &mut Penetration<N>,
     ends: [N; 2],
     roller: Facet<N>,
     raceway: Facet<N>,
@@ -363,7 +363,7 @@ fn straight<N: Number>([u1, u2]: [N; 2], r: Facet<N>, w: Facet<N>, shift: N) -> 
 
 /// Adds what lies between two straight lines, with the penetration at both ends.
 #[inline(always)]
-fn chords<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], [p1, p2]: [N; 2], r: Facet<N>, w: Facet<N>) {
+fn chords<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], [p1, p2]: [N; 2], r: Facet<N>, w: Facet<N>) {
     let (zero, one, half, four) = (u1.constant(0.0), u1.constant(1.0), u1.constant(0.5), u1.constant(4.0));
     let (third, sixth) = (u1.constant(1.0 / 3.0), u1.constant(1.0 / 6.0));
     let (lower, higher) = (p1.min(p2), p1.max(p2));
@@ -442,7 +442,7 @@ fn leaning<N: Number>(
 
 /// Adds what lies between two parabolas on chords.
 #[inline(always)]
-fn arcs<N: Number>(sum: &mut Overlap<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>, w: Facet<N>) {
+fn arcs<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>, w: Facet<N>) {
     let Round { p: [p1, p2], curvature, bulge } = seen;
     let (zero, one) = (u1.constant(0.0), u1.constant(1.0));
     let (two, three) = (u1.constant(2.0), u1.constant(3.0));

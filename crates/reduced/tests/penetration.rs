@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use pulp::{Arch, Scalar, Simd, WithSimd};
-use stribeck_reduced::outline::{Outline, View};
-use stribeck_reduced::overlap::{Overlap, Pair, Sides};
+use stribeck_reduced::contact::outline::{Outline, View};
+use stribeck_reduced::contact::penetration::{Penetration, Pair, Sides};
 use stribeck_testing::{Noise, ledger::compare};
 
 const ROLLER: f64 = 0.009;
@@ -23,7 +23,7 @@ fn pressed(
     [x, y]: [f64; 2],
     turn: f64,
     along: [f64; 2],
-) -> Overlap {
+) -> Penetration {
     let d = along;
     let (s, c) = turn.sin_cos();
     let own = [c * d[0] + s * d[1], c * d[1] - s * d[0]];
@@ -35,9 +35,9 @@ fn pressed(
     let under = raceway.facet_along([x, y], d, nearest(raceway, d), 1.0);
     let roller = View { outline: roller, from: [0.0; 2], d: own, facet };
     let raceway = View { outline: raceway, from: [x, y], d, facet: under };
-    let mut windows = Default::default();
-    let mut pair = Pair::new(Scalar::new(), roller, raceway, sides, &mut windows);
-    pair.in_windows = false;
+    let mut eights = Default::default();
+    let mut pair = Pair::new(Scalar::new(), roller, raceway, sides, &mut eights);
+    pair.in_eights = false;
     pair.overlap(0.0, 2e-3)
 }
 
@@ -196,11 +196,11 @@ fn conserves_energy_along_a_path_of_arcs_over_a_slope() {
     let relative = 1.0 / ROLLER - 1.0 / RACEWAY;
     let arcs = Sides { along: true, bulge: 0.5 * relative, curvature: 1.0 / ROLLER };
     let (round, spalled) = (polygon(ROLLER, 112), with_spall(ROLLER, 112, 0.2, -1.0));
-    let (track, pitted) = (polygon(RACEWAY, 1257), with_spall(RACEWAY, 1257, 0.05, 1.0));
+    let (raceway, pitted) = (polygon(RACEWAY, 1257), with_spall(RACEWAY, 1257, 0.05, 1.0));
     // 60 µm below the raceway: free over the floor, and at its edge touched 1 mm beside the roller's middle.
     let path = RACEWAY - ROLLER + 6e-5;
     let steps = 20_000;
-    for (roller, raceway, along, rolls) in [(&round, &pitted, 0.045, -0.5), (&spalled, &track, 0.0, -0.17)] {
+    for (roller, raceway, along, rolls) in [(&round, &pitted, 0.045, -0.5), (&spalled, &raceway, 0.0, -0.17)] {
         let seen = |share: f64| {
             let angle = 0.25 * TAU + share * along;
             let (s, c) = angle.sin_cos();
@@ -242,7 +242,7 @@ fn conserves_energy_along_a_path_over_walls_of_a_roller() {
             }
         }
     }
-    let (roller, track) = (Outline::new(&vertices), polygon(RACEWAY, 1257));
+    let (roller, raceway) = (Outline::new(&vertices), polygon(RACEWAY, 1257));
     let path = RACEWAY - ROLLER + 3e-5;
     let steps = 40_000;
     for (sides, tolerance) in [chords, arcs].into_iter().zip(TOLERANCE) {
@@ -250,7 +250,7 @@ fn conserves_energy_along_a_path_over_walls_of_a_roller() {
             let along = -0.05 * f64::signum(rolls);
             let seen = |share: f64| {
                 let (s, c) = (0.25 * TAU + share * along).sin_cos();
-                pressed(&roller, &track, sides, [path * c, path * s], share * rolls, [c, s])
+                pressed(&roller, &raceway, sides, [path * c, path * s], share * rolls, [c, s])
             };
             let mut work = 0.0;
             for i in 0..steps {
@@ -274,15 +274,15 @@ struct Both<'a> {
 }
 
 impl WithSimd for Both<'_> {
-    type Output = Option<[Overlap; 2]>;
+    type Output = Option<[Penetration; 2]>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let mut windows = Default::default();
-        let pair = Pair::new(simd, self.roller, self.raceway, self.sides, &mut windows);
+        let mut eights = Default::default();
+        let pair = Pair::new(simd, self.roller, self.raceway, self.sides, &mut eights);
         let mut stepwise = pair;
-        stepwise.in_windows = false;
-        pair.in_windows.then(|| [pair.overlap(self.shift, 1e-3), stepwise.overlap(self.shift, 1e-3)])
+        stepwise.in_eights = false;
+        pair.in_eights.then(|| [pair.overlap(self.shift, 1e-3), stepwise.overlap(self.shift, 1e-3)])
     }
 }
 

@@ -4,9 +4,9 @@ use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
 
 use crate::{
-    bearing::{Bearing, Track},
-    block::Contacts,
-    row::{lanes, load},
+    bearing::{Bearing, Raceway},
+    rollers::block::Contacts,
+    rollers::row::{lanes, load},
     state::Stored,
 };
 
@@ -34,7 +34,7 @@ impl Bearing {
     pub(crate) fn push<S: Simd>(
         &self,
         simd: S,
-        track: &Track,
+        raceway: &Raceway,
         contacts: &mut Contacts,
         at: usize,
         rolling: &Rolling<Vector<S>>,
@@ -61,8 +61,8 @@ impl Bearing {
         let penalty = all(self.penalty);
         let length = half.choose_below(touches, o.length, one);
         // The compliance behind the penalty takes its part of the approach.
-        let give = Vector::load(simd, &contacts.give, at);
-        let part = one / (penalty * length).times_plus(give, one);
+        let flexibility = Vector::load(simd, &contacts.flexibility, at);
+        let part = one / (penalty * length).times_plus(flexibility, one);
         let resistance = all(self.damping);
         let lost = resistance * (part * closing).times_plus(length, -(turning * o.first));
         let damping = where_it_touches(lost.max(-normal));
@@ -84,10 +84,10 @@ impl Bearing {
         damping.store(&mut contacts.passive[1], at);
         about.store(&mut contacts.passive[2], at);
 
-        // d turns as the roller moves along, and what the bodies have given way by with it.
-        let given = Vector::load(simd, &contacts.shift, at);
-        let per = all(track.outwards()) / Vector::load(simd, &contacts.distance, at);
-        let turned = (half * o.skew + given * o.across) * per;
+        // d turns as the roller moves along, and what the bodies have deflection way by with it.
+        let deflection = Vector::load(simd, &contacts.shift, at);
+        let per = all(raceway.outwards()) / Vector::load(simd, &contacts.distance, at);
+        let turned = (half * o.skew + deflection * o.across) * per;
         let along = where_it_touches(penalty * (o.across - turned)) + drag;
         let against = where_it_touches(normal + damping);
         let area = half.choose_below(touches, o.area, one);
@@ -99,14 +99,14 @@ impl Bearing {
     }
 
     /// Energy of the contacts with a raceway that penalty, compliance and springs of friction store.
-    pub(crate) fn stored_in_contacts(&self, track: &Track, contacts: &Contacts, energy: &mut Stored) {
+    pub(crate) fn stored_in_contacts(&self, raceway: &Raceway, contacts: &Contacts, energy: &mut Stored) {
         for lane in lanes(contacts.near) {
             let (normal, overlap) = (contacts.normal[lane], &contacts.overlap);
             if normal > 0.0 && overlap.area[lane] > 0.0 {
                 let slip = contacts.slip[lane];
                 let stuck = 0.5 * self.sticking * overlap.length[lane] * slip * slip;
                 energy.contact +=
-                    0.5 * self.penalty * overlap.square[lane] + track.curve.energy(normal) + stuck;
+                    0.5 * self.penalty * overlap.square[lane] + raceway.curve.energy(normal) + stuck;
                 energy.sticking += stuck;
             }
         }

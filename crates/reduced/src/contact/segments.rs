@@ -7,9 +7,9 @@ use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
-    outline::{Facet, View},
-    overlap::{Overlap, Sides, add_between},
-    row::Row,
+    contact::outline::{Facet, View},
+    contact::penetration::{Penetration, Sides, add_between},
+    rollers::row::Row,
 };
 
 /// Most parts of an overlap that are kept.
@@ -19,7 +19,7 @@ const MOST: usize = 2 * LANES;
 /// modulo eight, so that sums over all of them are the same wherever the list begins.
 #[derive(Debug, Clone, Default)]
 #[repr(align(64))]
-pub(crate) struct Seam {
+pub(crate) struct Segments {
     /// x and y of both ends of the roller's facet, then of the raceway's, in the frames of their bodies. Where there is no part the
     /// first one stands again …
     columns: [[f64; MOST]; 8],
@@ -33,31 +33,31 @@ pub(crate) struct Seam {
 
 /// How roller and raceway are seen: d in the frame of each, and the roller's centre in that of the raceway [m].
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sight {
+pub(crate) struct Pose {
     pub(crate) own: [f64; 2],
     pub(crate) d: [f64; 2],
     pub(crate) from: [f64; 2],
 }
 
-impl Seam {
+impl Segments {
     /// The overlap of a roller that is pressed back by `shift` [m], into `found` by parts, in its first lanes. False where the parts are no
     /// longer in this order, the middle has gone on to other facets, or `reach` [m] goes beyond them.
     #[inline(always)]
-    pub(crate) fn overlap<S: Simd>(
+    pub(crate) fn penetration<S: Simd>(
         &self,
         simd: S,
         sides: Sides,
-        sight: &Sight,
+        pose: &Pose,
         shift: f64,
         reach: f64,
-        found: &mut Overlap<Row>,
+        found: &mut Penetration<Row>,
     ) -> bool {
         let all = |value: f64| Vector::all(simd, value);
         let zero = all(0.0);
         let (shift, near, far) = (all(shift), all(-reach), all(reach));
-        let (own, d) = ([all(sight.own[0]), all(sight.own[1])], [all(sight.d[0]), all(sight.d[1])]);
-        let [cx, cy] = [all(sight.from[0]), all(sight.from[1])];
-        let mut sum = Overlap::none(zero);
+        let (own, d) = ([all(pose.own[0]), all(pose.own[1])], [all(pose.d[0]), all(pose.d[1])]);
+        let [cx, cy] = [all(pose.from[0]), all(pose.from[1])];
+        let mut sum = Penetration::none(zero);
         // All parts may lie on one side of what is looked for.
         let every = (1 << Vector::<S>::LEN) - 1;
         let (mut before, mut behind, mut middle, mut wrong) = (every, every, 0, 0);

@@ -9,14 +9,14 @@ const ENOUGH: f64 = 1e-8;
 
 /// Penalty and compliance of a round contact in series.
 #[derive(Debug, Clone)]
-pub(crate) struct Give {
+pub(crate) struct BodySpring {
     /// Penetration over the force's 2/3rd power [m/N^{2/3}].
     softness: f64,
     curve: Curve,
     stiffest: f64,
 }
 
-impl Give {
+impl BodySpring {
     /// Of bodies with the relative radius R [m] on a penalty [N/m²].
     pub(crate) fn new(penalty: f64, radius: f64, compliance: &Compliance) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Give {
     }
 }
 
-impl Spring for Give {
+impl Spring for BodySpring {
     fn force(&self, depth: f64) -> f64 {
         if depth > 0.0 { self.seek(depth, (depth / self.softness).sqrt()) } else { 0.0 }
     }

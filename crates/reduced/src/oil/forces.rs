@@ -4,16 +4,16 @@ use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
-    block::Block,
-    oil::{Films, Lubrication, Now, Seen},
-    row::of_one,
+    rollers::block::Block,
+    oil::{Films, Lubrication, FilmStep, RollerView},
+    rollers::row::of_one,
     state::State,
-    step::Turning,
+    step::RingRotation,
 };
 
 /// What films do to eight rollers, beside the forces on these.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct ByOil {
+pub(crate) struct OilForces {
     /// What they carry at the outer raceway [N], and by how much that falls when it gives way [N/m].
     pub(crate) normal: [f64; LANES],
     pub(crate) stiffness: [f64; LANES],
@@ -38,11 +38,11 @@ impl Bearing {
     }
 
     /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former displaced.
-    fn seen_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> Seen {
+    fn seen_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> RollerView {
         let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
         let [x, y] = [state.x[i], state.y[i]];
         let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
-        Seen { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }
+        RollerView { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }
     }
 
     /// Forces on a roller by the films of steady rolling at the outer and the inner raceway, away from these [N].
@@ -75,15 +75,15 @@ impl Bearing {
 
     /// Adds the forces of films to those on eight rollers between the raceways, the outer and the inner one of which turn as given.
     #[inline(never)]
-    pub(crate) fn lift_rollers(
+    pub(crate) fn add_film_forces(
         &self,
         oil: &Lubrication,
         films: &mut Films,
         block: &mut Block,
-        turning: [Option<Turning>; 2],
-        now: Now,
-    ) -> ByOil {
-        let mut by_oil = ByOil::default();
+        turning: [Option<RingRotation>; 2],
+        now: FilmStep,
+    ) -> OilForces {
+        let mut by_oil = OilForces::default();
         for lane in 0..block.count {
             let i = block.first + lane;
             let rim = oil.rim(self.rim_of[i]);
@@ -98,32 +98,32 @@ impl Bearing {
             let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
             for (k, race) in oil.raceways.iter().enumerate() {
                 let ([x, y], [rx, ry]) = (from_raceway[k], relative[k]);
-                let Turning { rate, turned: [c, s] } = turning[k].unwrap_or(Turning::STILL);
+                let RingRotation { rate, turned: [c, s] } = turning[k].unwrap_or(RingRotation::STILL);
                 let [rx, ry] = [rx + rate * y, ry - rate * x];
                 let contacts = &block.contacts[k];
-                let seen = Seen {
+                let seen = RollerView {
                     centre: of_one(&contacts.centre, lane),
                     spin: of_one(&contacts.spin, lane),
                     velocity: [c * rx + s * ry, c * ry - s * rx],
                     turning: block.spin[lane] - rate,
                 };
-                let now = Now { felt: now.felt && k == 0, ..now };
-                let lifted = race.lift(rim, race.of_roller(&mut films.at[k], i), &seen, now);
-                let [fx, fy] = lifted.force;
+                let now = FilmStep { felt: now.felt && k == 0, ..now };
+                let by_film = race.film_forces(rim, race.of_roller(&mut films.at[k], i), &seen, now);
+                let [fx, fy] = by_film.force;
                 let [fx, fy] = [c * fx - s * fy, s * fx + c * fy];
                 block.force[k][0][lane] += fx;
                 block.force[k][1][lane] += fy;
-                block.moment[lane] += lifted.moment;
-                by_oil.drive[k] += x * fy - y * fx + lifted.moment;
-                by_oil.stored += lifted.stored;
-                films.heat += lifted.heat;
+                block.moment[lane] += by_film.moment;
+                by_oil.drive[k] += x * fy - y * fx + by_film.moment;
+                by_oil.stored += by_film.stored;
+                films.heat += by_film.heat;
                 if k == 0 {
                     // As of contact: downhill along a raceway that is displaced more or less (THEORY §9.3).
                     let uphill = (fx * tx + fy * ty) / distance;
                     let [rx, ry] = of_one(&block.radial, lane);
                     block.downhill[0][lane] += uphill * ry;
                     block.downhill[1][lane] -= uphill * rx;
-                    (by_oil.normal[lane], by_oil.stiffness[lane]) = (lifted.normal, lifted.stiffness);
+                    (by_oil.normal[lane], by_oil.stiffness[lane]) = (by_film.normal, by_film.stiffness);
                 }
             }
         }

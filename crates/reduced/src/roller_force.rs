@@ -1,10 +1,10 @@
-//! What rollers press on the raceway beyond the modes: sensors hear it, and the seat feels it.
+//! What rollers press on the raceway beyond the modes: sensors measure it, and the seat feels it.
 
 use serde::{Deserialize, Serialize};
 
-/// A force that sensors hear beyond the modes: its facet, the share of the facet's second vertex, and how large it is.
+/// A force that sensors measure beyond the modes: its facet, the share of the facet's second vertex, and how large it is.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Heard {
+pub struct RollerForce {
     pub(crate) facet: u32,
     pub(crate) share: f64,
     pub(crate) force: f64,
@@ -14,7 +14,7 @@ pub struct Heard {
     pub(crate) stiffness: f64,
 }
 
-impl Heard {
+impl RollerForce {
     /// The force of the step that begins, if it goes on as it did; none pulls.
     #[inline(always)]
     pub(crate) fn next(&self) -> f64 {

@@ -5,10 +5,10 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
-    block::{Block, Walls},
+    rollers::block::{Block, Walls},
     cage::{Cage, Wall, WallRows},
-    flat::{self, Shape},
-    row::{Rows, lanes, load, of_one},
+    cage::flat::{self, Shape},
+    rollers::row::{Rows, lanes, load, of_one},
     state::Stored,
 };
 
@@ -21,7 +21,7 @@ pub(crate) struct PlacedCage {
 }
 
 /// What a wall does to a roller.
-pub(crate) struct Hit {
+pub(crate) struct WallForce {
     pub(crate) force: [f64; 2],
     /// About the roller's centre.
     pub(crate) moment: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Hit {
 
 /// A roller at its pocket.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Guest {
+pub(crate) struct RollerInPocket {
     pub(crate) velocity: [f64; 2],
     pub(crate) omega: f64,
     /// Direction of its vertex 0.
@@ -51,11 +51,11 @@ impl PlacedCage {
         velocity: [f64; 2],
         omega: f64,
         turned: [f64; 2],
-    ) -> Guest {
+    ) -> RollerInPocket {
         let [c, s] = self.turn;
         let rel = [centre[0] - self.at[0] - middle[0], centre[1] - self.at[1] - middle[1]];
         let own = [c * rel[0] + s * rel[1], c * rel[1] - s * rel[0]];
-        Guest { velocity, omega, turned, from_cage: rel, own }
+        RollerInPocket { velocity, omega, turned, from_cage: rel, own }
     }
 }
 
@@ -195,18 +195,18 @@ impl Bearing {
         cage: &Cage,
         wall: &Wall,
         placed: PlacedCage,
-        guest: &Guest,
+        guest: &RollerInPocket,
         slip: &mut f64,
         passive: &mut [f64; 2],
         heat: &mut [f64; 2],
         energy: &mut Stored,
-    ) -> Option<Hit> {
+    ) -> Option<WallForce> {
         let Some(foot) = wall.foot(guest.own, STILL_SEEN * self.rims[0].top) else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };
         let [c, s] = placed.turn;
-        let Guest { velocity, omega, turned, from_cage: rel, .. } = *guest;
+        let RollerInPocket { velocity, omega, turned, from_cage: rel, .. } = *guest;
         let Foot { from: foot, share: t, distance } = foot;
         // From the roller's centre to the foot, in space.
         let to = [foot[0] / distance, foot[1] / distance];
@@ -270,7 +270,7 @@ impl Bearing {
         let normal = force + damping;
         let on_roller = [drag * t[0] - normal * n[0], drag * t[1] - normal * n[1]];
         let cross = |r: [f64; 2]| r[0] * on_roller[1] - r[1] * on_roller[0];
-        Some(Hit {
+        Some(WallForce {
             force: on_roller,
             moment: couple + cross([d[0] * distance, d[1] * distance]),
             on_cage: couple + cross(arm),

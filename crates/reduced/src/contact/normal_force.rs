@@ -1,17 +1,17 @@
-//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies give way by (THEORY §9.3). Eight
+//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies flexibility way by (THEORY §9.3). Eight
 //! rollers side by side, and one by itself where its force is far from what was expected.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
-    bearing::{Bearing, Rim, Track},
-    block::Contacts,
-    outline::View,
-    overlap::{Overlap, Pair},
-    row::{Row, lanes, load, of_one, store},
-    seam::Sight,
-    window::Window,
+    bearing::{Bearing, Rim, Raceway},
+    rollers::block::Contacts,
+    contact::outline::View,
+    contact::penetration::{Penetration, Pair},
+    rollers::row::{Row, lanes, load, of_one, store},
+    contact::segments::Pose,
+    contact::eight_facets::EightFacets,
 };
 
 /// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
@@ -25,21 +25,21 @@ const LITTLE: f64 = 1e-2;
 
 /// One contact of a roller with a raceway in the present step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Touch {
+pub(crate) struct NormalForce {
     /// Normal force of penalty and compliance [N].
     pub(crate) normal: f64,
     /// Derivative of the compliance's approach there [m/N].
-    give: f64,
-    /// What the bodies have given way by [m].
-    given: f64,
+    flexibility: f64,
+    /// What the bodies have deflection way by [m].
+    deflection: f64,
     /// What overlaps at that force.
-    overlap: Overlap,
+    overlap: Penetration,
 }
 
 /// A roller by a raceway, seen in the frame of the raceway's outline.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Near<'a> {
-    pub(crate) track: &'a Track,
+pub(crate) struct RollerOnRaceway<'a> {
+    pub(crate) raceway: &'a Raceway,
     pub(crate) rim: &'a Rim,
     pub(crate) centre: [f64; 2],
     /// Direction of the roller's vertex 0.
@@ -58,19 +58,19 @@ impl Bearing {
         clippy::too_many_arguments,
         reason = "one search, with all that it reads and room to compute in"
     )]
-    pub(crate) fn press_together<S: Simd>(
+    pub(crate) fn normal_forces<S: Simd>(
         &self,
         simd: S,
-        track: &Track,
+        raceway: &Raceway,
         first: usize,
         top: &Row,
         present: u64,
         contacts: &mut Contacts,
-        parts: &mut [Overlap<Row>; LANES],
+        parts: &mut [Penetration<Row>; LANES],
     ) {
         let all = |value: f64| Vector::all(simd, value);
         let zero = all(0.0);
-        let outwards = all(track.outwards());
+        let outwards = all(raceway.outwards());
         let mut deep = 0;
         for at in vector_starts(simd) {
             let [x, y] = load(simd, &contacts.centre, at);
@@ -94,8 +94,8 @@ impl Bearing {
             }
             return;
         }
-        self.expect(simd, track, contacts);
-        let alone = self.integrate(simd, track, first, contacts, parts);
+        self.predict(simd, raceway, contacts);
+        let alone = self.integrate(simd, raceway, first, contacts, parts);
         let again = self.search(simd, contacts);
         for lane in lanes(alone) {
             contacts.normal[lane] = contacts.start[lane];
@@ -104,11 +104,11 @@ impl Bearing {
             let rim = self.rim(first + lane);
             let before = contacts.normal[lane];
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
-            let near = Near { track, rim, centre, spin, bound: contacts.bound[lane], before };
-            let found = self.touch(simd, near, &mut contacts.hints[lane]);
+            let near = RollerOnRaceway { raceway, rim, centre, spin, bound: contacts.bound[lane], before };
+            let found = self.normal_force(simd, near, &mut contacts.hints[lane]);
             contacts.normal[lane] = found.normal;
-            contacts.give[lane] = found.give;
-            contacts.shift[lane] = found.given;
+            contacts.flexibility[lane] = found.flexibility;
+            contacts.shift[lane] = found.deflection;
             contacts.overlap.set(lane, &found.overlap);
         }
         for at in vector_starts(simd) {
@@ -118,9 +118,9 @@ impl Bearing {
         }
     }
 
-    /// What the bodies give way by at the forces that are expected, and how far from their middles contacts may reach then.
+    /// What the bodies flexibility way by at the forces that are expected, and how far from their middles contacts may reach then.
     #[inline(always)]
-    fn expect<S: Simd>(&self, simd: S, track: &Track, contacts: &mut Contacts) {
+    fn predict<S: Simd>(&self, simd: S, raceway: &Raceway, contacts: &mut Contacts) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, half) = (all(0.0), all(0.5));
         for at in vector_starts(simd) {
@@ -131,7 +131,7 @@ impl Bearing {
             start.sqrt().store(&mut contacts.root, at);
         }
         for lane in lanes(contacts.near) {
-            let [knot, first, slope, next] = track.curve.piece_at(contacts.root[lane]);
+            let [knot, first, slope, next] = raceway.curve.piece_at(contacts.root[lane]);
             contacts.knot[lane] = knot;
             contacts.first[lane] = first;
             contacts.slope[lane] = slope;
@@ -148,17 +148,17 @@ impl Bearing {
             let shift = start * g;
             let depth = Vector::load(simd, &contacts.most, at) - shift;
             shift.store(&mut contacts.shift, at);
-            (half * root).times_plus(slope, g).store(&mut contacts.give, at);
-            track.reach(depth).store(&mut contacts.reach, at);
+            (half * root).times_plus(slope, g).store(&mut contacts.flexibility, at);
+            raceway.reach(depth).store(&mut contacts.reach, at);
             reaches |= zero.bits_below(depth) << at;
         }
         // Where nothing would overlap at that force, the search begins without one.
         for lane in lanes(contacts.near & !reaches) {
-            let [knot, first, slope, next] = track.curve.piece_at(0.0);
+            let [knot, first, slope, next] = raceway.curve.piece_at(0.0);
             (contacts.knot[lane], contacts.first[lane]) = (knot, first);
             (contacts.slope[lane], contacts.next[lane]) = (slope, next);
-            (contacts.start[lane], contacts.shift[lane], contacts.give[lane]) = (0.0, 0.0, first);
-            contacts.reach[lane] = track.reach(contacts.most[lane]);
+            (contacts.start[lane], contacts.shift[lane], contacts.flexibility[lane]) = (0.0, 0.0, first);
+            contacts.reach[lane] = raceway.reach(contacts.most[lane]);
         }
     }
 
@@ -168,32 +168,32 @@ impl Bearing {
     fn integrate<S: Simd>(
         &self,
         simd: S,
-        track: &Track,
+        raceway: &Raceway,
         first: usize,
         contacts: &mut Contacts,
-        parts: &mut [Overlap<Row>; LANES],
+        parts: &mut [Penetration<Row>; LANES],
     ) -> u64 {
         let mut alone = 0;
         for lane in lanes(contacts.near) {
             let (centre, d) = (of_one(&contacts.centre, lane), of_one(&contacts.d, lane));
             let (shift, reach) = (contacts.shift[lane], contacts.reach[lane]);
-            let seam = &mut contacts.seams[lane];
-            let sight = Sight { own: of_one(&contacts.own, lane), d, from: centre };
+            let segments = &mut contacts.segments[lane];
+            let pose = Pose { own: of_one(&contacts.own, lane), d, from: centre };
             for look in 0..2 {
-                if seam.overlap(simd, track.sides, &sight, shift, reach, &mut parts[lane]) {
+                if segments.penetration(simd, raceway.sides, &pose, shift, reach, &mut parts[lane]) {
                     break;
                 }
                 if look == 0 {
-                    let near = Near {
-                        track,
+                    let near = RollerOnRaceway {
+                        raceway,
                         rim: self.rim(first + lane),
                         centre,
                         spin: of_one(&contacts.spin, lane),
-                        bound: track.bound,
+                        bound: raceway.bound,
                         before: 0.0,
                     };
                     let views = Self::views(&near, d, &mut contacts.hints[lane]);
-                    seam.list(&views, track.sides.along, reach);
+                    segments.list(&views, raceway.sides.along, reach);
                 } else {
                     alone |= 1 << lane;
                 }
@@ -203,8 +203,8 @@ impl Bearing {
         alone
     }
 
-    /// Takes steps of Newton's method for the forces, with what each overlap becomes by a further shift.
-    /// Returns those that have to be searched for further; their `normal` is what to begin with.
+    /// Takes steps of Newton's method for the forces, with what each overlap becomes by a more shift.
+    /// Returns those that have to be searched for more; their `normal` is what to begin with.
     #[inline(always)]
     fn search<S: Simd>(&self, simd: S, contacts: &mut Contacts) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
@@ -219,20 +219,20 @@ impl Bearing {
                 (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
             let (first, slope) =
                 (Vector::load(simd, &contacts.first, at), Vector::load(simd, &contacts.slope, at));
-            let (mut force, mut give) = (start, Vector::load(simd, &contacts.give, at));
-            let (mut now, mut further) = ([found.area, found.length], zero);
+            let (mut force, mut flexibility) = (start, Vector::load(simd, &contacts.flexibility, at));
+            let (mut now, mut more) = ([found.area, found.length], zero);
             let mut sure = one;
             for _ in 0..NEWTON {
                 let [area, length] = now;
                 let left = penalty.times_plus(area, -force);
-                let stiff = (penalty * length).times_plus(give, one);
+                let stiff = (penalty * length).times_plus(flexibility, one);
                 force = (force + left / stiff).max(zero);
                 let y = force.sqrt();
                 sure = y.choose_below(knot, zero, y.choose_below(next, sure, zero));
                 let g = slope.times_plus(y - knot, first);
-                further = force.times_plus(g, -shift);
-                give = (half * y).times_plus(slope, g);
-                now = found.shifted_area(further);
+                more = force.times_plus(g, -shift);
+                flexibility = (half * y).times_plus(slope, g);
+                now = found.shifted_area(more);
             }
             // It may have gone on to another piece of the compliance.
             let before = (Vector::load(simd, &contacts.force, at) + Vector::load(simd, &contacts.growth, at))
@@ -243,69 +243,69 @@ impl Bearing {
             again |= (open.bits() << at) & contacts.near;
             let force = half.choose_below(sure, force, before);
             half.choose_below(near, force, zero).store(&mut contacts.normal, at);
-            give.store(&mut contacts.give, at);
-            (shift + further).store(&mut contacts.shift, at);
-            found.shifted(further, now).store(&mut contacts.overlap, at);
+            flexibility.store(&mut contacts.flexibility, at);
+            (shift + more).store(&mut contacts.shift, at);
+            found.shifted(more, now).store(&mut contacts.overlap, at);
         }
         again
     }
 
     /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
     #[inline(always)]
-    pub(crate) fn touch<S: Simd>(&self, simd: S, near: Near<'_>, hints: &mut [u32; 2]) -> Touch {
-        let Near { track, rim, centre, bound, before, .. } = near;
+    pub(crate) fn normal_force<S: Simd>(&self, simd: S, near: RollerOnRaceway<'_>, hints: &mut [u32; 2]) -> NormalForce {
+        let RollerOnRaceway { raceway, rim, centre, bound, before, .. } = near;
         let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
-        let outwards = track.outwards();
+        let outwards = raceway.outwards();
         let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
         let most = outwards * (distance - bound) + rim.top;
         if most <= 0.0 {
-            return Touch::default();
+            return NormalForce::default();
         }
-        let mut windows = [Window::default(); 2];
-        let [roller, raceway] = Self::views(&near, d, hints);
-        let pair = Pair::new(simd, roller, raceway, track.sides, &mut windows);
+        let mut eights = [EightFacets::default(); 2];
+        let [of_roller, of_raceway] = Self::views(&near, d, hints);
+        let pair = Pair::new(simd, of_roller, of_raceway, raceway.sides, &mut eights);
         let mut force = before;
-        let mut found = Overlap::default();
-        let (mut give, mut given) = (0.0, 0.0);
+        let mut found = Penetration::default();
+        let (mut flexibility, mut deflection) = (0.0, 0.0);
         for _ in 0..SEARCHES {
-            let ([shift, slope], piece) = track.curve.approach(force);
-            give = slope;
+            let ([shift, slope], piece) = raceway.curve.approach(force);
+            flexibility = slope;
             let depth = most - shift;
             if depth <= 0.0 {
-                (found, force) = (Overlap::default(), 0.0);
+                (found, force) = (Penetration::default(), 0.0);
                 continue;
             }
-            found = pair.overlap(shift, track.reach(depth));
-            // Newton's method with what the overlap becomes by a further shift.
+            found = pair.penetration(shift, raceway.reach(depth));
+            // Newton's method with what the overlap becomes by a more shift.
             let start = force;
-            let (mut further, mut now) = (0.0, [found.area, found.length]);
+            let (mut more, mut now) = (0.0, [found.area, found.length]);
             for _ in 0..NEWTON {
                 let [area, length] = now;
                 let left = self.penalty * area - force;
-                force = (force + left / (1.0 + self.penalty * length * give)).max(0.0);
-                let [there, slope] = track.curve.approach_near(force, piece);
-                (further, give) = (there - shift, slope);
-                now = found.shifted_area(further);
+                force = (force + left / (1.0 + self.penalty * length * flexibility)).max(0.0);
+                let [there, slope] = raceway.curve.approach_near(force, piece);
+                (more, flexibility) = (there - shift, slope);
+                now = found.shifted_area(more);
             }
-            found = found.shifted(further, now);
-            given = shift + further;
+            found = found.shifted(more, now);
+            deflection = shift + more;
             if (force - start).abs() <= ENOUGH * force + LITTLE {
                 break;
             }
         }
-        Touch { normal: force, give, given, overlap: found }
+        NormalForce { normal: force, flexibility, deflection, overlap: found }
     }
 
     /// Roller and raceway near their contact, in the direction `d`, with the facets that it goes through.
     #[inline(always)]
-    fn views<'a>(near: &Near<'a>, d: [f64; 2], hints: &mut [u32; 2]) -> [View<'a>; 2] {
-        let Near { track, rim, centre, spin, .. } = *near;
+    fn views<'a>(near: &RollerOnRaceway<'a>, d: [f64; 2], hints: &mut [u32; 2]) -> [View<'a>; 2] {
+        let RollerOnRaceway { raceway, rim, centre, spin, .. } = *near;
         let own = turned_back(spin, d);
         let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
-        let under = track.outline.facet_along(centre, d, hints[1] as usize, track.outwards());
+        let under = raceway.outline.facet_along(centre, d, hints[1] as usize, raceway.outwards());
         *hints = [facet as u32, under as u32];
         let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
-        let raceway = View { outline: &track.outline, from: centre, d, facet: under };
+        let raceway = View { outline: &raceway.outline, from: centre, d, facet: under };
         [roller, raceway]
     }
 }

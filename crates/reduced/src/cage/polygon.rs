@@ -7,7 +7,7 @@ const ROUNDED: f64 = 0.05;
 
 /// What of a roller lies beyond a flat, over the penetration p and the distance u from the foot of its centre, counter-clockwise about it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Sunk {
+pub(crate) struct Cut {
     /// ∫ p du [m²].
     pub(crate) area: f64,
     /// ∫ p² du [m³].
@@ -18,7 +18,7 @@ pub(crate) struct Sunk {
     pub(crate) length: f64,
 }
 
-impl Sunk {
+impl Cut {
     /// Adds a part between two places u with these penetrations.
     #[inline(always)]
     pub(crate) fn add(&mut self, [u1, u2]: [f64; 2], [p1, p2]: [f64; 2]) {
@@ -100,8 +100,8 @@ impl Polygon {
     }
 
     /// What lies beyond a flat at `distance` from the centre, at a right angle to the direction `d`.
-    pub(crate) fn beyond(&self, d: [f64; 2], distance: f64) -> Sunk {
-        let mut sunk = Sunk::default();
+    pub(crate) fn beyond(&self, d: [f64; 2], distance: f64) -> Cut {
+        let mut cut = Cut::default();
         let middle = self.beside_middle(d);
         let radius = self.apothem / self.half_turn[0];
         // A vertex in the direction [cosine, sine] from d: its u, and how far it lies beyond the flat.
@@ -110,7 +110,7 @@ impl Polygon {
         let back = |[c, s]: [f64; 2]| [c, -s];
         let ends = [turned(middle, back(self.half_turn)), turned(middle, self.half_turn)];
         let [[u1, p1], [u2, p2]] = ends.map(place);
-        sunk.add([u1, u2], [p1, p2]);
+        cut.add([u1, u2], [p1, p2]);
         // Facet by facet to either side, as long as the last vertex lies beyond the flat.
         for (end, forwards) in ends.into_iter().zip([false, true]) {
             let (mut vertex, mut at) = (end, place(end));
@@ -118,11 +118,11 @@ impl Polygon {
                 vertex = turned(vertex, if forwards { self.turn } else { back(self.turn) });
                 let next = place(vertex);
                 let [first, last] = if forwards { [at, next] } else { [next, at] };
-                sunk.add([first[0], last[0]], [first[1], last[1]]);
+                cut.add([first[0], last[0]], [first[1], last[1]]);
                 at = next;
             }
         }
-        sunk
+        cut
     }
 
     /// Cosine and sine of the angle by which the middle of the facet there is ahead of a direction.

@@ -2,7 +2,7 @@
 
 use stribeck_modal::compliance::Curve;
 
-use crate::polygon::{Polygon, Sunk};
+use crate::cage::polygon::{Polygon, Cut};
 
 /// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its centre.
 #[derive(Debug, Clone, Copy)]
@@ -12,7 +12,7 @@ pub(crate) enum Shape<'a> {
 }
 
 impl Shape<'_> {
-    fn sunk(self, distance: f64) -> Sunk {
+    fn cut(self, distance: f64) -> Cut {
         match self {
             Self::Circle(radius) => circle(radius, radius - distance),
             Self::Polygon(polygon, d) => polygon.beyond(d, distance),
@@ -21,13 +21,13 @@ impl Shape<'_> {
 }
 
 /// Of a circle that reaches `depth` beyond a flat.
-fn circle(radius: f64, depth: f64) -> Sunk {
+fn circle(radius: f64, depth: f64) -> Cut {
     if depth <= 0.0 {
-        return Sunk::default();
+        return Cut::default();
     }
     let half = (2.0 * radius * depth).sqrt();
     let area = 4.0 / 3.0 * depth * half;
-    Sunk { area, square: 0.8 * depth * area, first: 0.0, length: 2.0 * half }
+    Cut { area, square: 0.8 * depth * area, first: 0.0, length: 2.0 * half }
 }
 
 /// A roller that is pressed against a flat.
@@ -51,27 +51,27 @@ const ENOUGH: f64 = 1e-6;
 /// Force between a roller, `distance` from its centre to the flat, and the flat on a penalty [N/m²], where the roller gives way by `curve`;
 /// `None` where they are clear of each other.
 pub(crate) fn press(shape: Shape<'_>, distance: f64, penalty: f64, curve: &Curve) -> Option<OnFlat> {
-    let mut sunk = shape.sunk(distance);
-    if sunk.area <= 0.0 {
+    let mut cut = shape.cut(distance);
+    if cut.area <= 0.0 {
         return None;
     }
     // From the penalty alone, which is too much. The first step may go past the force, those after it come to it from one side.
-    let mut force = penalty * sunk.area;
-    let mut give = 0.0;
+    let mut force = penalty * cut.area;
+    let mut flexibility = 0.0;
     for _ in 0..STEPS {
-        let ([given, slope], _) = curve.approach(force);
-        sunk = shape.sunk(distance + given);
-        give = slope;
-        let by = (penalty * sunk.area - force) / (1.0 + penalty * sunk.length * slope);
+        let ([deflection, slope], _) = curve.approach(force);
+        cut = shape.cut(distance + deflection);
+        flexibility = slope;
+        let by = (penalty * cut.area - force) / (1.0 + penalty * cut.length * slope);
         force = (force + by).max(0.0);
         if by.abs() <= ENOUGH * force {
             break;
         }
     }
-    let lever = if sunk.area > 0.0 { sunk.first / sunk.area } else { 0.0 };
-    let part = 1.0 / (1.0 + penalty * sunk.length * give);
-    let stored = 0.5 * penalty * sunk.square + curve.energy(force);
-    Some(OnFlat { force, lever, length: sunk.length, part, stored })
+    let lever = if cut.area > 0.0 { cut.first / cut.area } else { 0.0 };
+    let part = 1.0 / (1.0 + penalty * cut.length * flexibility);
+    let stored = 0.5 * penalty * cut.square + curve.energy(force);
+    Some(OnFlat { force, lever, length: cut.length, part, stored })
 }
 
 #[cfg(test)]
