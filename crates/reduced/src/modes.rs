@@ -9,7 +9,8 @@ use crate::{
     roller_force::RollerForce,
     rollers::row::{Numbers, Row, Single},
     seat::{RollerResponses, Springs},
-    state::{Spent, State, Stored},
+    state::State,
+    step::sums::Tally,
 };
 
 /// A place on a facet of the outer raceway: the share of its second vertex, and the shapes at both of them.
@@ -172,17 +173,15 @@ impl Bearing {
     /// Modes move under the forces `push`; `further` is what the load exceeds that of the preload by, as
     /// [`Bearing::load_change`] says.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one motion, with all that it reads and adds to")]
     pub(crate) fn move_modes<S: Simd>(
         &self,
         simd: S,
         state: &mut State,
         modes: &Modes,
         further: [f64; 2],
-        last: bool,
-        energy: &mut Stored,
-        spent: &mut Spent,
+        tally: &mut Tally,
     ) {
+        let Tally { last, stored: energy, spent } = tally;
         let dt = self.time_step;
         let r = self.reduction.padded;
         let h = 0.5 * self.mode_alpha * dt;
@@ -215,7 +214,7 @@ impl Bearing {
             if let Some(drag) = modes.drag.get(at / LANES) {
                 sums[1] = mean.times_plus(Vector::load(simd, drag, at % LANES), sums[1]);
             }
-            if last {
+            if *last {
                 sums[2] = v.times_plus(new, sums[2]);
                 let held = outside - Vector::load(simd, constant, at);
                 sums[3] = (half * square).times_plus(q, held).times_plus(q, sums[3]);
@@ -226,7 +225,7 @@ impl Bearing {
         spent.external += dt * sums[0].sum();
         spent.external += 0.5 * dt * self.power(further, state);
         spent.damped += dt * sums[1].sum();
-        if last {
+        if *last {
             energy.kinetic += 0.5 * sums[2].sum();
             energy.strain += self.reduction.strain + sums[3].sum();
         }

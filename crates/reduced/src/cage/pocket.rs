@@ -9,7 +9,8 @@ use crate::{
     cage::{Cage, Wall, WallRows},
     cage::flat::{self, Shape},
     rollers::row::{Rows, lanes, load, of_one},
-    state::Stored,
+    state::State,
+    step::sums::Tally,
 };
 
 /// Where the cage is.
@@ -18,6 +19,8 @@ pub(crate) struct PlacedCage {
     pub(crate) at: [f64; 2],
     pub(crate) turn: [f64; 2],
     pub(crate) velocity: [f64; 3],
+    /// Centre of mass at the start [m].
+    middle: [f64; 2],
 }
 
 /// What a wall does to a roller.
@@ -42,18 +45,24 @@ pub(crate) struct RollerInPocket {
 }
 
 impl PlacedCage {
-    /// A roller with its centre at `centre`; `middle` is where the cage's centre of mass was at the start.
+    /// In a state, when its centre of mass was in the `middle` at the start [m].
+    #[inline(always)]
+    pub(crate) fn of(state: &State, middle: [f64; 2]) -> Self {
+        let (s, c) = state.cage[2].sin_cos();
+        Self { at: [state.cage[0], state.cage[1]], turn: [c, s], velocity: state.cage_velocity, middle }
+    }
+
+    /// A roller with its centre at `centre`.
     #[inline(always)]
     pub(crate) fn guest(
         &self,
-        middle: [f64; 2],
         centre: [f64; 2],
         velocity: [f64; 2],
         omega: f64,
         turned: [f64; 2],
     ) -> RollerInPocket {
         let [c, s] = self.turn;
-        let rel = [centre[0] - self.at[0] - middle[0], centre[1] - self.at[1] - middle[1]];
+        let rel = [centre[0] - self.at[0] - self.middle[0], centre[1] - self.at[1] - self.middle[1]];
         let own = [c * rel[0] + s * rel[1], c * rel[1] - s * rel[0]];
         RollerInPocket { velocity, omega, turned, from_cage: rel, own }
     }
@@ -105,30 +114,27 @@ impl Bearing {
     /// Forces and moments on eight rollers by the walls of their pockets, added to theirs. Returns those on the cage: two components [N] and the
     /// moment about its centre of mass [N m].
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and adds to")]
     pub(crate) fn in_pockets<S: Simd>(
         &self,
         simd: S,
         cage: &Cage,
         rows: &[WallRows; 2],
         placed: PlacedCage,
-        middle: [f64; 2],
         block: &mut Block,
-        heat: &mut [f64; 2],
-        energy: &mut Stored,
+        tally: &mut Tally,
     ) -> [f64; 3] {
         let mut on_cage = [0.0; 3];
         for side in 0..2 {
             let near =
-                self.near_walls(simd, &rows[side], placed, middle, &block.centre, &mut block.walls[side]);
+                self.near_walls(simd, &rows[side], placed, &block.centre, &mut block.walls[side]);
             for lane in lanes(near & block.bits) {
                 let (velocity, turned) = (of_one(&block.velocity, lane), of_one(&block.turned, lane));
                 let centre = of_one(&block.centre, lane);
-                let guest = placed.guest(middle, centre, velocity, block.spin[lane], turned);
+                let guest = placed.guest(centre, velocity, block.spin[lane], turned);
                 let walls = &mut block.walls[side];
                 let (mut slip, mut passive) = (walls.slip[lane], of_one(&walls.passive, lane));
                 let wall = &cage.walls[block.first + lane][side];
-                let hit = self.hit(cage, wall, placed, &guest, &mut slip, &mut passive, heat, energy);
+                let hit = self.hit(cage, wall, placed, &guest, &mut slip, &mut passive, tally);
                 walls.slip[lane] = slip;
                 [walls.passive[0][lane], walls.passive[1][lane]] = passive;
                 let Some(hit) = hit else { continue };
@@ -150,7 +156,6 @@ impl Bearing {
         simd: S,
         rows: &WallRows,
         placed: PlacedCage,
-        middle: [f64; 2],
         centre: &Rows,
         walls: &mut Walls,
     ) -> u64 {
@@ -158,7 +163,7 @@ impl Bearing {
         let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
         let top = self.rims[0].top;
         let (c, s) = (all(placed.turn[0]), all(placed.turn[1]));
-        let from_cage = [all(placed.at[0] + middle[0]), all(placed.at[1] + middle[1])];
+        let from_cage = [all(placed.at[0] + placed.middle[0]), all(placed.at[1] + placed.middle[1])];
         let mut touch = 0;
         for at in vector_starts(simd) {
             let [x, y] = load(simd, centre, at);
@@ -198,8 +203,7 @@ impl Bearing {
         guest: &RollerInPocket,
         slip: &mut f64,
         passive: &mut [f64; 2],
-        heat: &mut [f64; 2],
-        energy: &mut Stored,
+        tally: &mut Tally,
     ) -> Option<WallForce> {
         let Some(foot) = wall.foot(guest.own, STILL_SEEN * self.rims[0].top) else {
             (*slip, *passive) = (0.0, [0.0; 2]);
@@ -251,8 +255,8 @@ impl Bearing {
         let closing = relative[0] * n[0] + relative[1] * n[1];
         let t = [-n[1], n[0]];
         let sliding = relative[0] * t[0] + relative[1] * t[1];
-        heat[0] -= passive[0] * sliding;
-        heat[1] += passive[1] * closing;
+        tally.spent.heat[0] -= passive[0] * sliding;
+        tally.spent.heat[1] += passive[1] * closing;
         let Some(Pressed { force, stiffness, part, stored, couple, .. }) = pressed else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
@@ -262,11 +266,11 @@ impl Bearing {
         let most = self.friction * force / sticking;
         *slip = (*slip + self.time_step * sliding).clamp(-most, most);
         let drag = -sticking * *slip;
-        heat[0] -= drag * sliding;
-        heat[1] += damping * closing;
+        tally.spent.heat[0] -= drag * sliding;
+        tally.spent.heat[1] += damping * closing;
         *passive = [drag, damping];
-        energy.contact += stored + 0.5 * sticking * *slip * *slip;
-        energy.sticking += 0.5 * sticking * *slip * *slip;
+        tally.stored.contact += stored + 0.5 * sticking * *slip * *slip;
+        tally.stored.sticking += 0.5 * sticking * *slip * *slip;
         let normal = force + damping;
         let on_roller = [drag * t[0] - normal * n[0], drag * t[1] - normal * n[1]];
         let cross = |r: [f64; 2]| r[0] * on_roller[1] - r[1] * on_roller[0];

@@ -8,7 +8,7 @@ use crate::{
     oil::{Films, Lubrication, FilmStep, RollerView},
     rollers::row::of_one,
     state::State,
-    step::RingRotation,
+    step::drive::RingRotation,
 };
 
 /// What films do to eight rollers, beside the forces on these.

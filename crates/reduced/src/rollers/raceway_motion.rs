@@ -9,7 +9,7 @@ use crate::{
     modes::Modes,
     rollers::row::{Row, lanes, largest_sum, load, of_one, store},
     seat::SeatState,
-    step::RingRotation,
+    step::drive::RingRotation,
 };
 
 impl Bearing {
