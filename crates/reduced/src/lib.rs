@@ -30,6 +30,7 @@ mod cage;
 pub mod contact;
 mod modes;
 pub mod oil;
+mod plane;
 pub mod roller_force;
 mod rollers;
 pub mod seat;

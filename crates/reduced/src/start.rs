@@ -4,7 +4,9 @@ use pulp::Scalar;
 use stribeck_duty::Duty;
 use stribeck_simd::lanes::Vector;
 
-use crate::{bearing::Bearing, error::Error, oil::Films, state::State, contact::normal_force::RollerOnRaceway};
+use crate::{
+    bearing::Bearing, contact::normal_force::RollerOnRaceway, error::Error, oil::Films, plane::Rotation, state::State,
+};
 
 /// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings the solver, so that this
 /// crate needs none.
@@ -191,8 +193,7 @@ impl Bearing {
     /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
         let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
-        let (ss, sc) = state.shaft.sin_cos();
-        let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
+        let shaft = Rotation::by(state.shaft);
         let centre = [state.x[i], state.y[i]];
         let seen = [centre[0] - moved[0], centre[1] - moved[1]];
         let mut hints = [state.hints[0][i], state.hints[1][i]];
@@ -205,7 +206,7 @@ impl Bearing {
             let near =
                 RollerOnRaceway { raceway: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
             let outer = self.normal_force(simd, near, &mut hints[0]);
-            let (centre, spin) = (back(centre), back([c, s]));
+            let (centre, spin) = (shaft.back(centre), shaft.back([c, s]));
             let inner = self.normal_force(
                 simd,
                 RollerOnRaceway { raceway: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },

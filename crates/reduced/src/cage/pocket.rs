@@ -5,6 +5,7 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
+    plane::{Rotation, cross, dot, perpendicular},
     rollers::block::{Block, Walls},
     cage::{Cage, Wall, WallRows},
     cage::flat::{self, Shape},
@@ -17,7 +18,7 @@ use crate::{
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedCage {
     pub(crate) at: [f64; 2],
-    pub(crate) turn: [f64; 2],
+    pub(crate) turn: Rotation,
     pub(crate) velocity: [f64; 3],
     /// Centre of mass at the start [m].
     middle: [f64; 2],
@@ -48,8 +49,8 @@ impl PlacedCage {
     /// In a state, when its centre of mass was in the `middle` at the start [m].
     #[inline(always)]
     pub(crate) fn of(state: &State, middle: [f64; 2]) -> Self {
-        let (s, c) = state.cage[2].sin_cos();
-        Self { at: [state.cage[0], state.cage[1]], turn: [c, s], velocity: state.cage_velocity, middle }
+        let turn = Rotation::by(state.cage[2]);
+        Self { at: [state.cage[0], state.cage[1]], turn, velocity: state.cage_velocity, middle }
     }
 
     /// A roller with its centre at `centre`.
@@ -61,9 +62,8 @@ impl PlacedCage {
         omega: f64,
         turned: [f64; 2],
     ) -> RollerInPocket {
-        let [c, s] = self.turn;
         let rel = [centre[0] - self.at[0] - self.middle[0], centre[1] - self.at[1] - self.middle[1]];
-        let own = [c * rel[0] + s * rel[1], c * rel[1] - s * rel[0]];
+        let own = self.turn.back(rel);
         RollerInPocket { velocity, omega, turned, from_cage: rel, own }
     }
 }
@@ -81,11 +81,10 @@ impl Wall {
     #[inline(always)]
     fn foot(&self, own: [f64; 2], reach: f64) -> Option<Foot> {
         let from = [own[0] - self.inner[0], own[1] - self.inner[1]];
-        let share = from[0] * self.per_length[0] + from[1] * self.per_length[1];
-        let share = share.clamp(0.0, 1.0);
+        let share = dot(from, self.per_length).clamp(0.0, 1.0);
         let from_foot = [from[0] - share * self.edge[0], from[1] - share * self.edge[1]];
-        let square = from_foot[0] * from_foot[0] + from_foot[1] * from_foot[1];
-        if square >= reach * reach || from[0] * self.normal[0] + from[1] * self.normal[1] < 0.0 {
+        let square = dot(from_foot, from_foot);
+        if square >= reach * reach || dot(from, self.normal) < 0.0 {
             return None;
         }
         Some(Foot { from: [-from_foot[0], -from_foot[1]], share, distance: square.sqrt() })
@@ -162,13 +161,12 @@ impl Bearing {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
         let top = self.rims[0].top;
-        let (c, s) = (all(placed.turn[0]), all(placed.turn[1]));
+        let turn = placed.turn.side_by_side(simd);
         let from_cage = [all(placed.at[0] + placed.middle[0]), all(placed.at[1] + placed.middle[1])];
         let mut touch = 0;
         for at in vector_starts(simd) {
             let [x, y] = load(simd, centre, at);
-            let [x, y] = [x - from_cage[0], y - from_cage[1]];
-            let own = [c.times_plus(x, s * y), c.times_plus(y, -(s * x))];
+            let own = turn.back([x - from_cage[0], y - from_cage[1]]);
             let (inner, edge) = (load(simd, &rows.inner, at), load(simd, &rows.edge, at));
             let (per, normal) = (load(simd, &rows.per_length, at), load(simd, &rows.normal, at));
             let from = [own[0] - inner[0], own[1] - inner[1]];
@@ -209,13 +207,12 @@ impl Bearing {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };
-        let [c, s] = placed.turn;
         let RollerInPocket { velocity, omega, turned, from_cage: rel, .. } = *guest;
         let Foot { from: foot, share: t, distance } = foot;
         // From the roller's centre to the foot, in space.
         let to = [foot[0] / distance, foot[1] / distance];
-        let d = [c * to[0] - s * to[1], s * to[0] + c * to[1]];
-        let own_d = [turned[0] * d[0] + turned[1] * d[1], turned[0] * d[1] - turned[1] * d[0]];
+        let d = placed.turn.forth(to);
+        let own_d = Rotation::to(turned).back(d);
         let round = self.outer.sides.are_round();
         let top = self.rims[0].top;
         let pressed = if t > 0.0 && t < 1.0 {
@@ -233,7 +230,7 @@ impl Bearing {
             let (depth, [level, tilt]) =
                 if round { (top - distance, [1.0, 0.0]) } else { self.polygon.depth(own_d, distance) };
             // The normal of the roller's facet.
-            let n = [level * d[0] - tilt * d[1], level * d[1] + tilt * d[0]];
+            let n = Rotation::to([level, tilt]).forth(d);
             let [force, stiffness, stored] = cage.corners[usize::from(t > 0.5)].press(self.penalty, depth);
             (depth > 0.0).then_some(Pressed { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
         };
@@ -252,9 +249,8 @@ impl Bearing {
             velocity[0] - omega * d[1] * distance - at_foot[0],
             velocity[1] + omega * d[0] * distance - at_foot[1],
         ];
-        let closing = relative[0] * n[0] + relative[1] * n[1];
-        let t = [-n[1], n[0]];
-        let sliding = relative[0] * t[0] + relative[1] * t[1];
+        let t = perpendicular(n);
+        let (closing, sliding) = (dot(relative, n), dot(relative, t));
         tally.spent.heat[0] -= passive[0] * sliding;
         tally.spent.heat[1] += passive[1] * closing;
         let Some(Pressed { force, stiffness, part, stored, couple, .. }) = pressed else {
@@ -273,11 +269,10 @@ impl Bearing {
         tally.stored.sticking += 0.5 * sticking * *slip * *slip;
         let normal = force + damping;
         let on_roller = [drag * t[0] - normal * n[0], drag * t[1] - normal * n[1]];
-        let cross = |r: [f64; 2]| r[0] * on_roller[1] - r[1] * on_roller[0];
         Some(WallForce {
             force: on_roller,
-            moment: couple + cross([d[0] * distance, d[1] * distance]),
-            on_cage: couple + cross(arm),
+            moment: couple + cross([d[0] * distance, d[1] * distance], on_roller),
+            on_cage: couple + cross(arm, on_roller),
         })
     }
 }

@@ -1,5 +1,7 @@
 //! The polygon of a roller as walls and corners of the cage meet it (THEORY §9.4).
 
+use crate::plane::{Rotation, Vec2};
+
 /// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A corner that passes a sharp vertex
 /// meets another force at once, and the step, which falls on it somewhere, gives or takes energy by its length; over a tenth of a facet,
 /// which takes several steps, that is gone, and a tenth of what vertices stand out by with it.
@@ -106,7 +108,7 @@ impl Polygon {
         let radius = self.apothem / self.half_turn[0];
         // A vertex in the direction [cosine, sine] from d: its u, and how far it lies beyond the flat.
         let place = |[c, s]: [f64; 2]| [radius * s, radius * c - distance];
-        let turned = |[c, s]: [f64; 2], [by_c, by_s]: [f64; 2]| [c * by_c - s * by_s, s * by_c + c * by_s];
+        let turned = |direction: Vec2, by: Vec2| Rotation::to(direction).forth(by);
         let back = |[c, s]: [f64; 2]| [c, -s];
         let ends = [turned(middle, back(self.half_turn)), turned(middle, self.half_turn)];
         let [[u1, p1], [u2, p2]] = ends.map(place);

@@ -310,7 +310,8 @@ impl Bearing {
     }
 }
 
-/// A direction in the roller's own frame: turned back by its spin.
+/// A direction in the roller's own frame: turned back by its spin. Products are rounded here, so that eight rollers side by side see the
+/// bits of one.
 #[inline(always)]
 fn turned_back<N: Number>([c, s]: [N; 2], d: [N; 2]) -> [N; 2] {
     [c * d[0] + s * d[1], c * d[1] - s * d[0]]

@@ -98,19 +98,18 @@ impl Bearing {
             let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
             for (k, race) in oil.raceways.iter().enumerate() {
                 let ([x, y], [rx, ry]) = (from_raceway[k], relative[k]);
-                let RingRotation { rate, turned: [c, s] } = turning[k].unwrap_or(RingRotation::STILL);
+                let RingRotation { rate, turned } = turning[k].unwrap_or(RingRotation::STILL);
                 let [rx, ry] = [rx + rate * y, ry - rate * x];
                 let contacts = &block.contacts[k];
                 let seen = RollerView {
                     centre: of_one(&contacts.centre, lane),
                     spin: of_one(&contacts.spin, lane),
-                    velocity: [c * rx + s * ry, c * ry - s * rx],
+                    velocity: turned.back([rx, ry]),
                     turning: block.spin[lane] - rate,
                 };
                 let now = FilmStep { felt: now.felt && k == 0, ..now };
                 let by_film = race.film_forces(rim, race.of_roller(&mut films.at[k], i), &seen, now);
-                let [fx, fy] = by_film.force;
-                let [fx, fy] = [c * fx - s * fy, s * fx + c * fy];
+                let [fx, fy] = turned.forth(by_film.force);
                 block.force[k][0][lane] += fx;
                 block.force[k][1][lane] += fy;
                 block.moment[lane] += by_film.moment;

@@ -3,7 +3,7 @@
 use stribeck_film::{Land, Place, Point};
 use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
 
-use crate::{error::Error, contact::outline::Outline};
+use crate::{contact::outline::Outline, error::Error, plane::Rotation};
 
 /// The smooth curve that an outline stands for, in the frame of its body.
 #[derive(Debug, Clone)]
@@ -102,8 +102,7 @@ impl Curved {
 impl RollerView {
     /// A point [m] in the frame of the roller.
     fn by_roller(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let ([c, s], x, y) = (self.spin, x - self.centre[0], y - self.centre[1]);
-        [c * x + s * y, c * y - s * x]
+        Rotation::to(self.spin).back([x - self.centre[0], y - self.centre[1]])
     }
 }
 
@@ -133,9 +132,9 @@ impl Nearest {
                 let own = seen.by_roller(foot.at);
                 let point = rim.nearest(&rim.lands[0], own, places[1]);
                 places[1] = point.place;
-                let ([nx, ny], [c, s]) = (point.normal, seen.spin);
+                let [nx, ny] = point.normal;
                 let gap = nx * (own[0] - point.at[0]) + ny * (own[1] - point.at[1]);
-                (gap, [c * nx - s * ny, s * nx + c * ny], point.at[1] * nx - point.at[0] * ny)
+                (gap, Rotation::to(seen.spin).forth(point.normal), point.at[1] * nx - point.at[0] * ny)
             }
         };
         let ends = land.to_ends(&race.surface, foot.place);

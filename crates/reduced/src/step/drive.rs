@@ -1,9 +1,14 @@
 //! First stage: how fast the rings turn, and the forces of load and dampers on the modes.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{Number, Vector};
+use stribeck_simd::lanes::Vector;
 
-use crate::{bearing::Bearing, state::State, step::Scratch};
+use crate::{
+    bearing::Bearing,
+    plane::{Rotation, Vec2},
+    state::State,
+    step::Scratch,
+};
 
 /// Speeds and load of one step.
 #[derive(Clone, Copy)]
@@ -29,34 +34,25 @@ impl Drive {
 pub(crate) struct RingRotation {
     /// Angular velocity [rad/s].
     pub(crate) rate: f64,
-    /// Cosine and sine of the angle by which it has turned.
-    pub(crate) turned: [f64; 2],
+    /// Angle by which it has turned.
+    pub(crate) turned: Rotation,
 }
 
 impl RingRotation {
     /// At rest, not turned.
-    pub(crate) const STILL: Self = Self { rate: 0.0, turned: [1.0, 0.0] };
+    pub(crate) const STILL: Self = Self { rate: 0.0, turned: Rotation::NONE };
 
     /// A vector in the frame of the ring.
     #[inline(always)]
-    pub(crate) fn back<S: Simd>(self, simd: S, [x, y]: [Vector<S>; 2]) -> [Vector<S>; 2] {
-        let [c, s] = [Vector::all(simd, self.turned[0]), Vector::all(simd, self.turned[1])];
-        [c.times_plus(x, s * y), c.times_plus(y, -(s * x))]
+    pub(crate) fn back<S: Simd>(self, simd: S, vector: Vec2<Vector<S>>) -> Vec2<Vector<S>> {
+        self.turned.side_by_side(simd).back(vector)
     }
 
     /// A vector that is given in the frame of the ring.
     #[inline(always)]
-    pub(crate) fn forth<S: Simd>(self, simd: S, [x, y]: [Vector<S>; 2]) -> [Vector<S>; 2] {
-        let [c, s] = [Vector::all(simd, self.turned[0]), Vector::all(simd, self.turned[1])];
-        [c.times_plus(x, -(s * y)), s.times_plus(x, c * y)]
+    pub(crate) fn forth<S: Simd>(self, simd: S, vector: Vec2<Vector<S>>) -> Vec2<Vector<S>> {
+        self.turned.side_by_side(simd).forth(vector)
     }
-}
-
-/// Cosine and sine of an angle.
-#[inline(always)]
-fn turned(angle: f64) -> [f64; 2] {
-    let (s, c) = angle.sin_cos();
-    [c, s]
 }
 
 impl Bearing {
@@ -76,8 +72,8 @@ impl Bearing {
             load = self.load_change(duty, now);
         }
         Drive {
-            outer: self.outer_turns.then(|| RingRotation { rate: outer_rate, turned: turned(outer_angle) }),
-            inner: RingRotation { rate, turned: turned(state.shaft) },
+            outer: self.outer_turns.then(|| RingRotation { rate: outer_rate, turned: Rotation::by(outer_angle) }),
+            inner: RingRotation { rate, turned: Rotation::by(state.shaft) },
             load,
         }
     }

@@ -6,6 +6,7 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
+    plane::Rotation,
     rollers::{
         block::Block,
         row::{load, store},
@@ -120,10 +121,10 @@ impl Bearing {
 
 /// Directions turned by small angles.
 #[inline(always)]
-fn turn_by<S: Simd>([x, y]: [Vector<S>; 2], angle: Vector<S>) -> [Vector<S>; 2] {
+fn turn_by<S: Simd>(direction: [Vector<S>; 2], angle: Vector<S>) -> [Vector<S>; 2] {
     let of = |value: f64| angle.constant(value);
     let square = angle * angle;
     let s = angle * (of(1.0) - square * of(1.0 / 6.0) * (of(1.0) - square * of(1.0 / 20.0)));
     let c = of(1.0) - of(0.5) * square * (of(1.0) - square * of(1.0 / 12.0));
-    [c.times_plus(x, -(s * y)), s.times_plus(x, c * y)]
+    Rotation { cosine: c, sine: s }.forth(direction)
 }
