@@ -1,93 +1,48 @@
 //! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
 
-use stribeck_duty::Duty;
 use stribeck_modal::{
     ModalBearing, OVERLOAD, Parameters, Reduction, STICKING,
     compliance::{Compliance, Curve, contact_length},
     outline::per_angle,
-    parameters::{Branch, DampingFrame, RollerStart, Speeds},
 };
-use stribeck_simd::lanes::{LANES, Number};
+use stribeck_simd::lanes::Number;
 
 use crate::{
     cage::Cage,
+    contact::{force::ContactLaw, outline::Outline, penetration::Sides},
     error::Error,
+    modes::Structure,
     oil::Lubrication,
-    contact::outline::Outline,
-    contact::penetration::Sides,
-    cage::polygon::Polygon,
-    rollers::row::{Row, Single, in_single, largest_of},
+    rollers::Rollers,
     seat::Springs,
     sensors::Sensors,
     state::State,
+    step::drive::Operation,
 };
 
-/// What does not change during a run.
+/// A reduced bearing: what does not change during a run.
 #[derive(Debug, Clone)]
 pub struct Bearing {
     /// Time step [s].
     pub time_step: f64,
-    /// Rollers.
-    pub rollers: usize,
-    /// The reduced rings.
+    /// Numbers of the mesh.
     pub reduction: Reduction,
-    /// Their shapes at the vertices of the outer raceway again, in rows.
-    pub(crate) shapes: Vec<Single>,
-    /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
-    pub(crate) farthest: Vec<Row>,
-    /// What sensors measure.
-    pub(crate) sensors: Sensors,
-    /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
-    pub(crate) dampers: Vec<Row>,
-    /// Contact with the outer raceway.
-    pub(crate) outer: Raceway,
-    /// Contact with the inner raceway.
-    pub(crate) inner: Raceway,
-    /// Rims of rollers: the round one first, then those that are not round.
-    pub(crate) rims: Vec<Rim>,
-    /// The round one as the cage meets it.
-    pub(crate) polygon: Polygon,
-    /// Which of them each roller has.
-    pub(crate) rim_of: Vec<u32>,
-    /// Rollers at the start, and the radius of the circle that their centres are on [m].
-    pub(crate) starts: Vec<RollerStart>,
-    path: f64,
-    /// Normal and tangential stiffness and damping a metre of contact: [N/m²], [N/m²], [N s/m²].
-    pub(crate) penalty: f64,
-    pub(crate) sticking: f64,
-    pub(crate) damping: f64,
-    pub(crate) friction: f64,
-    /// Radius at which friction acts [m].
-    pub(crate) arm: f64,
-    /// Mass damping of rollers and of the modes [1/s], and its frame.
-    pub(crate) alpha: f64,
-    pub(crate) mode_alpha: f64,
-    pub(crate) frame: DampingFrame,
-    /// Stiffness damping β [s].
-    pub(crate) beta: f64,
-    /// Branches of the structural damping of outer ring and adapter.
-    pub(crate) branches: Vec<Branch>,
-    pub(crate) gravity: f64,
-    pub(crate) speeds: Speeds,
-    /// Whether the outer ring turns.
-    pub(crate) outer_turns: bool,
+    /// Modes of outer ring and housing.
+    pub(crate) structure: Structure,
+    /// The outer and the inner raceway.
+    pub(crate) raceways: [Raceway; 2],
+    /// The law of contact.
+    pub(crate) law: ContactLaw,
+    /// Rollers.
+    pub rollers: Rollers,
     pub(crate) cage: Option<Cage>,
     /// Seat of the outer ring, where it may open and slip.
     pub(crate) seat: Option<Springs>,
     /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
-    /// Speeds and load, where they change.
-    pub(crate) duty: Option<Duty>,
-    /// Load at the start [N].
-    pub(crate) load_at_start: f64,
-}
-
-/// The rim of a roller.
-#[derive(Debug, Clone)]
-pub(crate) struct Rim {
-    pub(crate) outline: Outline,
-    /// Radius of the circle around it [m].
-    pub(crate) top: f64,
+    pub(crate) sensors: Sensors,
+    /// Speeds and load.
+    pub(crate) operation: Operation,
 }
 
 /// One raceway.
@@ -129,60 +84,38 @@ impl Bearing {
     /// When oil finds no smooth surface to lie on.
     pub fn new(modal: ModalBearing, time_step: f64) -> Result<Self, Error> {
         let ModalBearing { reduction, parameters } = modal;
-        let Parameters { outlines, radii, thickness, contact, damping, .. } = &parameters;
-        let [outer, inner] = raceways(&parameters, &reduction);
-        let rims: Vec<Rim> = outlines.rims.iter().enumerate().map(|(n, rim)| Rim::new(rim, n == 0)).collect();
-        let facets = rims[0].outline.len() as f64;
-        let penalty = contact.stiffness * thickness;
-        let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
-        let raceways = [&outer, &inner].map(|raceway| (&raceway.outline, &raceway.compliance));
-        let oil = match &parameters.oil {
-            Some(oil) => Some(Lubrication::new(oil, raceways, &rounded, (penalty, *thickness))?),
-            None => None,
-        };
-        let seat = reduction.springs.as_ref();
-        let seat =
-            seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
-        let cage = match (reduction.cage, &parameters.pockets) {
-            (Some((inertia, centre)), Some(pockets)) => {
-                Some(Cage::new(pockets, inertia, centre, &reduction.wall_compliance))
-            }
-            _ => None,
-        };
-        let shapes = in_single(&reduction.shapes);
-        let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        Ok(Self {
-            time_step,
-            seat,
-            rollers: parameters.rollers.len(),
-            oil,
-            outer,
-            inner,
-            path: radii.outer - radii.roller,
-            penalty,
+        let Parameters { radii, thickness, contact, .. } = &parameters;
+        let raceways = raceways(&parameters, &reduction);
+        let rollers = Rollers::new(&parameters, reduction.roller_inertia);
+        let facets = rollers.rims[0].outline.len() as f64;
+        let law = ContactLaw {
+            penalty: contact.stiffness * thickness,
             sticking: STICKING * contact.stiffness * thickness,
             damping: contact.damping * thickness,
             friction: contact.friction,
             arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
-            alpha: damping.mass,
-            mode_alpha: damping.mass_of_modes,
-            frame: damping.frame,
-            beta: damping.stiffness,
-            branches: damping.branches.clone(),
-            gravity: parameters.gravity,
-            outer_turns: parameters.outer_turns,
-            speeds: parameters.speeds,
-            load_at_start: parameters.load_at_start,
+            time_step,
+        };
+        let oil = parameters.oil.as_ref();
+        let oil = oil.map(|oil| Lubrication::new(oil, &raceways, &rollers, law.penalty, *thickness));
+        let seat = reduction.springs.as_ref();
+        let seat =
+            seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
+        let cage = reduction.cage.zip(parameters.pockets.as_ref());
+        let cage = cage.map(|((inertia, centre), pockets)| {
+            Cage::new(pockets, inertia, centre, &reduction.wall_compliance)
+        });
+        Ok(Self {
+            time_step,
+            structure: Structure::new(&reduction, &parameters.damping),
+            raceways,
+            law,
+            rollers,
             cage,
-            polygon: Polygon::new(rims[0].outline.len(), rims[0].top),
-            rims,
-            rim_of: parameters.outlines.rim_of,
-            starts: parameters.rollers,
-            duty: parameters.duty,
-            shapes,
-            farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
+            seat,
+            oil: oil.transpose()?,
             sensors: Sensors::new(&reduction),
-            dampers,
+            operation: Operation::new(&parameters, reduction.load.force),
             reduction,
         })
     }
@@ -194,26 +127,26 @@ impl Bearing {
         let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
         let [mass, inertia] = self.reduction.roller_inertia;
         let r = self.reduction.padded;
-        let both = [&self.outer, &self.inner];
-        let [outer, inner] = both.map(|raceway| raceway.compliance.stiffest(self.penalty, raceway.relative));
+        let both = &self.raceways;
+        let [outer, inner] = both.each_ref().map(|raceway| raceway.compliance.stiffest(self.law.penalty, raceway.relative));
         let along = |raceway: &Raceway| {
             let fullest = raceway.compliance.largest_load() / OVERLOAD;
-            let stiffness = self.sticking * contact_length(fullest, self.penalty, raceway.relative);
-            if self.friction > 0.0 { stiffness } else { 0.0 }
+            let stiffness = self.law.sticking * contact_length(fullest, self.law.penalty, raceway.relative);
+            if self.law.friction > 0.0 { stiffness } else { 0.0 }
         };
-        let [along_outer, along_inner] = both.map(along);
+        let [along_outer, along_inner] = both.each_ref().map(along);
         // A contact pulls on the roller and on the modes under it; (a − b)² ≤ (1 + c) a² + (1 + 1/c) b².
         let under = |vertex: usize| {
             let shape = &self.reduction.shapes[2 * r * vertex..2 * r * (vertex + 1)];
             (0..r).map(|k| shape[k] * shape[k] + shape[r + k] * shape[r + k]).sum::<f64>()
         };
-        let modes = (0..self.outer.outline.len()).map(under).fold(0.0, f64::max);
+        let modes = (0..self.raceways[0].outline.len()).map(under).fold(0.0, f64::max);
         let c = (modes * mass).sqrt();
         let of_roller = ((1.0 + c) * outer + inner) / mass;
         // Both raceways hold a roller along the raceway: one way if it spins, the other if it moves on.
         let of_friction = 2.0
             * ((1.0 + c) * along_outer).max(along_inner)
-            * (1.0 / mass).max(self.arm * self.arm / inertia);
+            * (1.0 / mass).max(self.law.arm * self.law.arm / inertia);
         // Few rollers share the modes of highest participation; each adds its own part.
         let of_modes = highest + (1.0 + 1.0 / c) * outer.max(along_outer) * modes;
         // All rollers may press on the cage at once.
@@ -224,9 +157,9 @@ impl Bearing {
                 .flatten()
                 .map(|wall| wall.inner[0].hypot(wall.inner[1]))
                 .fold(0.0, f64::max);
-            let of_all = self.rollers as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
-            let corner = 0.5 * self.penalty * cage.corners[0].end;
-            let facet = if cage.has_flats { self.penalty * self.polygon.facet() } else { 0.0 };
+            let of_all = self.rollers.count as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
+            let corner = 0.5 * self.law.penalty * cage.corners[0].end;
+            let facet = if cage.has_flats { self.law.penalty * self.rollers.polygon.facet() } else { 0.0 };
             let facet = facet / (1.0 + facet * cage.curve.approach(0.0).0[1]);
             corner.max(facet) * (1.0 / mass + of_all)
         });
@@ -236,27 +169,20 @@ impl Bearing {
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
     }
 
-    /// The rim of a roller, from 0.
-    #[inline(always)]
-    pub(crate) fn rim(&self, roller: usize) -> &Rim {
-        &self.rims[self.rim_of[roller] as usize]
-    }
-
     /// A state before its first step, not in equilibrium yet.
     pub fn rest(&self) -> State {
-        let r = self.reduction.padded;
-        let n = self.rollers;
+        let (r, n, path) = (self.reduction.padded, self.rollers.count, self.rollers.path);
         let mut state = State {
             q: vec![0.0; r],
             v: vec![0.0; r],
-            branches: vec![vec![0.0; r]; self.branches.len()],
+            branches: vec![vec![0.0; r]; self.structure.branches.len()],
             x: vec![0.0; n],
             y: vec![0.0; n],
             vx: vec![0.0; n],
             vy: vec![0.0; n],
             angle: vec![0.0; n],
-            turned: self.starts.iter().map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()]).collect(),
-            spin: vec![self.speeds.roller; n],
+            turned: self.rollers.starts.iter().map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()]).collect(),
+            spin: vec![self.operation.speeds.roller; n],
             slip: [vec![0.0; n], vec![0.0; n]],
             wall_slip: vec![[0.0; 2]; n],
             passive: [vec![[0.0; 3]; n], vec![[0.0; 3]; n]],
@@ -265,20 +191,20 @@ impl Bearing {
             growth: [vec![0.0; n], vec![0.0; n]],
             hints: [vec![[0; 2]; n], vec![[0; 2]; n]],
             cage: [0.0; 3],
-            cage_velocity: [0.0, 0.0, self.speeds.cage],
+            cage_velocity: [0.0, 0.0, self.operation.speeds.cage],
             shaft: 0.0,
             work: Default::default(),
             seat: None,
             films: None,
             steps: 0,
         };
-        for (i, start) in self.starts.iter().enumerate() {
+        for (i, start) in self.rollers.starts.iter().enumerate() {
             let (s, c) = start.angle.sin_cos();
-            (state.x[i], state.y[i]) = (self.path * c, self.path * s);
+            (state.x[i], state.y[i]) = (path * c, path * s);
         }
         state.seat = self.seat.as_ref().map(|seat| seat.at_rest(r, n));
         state.hints = self.first_hints(&state);
-        state.films = self.first_films(&state);
+        state.films = self.oil.as_ref().map(|oil| oil.first_films(&self.rollers, &state));
         state
     }
 
@@ -294,24 +220,15 @@ impl Bearing {
             (0..state.x.len())
                 .map(|i| {
                     let at = state.y[i].atan2(state.x[i]);
-                    let own = at - state.angle[i] - self.starts[i].vertex_angle
+                    let own = at - state.angle[i] - self.rollers.starts[i].vertex_angle
                         + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
                     let of = |angle: f64| [angle.cos(), angle.sin()];
-                    [nearest(&self.rim(i).outline, of(own)), nearest(&raceway.outline, of(on_race))]
+                    [nearest(&self.rollers.rim(i).outline, of(own)), nearest(&raceway.outline, of(on_race))]
                 })
                 .collect()
         };
-        [hints(&self.outer, 0.0, 1.0), hints(&self.inner, state.shaft, -1.0)]
-    }
-}
-
-impl Rim {
-    /// Of vertices from its centre [m]; the first one of a round rim lies on the x axis.
-    fn new(vertices: &[[f64; 2]], round: bool) -> Self {
-        let outline = Outline::new(vertices);
-        let top = if round { outline.x[0] } else { outline.radii().fold(0.0, f64::max) };
-        Self { outline, top }
+        [hints(&self.raceways[0], 0.0, 1.0), hints(&self.raceways[1], state.shaft, -1.0)]
     }
 }
 

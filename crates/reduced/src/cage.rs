@@ -12,7 +12,7 @@ use stribeck_modal::{
 };
 use stribeck_simd::lanes::LANES;
 
-use crate::rollers::row::Rows;
+use crate::{rollers::row::Rows, state::State, step::sums::Tally};
 use corner::Corner;
 
 /// The cage as a rigid body with corners and walls.
@@ -20,6 +20,8 @@ use corner::Corner;
 pub(crate) struct Cage {
     pub(crate) mass: f64,
     pub(crate) inertia: f64,
+    /// Centre of mass at the start [m].
+    pub(crate) centre: [f64; 2],
     /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre of mass.
     pub(crate) walls: Vec<[Wall; 2]>,
     /// The same, of eight rollers side by side.
@@ -110,6 +112,24 @@ impl Cage {
         let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
         let [before, behind] = [inner, outer].map(|radius: f64| (radius * radius - half * half).sqrt());
         let has_flats = before < path && path < behind;
-        Self { mass, inertia, walls, wall_rows, corners, has_flats, curve: compliance.curve() }
+        Self { mass, inertia, centre, walls, wall_rows, corners, has_flats, curve: compliance.curve() }
+    }
+
+    /// Moves in a step of `dt` [s] under the forces of all rollers [N], their moment [N m] and its weight.
+    #[inline(always)]
+    pub(crate) fn advance(&self, dt: f64, gravity: f64, on_cage: [f64; 3], state: &mut State, tally: &mut Tally) {
+        let old = state.cage_velocity;
+        let acceleration =
+            [on_cage[0] / self.mass, on_cage[1] / self.mass - gravity, on_cage[2] / self.inertia];
+        let new: [f64; 3] = std::array::from_fn(|c| old[c] + dt * acceleration[c]);
+        tally.spent.external -= 0.5 * dt * gravity * self.mass * (old[1] + new[1]);
+        if tally.last {
+            tally.stored.kinetic +=
+                0.5 * (self.mass * (old[0] * new[0] + old[1] * new[1]) + self.inertia * old[2] * new[2]);
+        }
+        state.cage_velocity = new;
+        for (coordinate, v) in state.cage.iter_mut().zip(new) {
+            *coordinate += dt * v;
+        }
     }
 }

@@ -8,3 +8,4 @@ pub(crate) mod segments;
 
 pub(crate) mod force;
 pub(crate) mod normal_force;
+mod raceway_forces;

@@ -9,10 +9,10 @@ mod nearest;
 
 use serde::{Deserialize, Serialize};
 use stribeck_film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
-use stribeck_modal::{compliance::Compliance, parameters as modal};
+use stribeck_modal::parameters as modal;
 use stribeck_surface::Error as SurfaceError;
 
-use crate::{contact::outline::Outline, error::Error};
+use crate::{bearing::Raceway, error::Error, rollers::Rollers};
 use bodies::BodySpring;
 pub(crate) use nearest::RollerView;
 use nearest::{Curved, Nearest, Rim};
@@ -99,17 +99,15 @@ impl Lubrication {
     /// thickness [m].
     pub(crate) fn new(
         oil: &modal::Oil,
-        raceways: [(&Outline, &Compliance); 2],
-        rims: &[&Outline],
-        (penalty, thickness): (f64, f64),
+        raceways: &[Raceway; 2],
+        rollers: &Rollers,
+        penalty: f64,
+        thickness: f64,
     ) -> Result<Self, Error> {
-        let curvature = Curved::rim(rims[0])?.lands[0].curvature;
-        let race = |name: &str,
-                    (outline, compliance),
-                    hollow,
-                    loaded: modal::Film|
-         -> Result<OiledRaceway, Error> {
-            let curved = Curved::new(name, outline, hollow)?;
+        let [round, others @ ..] = &rollers.rims[..] else { unreachable!("the round rim comes first") };
+        let curvature = Curved::rim(&round.outline)?.lands[0].curvature;
+        let race = |name: &str, on: &Raceway, hollow, loaded: modal::Film| -> Result<OiledRaceway, Error> {
+            let curved = Curved::new(name, &on.outline, hollow)?;
             let oil = Oil { viscosity: oil.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
@@ -117,21 +115,21 @@ impl Lubrication {
                     let reason = "is too narrow for its rollers: a film needs a larger radius than `bearing.roller_diameter_mm` has";
                     return Err(SurfaceError::BadSurface { name: name.to_owned(), reason });
                 }
-                let give = BodySpring::new(penalty, 1.0 / relative, compliance);
+                let give = BodySpring::new(penalty, 1.0 / relative, &on.compliance);
                 Ok(FilmLaw::new(oil, 1.0 / relative, thickness, give))
             };
             let films = curved.lands.iter().map(law).collect::<Result<_, _>>()?;
             Ok(OiledRaceway { curved, films, speed: loaded.speed })
         };
         let [outer, inner] = raceways;
-        let formed = |outline: &&Outline| Curved::rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
-        let others = rims[1..].iter().map(formed).collect::<Result<Vec<_>, _>>()?;
+        let formed = |rim: &crate::rollers::Rim| Curved::rim(&rim.outline).map(|rim| Rim::Formed(Box::new(rim)));
+        let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             raceways: [
                 race("outer raceway", outer, true, oil.outer)?,
                 race("inner raceway", inner, false, oil.inner)?,
             ],
-            rims: std::iter::once(Rim::Round(rims[0].x[0])).chain(others).collect(),
+            rims: std::iter::once(Rim::Round(round.outline.x[0])).chain(others).collect(),
         })
     }
 

@@ -4,7 +4,7 @@ use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
 
 /// A vector in the plane: x and y.
-pub type Vec2<N = f64> = [N; 2];
+pub(crate) type Vec2<N = f64> = [N; 2];
 
 /// A rotation, counter-clockwise positive: cosine and sine of its angle.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,11 +1,11 @@
 //! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
 
 use pulp::Scalar;
-use stribeck_duty::Duty;
 use stribeck_simd::lanes::Vector;
 
 use crate::{
-    bearing::Bearing, contact::normal_force::RollerOnRaceway, error::Error, oil::Films, plane::Rotation, state::State,
+    bearing::Bearing, contact::normal_force::RollerOnRaceway, error::Error, oil::Films, plane::Rotation,
+    roller_force::RollerForce, state::State,
 };
 
 /// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings the solver, so that this
@@ -45,9 +45,9 @@ impl Bearing {
             }
         }
         let half = 0.5 * self.time_step;
-        for i in 0..self.rollers {
+        for i in 0..self.rollers.count {
             let [x, y] = [state.x[i], state.y[i]];
-            let (orbit, square) = (self.speeds.cage, self.speeds.cage.powi(2));
+            let (orbit, square) = (self.operation.speeds.cage, self.operation.speeds.cage.powi(2));
             (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
         }
         state.hints = self.first_hints(&state);
@@ -59,10 +59,10 @@ impl Bearing {
     /// Brings modes and rollers into equilibrium while the seat stays as it is.
     fn equilibrium(&self, solve: Solve<'_>, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
-        let load = self.load_at_start.max(1.0);
-        let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.load_change(duty, 0.0));
+        let load = self.operation.load_at_start.max(1.0);
+        let further = self.operation.load_change(0.0);
         let [mass, _] = self.reduction.roller_inertia;
-        let mut shapes = vec![0.0; 2 * r * self.rollers];
+        let mut shapes = vec![0.0; 2 * r * self.rollers.count];
         let (mut farthest, mut last) = (FARTHEST, vec![0.0; r]);
         for iteration in 0..ITERATIONS {
             let mut force = self.reduction.constant.clone();
@@ -76,14 +76,14 @@ impl Bearing {
                     - self.reduction.squares[n] * state.q[n];
                 matrix[n * r + n] = self.reduction.squares[n] + REGULARISATION;
             }
-            for i in 0..self.rollers {
+            for i in 0..self.rollers.count {
                 let angle = state.y[i].atan2(state.x[i]);
                 let (s, c) = angle.sin_cos();
                 let under = &mut shapes[2 * r * i..2 * r * (i + 1)];
                 let moved = self.shapes_under(state, i, [c, s], under);
                 let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
                 // The roller's own balance: pressed outwards by the inner raceway and its orbit.
-                let inertia = |rho: f64| mass * (self.speeds.cage * self.speeds.cage * rho - self.gravity * s);
+                let inertia = |rho: f64| mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho - self.rollers.gravity * s);
                 let mut at = state.x[i].hypot(state.y[i]);
                 let balance = |state: &mut State, rho: f64| {
                     (state.x[i], state.y[i]) = (rho * c, rho * s);
@@ -92,7 +92,7 @@ impl Bearing {
                 };
                 // The balance falls with the radius: a bracket, then bisection. Films keep a roller with clearance between the circles;
                 // beyond them polygons that do not touch yet would leave it a second balance.
-                let floats = self.floating(state, i, moved);
+                let floats = self.oil.as_ref().and_then(|oil| oil.floating(&self.rollers, state, i, moved));
                 let [mut low, mut high] = floats.unwrap_or([at; 2]);
                 let mut width = 1e-7;
                 while balance(state, low).0 < 0.0 && width < 1e-2 {
@@ -161,17 +161,17 @@ impl Bearing {
         Ok(())
     }
 
-    /// By what the load exceeds that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of it.
-    #[inline(always)]
-    pub(crate) fn load_change(&self, duty: &Duty, time_s: f64) -> [f64; 2] {
-        let per = 1.0 / self.reduction.load.force;
-        [duty.load_n(time_s) * per - 1.0, duty.load_across_n(time_s).map_or(0.0, |across| across * per)]
+    /// What a roller in this direction presses with `force`, near the facet `hint`.
+    fn roller_force_at(&self, hint: u32, radial: [f64; 2], force: f64) -> RollerForce {
+        let outline = &self.raceways[0].outline;
+        let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
+        RollerForce { facet: facet as u32, share: outline.share(facet, radial), force, ..RollerForce::default() }
     }
 
     /// Shapes under roller `i` in the direction of its centre, and the displacement there.
     fn shapes_under(&self, state: &State, i: usize, radial: [f64; 2], under: &mut [f64]) -> [f64; 2] {
         let r = self.reduction.padded;
-        let outline = &self.outer.outline;
+        let outline = &self.raceways[0].outline;
         let facet = outline.facet_along([0.0; 2], radial, state.hints[0][i][1] as usize, 1.0);
         let second = if facet + 1 == outline.len() { 0 } else { facet + 1 };
         let share = outline.share(facet, radial);
@@ -192,24 +192,24 @@ impl Bearing {
 
     /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
+        let (s, c) = (state.angle[i] + self.rollers.starts[i].vertex_angle).sin_cos();
         let shaft = Rotation::by(state.shaft);
         let centre = [state.x[i], state.y[i]];
         let seen = [centre[0] - moved[0], centre[1] - moved[1]];
         let mut hints = [state.hints[0][i], state.hints[1][i]];
-        let simd = Scalar::new();
+        let (simd, [on_outer, on_inner]) = (Scalar::new(), &self.raceways);
         // A force found with steps of Newton's method: from the one before until it stands.
         let mut forces = [state.force[0][i], state.force[1][i]];
         for _ in 0..40 {
             let [before, other] = forces;
-            let rim = self.rim(i);
+            let rim = self.rollers.rim(i);
             let near =
-                RollerOnRaceway { raceway: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
-            let outer = self.normal_force(simd, near, &mut hints[0]);
+                RollerOnRaceway { raceway: on_outer, rim, centre: seen, spin: [c, s], bound: on_outer.bound, before };
+            let outer = self.law.normal_force(simd, near, &mut hints[0]);
             let (centre, spin) = (shaft.back(centre), shaft.back([c, s]));
-            let inner = self.normal_force(
+            let inner = self.law.normal_force(
                 simd,
-                RollerOnRaceway { raceway: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },
+                RollerOnRaceway { raceway: on_inner, rim, centre, spin, bound: on_inner.bound, before: other },
                 &mut hints[1],
             );
             let next = [outer.normal, inner.normal];
@@ -222,7 +222,8 @@ impl Bearing {
         state.hints[0][i] = hints[0];
         state.hints[1][i] = hints[1];
         (state.force[0][i], state.force[1][i]) = (forces[0], forces[1]);
-        let by_oil = self.carried_by_oil(state, i, moved);
+        let by_oil =
+            self.oil.as_ref().map_or([0.0; 2], |oil| oil.carried(&self.rollers, state, i, moved));
         [forces[0] + by_oil[0], forces[1] + by_oil[1]]
     }
 }

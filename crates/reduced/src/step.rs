@@ -6,14 +6,12 @@ pub(crate) mod drive;
 mod scratch;
 pub(crate) mod sums;
 
-mod motion;
-mod raceway_forces;
 mod rollers;
 
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{bearing::Bearing, modes::Modes, state::State};
-use drive::Drive;
+use drive::{Drive, LoadChange};
 pub use scratch::Scratch;
 use sums::Tally;
 
@@ -50,9 +48,11 @@ impl Bearing {
     /// One step: forces at the positions, then velocities, then positions (THEORY §2.3).
     #[inline(always)]
     fn step<S: Simd>(&self, simd: S, state: &mut State, scratch: &mut Scratch, last: bool) {
+        let dt = self.time_step;
         let mut tally = Tally { last, ..Tally::default() };
-        let drive = self.drive(state);
-        self.load_modes(simd, state, scratch, &drive);
+        let drive = self.operation.drive(state.steps, dt, state.shaft);
+        let load = LoadChange::new(&self.reduction.load, drive.load);
+        self.load_modes(simd, state, scratch, &load);
         if last {
             let Scratch { roller_forces, modes, before, .. } = scratch;
             self.sensors.measure(simd, state, roller_forces, &modes.tension, before);
@@ -60,14 +60,29 @@ impl Bearing {
         self.follow_rollers(simd, scratch, &drive);
         self.settle_seat(simd, state, scratch, &mut tally);
         let on_cage = self.advance_rollers(simd, state, scratch, &drive, &mut tally);
-        self.move_modes(simd, state, &scratch.modes, drive.load, &mut tally);
-        self.move_cage(on_cage, state, &mut tally);
-        state.shaft += self.time_step * drive.inner.rate;
-        tally.enter(state, self.time_step);
+        self.structure.advance(simd, dt, &self.reduction, state, &scratch.modes, &load, &mut tally);
+        if let Some(cage) = &self.cage {
+            cage.advance(dt, self.rollers.gravity, on_cage, state, &mut tally);
+        }
+        state.shaft += dt * drive.inner.rate;
+        tally.enter(state, dt);
         state.steps += 1;
         scratch.summed += 1;
         if last {
             scratch.energy = tally.stored;
+        }
+    }
+
+    /// First stage: prestress, load and dampers push on the modes.
+    #[inline(always)]
+    fn load_modes<S: Simd>(&self, simd: S, state: &State, scratch: &mut Scratch, load: &LoadChange<'_>) {
+        scratch.modes.begin(state, &self.reduction.constant);
+        for (share, load) in load.shares() {
+            let push = scratch.modes.push.iter_mut().flat_map(|row| row.iter_mut());
+            push.zip(load).for_each(|(push, load)| *push += share * load);
+        }
+        if !self.structure.dampers.is_empty() {
+            self.structure.resist(simd, &mut scratch.modes);
         }
     }
 

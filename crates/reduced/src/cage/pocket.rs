@@ -4,10 +4,13 @@ use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
-    bearing::Bearing,
     plane::{Rotation, cross, dot, perpendicular},
-    rollers::block::{Block, Walls},
+    rollers::{
+        Rollers,
+        block::{Block, Walls},
+    },
     cage::{Cage, Wall, WallRows},
+    contact::force::ContactLaw,
     cage::flat::{self, Shape},
     rollers::row::{Rows, lanes, load, of_one},
     state::State,
@@ -55,7 +58,7 @@ impl PlacedCage {
 
     /// A roller with its centre at `centre`.
     #[inline(always)]
-    pub(crate) fn guest(
+    fn roller(
         &self,
         centre: [f64; 2],
         velocity: [f64; 2],
@@ -109,38 +112,40 @@ struct Pressed {
 /// force is counted.
 const STILL_SEEN: f64 = 1.01;
 
-impl Bearing {
+/// Rollers in the pockets of a cage, in one step.
+pub(crate) struct InPockets<'a> {
+    pub(crate) cage: &'a Cage,
+    pub(crate) placed: PlacedCage,
+    pub(crate) rollers: &'a Rollers,
+    pub(crate) law: &'a ContactLaw,
+    /// Whether facets of rollers stand for arcs.
+    pub(crate) round: bool,
+}
+
+impl InPockets<'_> {
     /// Forces and moments on eight rollers by the walls of their pockets, added to theirs. Returns those on the cage: two components [N] and the
     /// moment about its centre of mass [N m].
     #[inline(always)]
-    pub(crate) fn in_pockets<S: Simd>(
-        &self,
-        simd: S,
-        cage: &Cage,
-        rows: &[WallRows; 2],
-        placed: PlacedCage,
-        block: &mut Block,
-        tally: &mut Tally,
-    ) -> [f64; 3] {
+    pub(crate) fn push<S: Simd>(&self, simd: S, group: usize, block: &mut Block, tally: &mut Tally) -> [f64; 3] {
+        let rows = &self.cage.wall_rows[group];
         let mut on_cage = [0.0; 3];
         for side in 0..2 {
-            let near =
-                self.near_walls(simd, &rows[side], placed, &block.centre, &mut block.walls[side]);
+            let near = self.near_walls(simd, &rows[side], &block.centre, &mut block.walls[side]);
             for lane in lanes(near & block.bits) {
                 let (velocity, turned) = (of_one(&block.velocity, lane), of_one(&block.turned, lane));
                 let centre = of_one(&block.centre, lane);
-                let guest = placed.guest(centre, velocity, block.spin[lane], turned);
+                let roller = self.placed.roller(centre, velocity, block.spin[lane], turned);
                 let walls = &mut block.walls[side];
                 let (mut slip, mut passive) = (walls.slip[lane], of_one(&walls.passive, lane));
-                let wall = &cage.walls[block.first + lane][side];
-                let hit = self.hit(cage, wall, placed, &guest, &mut slip, &mut passive, tally);
+                let wall = &self.cage.walls[block.first + lane][side];
+                let by_wall = self.wall_force(wall, &roller, &mut slip, &mut passive, tally);
                 walls.slip[lane] = slip;
                 [walls.passive[0][lane], walls.passive[1][lane]] = passive;
-                let Some(hit) = hit else { continue };
-                block.force[2][0][lane] += hit.force[0];
-                block.force[2][1][lane] += hit.force[1];
-                block.moment[lane] += hit.moment;
-                for (sum, part) in on_cage.iter_mut().zip([hit.force[0], hit.force[1], hit.on_cage]) {
+                let Some(by_wall) = by_wall else { continue };
+                block.force[2][0][lane] += by_wall.force[0];
+                block.force[2][1][lane] += by_wall.force[1];
+                block.moment[lane] += by_wall.moment;
+                for (sum, part) in on_cage.iter_mut().zip([by_wall.force[0], by_wall.force[1], by_wall.on_cage]) {
                     *sum -= part;
                 }
             }
@@ -154,13 +159,12 @@ impl Bearing {
         &self,
         simd: S,
         rows: &WallRows,
-        placed: PlacedCage,
         centre: &Rows,
         walls: &mut Walls,
     ) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
-        let top = self.rims[0].top;
+        let (top, placed) = (self.rollers.rims[0].top, &self.placed);
         let turn = placed.turn.side_by_side(simd);
         let from_cage = [all(placed.at[0] + placed.middle[0]), all(placed.at[1] + placed.middle[1])];
         let mut touch = 0;
@@ -192,46 +196,43 @@ impl Bearing {
 
     /// A roller and a wall of its pocket.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one contact, with all that it reads and adds to")]
-    pub(crate) fn hit(
+    fn wall_force(
         &self,
-        cage: &Cage,
         wall: &Wall,
-        placed: PlacedCage,
-        guest: &RollerInPocket,
+        roller: &RollerInPocket,
         slip: &mut f64,
         passive: &mut [f64; 2],
         tally: &mut Tally,
     ) -> Option<WallForce> {
-        let Some(foot) = wall.foot(guest.own, STILL_SEEN * self.rims[0].top) else {
+        let Self { cage, placed, rollers, law, round } = self;
+        let top = rollers.rims[0].top;
+        let Some(foot) = wall.foot(roller.own, STILL_SEEN * top) else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };
-        let RollerInPocket { velocity, omega, turned, from_cage: rel, .. } = *guest;
+        let RollerInPocket { velocity, omega, turned, from_cage: rel, .. } = *roller;
         let Foot { from: foot, share: t, distance } = foot;
         // From the roller's centre to the foot, in space.
         let to = [foot[0] / distance, foot[1] / distance];
         let d = placed.turn.forth(to);
         let own_d = Rotation::to(turned).back(d);
-        let round = self.outer.sides.are_round();
-        let top = self.rims[0].top;
         let pressed = if t > 0.0 && t < 1.0 {
             // The foot goes along the wall with the roller, so that the force stands on the wall.
-            let shape = if round { Shape::Circle(top) } else { Shape::Polygon(&self.polygon, own_d) };
-            flat::press(shape, distance, self.penalty, &cage.curve).map(|on| Pressed {
+            let shape = if *round { Shape::Circle(top) } else { Shape::Polygon(&rollers.polygon, own_d) };
+            flat::press(shape, distance, law.penalty, &cage.curve).map(|on| Pressed {
                 n: d,
                 force: on.force,
-                stiffness: self.penalty * on.length,
+                stiffness: law.penalty * on.length,
                 part: on.part,
                 stored: on.stored,
                 couple: on.force * on.lever,
             })
         } else {
             let (depth, [level, tilt]) =
-                if round { (top - distance, [1.0, 0.0]) } else { self.polygon.depth(own_d, distance) };
+                if *round { (top - distance, [1.0, 0.0]) } else { rollers.polygon.depth(own_d, distance) };
             // The normal of the roller's facet.
             let n = Rotation::to([level, tilt]).forth(d);
-            let [force, stiffness, stored] = cage.corners[usize::from(t > 0.5)].press(self.penalty, depth);
+            let [force, stiffness, stored] = cage.corners[usize::from(t > 0.5)].press(law.penalty, depth);
             (depth > 0.0).then_some(Pressed { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
         };
         if pressed.is_none() && *passive == [0.0; 2] {
@@ -257,10 +258,10 @@ impl Bearing {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };
-        let damping = (self.damping / self.penalty * part * stiffness * closing).max(-force);
-        let sticking = self.sticking / self.penalty * stiffness;
-        let most = self.friction * force / sticking;
-        *slip = (*slip + self.time_step * sliding).clamp(-most, most);
+        let damping = (law.damping / law.penalty * part * stiffness * closing).max(-force);
+        let sticking = law.sticking / law.penalty * stiffness;
+        let most = law.friction * force / sticking;
+        *slip = (*slip + law.time_step * sliding).clamp(-most, most);
         let drag = -sticking * *slip;
         tally.spent.heat[0] -= drag * sliding;
         tally.spent.heat[1] += damping * closing;

@@ -4,7 +4,7 @@ use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
 
 use crate::{
-    bearing::{Bearing, Raceway},
+    bearing::Raceway,
     rollers::block::Contacts,
     rollers::row::{lanes, load},
     state::Stored,
@@ -27,7 +27,22 @@ pub(crate) struct Pushed<V> {
     pub(crate) moment: V,
 }
 
-impl Bearing {
+/// The law of contact, in numbers a metre of contact.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ContactLaw {
+    /// Normal and tangential stiffness [N/m²], and damping [N s/m²].
+    pub(crate) penalty: f64,
+    pub(crate) sticking: f64,
+    pub(crate) damping: f64,
+    /// Friction coefficient [-].
+    pub(crate) friction: f64,
+    /// Radius of a roller at which friction acts [m].
+    pub(crate) arm: f64,
+    /// Time step [s].
+    pub(crate) time_step: f64,
+}
+
+impl ContactLaw {
     /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. `heat` grows by twice the power against friction and
     /// damping [W]; `energy`, where it is asked for, by what penalty and springs of friction store.
     #[inline(always)]

@@ -5,8 +5,9 @@ use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
-    bearing::{Bearing, Rim, Raceway},
-    rollers::block::Contacts,
+    bearing::Raceway,
+    rollers::{Rim, Rollers, block::Contacts},
+    contact::force::ContactLaw,
     contact::outline::View,
     contact::penetration::{Penetration, Pair},
     rollers::row::{Row, lanes, load, of_one, store},
@@ -50,7 +51,7 @@ pub(crate) struct RollerOnRaceway<'a> {
     pub(crate) before: f64,
 }
 
-impl Bearing {
+impl ContactLaw {
     /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when centres and directions of vertex 0
     /// are known in its frame. `parts` is room to compute in.
     #[inline(always)]
@@ -61,6 +62,7 @@ impl Bearing {
     pub(crate) fn normal_forces<S: Simd>(
         &self,
         simd: S,
+        rollers: &Rollers,
         raceway: &Raceway,
         first: usize,
         top: &Row,
@@ -94,14 +96,14 @@ impl Bearing {
             }
             return;
         }
-        self.predict(simd, raceway, contacts);
-        let alone = self.integrate(simd, raceway, first, contacts, parts);
+        Self::predict(simd, raceway, contacts);
+        let alone = Self::integrate(simd, rollers, raceway, first, contacts, parts);
         let again = self.search(simd, contacts);
         for lane in lanes(alone) {
             contacts.normal[lane] = contacts.start[lane];
         }
         for lane in lanes(again | alone) {
-            let rim = self.rim(first + lane);
+            let rim = rollers.rim(first + lane);
             let before = contacts.normal[lane];
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
             let near = RollerOnRaceway { raceway, rim, centre, spin, bound: contacts.bound[lane], before };
@@ -120,7 +122,7 @@ impl Bearing {
 
     /// What the bodies flexibility way by at the forces that are expected, and how far from their middles contacts may reach then.
     #[inline(always)]
-    fn predict<S: Simd>(&self, simd: S, raceway: &Raceway, contacts: &mut Contacts) {
+    fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut Contacts) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, half) = (all(0.0), all(0.5));
         for at in vector_starts(simd) {
@@ -166,8 +168,8 @@ impl Bearing {
     /// by themselves, because a wall is near.
     #[inline(always)]
     fn integrate<S: Simd>(
-        &self,
         simd: S,
+        rollers: &Rollers,
         raceway: &Raceway,
         first: usize,
         contacts: &mut Contacts,
@@ -186,7 +188,7 @@ impl Bearing {
                 if look == 0 {
                     let near = RollerOnRaceway {
                         raceway,
-                        rim: self.rim(first + lane),
+                        rim: rollers.rim(first + lane),
                         centre,
                         spin: of_one(&contacts.spin, lane),
                         bound: raceway.bound,

@@ -3,8 +3,7 @@
 use stribeck_simd::lanes::LANES;
 
 use crate::{
-    bearing::Bearing,
-    rollers::block::Block,
+    rollers::{Rollers, block::Block},
     oil::{Films, Lubrication, FilmStep, RollerView},
     rollers::row::of_one,
     state::State,
@@ -23,34 +22,25 @@ pub(crate) struct OilForces {
     pub(crate) stored: f64,
 }
 
-impl Bearing {
-    /// Films before the first step, with the rollers as they stand in a state; `None` without oil.
-    pub(crate) fn first_films(&self, state: &State) -> Option<Films> {
-        let oil = self.oil.as_ref()?;
+impl Lubrication {
+    /// Films before the first step, with the rollers as they stand in a state.
+    pub(crate) fn first_films(&self, rollers: &Rollers, state: &State) -> Films {
         let mut films = Films { at: [Vec::new(), Vec::new()], heat: 0.0 };
-        for i in 0..self.rollers {
-            for (k, (race, at)) in oil.raceways.iter().zip(&mut films.at).enumerate() {
-                let seen = self.seen_at_rest(state, i, k, [0.0; 2]);
-                at.extend(race.first_films(oil.rim(self.rim_of[i]), &seen));
+        for i in 0..rollers.count {
+            for (k, (race, at)) in self.raceways.iter().zip(&mut films.at).enumerate() {
+                let seen = rollers.view_at_rest(state, i, k, [0.0; 2]);
+                at.extend(race.first_films(self.rim(rollers.rim_of[i]), &seen));
             }
         }
-        Some(films)
-    }
-
-    /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former displaced.
-    fn seen_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> RollerView {
-        let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
-        let [x, y] = [state.x[i], state.y[i]];
-        let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
-        RollerView { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }
+        films
     }
 
     /// Forces on a roller by the films of steady rolling at the outer and the inner raceway, away from these [N].
-    pub(crate) fn carried_by_oil(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (Some(oil), Some(mut films)) = (&self.oil, state.films.take()) else { return [0.0; 2] };
-        let rim = oil.rim(self.rim_of[i]);
+    pub(crate) fn carried(&self, rollers: &Rollers, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
+        let Some(mut films) = state.films.take() else { return [0.0; 2] };
+        let rim = self.rim(rollers.rim_of[i]);
         let outwards = [0, 1].map(|k| {
-            let (race, seen) = (&oil.raceways[k], self.seen_at_rest(state, i, k, moved));
+            let (race, seen) = (&self.raceways[k], rollers.view_at_rest(state, i, k, moved));
             let [fx, fy] = race.carried(rim, race.of_roller(&mut films.at[k], i), &seen).force;
             let [x, y] = seen.centre;
             (fx * x + fy * y) / x.hypot(y)
@@ -59,13 +49,12 @@ impl Bearing {
         [-outwards[0], outwards[1]]
     }
 
-    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance, or no oil.
-    pub(crate) fn floating(&self, state: &mut State, i: usize, moved: [f64; 2]) -> Option<[f64; 2]> {
-        let oil = self.oil.as_ref()?;
+    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance.
+    pub(crate) fn floating(&self, rollers: &Rollers, state: &mut State, i: usize, moved: [f64; 2]) -> Option<[f64; 2]> {
         let mut films = state.films.take()?;
-        let rim = oil.rim(self.rim_of[i]);
+        let rim = self.rim(rollers.rim_of[i]);
         let gaps = [0, 1].map(|k| {
-            let (race, seen) = (&oil.raceways[k], self.seen_at_rest(state, i, k, moved));
+            let (race, seen) = (&self.raceways[k], rollers.view_at_rest(state, i, k, moved));
             race.gap(rim, race.of_roller(&mut films.at[k], i), &seen)
         });
         state.films = Some(films);
@@ -77,7 +66,7 @@ impl Bearing {
     #[inline(never)]
     pub(crate) fn add_film_forces(
         &self,
-        oil: &Lubrication,
+        rollers: &Rollers,
         films: &mut Films,
         block: &mut Block,
         turning: [Option<RingRotation>; 2],
@@ -86,7 +75,7 @@ impl Bearing {
         let mut by_oil = OilForces::default();
         for lane in 0..block.count {
             let i = block.first + lane;
-            let rim = oil.rim(self.rim_of[i]);
+            let rim = self.rim(rollers.rim_of[i]);
             let [x, y] = of_one(&block.centre, lane);
             let velocity @ [vx, vy] = of_one(&block.velocity, lane);
             let ([bx, by], [mx, my]) = (of_one(&block.by, lane), of_one(&block.moving, lane));
@@ -96,7 +85,7 @@ impl Bearing {
             // The outer raceway under the roller moves with the modes, and because the roller goes on to another place of it.
             let from_raceway = [[x - bx, y - by], [x, y]];
             let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
-            for (k, race) in oil.raceways.iter().enumerate() {
+            for (k, race) in self.raceways.iter().enumerate() {
                 let ([x, y], [rx, ry]) = (from_raceway[k], relative[k]);
                 let RingRotation { rate, turned } = turning[k].unwrap_or(RingRotation::STILL);
                 let [rx, ry] = [rx + rate * y, ry - rate * x];
@@ -127,5 +116,15 @@ impl Bearing {
             }
         }
         by_oil
+    }
+}
+
+impl Rollers {
+    /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former displaced.
+    fn view_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> RollerView {
+        let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
+        let [x, y] = [state.x[i], state.y[i]];
+        let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
+        RollerView { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }
     }
 }

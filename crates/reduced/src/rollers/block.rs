@@ -123,17 +123,17 @@ pub(crate) struct Walls {
 impl Block {
     /// The rollers from `first` on, and what of them does not change.
     pub(crate) fn new(bearing: &Bearing, first: usize) -> Self {
-        let count = (bearing.rollers - first).min(LANES);
+        let count = (bearing.rollers.count - first).min(LANES);
         let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
         // Those that are missing keep clear of both raceways.
-        block.centre[0] = Row([bearing.outer.bound; LANES]);
+        block.centre[0] = Row([bearing.raceways[0].bound; LANES]);
         block.drift = Row([f64::INFINITY; LANES]);
-        for (contacts, raceway) in block.contacts.iter_mut().zip([&bearing.outer, &bearing.inner]) {
+        for (contacts, raceway) in block.contacts.iter_mut().zip(&bearing.raceways) {
             contacts.bound = Row([raceway.bound; LANES]);
         }
         for lane in 0..count {
             block.present[lane] = 1.0;
-            block.top[lane] = bearing.rim(first + lane).top;
+            block.top[lane] = bearing.rollers.rim(first + lane).top;
         }
         block
     }
@@ -188,7 +188,7 @@ impl Block {
         }
         if (self.first..self.first + self.count).contains(&anew) {
             let lane = anew - self.first;
-            let (s, c) = (self.angle[lane] + bearing.starts[anew].vertex_angle).sin_cos();
+            let (s, c) = (self.angle[lane] + bearing.rollers.starts[anew].vertex_angle).sin_cos();
             (self.turned[0][lane], self.turned[1][lane]) = (c, s);
         }
     }

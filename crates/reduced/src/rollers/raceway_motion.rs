@@ -26,7 +26,7 @@ impl Bearing {
     /// How far a vertex of the outer raceway moves at most in a step [m].
     #[inline(always)]
     pub(crate) fn farthest<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&SeatState>) -> f64 {
-        let with_modes = self.time_step * largest_sum(simd, &self.farthest, &modes.v);
+        let with_modes = self.time_step * largest_sum(simd, &self.structure.farthest, &modes.v);
         match (&self.seat, hold) {
             (Some(seat), Some(hold)) => with_modes + seat.farthest(simd, hold),
             _ => with_modes,
@@ -49,7 +49,7 @@ impl Bearing {
         for lane in lanes(block.bits & !clear) {
             let (facet, share) = (block.facet[lane] as usize, block.share[lane]);
             let parts_of_motion = &mut block.parts_of_motion[lane];
-            let moved = self.moved(simd, &self.raceway_point(facet, share), modes);
+            let moved = self.structure.moved(simd, &self.structure.raceway_point(facet, share), modes);
             for (parts, to) in moved.into_iter().zip(&mut parts_of_motion[..]) {
                 parts.store(to, 0);
             }
@@ -167,14 +167,15 @@ impl Bearing {
 
     /// Finds the facets of the outer raceway that the rays to these rollers go through.
     fn find_facets(&self, block: &mut Block, gone: u64) {
-        let outline = &self.outer.outline;
+        let outer = &self.raceways[0];
+        let outline = &outer.outline;
         for lane in lanes(gone) {
             let along = of_one(&block.along, lane);
             let facet = outline.facet_along([0.0; 2], along, block.facet[lane] as usize, 1.0);
             block.facet[lane] = facet as u32;
-            block.per_angle[lane] = self.outer.angle[facet];
+            block.per_angle[lane] = outer.angle[facet];
             block.drift[lane] = f64::INFINITY;
-            block.contacts[0].bound[lane] = self.outer.bounds[facet];
+            block.contacts[0].bound[lane] = outer.bounds[facet];
             for (end, vertex) in block.ends.iter_mut().zip([facet, outline.next(facet)]) {
                 (end[0][lane], end[1][lane]) = (outline.x[vertex], outline.y[vertex]);
             }

@@ -5,7 +5,8 @@ use stribeck_simd::lanes::LANES;
 
 use crate::{
     bearing::Bearing,
-    cage::pocket::PlacedCage,
+    cage::pocket::{InPockets, PlacedCage},
+    contact::force::ContactLaw,
     oil::FilmStep,
     roller_force::RollerForce,
     rollers::{block::Block, row::of_one},
@@ -29,7 +30,13 @@ impl Bearing {
         drive: &Drive,
         tally: &mut Tally,
     ) -> [f64; 3] {
-        let placed = PlacedCage::of(state, self.reduction.cage.map_or([0.0; 2], |cage| cage.1));
+        let pockets = self.cage.as_ref().map(|cage| InPockets {
+            cage,
+            placed: PlacedCage::of(state, cage.centre),
+            rollers: &self.rollers,
+            law: &self.law,
+            round: self.raceways[0].sides.are_round(),
+        });
         let mut on_cage = [0.0; 3];
         let mut sums = Sums::<S>::new(simd);
         let farthest = self.farthest(simd, &scratch.modes, state.seat.as_ref());
@@ -39,27 +46,27 @@ impl Bearing {
             self.locate_on_raceways(simd, &scratch.modes, seat, farthest, block, drive.rings());
             let Block { first, top, bits, contacts, .. } = block;
             // One code for both raceways: the step's instructions fill the first cache anyway.
-            for (raceway, contacts) in [&self.outer, &self.inner].into_iter().zip(contacts) {
-                self.normal_forces(simd, raceway, *first, top, *bits, contacts, &mut scratch.parts);
+            for (raceway, contacts) in self.raceways.iter().zip(contacts) {
+                self.law.normal_forces(simd, &self.rollers, raceway, *first, top, *bits, contacts, &mut scratch.parts);
             }
-            self.push_rollers(simd, block, drive, &mut sums);
+            self.law.push_rollers(simd, &self.raceways, block, drive, &mut sums);
             let by_film = self.push_by_oil(state, block, drive, tally);
             self.push_modes(simd, scratch, b, by_film);
             let block = &mut scratch.blocks[b];
-            for (raceway, contacts) in [&self.outer, &self.inner].into_iter().zip(&block.contacts) {
-                scratch.deepest = scratch.deepest.max(Self::deepest(contacts));
+            for (raceway, contacts) in self.raceways.iter().zip(&block.contacts) {
+                scratch.deepest = scratch.deepest.max(ContactLaw::deepest(contacts));
                 if tally.last {
-                    self.stored_in_contacts(raceway, contacts, &mut tally.stored);
+                    self.law.stored_in_contacts(raceway, contacts, &mut tally.stored);
                 }
             }
             block.force[2] = Default::default();
-            if let Some(cage) = &self.cage {
-                let by_walls = self.in_pockets(simd, cage, &cage.wall_rows[b], placed, block, tally);
+            if let Some(pockets) = &pockets {
+                let by_walls = pockets.push(simd, b, block, tally);
                 for (sum, part) in on_cage.iter_mut().zip(by_walls) {
                     *sum += part;
                 }
             }
-            self.move_rollers(simd, block, tally.last, &mut sums);
+            self.rollers.advance(simd, self.time_step, block, tally.last, &mut sums);
         }
         tally.add(&sums, drive, self.time_step);
         on_cage
@@ -78,7 +85,7 @@ impl Bearing {
         let (Some(oil), Some(films)) = (&self.oil, &mut state.films) else { return [[0.0; LANES]; 2] };
         let dt = self.time_step;
         let step = FilmStep { step: state.steps, dt, last: tally.last, felt: self.seat.is_some() };
-        let by_oil = self.add_film_forces(oil, films, block, drive.rings(), step);
+        let by_oil = oil.add_film_forces(&self.rollers, films, block, drive.rings(), step);
         tally.stored.contact += by_oil.stored;
         for (ring, moment) in drive.rings().into_iter().zip(by_oil.drive) {
             tally.spent.drive += ring.map_or(0.0, |ring| dt * ring.rate * moment);
@@ -94,11 +101,12 @@ impl Bearing {
             let (facet, share) = (block.facet[lane], block.share[lane]);
             let force = of_one(&block.force[0], lane);
             if force != [0.0; 2] {
-                self.press(simd, &self.raceway_point(facet as usize, share), force, &mut scratch.modes);
+                let point = self.structure.raceway_point(facet as usize, share);
+                self.structure.press(simd, &point, force, &mut scratch.modes);
             }
             let force = block.contacts[0].normal[lane] + by_film[0][lane];
             let roller = &mut scratch.roller_forces[block.first + lane];
-            let stiffness = block.contacts[0].stiffness(self.penalty, lane) + by_film[1][lane];
+            let stiffness = block.contacts[0].stiffness(self.law.penalty, lane) + by_film[1][lane];
             *roller = RollerForce { growth: force - roller.force, force, stiffness, ..*roller };
         }
     }

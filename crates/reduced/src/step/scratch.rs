@@ -36,7 +36,7 @@ pub struct Scratch {
 
 impl Scratch {
     pub(crate) fn new(bearing: &Bearing) -> Self {
-        let n = bearing.rollers;
+        let n = bearing.rollers.count;
         Self {
             blocks: (0..n).step_by(LANES).map(|first| Block::new(bearing, first)).collect(),
             modes: Modes::new(bearing),
@@ -55,7 +55,7 @@ impl Scratch {
 
     /// Begins a sample, the number of which is known.
     pub(crate) fn begin(&mut self, bearing: &Bearing, sample: u64) {
-        let anew = (sample % bearing.rollers as u64) as usize;
+        let anew = (sample % bearing.rollers.count as u64) as usize;
         self.blocks.iter_mut().for_each(|block| block.begin(bearing, anew));
         (self.summed, self.deepest) = (0, 0.0);
     }

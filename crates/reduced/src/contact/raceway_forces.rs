@@ -1,11 +1,11 @@
-//! Part of the fourth stage: forces of both raceways on a group of rollers.
+//! Forces of both raceways on a group of rollers (THEORY §9.4).
 
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
-    bearing::Bearing,
-    contact::force::Rolling,
+    bearing::Raceway,
+    contact::force::{ContactLaw, Rolling},
     rollers::{
         block::Block,
         row::{load, store},
@@ -13,12 +13,13 @@ use crate::{
     step::{drive::Drive, sums::Sums},
 };
 
-impl Bearing {
+impl ContactLaw {
     /// Normal forces, damping and friction of both raceways, the normal parts of which are known.
     #[inline(always)]
     pub(crate) fn push_rollers<S: Simd>(
         &self,
         simd: S,
+        raceways: &[Raceway; 2],
         block: &mut Block,
         drive: &Drive,
         sums: &mut Sums<S>,
@@ -47,7 +48,7 @@ impl Bearing {
             }
             let pace = size(orbit - race) * (distance + arm);
             let rolling = Rolling { relative, spin, race, pace };
-            let by_outer = self.push(simd, &self.outer, on_outer, at, &rolling, &mut sums.heat);
+            let by_outer = self.push(simd, &raceways[0], on_outer, at, &rolling, &mut sums.heat);
             let mut force = by_outer.force;
             if let Some(outer) = outer {
                 force = outer.forth(simd, force);
@@ -68,7 +69,7 @@ impl Bearing {
             let relative = inner.back(simd, [rx, ry]);
             let pace = size((orbit - rate) * (distance - arm));
             let rolling = Rolling { relative, spin, race: rate, pace };
-            let by_inner = self.push(simd, &self.inner, on_inner, at, &rolling, &mut sums.heat);
+            let by_inner = self.push(simd, &raceways[1], on_inner, at, &rolling, &mut sums.heat);
             let [fx, fy] = inner.forth(simd, by_inner.force);
             store([fx, fy], &mut block.force[1], at);
             // What the roller does to the ring, the drive makes good.

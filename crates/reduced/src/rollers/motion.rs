@@ -1,18 +1,17 @@
-//! Rollers and cage move under the forces on them.
+//! Rollers move under the forces on them (THEORY §9.4).
 
 use pulp::Simd;
 use stribeck_modal::parameters::DampingFrame;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
-    bearing::Bearing,
     plane::Rotation,
     rollers::{
+        Rollers,
         block::Block,
         row::{load, store},
     },
-    state::State,
-    step::sums::{Sums, Tally},
+    step::sums::Sums,
 };
 
 /// The frames of mass damping, for code that is made for each of them.
@@ -20,52 +19,33 @@ const ROLLING: u8 = 0;
 const RIGID: u8 = 1;
 const ABSOLUTE: u8 = 2;
 
-impl Bearing {
+impl Rollers {
     /// Rollers move under the forces on them, damped in the frame of the scene.
     #[inline(always)]
-    pub(crate) fn move_rollers<S: Simd>(&self, simd: S, block: &mut Block, last: bool, sums: &mut Sums<S>) {
+    pub(crate) fn advance<S: Simd>(&self, simd: S, dt: f64, block: &mut Block, last: bool, sums: &mut Sums<S>) {
         match self.frame {
-            DampingFrame::Rolling => self.move_in_frame::<S, ROLLING>(simd, block, last, sums),
-            DampingFrame::RigidMotion => self.move_in_frame::<S, RIGID>(simd, block, last, sums),
-            DampingFrame::Absolute => self.move_in_frame::<S, ABSOLUTE>(simd, block, last, sums),
+            DampingFrame::Rolling => self.move_in_frame::<S, ROLLING>(simd, dt, block, last, sums),
+            DampingFrame::RigidMotion => self.move_in_frame::<S, RIGID>(simd, dt, block, last, sums),
+            DampingFrame::Absolute => self.move_in_frame::<S, ABSOLUTE>(simd, dt, block, last, sums),
         }
     }
 
-    /// The cage moves under the forces of all rollers and its weight.
-    #[inline(always)]
-    pub(crate) fn move_cage(&self, on_cage: [f64; 3], state: &mut State, tally: &mut Tally) {
-        let Some(cage) = &self.cage else { return };
-        let dt = self.time_step;
-        let old = state.cage_velocity;
-        let acceleration =
-            [on_cage[0] / cage.mass, on_cage[1] / cage.mass - self.gravity, on_cage[2] / cage.inertia];
-        let new: [f64; 3] = std::array::from_fn(|c| old[c] + dt * acceleration[c]);
-        tally.spent.external -= 0.5 * dt * self.gravity * cage.mass * (old[1] + new[1]);
-        if tally.last {
-            tally.stored.kinetic +=
-                0.5 * (cage.mass * (old[0] * new[0] + old[1] * new[1]) + cage.inertia * old[2] * new[2]);
-        }
-        state.cage_velocity = new;
-        for (coordinate, v) in state.cage.iter_mut().zip(new) {
-            *coordinate += dt * v;
-        }
-    }
-
-    /// As [`Self::move_rollers`], with the frame of mass damping known when it is compiled.
+    /// As [`Self::advance`], with the frame of mass damping known when it is compiled.
     #[inline(always)]
     fn move_in_frame<S: Simd, const FRAME: u8>(
         &self,
         simd: S,
+        time_step: f64,
         block: &mut Block,
         last: bool,
         sums: &mut Sums<S>,
     ) {
         let all = |value: f64| Vector::all(simd, value);
-        let [mass, inertia] = self.reduction.roller_inertia;
-        let (dt, half) = (all(self.time_step), all(0.5));
-        let h = 0.5 * self.alpha * self.time_step;
-        let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(self.time_step / (1.0 + h)));
-        let resisted = all(self.alpha * self.time_step * mass);
+        let [mass, inertia] = self.inertia;
+        let (dt, half) = (all(time_step), all(0.5));
+        let h = 0.5 * self.damping * time_step;
+        let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(time_step / (1.0 + h)));
+        let resisted = all(self.damping * time_step * mass);
         let weight = all(self.gravity * mass);
         for at in vector_starts(simd) {
             let present = Vector::load(simd, &block.present, at);
