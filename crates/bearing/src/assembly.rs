@@ -160,6 +160,22 @@ impl Pairs {
     }
 }
 
+impl Machine {
+    /// The nodes on the outer surface of the outer ring that are nearest to these angles [rad]: where sensors sit.
+    pub fn nodes_on_back(&self, angles: &[f64]) -> Vec<u32> {
+        let off = |node: u32, wanted: f64| {
+            let [x, y] = self.system.position(node);
+            let angle = y.atan2(x) - wanted;
+            angle.sin().hypot(1.0 - angle.cos())
+        };
+        let nearest = |wanted: f64| {
+            let nodes = self.back.iter().copied();
+            nodes.min_by(|a, b| off(*a, wanted).total_cmp(&off(*b, wanted))).expect("a ring has nodes")
+        };
+        angles.iter().map(|&wanted| nearest(wanted)).collect()
+    }
+}
+
 /// Angle of the roller in pocket `i` (from 0) at the start [rad].
 pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
     Geometry::of(scene).roller_angle(i)
@@ -368,7 +384,7 @@ impl Assembly {
     }
 
     /// What elastic bodies are made of: the inner ring always is one.
-    pub(crate) fn steel(&self) -> &Elastic {
+    pub fn steel(&self) -> &Elastic {
         &self.model.materials[self.inner.body]
     }
 
@@ -538,7 +554,12 @@ impl Assembly {
 ///
 /// # Errors
 /// When there is no load of a name.
-pub(crate) fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<(), Error> {
+pub fn load(
+    system: &mut System,
+    duty: &Duty,
+    load_n: f64,
+    at_s: f64,
+) -> Result<(), stribeck_system::Error> {
     system.scale_load(LOADED, duty.load_n(at_s) / load_n)?;
     if let Some(across) = duty.load_across_n(at_s) {
         system.scale_load(ACROSS, across / load_n)?;

@@ -1,14 +1,12 @@
 //! The error type of this crate.
 
-use std::path::PathBuf;
-
 use stribeck_scene::scene_file::SceneError;
 
-/// Everything that can go wrong between a scene and a finished run.
+/// Everything that can go wrong between a scene and a bearing under its preload.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The scene cannot be read, or the folder of the run cannot be read or written.
+    /// The scene cannot be read, or is impossible.
     #[error(transparent)]
     Scene(#[from] stribeck_scene::Error),
 
@@ -46,21 +44,6 @@ pub enum Error {
         threads: usize,
         /// The system's answer.
         source: std::io::Error,
-    },
-
-    /// Ranks that run one model together do not understand each other.
-    #[error(
-        "the ranks of this run do not understand each other ({0}): start the same program on all of them"
-    )]
-    Ranks(String),
-
-    /// A run cannot be continued.
-    #[error("the run in `{}` cannot be continued: {reason}", path.display())]
-    Resume {
-        /// The folder of the run.
-        path: PathBuf,
-        /// Why, and what to try.
-        reason: String,
     },
 }
 

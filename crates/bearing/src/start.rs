@@ -1,12 +1,17 @@
 //! How a run starts: static equilibrium under load, then the velocities of rolling without slip (THEORY §3).
 
+use stribeck_solver::damping::{Frame, MassDamping};
 use stribeck_system::{Preload, UndecidedMotion};
 
 use crate::{
     assembly::{Machine, roller_angle},
     error::Error,
 };
-use stribeck_scene::{geometry::Geometry, kinematics::Kinematics, scene::Scene};
+use stribeck_scene::{
+    geometry::Geometry,
+    kinematics::Kinematics,
+    scene::{DampingFrame, Scene},
+};
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;
@@ -70,7 +75,7 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
 }
 
 /// Gives every body its rolling velocity, half a step before the start.
-pub(crate) fn launch(machine: &mut Machine, k: &Kinematics) {
+pub fn launch(machine: &mut Machine, k: &Kinematics) {
     let acceleration = rolling_acceleration(machine, k);
     let half = 0.5 * machine.system.time_step();
     let system = &mut machine.system;
@@ -95,4 +100,26 @@ pub(crate) fn launch(machine: &mut Machine, k: &Kinematics) {
     if let Some(cage) = machine.cage {
         system.launch(cage, [0.0; 2], k.cage_rad_s);
     }
+}
+
+/// Sets the mass damping of the scene, if it has one.
+///
+/// # Errors
+/// When its rate is no damping.
+pub fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
+    let rate = scene.solver.mass_damping_per_s;
+    if rate == 0.0 {
+        return Ok(());
+    }
+    let (standing, rolling) = match scene.solver.damping_frame {
+        DampingFrame::Rolling => (Frame::Rest, Frame::Tangential { centre: [0.0; 2] }),
+        DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
+        DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
+    };
+    // The inner ring's bore is driven: what is damped there would only be fed in again.
+    let held = std::iter::once(machine.outer).chain(machine.housing);
+    let mut frames: Vec<(usize, Frame)> = held.map(|body| (body, standing)).collect();
+    frames.extend(machine.rollers.iter().map(|r| (r.body, rolling)));
+    machine.system.set_mass_damping(&MassDamping::new(rate, frames)?);
+    Ok(())
 }

@@ -169,6 +169,11 @@ impl Bearing {
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
     }
 
+    /// Whether the outer ring sits in a seat that may open and slip.
+    pub fn has_seat(&self) -> bool {
+        self.seat.is_some()
+    }
+
     /// A state before its first step, not in equilibrium yet.
     pub fn rest(&self) -> State {
         let (r, n, path) = (self.reduction.padded, self.rollers.count, self.rollers.path);

@@ -18,8 +18,6 @@
 //! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` and, in vectors, `window.rs` |
 //! | What is recorded, and what is watched? | `recorder.rs`, `guards.rs`; both in the time loop, `motion.rs` |
 
-pub mod simulation;
-
 pub mod bearing;
 pub mod start;
 pub mod state;
@@ -36,9 +34,8 @@ mod rollers;
 pub mod seat;
 mod sensors;
 
-mod guards;
 pub mod motion;
-pub mod recorder;
+pub mod readings;
 
 pub mod error;
 

@@ -1,28 +1,21 @@
-//! A reduced bearing as the time loop drives it: samples, ledger, guards, checkpoint.
+//! A reduced bearing in motion, from one sampling interval to the next: what a time loop drives.
 
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::{error::Error, recorder::Tacho, time_loop};
-use stribeck_scene::{run_info::RunInfo, scene::Scene};
-use stribeck_system::{Balance, Ledger, Scale};
 
 use crate::{
     bearing::Bearing,
-    guards::{Guards, LedgerError},
-    recorder::Memory,
+    readings::{Memory, SensorReading},
     state::{State, at_positions},
     step::Scratch,
 };
 
 /// A reduced bearing in motion.
 #[derive(Debug)]
-pub struct Motion {
-    bearing: Bearing,
-    saved: Saved,
-    scratch: Scratch,
-    guards: Guards,
-    row: Vec<f64>,
-    off: LedgerError,
-    tacho: Tacho,
+pub struct BearingInMotion {
+    pub(crate) bearing: Bearing,
+    pub(crate) saved: Saved,
+    pub(crate) scratch: Scratch,
+    pub(crate) sensors: Vec<SensorReading>,
 }
 
 /// What a checkpoint holds of it.
@@ -30,19 +23,43 @@ pub struct Motion {
 pub struct Saved {
     /// Positions and velocities.
     pub state: State,
-    memory: Memory,
-    balance: Balance,
+    pub(crate) memory: Memory,
+}
+
+/// Energies at the positions before the last step of an interval [J]: what is stored, and work and heat since the start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Energies {
+    /// Time of these positions [s].
+    pub time: f64,
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Strain energy of the modes.
+    pub strain: f64,
+    /// Stored in contacts.
+    pub contact: f64,
+    /// Heat of friction.
+    pub friction: f64,
+    /// Heat of mass, stiffness and structural damping.
+    pub damping: f64,
+    /// Heat of damping in contacts.
+    pub contact_damping: f64,
+    /// Heat of oil films.
+    pub film: f64,
+    /// Work of load and gravity.
+    pub external: f64,
+    /// Work of the drive.
+    pub drive: f64,
 }
 
 impl Saved {
     /// Before the first step.
     pub fn first(bearing: &Bearing, state: State) -> Self {
-        Self { memory: bearing.first_memory(&state), state, balance: Balance::default() }
+        Self { memory: bearing.first_memory(&state), state }
     }
 
-    /// Whether it may belong to this bearing.
-    pub(crate) fn fits(&self, bearing: &Bearing) -> bool {
-        let (n, r, s) = (bearing.rollers, bearing.reduction.padded, &self.state);
+    /// Whether it may belong to this bearing: all arrays have its lengths.
+    pub fn fits(&self, bearing: &Bearing) -> bool {
+        let (n, r, s) = (bearing.rollers.count, bearing.reduction.padded, &self.state);
         let of_rollers = [
             &s.x,
             &s.y,
@@ -64,92 +81,69 @@ impl Saved {
             && s.passive.iter().all(|p| p.len() == n)
             && s.hints.iter().all(|h| h.len() == n)
             && [&s.q, &s.v].iter().all(|v| v.len() == r)
-            && s.branches.len() == bearing.branches.len()
+            && s.branches.len() == bearing.structure.branches.len()
             && s.branches.iter().all(|v| v.len() == r)
             && match (&bearing.seat, &s.seat) {
-                (Some(seat), Some(hold)) => seat.fits(hold, r, n),
-                (seat, hold) => seat.is_none() && hold.is_none(),
+                (Some(seat), Some(panels)) => seat.fits(panels, r, n),
+                (seat, panels) => seat.is_none() && panels.is_none(),
             }
             && match (&bearing.oil, &s.films) {
-                (Some(oil), Some(films)) => oil.fits(films, &bearing.rim_of),
+                (Some(oil), Some(films)) => oil.fits(films, &bearing.rollers.rim_of),
                 (oil, films) => oil.is_none() && films.is_none(),
             }
             && self.memory.fits(bearing)
     }
 }
 
-impl Motion {
-    /// A bearing that goes on from `saved`.
-    pub fn new(scene: &Scene, bearing: Bearing, saved: Saved) -> Self {
+impl BearingInMotion {
+    /// A bearing that continues from `saved`.
+    pub fn new(bearing: Bearing, saved: Saved) -> Self {
         let mut scratch = Scratch::new(&bearing);
         scratch.load(&saved.state);
-        Self {
-            bearing,
-            saved,
-            scratch,
-            guards: Guards::new(scene),
-            row: Vec::new(),
-            off: LedgerError::default(),
-            tacho: Tacho::of(scene),
-        }
+        let sensors = vec![SensorReading::default(); bearing.reduction.sensors.len()];
+        Self { bearing, saved, scratch, sensors }
     }
 
-    fn ledger(&self) -> Ledger {
-        let (w, e) = (&self.saved.state.work, &self.scratch.energy);
-        Ledger {
-            time: (self.saved.state.steps - 1) as f64 * self.bearing.time_step,
-            kinetic: e.kinetic,
-            strain: e.strain,
-            contact: e.contact,
-            friction: w.friction - e.sticking,
-            damping: at_positions(w.damping),
-            contact_damping: w.contact_damping,
-            external: at_positions(w.external),
-            drive: at_positions(w.drive),
-            film: self.saved.state.films.as_ref().map_or(0.0, |films| films.heat),
-            ..Ledger::default()
-        }
-    }
-}
-
-impl time_loop::Motion for Motion {
-    type Saved = Saved;
-
-    fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
-        let Self { bearing, saved: Saved { state, memory, .. }, scratch, row, tacho, .. } = self;
+    /// Takes the steps of one sampling interval; the energies are those before the last one.
+    pub fn interval(&mut self, steps: usize) -> Energies {
+        let Self { bearing, saved: Saved { state, memory }, scratch, sensors } = self;
         scratch.begin(bearing, state.steps / steps as u64);
         bearing.advance(state, scratch, steps - 1, false);
         bearing.advance(state, scratch, 1, true);
         scratch.show(state);
-        bearing.row(state, scratch, memory, row);
-        row.extend(tacho.sample(state.steps as f64 * bearing.time_step));
-        let mut ledger = self.ledger();
-        self.saved.balance.begin_or_enter(&mut ledger, Scale::StrainEnergy);
-        self.off = LedgerError::of(&ledger);
-        Ok(ledger)
+        bearing.read_sensors(scratch, memory, sensors);
+        self.energies()
     }
 
-    fn row(&mut self) -> &[f64] {
-        &self.row
+    fn energies(&self) -> Energies {
+        let (state, stored) = (&self.saved.state, &self.scratch.energy);
+        let work = &state.work;
+        Energies {
+            time: (state.steps - 1) as f64 * self.bearing.time_step,
+            kinetic: stored.kinetic,
+            strain: stored.strain,
+            contact: stored.contact,
+            friction: work.friction - stored.sticking,
+            damping: at_positions(work.damping),
+            contact_damping: work.contact_damping,
+            film: state.films.as_ref().map_or(0.0, |films| films.heat),
+            external: at_positions(work.external),
+            drive: at_positions(work.drive),
+        }
     }
 
-    fn steps(&self) -> u64 {
+    /// Steps taken.
+    pub fn steps(&self) -> u64 {
         self.saved.state.steps
     }
 
-    fn time(&self) -> f64 {
+    /// Time of the positions [s].
+    pub fn time(&self) -> f64 {
         self.saved.state.steps as f64 * self.bearing.time_step
     }
 
-    fn balance(&self) -> [f64; 2] {
-        [self.saved.balance.peak_strain, self.saved.balance.largest_error]
-    }
-
-    fn look(&mut self, info: &mut RunInfo) -> Option<String> {
-        self.guards.look(info, &self.saved.state, self.off, self.scratch.deepest)
-    }
-
-    fn saved(&self) -> Saved {
+    /// What it takes to continue.
+    pub fn saved(&self) -> Saved {
         let mut saved = self.saved.clone();
         self.scratch.store(&mut saved.state);
         saved

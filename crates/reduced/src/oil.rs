@@ -62,9 +62,9 @@ pub struct Film {
 }
 
 impl Films {
-    /// Whether one at the outer raceway carries more than a force [N].
-    pub(crate) fn carry(&self, enough: f64) -> bool {
-        self.at[0].iter().filter_map(|film| film.layer).any(|layer| layer.force > enough)
+    /// Largest force that one at the outer raceway carries [N].
+    pub(crate) fn most_at_outer(&self) -> f64 {
+        self.at[0].iter().filter_map(|film| film.layer).map(|layer| layer.force).fold(0.0, f64::max)
     }
 }
 

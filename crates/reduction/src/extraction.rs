@@ -195,15 +195,6 @@ impl Nodes {
         // The mesh walks the outer raceway clockwise, with the solid on the left.
         let mut outer = named("outer raceway")?;
         outer.reverse();
-        let off = |n: u32, wanted: f64| {
-            let [x, y] = system.position(n);
-            let angle = y.atan2(x) - wanted;
-            angle.sin().hypot(1.0 - angle.cos())
-        };
-        let sensors = g.sensor_angles.iter().map(|&wanted| {
-            let nearest = machine.back.iter().min_by(|a, b| off(**a, wanted).total_cmp(&off(**b, wanted)));
-            *nearest.expect("a ring has nodes")
-        });
         Ok(Self {
             outer,
             inner: named("inner raceway")?,
@@ -215,7 +206,7 @@ impl Nodes {
             outer_ring: system.nodes_of(machine.outer).collect(),
             inner_ring: system.nodes_of(machine.inner).collect(),
             roller: system.nodes_of(machine.rollers[0].body).collect(),
-            sensors: sensors.collect(),
+            sensors: machine.nodes_on_back(&g.sensor_angles),
             back: machine.back.clone(),
         })
     }

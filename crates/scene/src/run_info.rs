@@ -165,6 +165,9 @@ pub struct GuardInfo {
     pub unsupported_samples: usize,
     /// Longest such time [s].
     pub longest_unsupported_s: f64,
+    /// Farthest that the cage's centre has been from that of the outer ring [m].
+    #[serde(default)]
+    pub cage_offset_m: f64,
 }
 
 impl Default for GuardInfo {
@@ -178,6 +181,7 @@ impl Default for GuardInfo {
             strain_checked: 0.0,
             unsupported_samples: 0,
             longest_unsupported_s: 0.0,
+            cage_offset_m: 0.0,
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use stribeck_bearing::simulation::Progress;
+use stribeck_run::host::Progress;
 use stribeck_scene::run_info::clock;
 
 /// A bar is redrawn this often, a log gets a line.

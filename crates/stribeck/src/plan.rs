@@ -6,12 +6,13 @@ use std::process::ExitCode;
 use anyhow::{Result, ensure};
 use stribeck_analysis::paper;
 use stribeck_analysis::plan::{MeshFacts, Plan};
-use stribeck_bearing::{assembly::Assembly, recorder};
-use stribeck_reduced::simulation::steps_in_a_sample;
+use stribeck_bearing::assembly::Assembly;
+use stribeck_run::channels;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::run_info::clock;
 use stribeck_scene::scene::ModelScene;
+use stribeck_simulation::steps_in_a_sample;
 
 use crate::out::say;
 use crate::place::Place;
@@ -137,7 +138,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
     }
     let samples = 1e3 * scene.solver.duration_ms / scene.output.interval_us;
-    say!("  the trace takes {:.3} GB", 8e-9 * samples * recorder::names(&scene).len() as f64);
+    say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(&scene).len() as f64);
     say!("  {:.1} elements in a Rayleigh wave at half the sampling rate", plan.elements_per_wavelength);
     say!("  the record resolves {:.1} Hz", plan.resolution_hz);
     if let Some(needed) = plan.separating_s {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use stribeck_bearing::simulation::Progress;
+use stribeck_run::host::Progress;
 use stribeck_scene::run_info::{RunInfo, clock};
 
 /// A bar is redrawn this often.

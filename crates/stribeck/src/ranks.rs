@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use stribeck_bearing::ranks::Ranks;
+use stribeck_run::ranks::Ranks;
 
 /// This process among those that were started with it.
 #[derive(Debug)]

@@ -3,14 +3,12 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use stribeck_bearing::error::Error as BearingError;
-use stribeck_bearing::simulation::Progress;
-use stribeck_reduced::error::Error;
-use stribeck_reduced::simulation;
+use stribeck_run::host::Progress;
 use stribeck_scene::Error as SceneError;
 use stribeck_scene::run_dir::{RunDir, State};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::{self as simulation, Error};
 
 use crate::board::Board;
 use crate::host::{self, SharedClock};
@@ -110,23 +108,23 @@ impl<'a> Shop<'a> {
                     self.board.done(due.number, &words(info));
                     ended(due, None);
                 }
-                Err(Error::Bearing(BearingError::Scene(SceneError::FolderInUse { .. }))) => {
+                Err(Error::Scene(SceneError::FolderInUse { .. })) => {
                     self.board.done(due.number, "is being run by another program");
                 }
                 Err(error) => {
                     self.board.done(due.number, &format!("failed: {error}"));
                     match error {
-                        Error::Bearing(BearingError::Scene(SceneError::Io { .. })) => {
+                        Error::Scene(SceneError::Io { .. }) => {
                             self.disk_refuses.store(true, Ordering::Relaxed);
                         }
                         // What lies in the scene fails again wherever it is run.
-                        Error::Bearing(BearingError::Scene(
+                        Error::Scene(
                             SceneError::Scene(_)
                             | SceneError::Input { .. }
                             | SceneError::NoEquilibrium { .. },
-                        )) => ended(due, Some(error)),
+                        ) => ended(due, Some(error)),
                         // What lies in its folder.
-                        Error::Bearing(BearingError::Scene(_)) => {}
+                        Error::Scene(_) => {}
                         _ => ended(due, Some(error)),
                     }
                 }

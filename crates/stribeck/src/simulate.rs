@@ -8,13 +8,12 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::report;
-use stribeck_bearing::ranks::Ranks;
-use stribeck_bearing::simulation::{Progress, follow};
-use stribeck_reduced::simulation;
+use stribeck_run::{host::Progress, ranks::Ranks};
 use stribeck_scene::Error;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_simulation as simulation;
 
 use crate::conclude;
 use crate::host;
@@ -102,7 +101,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 
 /// Takes part in what the first process runs.
 fn take_part(options: &Options, ranks: Arc<dyn Ranks>) -> Result<ExitCode> {
-    host::with_ranks(options.threads.unwrap_or(1), Some(ranks), follow)?;
+    host::with_ranks(options.threads.unwrap_or(1), Some(ranks), simulation::follow)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -8,7 +8,11 @@ use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 use stribeck_formats::Recording;
-use stribeck_testing::{Noise, Scratch, said, says};
+use stribeck_testing::{
+    Noise, Scratch,
+    peer::{absent, python_with},
+    said, says,
+};
 
 /// Eight very short runs of a very coarse bearing.
 const CAMPAIGN: &str = "(
@@ -408,14 +412,7 @@ fn example_scripts_for_engines_name_every_part() {
 #[test]
 fn peer_tables_open_in_pandas_polars_and_duckdb() {
     // pandas 3.1.1, polars 2.1.0 and DuckDB 2.0.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import pandas, pyarrow, polars, duckdb"]).output();
-    if !has.is_ok_and(|o| o.status.success()) {
-        eprintln!(
-            "tables are not opened by others: `{python}` does not have pandas, pyarrow, polars and duckdb"
-        );
-        return;
-    }
+    let Some(python) = python_with(&["pandas", "pyarrow", "polars", "duckdb"]) else { return };
     let desk = desk("campaign-peers", CAMPAIGN);
     assert!(run(&desk, &["--out=A"]).status.success());
     let script = "
@@ -438,12 +435,7 @@ print('agreed')
 #[test]
 fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
     // HyperQueue 0.27.0 with a server and two workers, where the interpreter in STRIBECK_PYTHON (or python3) has it.
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import hyperqueue"]).output();
-    if !has.is_ok_and(|o| o.status.success()) {
-        eprintln!("no campaign is run under HyperQueue: `{python}` does not have it");
-        return;
-    }
+    let Some(python) = python_with(&["hyperqueue"]) else { return };
     let desk = desk("campaign-hyperqueue", CAMPAIGN);
     assert!(run(&desk, &["--out=A"]).status.success());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/hyperqueue_campaign.py");
@@ -457,6 +449,9 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
 }
 
+/// The variable that says that Slurm must be there.
+const NEED_SLURM: &str = "STRIBECK_NEED_SLURM";
+
 #[test]
 fn peer_slurm_runs_the_parts_to_the_same_bytes() {
     // Slurm 22.05.8, as Debian 12 has it, with a controller and a node of its own, for which it takes root.
@@ -465,8 +460,7 @@ fn peer_slurm_runs_the_parts_to_the_same_bytes() {
     let clients = Command::new("sh").args(["-c", "command -v sbatch squeue scontrol sinfo"]).output();
     let clients = clients.is_ok_and(|o| o.status.success());
     if !root || !clients || !["slurmctld", "slurmd", "munged"].into_iter().all(has) {
-        eprintln!("no campaign is run under Slurm: it is not installed, or this is not root");
-        return;
+        return absent(NEED_SLURM, "Slurm is not installed, or this is not root").unwrap_or_default();
     }
     let desk = desk("campaign-slurm", CAMPAIGN);
     assert!(run(&desk, &["--out=A"]).status.success());
@@ -474,8 +468,8 @@ fn peer_slurm_runs_the_parts_to_the_same_bytes() {
     let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
     let output = Command::new("sh").current_dir(desk.path()).args(words).output().expect("it starts");
     if output.status.code() == Some(77) {
-        eprintln!("no campaign is run under Slurm: its daemons do not come up here: {}", said(&output));
-        return;
+        let why = format!("the daemons of Slurm do not come up: {}", said(&output));
+        return absent(NEED_SLURM, &why).unwrap_or_default();
     }
     says(&output, &["done"]);
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
@@ -484,7 +478,6 @@ fn peer_slurm_runs_the_parts_to_the_same_bytes() {
 #[test]
 fn peer_dask_and_snakemake_run_the_parts_to_the_same_bytes() {
     // Dask 2026.8.0 and Snakemake 9.27.1, where the interpreter in STRIBECK_PYTHON (or python3) has them.
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let (program, recipes) =
         (env!("CARGO_BIN_EXE_stribeck"), concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/clusters"));
     let dask = [&format!("{recipes}/campaign_dask.py"), program, "campaign.ron", "B", "4"]
@@ -496,11 +489,7 @@ fn peer_dask_and_snakemake_run_the_parts_to_the_same_bytes() {
     let snakemake = ["-m", "snakemake", "-s", &snakefile, "--cores", "2", "--config"].map(str::to_owned);
     let snakemake = snakemake.into_iter().chain(settings).collect();
     for (module, words) in [("distributed", dask), ("snakemake", snakemake)] {
-        let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
-        if !has.is_ok_and(|o| o.status.success()) {
-            eprintln!("no campaign is run under {module}: `{python}` does not have it");
-            continue;
-        }
+        let Some(python) = python_with(&[module]) else { continue };
         let desk = desk(&format!("campaign-{module}"), CAMPAIGN);
         assert!(run(&desk, &["--out=A"]).status.success());
         let output = Command::new(&python).current_dir(desk.path()).args(&words).output().expect("it starts");

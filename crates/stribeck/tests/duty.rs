@@ -3,8 +3,7 @@
 use std::{f64::consts::TAU, path::Path, process::Command};
 
 use stribeck_analysis::{duty, enveloping, record::Record, report, summary::Summary, tones};
-use stribeck_bearing::simulation::Host;
-use stribeck_reduced::simulation::simulate;
+use stribeck_run::host::Host;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},
     kinematics::Kinematics,
@@ -12,6 +11,7 @@ use stribeck_scene::{
     run_info::Status,
     scene::{DefectRing, Scene},
 };
+use stribeck_simulation::simulate;
 use stribeck_testing::{Scratch, said};
 
 fn scene(file: &str, set: &[&str]) -> Scene {

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use serde_json::Value;
-use stribeck_testing::{Scratch, said};
+use stribeck_testing::{Scratch, peer::python_with, said};
 
 /// An outer raceway of a NU 205 with a spall, long enough for forty passages.
 const SCENE: &str = r#"(
@@ -65,7 +65,6 @@ fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
     let resolution_hz = diagnosis["resolution_hz"].as_f64().unwrap();
     let channel = diagnosis["channel"].as_str().unwrap();
 
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/pass_on.py");
     for (format, module) in FORMATS {
         let file = format!("trace.{format}");
@@ -75,8 +74,7 @@ fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
         );
         assert!(output.status.success(), "{format}: {}", said(&output));
         let mut files = vec![file.clone()];
-        let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
-        if has.is_ok_and(|o| o.status.success()) {
+        if let Some(python) = python_with(&[module]) {
             let copy = format!("theirs.{format}");
             let run = Command::new(&python)
                 .arg(script)
@@ -86,8 +84,6 @@ fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
                 .unwrap();
             assert!(run.status.success(), "{format}: {}", said(&run));
             files.push(copy);
-        } else {
-            eprintln!("{format} does not go through {module}: `{python}` does not have it");
         }
         for file in files {
             let out = format!("{file}-analysis");

@@ -1,11 +1,12 @@
 //! What the tests of several crates share: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers, temporary
-//! folders, and what a program said.
+//! folders, what a program said, and other programs to hold ours against.
 //!
 //! It depends on no other crate of the workspace, so that all can have it as a dev-dependency. What needs the solver
 //! stands in `tests/common` of the crate that uses it.
 
 pub mod ledger;
 mod noise;
+pub mod peer;
 mod said;
 mod scratch;
 

@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 18] = [
+const LAYERS: [(&str, &[&str]); 23] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -17,16 +17,21 @@ const LAYERS: [(&str, &[&str]); 18] = [
     ("surface", &["simd"]),
     ("film", &["surface"]),
     ("contact", &["film", "mesh", "simd", "solver", "surface"]),
-    ("scene", &[]),
+    ("duty", &[]),
+    ("scene", &["duty"]),
     ("system", &["contact", "mesh", "solver"]),
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
-    ("reduced", &["bearing", "film", "mesh", "scene", "simd", "solver", "surface", "system"]),
+    ("run", &["scene", "solver", "system"]),
+    ("modal", &["duty"]),
+    ("reduction", &["bearing", "mesh", "modal", "scene", "solver", "surface", "system"]),
+    ("reduced", &["film", "modal", "simd", "surface"]),
+    ("simulation", &["bearing", "mesh", "modal", "reduced", "reduction", "run", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
     ("studies", &["analysis", "contact", "mesh", "scene", "solver", "system"]),
-    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "reduced", "scene"]),
-    ("python", &["analysis", "bearing", "dsp", "formats", "reduced", "scene"]),
+    ("stribeck", &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "run", "scene", "simulation"]),
+    ("python", &["analysis", "dsp", "formats", "run", "scene", "simulation"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.

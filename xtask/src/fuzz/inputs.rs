@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::simulation;
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
+use stribeck_run::host::Progress;
 use stribeck_scene::campaign::Campaign;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::trace::Trace;
+use stribeck_simulation as simulation;
 use stribeck_solver::{Dynamics, Elastic, Model};
 
 use super::Answer;
@@ -81,7 +82,7 @@ impl Inputs {
         let scene = Scene::read_with(&file, &set.map(String::from))?;
         let mut samples = 0;
         let dir = RunDir::create(&run)?;
-        let mut watch = |progress: &simulation::Progress| {
+        let mut watch = |progress: &Progress| {
             samples += usize::from(progress.phase == "run");
             if samples == 2 { std::ops::ControlFlow::Break(()) } else { std::ops::ControlFlow::Continue(()) }
         };
@@ -264,7 +265,7 @@ fn checkpoint(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
         drop(dir);
         let dir = RunDir::reopen(inputs.run())?;
         let began = std::time::Instant::now();
-        let mut watch = |_: &simulation::Progress| {
+        let mut watch = |_: &Progress| {
             // A checkpoint may claim any number of samples to come.
             if began.elapsed().as_secs() > 1 {
                 std::ops::ControlFlow::Break(())

@@ -51,7 +51,7 @@ impl Scratch {
     }
 }
 
-/// StepEnergies of a step [J], each from half a step before to half a step after the positions' time.
+/// Energies of a step [J], each from half a step before to half a step after the positions' time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct StepEnergies {
     /// Work of prescribed motion.

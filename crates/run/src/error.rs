@@ -1,0 +1,35 @@
+//! The error type of this crate.
+
+use std::path::PathBuf;
+
+/// Why a run cannot start, continue or be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene cannot be read, or the folder of the run cannot be read or written.
+    #[error(transparent)]
+    Scene(#[from] stribeck_scene::Error),
+
+    /// The bodies cannot take steps.
+    #[error("{0}")]
+    System(#[from] stribeck_system::Error),
+
+    /// Ranks that run one model together do not understand each other.
+    #[error("the ranks of this run do not understand each other ({0}): start the same program on all of them")]
+    Ranks(String),
+
+    /// A run cannot be continued.
+    #[error("the run in `{}` cannot be continued: {reason}", path.display())]
+    Resume {
+        /// The folder of the run.
+        path: PathBuf,
+        /// Why, and what to try.
+        reason: String,
+    },
+}
+
+impl From<stribeck_scene::scene_file::SceneError> for Error {
+    fn from(error: stribeck_scene::scene_file::SceneError) -> Self {
+        Self::Scene(error.into())
+    }
+}

@@ -1,0 +1,209 @@
+//! Guard rails of a bearing: what is watched at every sample, when a run carries a warning, when it stops.
+//!
+//! | watched | warning | stop |
+//! |---|---|---|
+//! | penetration over what a bearing gives way by itself | above 1 ([`softness`]) | |
+//! | time without a roller that carries anything | `unsupported_warning_ms` | |
+//! | rollers out of the space between the raceways | | [`OUT_OF_PLACE`] |
+//! | the cage's offset over its room between the raceways | above 1 | a cage's thickness beyond |
+//!
+//! The fields are those of `guards` in the scene. Energy, penetration in shares of an element and what else depends on the model is
+//! watched by the model itself. A warning is given once, at the first sample above its limit. What has been seen is in checkpoints
+//! and in [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
+
+mod softness;
+
+use std::fmt::{self, Display, Formatter};
+
+use stribeck_scene::{advice, geometry::Geometry, run_info::RunInfo, scene::Scene};
+
+use softness::Softness;
+
+/// Rollers may leave the space between the raceways, and a housing the outer ring, by this share of a roller's radius.
+pub const OUT_OF_PLACE: f64 = 0.5;
+
+/// A roller carries something above this share of the load.
+const CARRIES: f64 = 1e-3;
+
+/// Where rollers and cage are at a sample, and what they carry.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Placed {
+    /// Centres of the rollers, in the order of the scene, from that of the outer ring [m].
+    pub centres: Vec<[f64; 2]>,
+    /// Largest force of the outer raceway on a roller, by contact or oil [N].
+    pub carries: f64,
+    /// Centre of the cage from that of the outer ring [m], if there is a cage.
+    pub cage: Option<[f64; 2]>,
+    /// Deepest penetration so far over the element size [-].
+    pub penetration_share: f64,
+}
+
+/// The limits of one run.
+#[derive(Debug, Clone)]
+pub struct Guards {
+    /// Numbers of the rollers, from 1.
+    numbers: Vec<usize>,
+    /// Time without support above which there is a warning [s].
+    unsupported: f64,
+    element_size: f64,
+    soft: Softness,
+    /// Smallest and largest distance of a roller's centre from that of the outer ring [m].
+    annulus: [f64; 2],
+    cage: Option<CageRoom>,
+    /// What else holds the cage, in words.
+    holds_cage: String,
+    /// The field that shortens the time step, as messages name it.
+    step_field: &'static str,
+}
+
+/// How far a cage may move between the raceways, with which the models have no contact of it.
+#[derive(Debug, Clone, Copy)]
+struct CageRoom {
+    /// Until it touches a raceway [m]; infinite where its dimensions leave it no room from the start.
+    warning: f64,
+    /// Until its whole thickness lies in a ring [m]; the pitch radius at most.
+    stop: f64,
+}
+
+impl CageRoom {
+    fn of(g: &Geometry) -> Option<Self> {
+        let cage = g.cage.as_ref()?;
+        let inside = cage.outer_radius - cage.thickness - g.inner_race_radius;
+        let room = (g.outer_race_radius - cage.outer_radius).min(inside);
+        let pitch_radius = 0.5 * (g.inner_race_radius + g.outer_race_radius);
+        Some(if room > 0.0 {
+            Self { warning: room, stop: (room + cage.thickness).min(pitch_radius) }
+        } else {
+            Self { warning: f64::INFINITY, stop: pitch_radius }
+        })
+    }
+}
+
+impl Guards {
+    /// Of a scene; `step_field` is the field that shortens the time step of its model.
+    pub fn new(scene: &Scene, step_field: &'static str) -> Self {
+        let g = Geometry::of(scene);
+        let radius = g.roller_radius;
+        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(0.0, f64::max);
+        let slack = OUT_OF_PLACE * radius;
+        Self {
+            numbers: scene.rollers_in_place().collect(),
+            unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
+            element_size: g.element_size,
+            soft: Softness::of(scene, &g),
+            annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
+            cage: CageRoom::of(&g),
+            holds_cage: advice::holds_cage(scene),
+            step_field,
+        }
+    }
+
+    /// What holds the cage of this scene, to be said behind "take".
+    pub fn holds_cage(&self) -> &str {
+        &self.holds_cage
+    }
+
+    /// Looks at a sample: adds warnings to `info`; the reason to stop, if there is one.
+    pub fn look(&self, info: &mut RunInfo, placed: &Placed) -> Option<String> {
+        self.softness(info, placed.penetration_share);
+        self.support(info, placed.carries);
+        let when = When::of(info);
+        self.rollers(&placed.centres, &when).or_else(|| self.cage(info, placed.cage?, &when))
+    }
+
+    fn softness(&self, info: &mut RunInfo, share: f64) {
+        let before = self.element_size * info.guards.penetration_share;
+        info.guards.penetration_share = info.guards.penetration_share.max(share);
+        let deepest = self.element_size * info.guards.penetration_share;
+        if before <= self.soft.limit() && deepest > self.soft.limit() {
+            info.warnings.push(self.soft.warning(deepest, &When::of(info)));
+        }
+    }
+
+    fn support(&self, info: &mut RunInfo, carries: f64) {
+        let carried = carries > CARRIES * info.expected_support_n;
+        let seen = &mut info.guards;
+        seen.unsupported_samples = if carried { 0 } else { seen.unsupported_samples + 1 };
+        let time = seen.unsupported_samples as f64 * info.interval_s;
+        let is_new = time > self.unsupported && seen.longest_unsupported_s <= self.unsupported;
+        seen.longest_unsupported_s = seen.longest_unsupported_s.max(time);
+        if is_new {
+            info.warnings.push(format!(
+                "no roller has carried anything for {:.2} ms {}: the load hangs in the air. Start `preloaded`, or look at `bearing` for a \
+                 clearance that the load cannot close",
+                1e3 * time,
+                When::of(info)
+            ));
+        }
+    }
+
+    fn rollers(&self, centres: &[[f64; 2]], when: &When) -> Option<String> {
+        for (number, [x, y]) in self.numbers.iter().zip(centres) {
+            let radius = x.hypot(*y);
+            // A place that is no number lies in no range either.
+            if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
+                let through = if radius < self.annulus[0] { "inner" } else { "outer" };
+                return Some(format!(
+                    "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from that of the outer ring {when}. Take a \
+                     larger `contact.penalty_scale`, less `operation.load_n` or a smaller {}",
+                    1e3 * radius,
+                    self.step_field
+                ));
+            }
+        }
+        None
+    }
+
+    fn cage(&self, info: &mut RunInfo, [x, y]: [f64; 2], when: &When) -> Option<String> {
+        let room = self.cage?;
+        let off = x.hypot(y);
+        let before = info.guards.cage_offset_m;
+        info.guards.cage_offset_m = before.max(off);
+        if off > room.stop {
+            return Some(format!(
+                "the cage has cut through a ring: its centre is {:.2} mm from that of the outer ring {when}, and between the raceways it has \
+                 {} mm of room. Nothing holds it there: take {}",
+                1e3 * off,
+                room.in_words(),
+                self.holds_cage
+            ));
+        }
+        if off > room.warning && before <= room.warning {
+            info.warnings.push(format!(
+                "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a real one would rub on a ring, \
+                 which the model does not know. To hold it, take {}",
+                1e3 * off,
+                room.in_words(),
+                self.holds_cage
+            ));
+        }
+        None
+    }
+}
+
+impl CageRoom {
+    fn in_words(&self) -> String {
+        if self.warning.is_finite() { format!("{:.2}", 1e3 * self.warning) } else { "no".to_owned() }
+    }
+}
+
+/// When something was seen. It is written for few of the samples that are looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct When {
+    step: u64,
+    /// [s]
+    time: f64,
+}
+
+impl When {
+    /// The last sample of a run.
+    pub fn of(info: &RunInfo) -> Self {
+        Self { step: info.steps, time: info.steps as f64 * info.time_step_s }
+    }
+}
+
+impl Display for When {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "at step {}, t = {:.5} ms", self.step, 1e3 * self.time)
+    }
+}

@@ -1,0 +1,55 @@
+//! Contact that is softer than the bearing itself.
+
+use stribeck_scene::{
+    geometry::Geometry,
+    scene::Scene,
+    static_load::{RigidRings, angles_to_load_deg},
+};
+
+use super::When;
+
+/// Contact that sinks in by more than this share of the defect's depth moves its edges.
+const OF_DEPTH: f64 = 0.5;
+
+/// What a penetration is to be compared with [m]: a contact that sinks in by more is softer than the bearing itself.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Softness {
+    /// Half of the diametral clearance.
+    radial_clearance: f64,
+    /// Approach of one contact of the most loaded roller between rigid rings, by Hertz.
+    hertz: f64,
+    /// Depth of the shallowest spall; infinite without one.
+    depth: f64,
+}
+
+impl Softness {
+    pub(super) fn of(scene: &Scene, g: &Geometry) -> Self {
+        // Rollers that carry nothing in equilibrium leave the clearance alone.
+        let [_, most] = scene.duty().load_range_n(g.duration);
+        let load = RigidRings::new(g).distribute(most, &angles_to_load_deg(scene));
+        let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
+        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
+        Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
+    }
+
+    /// Penetration above which there is a warning [m].
+    pub(super) fn limit(&self) -> f64 {
+        self.radial_clearance.max(self.hertz).min(OF_DEPTH * self.depth)
+    }
+
+    pub(super) fn warning(&self, penetration: f64, when: &When) -> String {
+        let um = |length: f64| format!("{:.1} µm", 1e6 * length);
+        let depth = if self.depth.is_finite() {
+            format!(", the defect is {} deep", um(self.depth))
+        } else {
+            String::new()
+        };
+        format!(
+            "contact has sunk in by {} {when}: it is softer than the bearing, which has {} of radial clearance and by Hertz gives way by {} at a \
+             contact{depth}. Load zone, times and impulses are those of a softer bearing; a larger `contact.penalty_scale` is nearer to steel",
+            um(penetration),
+            um(self.radial_clearance),
+            um(self.hertz),
+        )
+    }
+}

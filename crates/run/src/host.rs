@@ -1,0 +1,80 @@
+//! What the program around a run provides, and how it follows the run's progress.
+
+use std::sync::Arc;
+
+use stribeck_solver::ranks::{Ranks, broadcast};
+
+/// The program around a run: its identity, its threads and clocks.
+pub struct Host<'a> {
+    /// Worker threads.
+    pub threads: usize,
+    /// Program version.
+    pub version: String,
+    /// Commit the program was built from.
+    pub commit: String,
+    /// Processor and operating system, in words.
+    pub machine: String,
+    /// Wall-clock time since some moment [s].
+    pub wall_s: &'a dyn Fn() -> f64,
+    /// Processor time of this process so far, all threads [s].
+    pub cpu_s: &'a dyn Fn() -> f64,
+    /// Processes that this one runs full models together with, if there are any.
+    pub ranks: Option<Arc<dyn Ranks>>,
+}
+
+impl Host<'_> {
+    /// Whether the run ends here: what the first rank says, where there are several.
+    pub(crate) fn agree(&self, stop: bool) -> bool {
+        self.ranks.as_ref().map_or(stop, |ranks| broadcast(&**ranks, &[u8::from(stop)]) == [1])
+    }
+}
+
+impl<'a> Host<'a> {
+    /// The same program with one thread, for models whose step is too short to share.
+    pub fn on_one_thread(&self) -> Host<'a> {
+        let Host { version, commit, machine, wall_s, cpu_s, .. } = self;
+        Host {
+            threads: 1,
+            version: version.clone(),
+            commit: commit.clone(),
+            machine: machine.clone(),
+            wall_s: *wall_s,
+            cpu_s: *cpu_s,
+            ranks: None,
+        }
+    }
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress {
+    /// What is going on: `mesh`, `preload`, `run`.
+    pub phase: &'static str,
+    /// Steps taken.
+    pub step: u64,
+    /// Steps planned.
+    pub steps: u64,
+    /// Simulated time [s].
+    pub time_s: f64,
+    /// Energy imbalance over the peak strain energy [-].
+    pub energy_error: f64,
+    /// Largest imbalance over the heat [-], where that is more than was ever stored as strain.
+    pub share_of_heat: Option<f64>,
+    /// Elements that take part in a step; 0 for a reduced model.
+    pub elements: usize,
+}
+
+impl Progress {
+    /// At the very beginning.
+    pub fn begin() -> Self {
+        Self {
+            phase: "mesh",
+            step: 0,
+            steps: 0,
+            time_s: 0.0,
+            energy_error: 0.0,
+            share_of_heat: None,
+            elements: 0,
+        }
+    }
+}

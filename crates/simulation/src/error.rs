@@ -1,0 +1,77 @@
+//! The error type of this crate.
+
+/// Everything that can go wrong between a scene and a finished run.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene cannot be read, or the folder of the run cannot be read or written.
+    #[error(transparent)]
+    Scene(stribeck_scene::Error),
+
+    /// The bearing cannot be assembled or preloaded.
+    #[error(transparent)]
+    Bearing(stribeck_bearing::error::Error),
+
+    /// The bearing cannot be reduced.
+    #[error(transparent)]
+    Reduction(stribeck_reduction::error::Error),
+
+    /// The reduced bearing has no equilibrium.
+    #[error(transparent)]
+    Reduced(#[from] stribeck_reduced::error::Error),
+
+    /// The run cannot start, continue or be written.
+    #[error(transparent)]
+    Run(stribeck_run::error::Error),
+}
+
+impl From<stribeck_scene::Error> for Error {
+    fn from(error: stribeck_scene::Error) -> Self {
+        Self::Scene(error)
+    }
+}
+
+impl From<stribeck_scene::scene_file::SceneError> for Error {
+    fn from(error: stribeck_scene::scene_file::SceneError) -> Self {
+        Self::Scene(error.into())
+    }
+}
+
+impl From<stribeck_bearing::error::Error> for Error {
+    fn from(error: stribeck_bearing::error::Error) -> Self {
+        match error {
+            stribeck_bearing::error::Error::Scene(error) => Self::Scene(error),
+            other => Self::Bearing(other),
+        }
+    }
+}
+
+impl From<stribeck_reduction::error::Error> for Error {
+    fn from(error: stribeck_reduction::error::Error) -> Self {
+        match error {
+            stribeck_reduction::error::Error::Bearing(error) => error.into(),
+            other => Self::Reduction(other),
+        }
+    }
+}
+
+impl From<stribeck_run::error::Error> for Error {
+    fn from(error: stribeck_run::error::Error) -> Self {
+        match error {
+            stribeck_run::error::Error::Scene(error) => Self::Scene(error),
+            other => Self::Run(other),
+        }
+    }
+}
+
+impl From<stribeck_system::Error> for Error {
+    fn from(error: stribeck_system::Error) -> Self {
+        Self::Bearing(error.into())
+    }
+}
+
+impl From<stribeck_solver::Error> for Error {
+    fn from(error: stribeck_solver::Error) -> Self {
+        Self::Bearing(error.into())
+    }
+}

@@ -1,0 +1,232 @@
+//! The full model: elements, contact, recorder, guards and frames as the time loop drives them.
+
+mod frames;
+mod guards;
+mod recorder;
+
+use std::{ops::ControlFlow, sync::Arc};
+
+use serde::{Deserialize, Serialize};
+use stribeck_bearing::{
+    assembly::{Assembly, Machine, load},
+    start::{damp, launch, preload},
+};
+use stribeck_run::{
+    channels::Sample,
+    error::Error as RunError,
+    host::Progress,
+    setup::Setup,
+    time_loop::Motion,
+};
+use stribeck_scene::{
+    duty::Duty,
+    geometry::Geometry,
+    run_info::RunInfo,
+    scene::{Scene, Start},
+};
+use stribeck_system::{Ledger, Snapshot};
+
+use crate::{
+    error::Error,
+    mesh_file::mesh_file,
+    model::{Misfit, Model, Preparation},
+};
+use frames::Frames;
+use guards::Guards;
+use recorder::Recorder;
+
+/// A bearing of finite elements before its first step.
+pub(crate) struct Full {
+    assembly: Assembly,
+    machine: Machine,
+}
+
+/// What a checkpoint holds of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Saved {
+    system: Snapshot,
+    recorder: recorder::Memory,
+}
+
+impl Full {
+    /// Meshed and laid out.
+    fn assemble(with: &mut Preparation<'_>) -> Result<Self, Error> {
+        let assembly = Assembly::new(with.scene)?;
+        let machine = assembly.machine(with.scene, with.host.threads)?;
+        let mesh = assembly.mesh_info();
+        with.progress.elements = mesh.quads + mesh.triangles;
+        Ok(Self { assembly, machine })
+    }
+
+    /// Mass of the outer ring and of what holds it [kg].
+    fn carried_mass(&self) -> f64 {
+        let system = &self.machine.system;
+        let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
+        std::iter::once(self.machine.outer).chain(self.machine.housing).map(mass).sum()
+    }
+
+    /// In motion under its duty, its ranks and what is watched of it.
+    fn moving(self, with: &Preparation<'_>, recorder: Recorder) -> FullMotion {
+        let Self { assembly, mut machine } = self;
+        let (scene, host) = (with.scene, with.host);
+        host.ranks.iter().for_each(|ranks| machine.system.divide(Arc::clone(ranks)));
+        FullMotion {
+            recorder,
+            frames: with.dir.and_then(|dir| Frames::of(scene, dir.frames())),
+            guards: Guards::new(scene, &assembly, &machine),
+            duty: scene.varying_duty().map(|duty| (duty, scene.operation.load_n)),
+            outer_turns: scene.operation.outer_turns(),
+            assembly,
+            machine,
+        }
+    }
+}
+
+impl Model for Full {
+    type Saved = Saved;
+    type Motion = FullMotion;
+
+    const SHARED: bool = true;
+
+    fn prepare(
+        with: &mut Preparation<'_>,
+        watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<(Self, Setup), Error> {
+        let started = (with.host.wall_s)();
+        let mut full = Self::assemble(with)?;
+        with.enter("preload", watch);
+        let (scene, Self { assembly, machine }) = (with.scene, &mut full);
+        let preloaded = match scene.solver.start {
+            Start::Preloaded => preload(machine, scene, &assembly.kinematics)?,
+            Start::Sudden => None,
+        };
+        let critical = machine.system.critical_time_step();
+        let Geometry { interval, .. } = Geometry::of(scene);
+        let steps_per_sample =
+            (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
+        let dt = interval / steps_per_sample as f64;
+        machine.system.set_time_step(dt, Some(critical))?;
+        launch(machine, &assembly.kinematics);
+        damp(scene, machine)?;
+        let setup = Setup {
+            time_step: dt,
+            critical_time_step: critical,
+            steps_per_sample,
+            mesh: assembly.mesh_info(),
+            reduced: None,
+            wall_s: (with.host.wall_s)() - started,
+            carried_mass: full.carried_mass(),
+            warnings: Vec::from_iter(preloaded),
+        };
+        Ok((full, setup))
+    }
+
+    fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error> {
+        let mut full = Self::assemble(with)?;
+        full.machine.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
+        damp(with.scene, &mut full.machine)?;
+        Ok(full)
+    }
+
+    fn warnings(&self, scene: &Scene, info: &RunInfo) -> Vec<String> {
+        Guards::before(scene, self.assembly.steel(), info)
+    }
+
+    fn mesh_file(&self, _scene: &Scene) -> Result<Vec<u8>, Error> {
+        Ok(mesh_file(&self.assembly, &|node| self.machine.system.position(node))?)
+    }
+
+    fn start(mut self, with: &Preparation<'_>) -> FullMotion {
+        guards::arm(with.scene, &mut self.machine.system);
+        let recorder = Recorder::new(with.scene, &self.machine);
+        self.moving(with, recorder)
+    }
+
+    fn go_on(mut self, with: &Preparation<'_>, info: &RunInfo, saved: Saved) -> Result<FullMotion, Misfit> {
+        if info.mesh != self.assembly.mesh_info() {
+            return Err(Misfit::other_model());
+        }
+        guards::arm(with.scene, &mut self.machine.system);
+        self.machine.system.restore(saved.system).map_err(|error| Misfit(error.to_string()))?;
+        let recorder = Recorder::resume(with.scene, &self.machine, saved.recorder);
+        Ok(self.moving(with, recorder.ok_or_else(Misfit::other_model)?))
+    }
+}
+
+/// A bearing of finite elements in motion.
+pub(crate) struct FullMotion {
+    assembly: Assembly,
+    machine: Machine,
+    recorder: Recorder,
+    frames: Option<Frames>,
+    guards: Guards,
+    /// Speeds and load, where they change, and the load that a factor of one stands for [N].
+    duty: Option<(Duty, f64)>,
+    outer_turns: bool,
+}
+
+impl FullMotion {
+    /// Speeds and load of the next step, where they change.
+    fn drive(&mut self) -> Result<(), RunError> {
+        let Some((duty, load_n)) = &self.duty else { return Ok(()) };
+        let system = &mut self.machine.system;
+        let now = system.time();
+        let next = now + system.time_step();
+        system.set_rotation_rate(duty.mean_shaft_rad_s(now, next))?;
+        if self.outer_turns {
+            system.set_turning_rate(duty.mean_outer_rad_s(now, next))?;
+        }
+        Ok(load(system, duty, *load_n, now)?)
+    }
+}
+
+impl Motion for FullMotion {
+    type Saved = Saved;
+
+    fn interval(&mut self, steps: usize) -> Result<Ledger, RunError> {
+        for _ in 1..steps {
+            self.drive()?;
+            self.machine.system.step()?;
+            self.recorder.after_step(&self.machine);
+        }
+        self.drive()?;
+        // Sensors may lie on other ranks.
+        self.machine.system.gather()?;
+        self.recorder.before_step(&self.machine);
+        let ledger = self.machine.system.step_with_ledger()?;
+        self.recorder.after_step(&self.machine);
+        Ok(ledger)
+    }
+
+    fn sample(&mut self) -> &Sample {
+        self.recorder.sample(&self.machine)
+    }
+
+    fn steps(&self) -> u64 {
+        self.machine.system.steps()
+    }
+
+    fn time(&self) -> f64 {
+        self.machine.system.time()
+    }
+
+    fn balance(&self) -> [f64; 2] {
+        let balance = self.machine.system.balance();
+        [balance.peak_strain, balance.largest_error]
+    }
+
+    fn look(&mut self, info: &mut RunInfo) -> Option<String> {
+        self.guards.look(info, &mut self.machine)
+    }
+
+    fn picture(&mut self, sample: usize) -> Result<(), RunError> {
+        if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
+            frames.write(sample, &self.assembly, &self.machine)?;
+        }
+        Ok(())
+    }
+
+    fn saved(&self) -> Saved {
+        Saved { system: self.machine.system.snapshot(), recorder: self.recorder.memory().clone() }
+    }
+}

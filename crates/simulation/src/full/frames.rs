@@ -1,0 +1,61 @@
+//! Frames are written: where the nodes about the defect are at chosen times ([`stribeck_scene::frames`]).
+
+use std::path::PathBuf;
+
+use stribeck_scene::frames::{COLUMNS, Window};
+use stribeck_scene::scene::Scene;
+use stribeck_scene::trace::TraceWriter;
+
+use stribeck_bearing::assembly::{Assembly, Machine};
+use stribeck_run::error::Error;
+
+/// Which samples become frames, and of what.
+#[derive(Debug)]
+pub(super) struct Frames {
+    folder: PathBuf,
+    /// First and last sample, and the distance between two frames [samples].
+    first: usize,
+    last: usize,
+    stride: usize,
+    window: Window,
+}
+
+impl Frames {
+    /// What a scene asks for; `None` when it asks for nothing.
+    pub(super) fn of(scene: &Scene, folder: PathBuf) -> Option<Self> {
+        let wanted = scene.output.frames.as_ref()?;
+        // Of the numbers as written: a quotient of seconds may fall short of a whole number of samples.
+        let samples = |us: f64| us / scene.output.interval_us;
+        Some(Self {
+            folder,
+            first: samples(1e3 * wanted.from_ms).ceil().max(1.0) as usize,
+            last: samples(1e3 * wanted.to_ms).floor() as usize,
+            stride: samples(wanted.every_us).round().max(1.0) as usize,
+            window: Window::of(scene)?,
+        })
+    }
+
+    /// Whether sample `sample`, from 1, becomes a frame.
+    pub(super) fn is_due(&self, sample: usize) -> bool {
+        (self.first..=self.last).contains(&sample) && (sample - self.first).is_multiple_of(self.stride)
+    }
+
+    /// Writes the frame of a sample.
+    pub(super) fn write(&self, sample: usize, assembly: &Assembly, machine: &Machine) -> Result<(), Error> {
+        std::fs::create_dir_all(&self.folder).map_err(|source| stribeck_scene::Error::Io {
+            action: "create",
+            path: self.folder.clone(),
+            kept: "Samples are safe; free the disk, or set `output.frames: None`".into(),
+            source,
+        })?;
+        let (mesh, system) = (&assembly.model.mesh, &machine.system);
+        let mut file = TraceWriter::create(self.folder.join(format!("{sample:06}.npy")), &COLUMNS)?;
+        for node in 0..mesh.x.len() {
+            let [x, y] = system.position(node as u32);
+            if self.window.holds(x, y) {
+                file.push(&[system.time(), node as f64, x - mesh.x[node], y - mesh.y[node]])?;
+            }
+        }
+        Ok(file.finish()?)
+    }
+}

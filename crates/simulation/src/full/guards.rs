@@ -1,0 +1,180 @@
+//! What is watched of the full model beside [the guards of all models](stribeck_run::guards).
+//!
+//! | watched | warning | stop |
+//! |---|---|---|
+//! | imbalance of energy over the peak strain energy; no number at all | `energy_warning_percent` | `energy_stop_percent` |
+//! | hourglass over strain energy | `hourglass_warning_percent` | |
+//! | penetration over element size | `penetration_warning_percent` | `penetration_stop_percent` |
+//! | area of an element over its area at rest | | `area_stop_percent` |
+//! | time step over the critical one, at the start and as elements deform | above 1 | |
+//! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
+//! | the housing's height above the outer ring | | [`OUT_OF_PLACE`] |
+//!
+//! [`System::look`] watches what can go wrong with any bodies in motion and says it in the scene's words ([`arm`]).
+
+use stribeck_bearing::assembly::{Assembly, Machine};
+use stribeck_run::guards::{self, OUT_OF_PLACE, Placed, When};
+use stribeck_scene::{
+    geometry::Geometry,
+    run_info::RunInfo,
+    scene::{GuardsScene, Scene},
+};
+use stribeck_solver::Elastic;
+use stribeck_system::{Limits, Scale, System, Words};
+
+/// A critical time step that is this share of that of a square cell of the scene's size is worth a warning.
+const SMALL_STEP: f64 = 0.25;
+
+/// Samples between two looks at the elements: a look costs as much as two steps.
+const LOOK_EVERY: u64 = 10;
+
+/// The limits of one run.
+#[derive(Debug, Clone)]
+pub(super) struct Guards {
+    shared: guards::Guards,
+    placed: Placed,
+    /// How far the housing may leave the ring [m].
+    seat: f64,
+    /// Height of the housing above the outer ring at rest [m], if there is one.
+    housing_height: Option<f64>,
+}
+
+impl Guards {
+    pub(super) fn new(scene: &Scene, assembly: &Assembly, machine: &Machine) -> Self {
+        let mesh = &assembly.model.mesh;
+        let height = |body: usize| mean(mesh.y[mesh.bodies[body].nodes.clone()].iter().copied());
+        Self {
+            shared: guards::Guards::new(scene, "`solver.time_step_factor`"),
+            placed: Placed { centres: vec![[0.0; 2]; machine.rollers.len()], ..Placed::default() },
+            seat: OUT_OF_PLACE * Geometry::of(scene).roller_radius,
+            housing_height: machine.housing.map(|housing| height(housing) - height(machine.outer)),
+        }
+    }
+
+    /// Warnings before the first step.
+    pub(super) fn before(scene: &Scene, steel: &Elastic, info: &RunInfo) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let (step, critical) = (info.time_step_s, info.critical_time_step_s);
+        if step > critical {
+            warnings.push(format!(
+                "the time step of {:.2} ns is {:.3} times the critical one: the run may diverge. Take a `solver.time_step_factor` \
+                 below 1",
+                1e9 * step,
+                step / critical
+            ));
+        }
+        let facet = std::f64::consts::PI * scene.bearing.roller_diameter_mm / scene.mesh.roller_facets as f64;
+        let size = 1e-3 * scene.mesh.size_mm.min(facet);
+        // A regular mesh of squares of side a has ω = (2/a) √((λ + 2µ)/ρ) at most for plane waves along a row.
+        let square = size / steel.dilatational_speed();
+        if critical < SMALL_STEP * square {
+            warnings.push(format!(
+                "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: some cell is very small, or the \
+                 contact very stiff, or stiffness damping strong. Look at `defect.depth_mm`, `mesh.roller_facets`, `contact.penalty_scale` and \
+                 `solver.stiffness_damping_ns`, or expect a run {:.0} \
+                 times as long",
+                1e9 * critical,
+                100.0 * critical / square,
+                1e9 * square,
+                1e3 * size,
+                square / critical
+            ));
+        }
+        warnings
+    }
+
+    /// Looks at the machine after a sample: adds warnings to `info`; the reason to stop, if there is one.
+    pub(super) fn look(&mut self, info: &mut RunInfo, machine: &mut Machine) -> Option<String> {
+        let mut stop = None;
+        for finding in machine.system.look() {
+            if finding.stops {
+                // The first reason is the one given.
+                stop.get_or_insert(finding.message);
+            } else {
+                info.warnings.push(finding.message);
+            }
+        }
+        let (seen, guards) = (machine.system.seen(), &mut info.guards);
+        guards.energy_warned = seen.energy_warned;
+        guards.hourglass_share = seen.hourglass_share;
+        guards.least_area = seen.least_area;
+        guards.strain_checked = seen.strain_checked;
+        self.place(machine);
+        let place = self.shared.look(info, &self.placed);
+        stop.or(place).or_else(|| self.housing(info, machine))
+    }
+
+    /// Where rollers and cage are, and what they carry.
+    fn place(&mut self, machine: &Machine) {
+        let system = &machine.system;
+        let ring = centre(system, machine.outer);
+        let from_ring = |[x, y]: [f64; 2]| [x - ring[0], y - ring[1]];
+        for (place, roller) in self.placed.centres.iter_mut().zip(&machine.rollers) {
+            *place = from_ring(system.position(roller.centre));
+        }
+        self.placed.cage = machine.cage.map(|cage| from_ring(centre(system, cage)));
+        let by_contact = system.resultants().skip(machine.pairs.outer(0)).take(machine.rollers.len());
+        // Of each roller on the outer and on the inner raceway in turn.
+        let by_oil = system.films().step_by(2);
+        let forces = by_contact.map(|pair| pair.force).chain(by_oil.map(|film| film.force));
+        self.placed.carries = forces.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
+        self.placed.penetration_share = system.seen().penetration_share;
+    }
+
+    fn housing(&self, info: &RunInfo, machine: &Machine) -> Option<String> {
+        let [housing, ring] = [machine.housing?, machine.outer].map(|body| centre(&machine.system, body)[1]);
+        let off = housing - ring - self.housing_height?;
+        (off.abs() > self.seat).then(|| {
+            format!(
+                "the housing has left the outer ring by {:.3} mm {}: take a larger `contact.penalty_scale`, or less \
+                 `operation.load_n`",
+                1e3 * off,
+                When::of(info)
+            )
+        })
+    }
+}
+
+/// Sets what the system watches, and what its messages call the fields of the scene.
+pub(super) fn arm(scene: &Scene, system: &mut System) {
+    let GuardsScene {
+        energy_warning_percent,
+        energy_stop_percent,
+        hourglass_warning_percent,
+        penetration_warning_percent,
+        penetration_stop_percent,
+        area_stop_percent,
+        unsupported_warning_ms: _,
+    } = scene.guards;
+    system.limits = Limits {
+        // All that turns would hide what matters.
+        energy_scale: Scale::StrainEnergy,
+        energy_warning_percent,
+        energy_stop_percent,
+        hourglass_warning_percent,
+        penetration_warning_percent,
+        penetration_stop_percent,
+        area_stop_percent,
+        element_size: Some(Geometry::of(scene).element_size),
+        elements_every: LOOK_EVERY,
+    };
+    system.words = Words {
+        time_step_factor: "`solver.time_step_factor`",
+        penalty: "`contact.penalty_scale`",
+        element_size: "`mesh.size_mm`",
+        hourglass_scale: "`solver.hourglass_scale`",
+        thickness: "`bearing.thickness_mm`",
+        load: "`operation.load_n`",
+        preloaded: "`preloaded`",
+    };
+}
+
+/// Mean place of a body's nodes [m].
+fn centre(system: &System, body: usize) -> [f64; 2] {
+    [0, 1].map(|c: usize| mean(system.nodes_of(body).map(|n| system.position(n)[c])))
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let n = values.len() as f64;
+    values.sum::<f64>() / n
+}

@@ -1,0 +1,95 @@
+//! What a model must be able to do for a run of it to begin and to continue.
+
+use std::{ops::ControlFlow, path::Path};
+
+use serde::{Serialize, de::DeserializeOwned};
+use stribeck_run::{
+    host::{Host, Progress},
+    setup::Setup,
+    time_loop::Motion,
+};
+use stribeck_scene::{run_dir::RunDir, run_info::RunInfo, scene::Scene};
+
+use crate::error::Error;
+
+/// The run of a scene that is being prepared.
+pub(crate) struct Preparation<'a> {
+    pub(crate) scene: &'a Scene,
+    /// The program, with the threads and ranks that the model makes use of.
+    pub(crate) host: &'a Host<'a>,
+    /// The folder of the run; none on ranks that write nothing.
+    pub(crate) dir: Option<&'a RunDir>,
+    pub(crate) progress: Progress,
+}
+
+impl Preparation<'_> {
+    /// The folder in which the run's folder lies.
+    pub(crate) fn runs(&self) -> Option<&Path> {
+        self.dir?.path().parent()
+    }
+
+    /// Tells `watch` that another phase begins; it cannot break off before the first sample.
+    pub(crate) fn enter(
+        &mut self,
+        phase: &'static str,
+        watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) {
+        self.progress.phase = phase;
+        let _ = watch(&self.progress);
+    }
+}
+
+/// A model of a bearing between its preload and its first step.
+pub(crate) trait Model: Sized {
+    /// What a checkpoint holds of it.
+    type Saved: Serialize + DeserializeOwned + Clone;
+
+    /// The model in motion.
+    type Motion: Motion<Saved = Self::Saved>;
+
+    /// Whether threads and ranks share its steps.
+    const SHARED: bool;
+
+    /// The model of a scene in equilibrium under its load, with rolling velocities.
+    ///
+    /// # Errors
+    /// When it cannot be meshed, preloaded or reduced.
+    fn prepare(
+        with: &mut Preparation<'_>,
+        watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<(Self, Setup), Error>;
+
+    /// The same model without its preload, for a checkpoint of a run with this `info`.
+    ///
+    /// # Errors
+    /// As [`Model::prepare`].
+    fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error>;
+
+    /// Warnings before the first step.
+    fn warnings(&self, scene: &Scene, info: &RunInfo) -> Vec<String>;
+
+    /// Content of `mesh.vtu` at the start.
+    ///
+    /// # Errors
+    /// When the mesh cannot be written as a file.
+    fn mesh_file(&self, scene: &Scene) -> Result<Vec<u8>, Error>;
+
+    /// Sets it in motion.
+    fn start(self, with: &Preparation<'_>) -> Self::Motion;
+
+    /// Sets it in motion from a checkpoint, if that is one of this model.
+    ///
+    /// # Errors
+    /// Why it is not.
+    fn go_on(self, with: &Preparation<'_>, info: &RunInfo, saved: Self::Saved) -> Result<Self::Motion, Misfit>;
+}
+
+/// Why a checkpoint is of another model than this program makes of the scene.
+pub(crate) struct Misfit(pub(crate) String);
+
+impl Misfit {
+    /// Meshes, nodes or modes differ.
+    pub(crate) fn other_model() -> Self {
+        Self("this program makes another model of the scene than the checkpoint has".to_owned())
+    }
+}

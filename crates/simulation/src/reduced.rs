@@ -1,0 +1,177 @@
+//! The reduced bearing: its reduction, its steps, its start.
+
+pub mod motion;
+
+mod guards;
+
+use std::{
+    f64::consts::TAU,
+    ops::ControlFlow,
+    path::Path,
+};
+
+use stribeck_bearing::assembly::Assembly;
+use stribeck_modal::ModalBearing;
+use stribeck_reduced::{bearing::Bearing, state::State};
+use stribeck_reduction::{ReducedMesh, cache, dense, modal_bearing};
+use stribeck_run::{host::Progress, setup::Setup};
+use stribeck_scene::{
+    geometry::Geometry,
+    run_info::{ReducedInfo, RunInfo},
+    scene::{ModelScene, ReducedScene, Scene},
+};
+
+use crate::{
+    error::Error,
+    mesh_file::mesh_file,
+    model::{Misfit, Model, Preparation},
+};
+use guards::Guards;
+use motion::{ReducedMotion, Saved};
+
+/// A reduced bearing before its first step.
+pub(crate) struct Reduced {
+    /// What was meshed.
+    assembly: Assembly,
+    bearing: Bearing,
+    /// Displacements of the nodes of rings and housing at the preload [m].
+    moved: Vec<[f64; 2]>,
+    /// Equilibrium to start from; none where a checkpoint has the state.
+    start: Option<State>,
+}
+
+impl Model for Reduced {
+    type Saved = Saved;
+    type Motion = ReducedMotion;
+
+    /// A step is too short to share: further threads would wait, and keep their cores busy with it.
+    const SHARED: bool = false;
+
+    fn prepare(
+        with: &mut Preparation<'_>,
+        watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<(Self, Setup), Error> {
+        let started = (with.host.wall_s)();
+        let (ReducedMesh { reduction, parts, moved, warning }, from_cache) =
+            cache::reduced_mesh(with.scene, with.runs())?;
+        with.enter("preload", watch);
+        let scene = with.scene;
+        let summary = ReducedInfo {
+            modes: reduction.modes,
+            highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / TAU,
+            from_cache,
+        };
+        let assembly = Assembly::of(scene, &parts)?;
+        let carried_mass = reduction.structure_mass;
+        let wanted = wanted(scene);
+        let (bearing, steps_per_sample) = in_steps(scene, &wanted, modal_bearing(scene, reduction)?)?;
+        let state = bearing.at_start(&dense::solve)?;
+        let (time_step, critical_time_step) = (bearing.time_step, bearing.critical_time_step());
+        let mut warnings = Vec::from_iter(warning);
+        warnings.extend(shorter_steps(&wanted, time_step, critical_time_step));
+        let setup = Setup {
+            time_step,
+            critical_time_step,
+            steps_per_sample,
+            mesh: assembly.mesh_info(),
+            reduced: Some(summary),
+            wall_s: (with.host.wall_s)() - started,
+            carried_mass,
+            warnings,
+        };
+        Ok((Self { assembly, bearing, moved, start: Some(state) }, setup))
+    }
+
+    fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error> {
+        let (mesh, _) = cache::reduced_mesh(with.scene, with.runs())?;
+        let assembly = Assembly::of(with.scene, &mesh.parts)?;
+        let bearing = Bearing::new(modal_bearing(with.scene, mesh.reduction)?, info.time_step_s)?;
+        Ok(Self { assembly, bearing, moved: mesh.moved, start: None })
+    }
+
+    fn warnings(&self, scene: &Scene, _info: &RunInfo) -> Vec<String> {
+        Guards::before(scene, &self.bearing)
+    }
+
+    /// Rings and housing as the preload of the reduction has left them; rollers and cage, which do not deform, where they are.
+    fn mesh_file(&self, scene: &Scene) -> Result<Vec<u8>, Error> {
+        let (g, mesh) = (Geometry::of(scene), &self.assembly.model.mesh);
+        let mut moved = self.moved.clone();
+        moved.resize(mesh.x.len(), [0.0; 2]);
+        let rollers = mesh.bodies.iter().filter(|body| body.name.starts_with("roller "));
+        let centres = self.start.iter().flat_map(|state| state.x.iter().zip(&state.y));
+        for ((body, pocket), (x, y)) in rollers.zip(scene.rollers_in_place()).zip(centres) {
+            let path = g.outer_race_radius - g.roller_radius;
+            let (s, c) = g.roller_angle(pocket - 1).sin_cos();
+            moved[body.nodes.clone()].fill([x - path * c, y - path * s]);
+        }
+        Ok(mesh_file(&self.assembly, &|node| {
+            let n = node as usize;
+            [mesh.x[n] + moved[n][0], mesh.y[n] + moved[n][1]]
+        })?)
+    }
+
+    fn start(self, with: &Preparation<'_>) -> ReducedMotion {
+        let state = self.start.unwrap_or_else(|| self.bearing.rest());
+        ReducedMotion::start(with.scene, self.bearing, state)
+    }
+
+    fn go_on(self, with: &Preparation<'_>, info: &RunInfo, saved: Saved) -> Result<ReducedMotion, Misfit> {
+        if info.mesh != self.assembly.mesh_info() || !saved.bearing.fits(&self.bearing) {
+            return Err(Misfit::other_model());
+        }
+        Ok(ReducedMotion::go_on(with.scene, self.bearing, saved))
+    }
+}
+
+/// What the scene wants of a reduced model.
+fn wanted(scene: &Scene) -> ReducedScene {
+    match &scene.model {
+        ModelScene::Reduced(reduced) => reduced.clone(),
+        ModelScene::Full => ReducedScene::default(),
+    }
+}
+
+/// A warning where steps are shorter than the scene wants them, and by what.
+fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option<String> {
+    let longest = 1e-6 * wanted.step_us;
+    (time_step < longest && critical < longest).then(|| {
+        format!(
+            "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} µs. A smaller `model.modes_khz` or \
+             `contact.penalty_scale` allows longer ones",
+            wanted.step_us,
+            1e6 * time_step,
+            1e6 * critical
+        )
+    })
+}
+
+/// Steps in a sample of a run of the scene, which has a reduced model. `runs` is where the folder of the run would lie: a reduction that
+/// earlier runs made is there, and one that must be made is kept there.
+///
+/// # Errors
+/// When the scene cannot be meshed, preloaded or reduced.
+pub fn steps_in_a_sample(scene: &Scene, runs: Option<&Path>) -> Result<usize, Error> {
+    let (mesh, _) = cache::reduced_mesh(scene, runs)?;
+    Ok(in_steps(scene, &wanted(scene), modal_bearing(scene, mesh.reduction)?)?.1)
+}
+
+/// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there are in a sample.
+fn in_steps(scene: &Scene, wanted: &ReducedScene, modal: ModalBearing) -> Result<(Bearing, usize), Error> {
+    let interval = Geometry::of(scene).interval;
+    let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
+    let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
+    let most = bearing.critical_time_step();
+    if bearing.time_step <= most {
+        return Ok((bearing, steps));
+    }
+    let steps = steps_per_sample(scene, most);
+    Ok((Bearing::new(modal, interval / steps as f64)?, steps))
+}
+
+/// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor measures beyond the modes is a difference
+/// between two steps of a sample.
+fn steps_per_sample(scene: &Scene, longest: f64) -> usize {
+    // A quotient of 5.000…1 is no sixth step.
+    (1e-6 * scene.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize
+}

@@ -1,0 +1,189 @@
+//! **One run** of the model that a scene names: from its start, from a checkpoint, or on a rank that follows another.
+
+use std::ops::ControlFlow;
+
+use stribeck_run::{
+    checkpoint::Checkpoint,
+    error::Error as RunError,
+    host::{Host, Progress},
+    ranks::{called_to, lead},
+    resume::{read_saved, take_over},
+    time_loop::Run,
+};
+use stribeck_scene::{
+    run_dir::{RunDir, write_atomic},
+    run_info::RunInfo,
+    scene::{ModelScene, Scene},
+};
+
+use crate::{
+    error::Error,
+    full::Full,
+    model::{Misfit, Model, Preparation},
+    reduced::Reduced,
+};
+
+/// Is told about every sample and may break off the run.
+pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
+
+/// Something that is done with the model of a scene.
+trait Task {
+    type Output;
+    fn with<M: Model>(self) -> Self::Output;
+}
+
+/// Does it with the model that the scene names.
+fn dispatch<T: Task>(scene: &Scene, task: T) -> T::Output {
+    match scene.model {
+        ModelScene::Full => task.with::<Full>(),
+        ModelScene::Reduced(_) => task.with::<Reduced>(),
+    }
+}
+
+/// Runs a scene and leaves its results in `dir`.
+///
+/// `watch` is told about every sample and may break off the run, which then ends as
+/// [`Interrupted`](stribeck_scene::run_info::Status::Interrupted). A checkpoint is written at the start, now and then, and at an
+/// interruption; [`resume`] continues from it.
+///
+/// # Errors
+/// When the scene cannot be meshed, preloaded or reduced, or the traces cannot be written. A run that diverges is not an error:
+/// its status and reason are in the returned [`RunInfo`]. A checkpoint that cannot be written is a warning there.
+pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    dispatch(scene, Begin { scene, dir, host, watch })
+}
+
+/// Continues the run in `dir` from its checkpoint. Its files become those of an unbroken run, byte for byte, whatever
+/// the number of threads; the mesh is made again, the preload is not.
+///
+/// `watch` as for [`simulate`].
+///
+/// # Errors
+/// [`RunError::Resume`] when there is nothing to continue or nothing to continue from; otherwise as [`simulate`].
+pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let scene = Scene::read(dir.scene())?;
+    dispatch(&scene, Continue { scene: &scene, dir, host, watch })
+}
+
+/// Continues the run in `dir` to another duration, also when it is complete. Its files become those of an unbroken run
+/// of this duration.
+///
+/// `watch` as for [`simulate`].
+///
+/// # Errors
+/// [`RunError::Resume`] when the run is longer already; otherwise as [`resume`].
+pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let mut scene = Scene::read(dir.scene())?;
+    scene.solver.duration_ms = duration_ms;
+    scene.validate()?;
+    dispatch(&scene, Continue { scene: &scene, dir, host, watch })
+}
+
+/// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked without
+/// making the model is.
+///
+/// # Errors
+/// As [`resume`].
+pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
+    let scene = Scene::read(dir.scene())?;
+    dispatch(&scene, SavedUntil { scene: &scene, dir })
+}
+
+/// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing. For all ranks
+/// but the first.
+///
+/// # Errors
+/// As on the first rank, but for its files.
+pub fn follow(host: &Host<'_>) -> Result<(), Error> {
+    let Some(ranks) = &host.ranks else { return Ok(()) };
+    // The full model alone is shared out.
+    let (scene, checkpoint) = called_to::<<Full as Model>::Saved>(&**ranks)?;
+    let mut with = Preparation { scene: &scene, host, dir: None, progress: Progress::begin() };
+    Ok(match checkpoint {
+        None => {
+            let (full, setup) = Full::prepare(&mut with, &mut |_| ControlFlow::Continue(()))?;
+            Run::follow(full.start(&with), setup.info(&scene, host), host)?;
+        }
+        Some(Checkpoint { info, motion }) => {
+            let full = Full::prepare_again(&mut with, &info)?;
+            let motion = full.go_on(&with, &info, motion).map_err(|Misfit(what)| RunError::Ranks(what))?;
+            Run::follow(motion, info, host)?;
+        }
+    })
+}
+
+struct Begin<'a> {
+    scene: &'a Scene,
+    dir: &'a RunDir,
+    host: &'a Host<'a>,
+    watch: Watch<'a>,
+}
+
+impl Task for Begin<'_> {
+    type Output = Result<RunInfo, Error>;
+
+    fn with<M: Model>(self) -> Self::Output {
+        let Self { scene, dir, host, watch } = self;
+        let alone = host.on_one_thread();
+        let working = if M::SHARED { host } else { &alone };
+        let mut with =
+            Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
+        with.enter("mesh", watch);
+        lead::<M::Saved>(working, scene, None)?;
+        let (model, setup) = M::prepare(&mut with, watch)?;
+        let mut info = setup.info(scene, host);
+        info.warnings.extend(model.warnings(scene, &info));
+        dir.start(scene, &info)?;
+        write_atomic(&dir.mesh(), &model.mesh_file(scene)?)?;
+        let motion = model.start(&with);
+        Ok(Run::start(scene, motion, info, dir)?.finish(dir, working, with.progress, watch)?)
+    }
+}
+
+struct Continue<'a> {
+    scene: &'a Scene,
+    dir: &'a RunDir,
+    host: &'a Host<'a>,
+    watch: Watch<'a>,
+}
+
+impl Task for Continue<'_> {
+    type Output = Result<RunInfo, Error>;
+
+    fn with<M: Model>(self) -> Self::Output {
+        let Self { scene, dir, host, watch } = self;
+        let started = (host.wall_s)();
+        let alone = host.on_one_thread();
+        let working = if M::SHARED { host } else { &alone };
+        let checkpoint = read_saved::<M::Saved>(dir, scene)?;
+        let mut with =
+            Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
+        with.enter("mesh", watch);
+        lead(working, scene, Some(&checkpoint))?;
+        let Checkpoint { mut info, motion: saved } = checkpoint;
+        let model = M::prepare_again(&mut with, &info)?;
+        take_over(&mut info, scene, host);
+        let motion = model.go_on(&with, &info, saved).map_err(|Misfit(what)| RunError::Resume {
+            path: dir.path().to_owned(),
+            reason: format!("{what}. Continue it with the program that began it, or start it anew"),
+        })?;
+        let mut run = Run::resume(scene, motion, info, dir)?;
+        run.info.setup_s += (host.wall_s)() - started;
+        dir.go_on(scene, &run.info)?;
+        Ok(run.finish(dir, working, with.progress, watch)?)
+    }
+}
+
+struct SavedUntil<'a> {
+    scene: &'a Scene,
+    dir: &'a RunDir,
+}
+
+impl Task for SavedUntil<'_> {
+    type Output = Result<f64, Error>;
+
+    fn with<M: Model>(self) -> Self::Output {
+        let info = read_saved::<M::Saved>(self.dir, self.scene)?.info;
+        Ok(info.samples as f64 * info.interval_s)
+    }
+}

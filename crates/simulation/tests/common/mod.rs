@@ -1,0 +1,48 @@
+//! Scenes and hosts that several test files share.
+#![allow(dead_code, reason = "each test file uses its own part of it")]
+
+pub(crate) mod ranks;
+
+use std::ops::ControlFlow;
+
+use stribeck_run::host::Host;
+use stribeck_scene::{run_dir::RunDir, run_info::RunInfo, scene::Scene, trace::Trace};
+use stribeck_simulation::simulate;
+use stribeck_testing::Scratch;
+
+/// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.
+pub(crate) fn coarse(duration_ms: f64) -> Scene {
+    let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
+    scene.mesh.size_mm = 2.0;
+    scene.mesh.roller_facets = 88;
+    // The contact is as stiff as a layer of these elements: a smaller share of E/h would swallow the defect.
+    scene.bearing.thickness_mm = 20.0;
+    scene.contact.penalty_scale = 1.0;
+    scene.contact.points_per_facet = 4;
+    scene.solver.duration_ms = duration_ms;
+    scene
+}
+
+/// A program around the run whose clocks stand still.
+pub(crate) fn host(threads: usize) -> Host<'static> {
+    Host {
+        threads,
+        version: "test".into(),
+        commit: "test".into(),
+        machine: "test".into(),
+        wall_s: &|| 0.0,
+        cpu_s: &|| 0.0,
+        ranks: None,
+    }
+}
+
+/// A whole run in a folder of its own.
+pub(crate) fn run(scene: &Scene, folder: &Scratch, name: &str, threads: usize) -> RunInfo {
+    let dir = RunDir::create(folder.join(name)).expect("the folder is new");
+    simulate(scene, &dir, &host(threads), &mut |_| ControlFlow::Continue(())).expect("the scene is sound")
+}
+
+/// What it recorded.
+pub(crate) fn trace(folder: &Scratch, name: &str) -> Trace {
+    Trace::read(folder.join(name).join("trace.npy")).expect("a trace")
+}
