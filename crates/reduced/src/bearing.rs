@@ -99,8 +99,7 @@ impl Bearing {
         let oil = parameters.oil.as_ref();
         let oil = oil.map(|oil| Lubrication::new(oil, &raceways, &rollers, law.penalty, *thickness));
         let seat = reduction.springs.as_ref();
-        let seat =
-            seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
+        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
         let cage = reduction.cage.zip(parameters.pockets.as_ref());
         let cage = cage.map(|((inertia, centre), pockets)| {
             Cage::new(pockets, inertia, centre, &reduction.wall_compliance)
@@ -128,7 +127,8 @@ impl Bearing {
         let [mass, inertia] = self.reduction.roller_inertia;
         let r = self.reduction.padded;
         let both = &self.raceways;
-        let [outer, inner] = both.each_ref().map(|raceway| raceway.compliance.stiffest(self.law.penalty, raceway.relative));
+        let [outer, inner] =
+            both.each_ref().map(|raceway| raceway.compliance.stiffest(self.law.penalty, raceway.relative));
         let along = |raceway: &Raceway| {
             let fullest = raceway.compliance.largest_load() / OVERLOAD;
             let stiffness = self.law.sticking * contact_length(fullest, self.law.penalty, raceway.relative);
@@ -186,7 +186,12 @@ impl Bearing {
             vx: vec![0.0; n],
             vy: vec![0.0; n],
             angle: vec![0.0; n],
-            turned: self.rollers.starts.iter().map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()]).collect(),
+            turned: self
+                .rollers
+                .starts
+                .iter()
+                .map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()])
+                .collect(),
             spin: vec![self.operation.speeds.roller; n],
             slip: [vec![0.0; n], vec![0.0; n]],
             wall_slip: vec![[0.0; 2]; n],

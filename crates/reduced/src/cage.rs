@@ -117,7 +117,14 @@ impl Cage {
 
     /// Moves in a step of `dt` [s] under the forces of all rollers [N], their moment [N m] and its weight.
     #[inline(always)]
-    pub(crate) fn advance(&self, dt: f64, gravity: f64, on_cage: [f64; 3], state: &mut State, tally: &mut Tally) {
+    pub(crate) fn advance(
+        &self,
+        dt: f64,
+        gravity: f64,
+        on_cage: [f64; 3],
+        state: &mut State,
+        tally: &mut Tally,
+    ) {
         let old = state.cage_velocity;
         let acceleration =
             [on_cage[0] / self.mass, on_cage[1] / self.mass - gravity, on_cage[2] / self.inertia];

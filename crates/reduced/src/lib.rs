@@ -1,22 +1,24 @@
 //! Rolling element bearings in a few modes: a simulated second in a few seconds.
 //!
-//! Outer ring and housing are reduced, from the very mesh and elements of the full model at its preload, to their natural
-//! modes below a frequency ([`reduction`]); what contacts press in locally is a curve from a small static problem
-//! ([`compliance`]). Rollers and cage are rigid, with the facets that they are meshed with; what overlaps is integrated exactly
-//! ([`overlap`]). [`simulation`] runs the model that a scene asks for, into the same folder as the full one.
+//! Outer ring and housing move in their natural modes, made from the mesh and elements of the full model by `stribeck-reduction` and
+//! handed over as plain data ([`stribeck_modal`]). Rollers and cage are rigid, with the facets that they are meshed with. Contact is
+//! integrated exactly over these facets ([`contact::penetration`]), in series with curves for the local compliance of the bodies. A
+//! program drives a [`BearingInMotion`](motion::BearingInMotion) from one sampling interval to the next, and reads it in between.
+//!
+//! The crate uses no files, threads or clock, and compiles for `wasm32-unknown-unknown`.
 //!
 //! # Where to look
 //!
 //! | Question | File |
 //! |---|---|
-//! | What does a program call? | `simulation.rs` |
-//! | What is kept of the finite elements? | `reduction.rs`, `structure.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
-//! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `cage.rs`, `start.rs` |
+//! | What does a time loop drive, and what is read of it? | `motion.rs`, `readings.rs` |
+//! | What is a bearing, and how does it start? | `bearing.rs`, in parts; `start.rs` |
 //! | What changes in time? | `state.rs` |
-//! | What is one step? | `step.rs`; eight rollers as it takes them: `block.rs`, in rows of `row.rs`; its parts: `modes.rs`, `touch.rs`, `raceway.rs`, `lift.rs`, `pocket.rs` with `polygon.rs`, `flat.rs` and `corner.rs` |
-//! | What does oil do? | `oil.rs`; to rollers, modes and rings, `lift.rs` |
-//! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` and, in vectors, `window.rs` |
-//! | What is recorded, and what is watched? | `recorder.rs`, `guards.rs`; both in the time loop, `motion.rs` |
+//! | What is one step? | `step.rs`, a page of stages in files of `step/` |
+//! | How do rings and housing move? | `modes.rs` |
+//! | How do rollers press on raceways? | `contact/` |
+//! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` |
+//! | How are eight rollers taken at once? | `rollers/` |
 
 pub mod bearing;
 pub mod start;

@@ -44,7 +44,14 @@ impl Modes {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
         let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
         let drag = if bearing.structure.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension, responses: RollerResponses::default() }
+        Self {
+            q: rows.clone(),
+            v: rows.clone(),
+            push: rows,
+            drag,
+            tension,
+            responses: RollerResponses::default(),
+        }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -94,7 +101,6 @@ impl Structure {
     fn vertices(&self) -> usize {
         self.shapes.len() / (2 * self.groups)
     }
-
 
     /// The place on a facet with this share of its second vertex.
     #[inline(always)]
@@ -148,7 +154,13 @@ impl Structure {
 
     /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
     #[inline(always)]
-    pub(crate) fn press<S: Simd>(&self, simd: S, point: &RacewayPoint<'_>, force: [f64; 2], modes: &mut Modes) {
+    pub(crate) fn press<S: Simd>(
+        &self,
+        simd: S,
+        point: &RacewayPoint<'_>,
+        force: [f64; 2],
+        modes: &mut Modes,
+    ) {
         let groups = self.groups;
         let [[ax, ay], [bx, by]] = point.shapes;
         let push = &mut modes.push[..groups];

@@ -122,7 +122,8 @@ impl Lubrication {
             Ok(OiledRaceway { curved, films, speed: loaded.speed })
         };
         let [outer, inner] = raceways;
-        let formed = |rim: &crate::rollers::Rim| Curved::rim(&rim.outline).map(|rim| Rim::Formed(Box::new(rim)));
+        let formed =
+            |rim: &crate::rollers::Rim| Curved::rim(&rim.outline).map(|rim| Rim::Formed(Box::new(rim)));
         let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             raceways: [
@@ -163,7 +164,13 @@ impl OiledRaceway {
     }
 
     /// What the films of a roller do in a step.
-    pub(crate) fn film_forces(&self, rim: &Rim, films: &mut [Film], seen: &RollerView, now: FilmStep) -> FilmForces {
+    pub(crate) fn film_forces(
+        &self,
+        rim: &Rim,
+        films: &mut [Film],
+        seen: &RollerView,
+        now: FilmStep,
+    ) -> FilmForces {
         let mut by_film = FilmForces::default();
         for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
             if film.layer.is_none() {

@@ -62,7 +62,12 @@ impl Bearing {
     }
 
     /// What sensors measure at the end of an interval.
-    pub(crate) fn read_sensors(&self, scratch: &Scratch, memory: &mut Memory, readings: &mut [SensorReading]) {
+    pub(crate) fn read_sensors(
+        &self,
+        scratch: &Scratch,
+        memory: &mut Memory,
+        readings: &mut [SensorReading],
+    ) {
         let dt = self.time_step;
         let interval = dt * scratch.summed as f64;
         let (now, before) = (&scratch.now, &scratch.before);

@@ -65,7 +65,8 @@ impl Sensors {
         if let Some(seat) = springs {
             for panel in 0..seat.panels {
                 let of = |spring: usize| seat.at_sensors.iter().flat_map(move |sensor| sensor[spring]);
-                by_gap.extend(row_of(&mut of(panel).map(|roller_forces| -seat.across[panel] * roller_forces)));
+                by_gap
+                    .extend(row_of(&mut of(panel).map(|roller_forces| -seat.across[panel] * roller_forces)));
                 by_tension.extend(row_of(&mut of(seat.padded + panel)));
             }
             for table in [&mut by_gap, &mut by_tension] {

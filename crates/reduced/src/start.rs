@@ -83,7 +83,10 @@ impl Bearing {
                 let moved = self.shapes_under(state, i, [c, s], under);
                 let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
                 // The roller's own balance: pressed outwards by the inner raceway and its orbit.
-                let inertia = |rho: f64| mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho - self.rollers.gravity * s);
+                let inertia = |rho: f64| {
+                    mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho
+                        - self.rollers.gravity * s)
+                };
                 let mut at = state.x[i].hypot(state.y[i]);
                 let balance = |state: &mut State, rho: f64| {
                     (state.x[i], state.y[i]) = (rho * c, rho * s);
@@ -165,7 +168,12 @@ impl Bearing {
     fn roller_force_at(&self, hint: u32, radial: [f64; 2], force: f64) -> RollerForce {
         let outline = &self.raceways[0].outline;
         let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
-        RollerForce { facet: facet as u32, share: outline.share(facet, radial), force, ..RollerForce::default() }
+        RollerForce {
+            facet: facet as u32,
+            share: outline.share(facet, radial),
+            force,
+            ..RollerForce::default()
+        }
     }
 
     /// Shapes under roller `i` in the direction of its centre, and the displacement there.
@@ -203,13 +211,26 @@ impl Bearing {
         for _ in 0..40 {
             let [before, other] = forces;
             let rim = self.rollers.rim(i);
-            let near =
-                RollerOnRaceway { raceway: on_outer, rim, centre: seen, spin: [c, s], bound: on_outer.bound, before };
+            let near = RollerOnRaceway {
+                raceway: on_outer,
+                rim,
+                centre: seen,
+                spin: [c, s],
+                bound: on_outer.bound,
+                before,
+            };
             let outer = self.law.normal_force(simd, near, &mut hints[0]);
             let (centre, spin) = (shaft.back(centre), shaft.back([c, s]));
             let inner = self.law.normal_force(
                 simd,
-                RollerOnRaceway { raceway: on_inner, rim, centre, spin, bound: on_inner.bound, before: other },
+                RollerOnRaceway {
+                    raceway: on_inner,
+                    rim,
+                    centre,
+                    spin,
+                    bound: on_inner.bound,
+                    before: other,
+                },
                 &mut hints[1],
             );
             let next = [outer.normal, inner.normal];
@@ -222,8 +243,7 @@ impl Bearing {
         state.hints[0][i] = hints[0];
         state.hints[1][i] = hints[1];
         (state.force[0][i], state.force[1][i]) = (forces[0], forces[1]);
-        let by_oil =
-            self.oil.as_ref().map_or([0.0; 2], |oil| oil.carried(&self.rollers, state, i, moved));
+        let by_oil = self.oil.as_ref().map_or([0.0; 2], |oil| oil.carried(&self.rollers, state, i, moved));
         [forces[0] + by_oil[0], forces[1] + by_oil[1]]
     }
 }

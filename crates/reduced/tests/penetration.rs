@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use stribeck_reduced::contact::outline::{Outline, View};
-use stribeck_reduced::contact::penetration::{Penetration, Pair, Sides};
+use stribeck_reduced::contact::penetration::{Pair, Penetration, Sides};
 use stribeck_testing::{Noise, ledger::compare};
 
 const ROLLER: f64 = 0.009;
@@ -200,7 +200,8 @@ fn conserves_energy_along_a_path_of_arcs_over_a_slope() {
     // 60 µm below the raceway: free over the floor, and at its edge touched 1 mm beside the roller's middle.
     let path = RACEWAY - ROLLER + 6e-5;
     let steps = 20_000;
-    for (roller, raceway, along, rolls) in [(&round, &pitted, 0.045, -0.5), (&spalled, &raceway, 0.0, -0.17)] {
+    for (roller, raceway, along, rolls) in [(&round, &pitted, 0.045, -0.5), (&spalled, &raceway, 0.0, -0.17)]
+    {
         let seen = |share: f64| {
             let angle = 0.25 * TAU + share * along;
             let (s, c) = angle.sin_cos();

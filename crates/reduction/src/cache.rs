@@ -47,10 +47,7 @@ pub fn reference(scene: &Scene) -> Scene {
     mesh.roller_phase_deg = 0.0;
     Scene {
         name: "reduction".to_owned(),
-        model: ModelScene::Reduced(ReducedScene {
-            modes_khz: modes_khz(scene),
-            ..ReducedScene::default()
-        }),
+        model: ModelScene::Reduced(ReducedScene { modes_khz: modes_khz(scene), ..ReducedScene::default() }),
         bearing,
         cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
         adapter: scene.adapter.clone(),

@@ -87,8 +87,7 @@ impl Extraction {
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
         let nodes = Nodes::of(&machine, &Geometry::of(scene))?;
         let system = &machine.system;
-        let places: Vec<[f64; 2]> =
-            (0..system.node_count() as u32).map(|n| system.position(n)).collect();
+        let places: Vec<[f64; 2]> = (0..system.node_count() as u32).map(|n| system.position(n)).collect();
         let of_rings = 0..mesh.bodies[machine.rollers[0].body].nodes.start;
         let inertia = |body: usize| {
             let motion = system.motion_of(body);

@@ -1,7 +1,6 @@
 //! The numbers that a scene adds to a reduction, and the tables of a step rounded for them.
 
 use stribeck_bearing::assembly::CAGE_ELEMENT_MM;
-use stribeck_surface::Law;
 use stribeck_mesh::{Circle, FormDeviation};
 use stribeck_modal::{
     ModalBearing, Parameters, Reduction,
@@ -18,6 +17,7 @@ use stribeck_scene::{
     scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies, Scene},
 };
 use stribeck_solver::structural_damping::StructuralDamping;
+use stribeck_surface::Law;
 
 use crate::{error::Error, seat};
 
@@ -40,7 +40,9 @@ fn prepare(reduction: &mut Reduction, parameters: &Parameters) {
     round(&mut reduction.shapes);
     if let Some(seat) = &mut reduction.springs {
         level_walls(&mut seat.by_rollers, &per_angle);
-        [&mut seat.tension, &mut seat.by_rollers, &mut seat.stiffness].into_iter().for_each(|table| round(table));
+        [&mut seat.tension, &mut seat.by_rollers, &mut seat.stiffness]
+            .into_iter()
+            .for_each(|table| round(table));
         seat.flexibility = seat::flexibility(seat);
     }
     let Some(frame) = &reduction.frame else { return };

@@ -69,9 +69,7 @@ fn analytic_mass_damping_brakes_no_frame() {
     let reduction = &bearing.reduction;
     let ring = reduction.structure_mass - frame;
     let hz = (1e6 * (1.0 / ring + 1.0 / frame)).sqrt() / TAU;
-    let bounces = |n: &usize| {
-        (reduction.squares[*n].max(0.0).sqrt() / TAU / hz - 1.0).abs() < 0.05
-    };
+    let bounces = |n: &usize| (reduction.squares[*n].max(0.0).sqrt() / TAU / hz - 1.0).abs() < 0.05;
     // The third turns them against each other.
     for n in (0..reduction.modes).filter(bounces).take(2) {
         let braked = bearing.parameters.damping.mass_of_modes + reduction.dampers[n * reduction.padded + n];

@@ -12,11 +12,7 @@ use stribeck_bearing::{
     start::{damp, launch, preload},
 };
 use stribeck_run::{
-    channels::Sample,
-    error::Error as RunError,
-    host::Progress,
-    setup::Setup,
-    time_loop::Motion,
+    channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
 use stribeck_scene::{
     duty::Duty,

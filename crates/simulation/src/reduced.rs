@@ -4,11 +4,7 @@ pub mod motion;
 
 mod guards;
 
-use std::{
-    f64::consts::TAU,
-    ops::ControlFlow,
-    path::Path,
-};
+use std::{f64::consts::TAU, ops::ControlFlow, path::Path};
 
 use stribeck_bearing::assembly::Assembly;
 use stribeck_modal::ModalBearing;

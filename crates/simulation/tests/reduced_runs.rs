@@ -12,7 +12,6 @@ use stribeck_reduced::{
 };
 use stribeck_reduction::{ReducedMesh, dense, modal_bearing};
 use stribeck_run::host::Progress;
-use stribeck_simulation::{resume, simulate};
 use stribeck_scene::{
     kinematics::Kinematics,
     mesh_file::RunMesh,
@@ -25,6 +24,7 @@ use stribeck_scene::{
     static_load,
     trace::Trace,
 };
+use stribeck_simulation::{resume, simulate};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse.

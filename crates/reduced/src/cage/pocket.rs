@@ -4,15 +4,15 @@ use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
+    cage::flat::{self, Shape},
+    cage::{Cage, Wall, WallRows},
+    contact::force::ContactLaw,
     plane::{Rotation, cross, dot, perpendicular},
+    rollers::row::{Rows, lanes, load, of_one},
     rollers::{
         Rollers,
         block::{Block, Walls},
     },
-    cage::{Cage, Wall, WallRows},
-    contact::force::ContactLaw,
-    cage::flat::{self, Shape},
-    rollers::row::{Rows, lanes, load, of_one},
     state::State,
     step::sums::Tally,
 };
@@ -58,13 +58,7 @@ impl PlacedCage {
 
     /// A roller with its centre at `centre`.
     #[inline(always)]
-    fn roller(
-        &self,
-        centre: [f64; 2],
-        velocity: [f64; 2],
-        omega: f64,
-        turned: [f64; 2],
-    ) -> RollerInPocket {
+    fn roller(&self, centre: [f64; 2], velocity: [f64; 2], omega: f64, turned: [f64; 2]) -> RollerInPocket {
         let rel = [centre[0] - self.at[0] - self.middle[0], centre[1] - self.at[1] - self.middle[1]];
         let own = self.turn.back(rel);
         RollerInPocket { velocity, omega, turned, from_cage: rel, own }
@@ -126,7 +120,13 @@ impl InPockets<'_> {
     /// Forces and moments on eight rollers by the walls of their pockets, added to theirs. Returns those on the cage: two components [N] and the
     /// moment about its centre of mass [N m].
     #[inline(always)]
-    pub(crate) fn push<S: Simd>(&self, simd: S, group: usize, block: &mut Block, tally: &mut Tally) -> [f64; 3] {
+    pub(crate) fn push<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        block: &mut Block,
+        tally: &mut Tally,
+    ) -> [f64; 3] {
         let rows = &self.cage.wall_rows[group];
         let mut on_cage = [0.0; 3];
         for side in 0..2 {
@@ -145,7 +145,9 @@ impl InPockets<'_> {
                 block.force[2][0][lane] += by_wall.force[0];
                 block.force[2][1][lane] += by_wall.force[1];
                 block.moment[lane] += by_wall.moment;
-                for (sum, part) in on_cage.iter_mut().zip([by_wall.force[0], by_wall.force[1], by_wall.on_cage]) {
+                for (sum, part) in
+                    on_cage.iter_mut().zip([by_wall.force[0], by_wall.force[1], by_wall.on_cage])
+                {
                     *sum -= part;
                 }
             }
@@ -155,13 +157,7 @@ impl InPockets<'_> {
 
     /// Those of eight rollers that touch one wall of their pockets each, or did so in the last step. The others let go of it.
     #[inline(always)]
-    fn near_walls<S: Simd>(
-        &self,
-        simd: S,
-        rows: &WallRows,
-        centre: &Rows,
-        walls: &mut Walls,
-    ) -> u64 {
+    fn near_walls<S: Simd>(&self, simd: S, rows: &WallRows, centre: &Rows, walls: &mut Walls) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
         let (top, placed) = (self.rollers.rims[0].top, &self.placed);

@@ -6,13 +6,13 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Raceway,
-    rollers::{Rim, Rollers, block::Contacts},
+    contact::eight_facets::EightFacets,
     contact::force::ContactLaw,
     contact::outline::View,
-    contact::penetration::{Penetration, Pair},
-    rollers::row::{Row, lanes, load, of_one, store},
+    contact::penetration::{Pair, Penetration},
     contact::segments::Pose,
-    contact::eight_facets::EightFacets,
+    rollers::row::{Row, lanes, load, of_one, store},
+    rollers::{Rim, Rollers, block::Contacts},
 };
 
 /// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
@@ -254,7 +254,12 @@ impl ContactLaw {
 
     /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
     #[inline(always)]
-    pub(crate) fn normal_force<S: Simd>(&self, simd: S, near: RollerOnRaceway<'_>, hints: &mut [u32; 2]) -> NormalForce {
+    pub(crate) fn normal_force<S: Simd>(
+        &self,
+        simd: S,
+        near: RollerOnRaceway<'_>,
+        hints: &mut [u32; 2],
+    ) -> NormalForce {
         let RollerOnRaceway { raceway, rim, centre, bound, before, .. } = near;
         let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
         let outwards = raceway.outwards();

@@ -6,9 +6,9 @@ use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
 use crate::{
+    contact::eight_facets::{self, EightFacets},
     contact::outline::{Facet, Parts, View, Walk},
     rollers::row::Row,
-    contact::eight_facets::{self, EightFacets},
 };
 
 /// How a raceway lies to a roller.

@@ -3,9 +3,9 @@
 use stribeck_simd::lanes::LANES;
 
 use crate::{
-    rollers::{Rollers, block::Block},
-    oil::{Films, Lubrication, FilmStep, RollerView},
+    oil::{FilmStep, Films, Lubrication, RollerView},
     rollers::row::of_one,
+    rollers::{Rollers, block::Block},
     state::State,
     step::drive::RingRotation,
 };
@@ -36,7 +36,13 @@ impl Lubrication {
     }
 
     /// Forces on a roller by the films of steady rolling at the outer and the inner raceway, away from these [N].
-    pub(crate) fn carried(&self, rollers: &Rollers, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn carried(
+        &self,
+        rollers: &Rollers,
+        state: &mut State,
+        i: usize,
+        moved: [f64; 2],
+    ) -> [f64; 2] {
         let Some(mut films) = state.films.take() else { return [0.0; 2] };
         let rim = self.rim(rollers.rim_of[i]);
         let outwards = [0, 1].map(|k| {
@@ -50,7 +56,13 @@ impl Lubrication {
     }
 
     /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance.
-    pub(crate) fn floating(&self, rollers: &Rollers, state: &mut State, i: usize, moved: [f64; 2]) -> Option<[f64; 2]> {
+    pub(crate) fn floating(
+        &self,
+        rollers: &Rollers,
+        state: &mut State,
+        i: usize,
+        moved: [f64; 2],
+    ) -> Option<[f64; 2]> {
         let mut films = state.films.take()?;
         let rim = self.rim(rollers.rim_of[i]);
         let gaps = [0, 1].map(|k| {

@@ -121,7 +121,13 @@ pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &RollerView) ->
 
 impl Nearest {
     /// Of a roller and a land of a raceway, walking on from other places.
-    pub(crate) fn new(race: &Curved, land: &Land, rim: &Rim, seen: &RollerView, places: &mut [Place; 2]) -> Self {
+    pub(crate) fn new(
+        race: &Curved,
+        land: &Land,
+        rim: &Rim,
+        seen: &RollerView,
+        places: &mut [Place; 2],
+    ) -> Self {
         let foot = race.nearest(land, seen.centre, places[0]);
         places[0] = foot.place;
         let to = [foot.at[0] - seen.centre[0], foot.at[1] - seen.centre[1]];

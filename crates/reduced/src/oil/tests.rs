@@ -1,6 +1,9 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
+use stribeck_modal::compliance::Compliance;
+
 use super::*;
+use crate::contact::outline::Outline;
 
 /// The paper's raceways and roller [m], its oil and a roller's mass [kg].
 const OUTER: f64 = 0.1;

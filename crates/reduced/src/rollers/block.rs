@@ -6,8 +6,8 @@ use stribeck_simd::lanes::{LANES, Vector};
 use crate::{
     bearing::Bearing,
     contact::penetration::Penetration,
-    rollers::row::{Row, Rows, lanes, of_one},
     contact::segments::Segments,
+    rollers::row::{Row, Rows, lanes, of_one},
     state::State,
 };
 

@@ -22,7 +22,14 @@ const ABSOLUTE: u8 = 2;
 impl Rollers {
     /// Rollers move under the forces on them, damped in the frame of the scene.
     #[inline(always)]
-    pub(crate) fn advance<S: Simd>(&self, simd: S, dt: f64, block: &mut Block, last: bool, sums: &mut Sums<S>) {
+    pub(crate) fn advance<S: Simd>(
+        &self,
+        simd: S,
+        dt: f64,
+        block: &mut Block,
+        last: bool,
+        sums: &mut Sums<S>,
+    ) {
         match self.frame {
             DampingFrame::Rolling => self.move_in_frame::<S, ROLLING>(simd, dt, block, last, sums),
             DampingFrame::RigidMotion => self.move_in_frame::<S, RIGID>(simd, dt, block, last, sums),

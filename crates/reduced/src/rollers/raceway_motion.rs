@@ -5,8 +5,8 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
-    rollers::block::Block,
     modes::Modes,
+    rollers::block::Block,
     rollers::row::{Row, lanes, largest_sum, load, of_one, store},
     seat::SeatState,
     step::drive::RingRotation,

@@ -123,7 +123,9 @@ impl Operation {
             }
         }
         Drive {
-            outer: self.outer_turns.then(|| RingRotation { rate: outer_rate, turned: Rotation::by(outer_angle) }),
+            outer: self
+                .outer_turns
+                .then(|| RingRotation { rate: outer_rate, turned: Rotation::by(outer_angle) }),
             inner: RingRotation { rate, turned: Rotation::by(shaft) },
             load: self.load_change(now),
         }

@@ -47,7 +47,16 @@ impl Bearing {
             let Block { first, top, bits, contacts, .. } = block;
             // One code for both raceways: the step's instructions fill the first cache anyway.
             for (raceway, contacts) in self.raceways.iter().zip(contacts) {
-                self.law.normal_forces(simd, &self.rollers, raceway, *first, top, *bits, contacts, &mut scratch.parts);
+                self.law.normal_forces(
+                    simd,
+                    &self.rollers,
+                    raceway,
+                    *first,
+                    top,
+                    *bits,
+                    contacts,
+                    &mut scratch.parts,
+                );
             }
             self.law.push_rollers(simd, &self.raceways, block, drive, &mut sums);
             let by_film = self.push_by_oil(state, block, drive, tally);
