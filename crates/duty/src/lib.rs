@@ -1,4 +1,5 @@
-//! The duty of a rolling bearing: speeds and load over time, and the angles of the rings that follow (THEORY §6.3).
+//! The duty of a rolling bearing: speeds and load over time, and the angles of the rings that follow (THEORY
+//! §6.3).
 //!
 //! ```
 //! use stribeck_duty::{Course, Duty};
@@ -16,18 +17,19 @@
 //! assert!((duty.relative_turns(0.03) - (0.01 * 500.0 + 0.02 * 1000.0) / 60.0).abs() < 1e-12);
 //! ```
 //!
-//! A ring follows the angle of its profile, θ(t) = −∫ω dt with the speed ω clockwise positive. What turns it in steps
-//! is given the mean speed of each step, whose sum is that angle: nothing drifts. The mean is formed within the step and
-//! not as a difference of two angles, whose rounding would shake the ring.
+//! A ring follows the angle of its profile, θ(t) = −∫ω dt with the speed ω clockwise positive. What turns it
+//! in steps is given the mean speed of each step, whose sum is that angle: nothing drifts. The mean is formed
+//! within the step and not as a difference of two angles, whose rounding would shake the ring.
 //!
-//! Rollers follow the difference of both speeds. Functions of the rings *against each other* give that difference; with an outer ring
-//! that stands still it is the speed of the shaft.
+//! Rollers follow the difference of both speeds. Functions of the rings *against each other* give that
+//! difference; with an outer ring that stands still it is the speed of the shaft.
 
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-/// Samples over which the mean magnitude of a speed that changes its sign is taken, and the extremes of a difference of speeds.
+/// Samples over which the mean magnitude of a speed that changes its sign is taken, and the extremes of a
+/// difference of speeds.
 const SAMPLES: u32 = 10_000;
 
 /// Halvings of a bracket: beyond rounding.
@@ -97,7 +99,8 @@ impl Duty {
         -TAU / 60.0 * self.speed.mean(from_s, to_s)
     }
 
-    /// By what angle the inner ring has turned at a time [s] since the start [rad], counter-clockwise positive.
+    /// By what angle the inner ring has turned at a time [s] since the start [rad], counter-clockwise
+    /// positive.
     pub fn shaft_rad(&self, time_s: f64) -> f64 {
         -TAU / 60.0 * self.speed.integral(time_s)
     }
@@ -107,18 +110,20 @@ impl Duty {
         -TAU / 60.0 * self.outer.mean(from_s, to_s)
     }
 
-    /// By what angle the outer ring has turned at a time [s] since the start [rad], counter-clockwise positive.
+    /// By what angle the outer ring has turned at a time [s] since the start [rad], counter-clockwise
+    /// positive.
     pub fn outer_rad(&self, time_s: f64) -> f64 {
         -TAU / 60.0 * self.outer.integral(time_s)
     }
 
-    /// Load on the housing at a time [s] in its direction [N]: with the part along it of what turns with the shaft.
+    /// Load on the housing at a time [s] in its direction [N]: with the part along it of what turns with the
+    /// shaft.
     pub fn load_n(&self, time_s: f64) -> f64 {
         self.load.value(time_s) + self.rotating_along(self.along, time_s).unwrap_or(0.0)
     }
 
-    /// The part of what turns with the shaft that acts a quarter of a turn ahead of the load at a time [s] [N]; `None` where
-    /// nothing turns, and where the housing is guided: the guide takes it then.
+    /// The part of what turns with the shaft that acts a quarter of a turn ahead of the load at a time [s]
+    /// [N]; `None` where nothing turns, and where the housing is guided: the guide takes it then.
     pub fn load_across_n(&self, time_s: f64) -> Option<f64> {
         let [x, y] = self.along;
         self.rotating_along([-y, x], time_s).filter(|_| !self.guided)
@@ -181,8 +186,9 @@ impl Duty {
         least * most >= 0.0
     }
 
-    /// Mean speeds of the inner and of the outer ring until a time [s] [rpm]. Of rings that turn both ways against each other the
-    /// difference has the sign of the way that they turn longer and the mean magnitude.
+    /// Mean speeds of the inner and of the outer ring until a time [s] [rpm]. Of rings that turn both ways
+    /// against each other the difference has the sign of the way that they turn longer and the mean
+    /// magnitude.
     pub fn mean_speeds_rpm(&self, until_s: f64) -> [f64; 2] {
         let [inner, outer] = [&self.speed, &self.outer].map(|course| course.mean(0.0, until_s));
         if self.is_one_way(until_s) {
@@ -192,8 +198,9 @@ impl Duty {
         [outer + (sum / f64::from(SAMPLES)).copysign(inner - outer), outer]
     }
 
-    /// When rings that turn one way against each other have made so many turns [s], within `until_s` [s]; a negative number of
-    /// turns counts back from the start at the mean speed. `None` for rings that do not come so far.
+    /// When rings that turn one way against each other have made so many turns [s], within `until_s` [s]; a
+    /// negative number of turns counts back from the start at the mean speed. `None` for rings that do not
+    /// come so far.
     pub fn time_of_turns(&self, turns: f64, until_s: f64) -> Option<f64> {
         let made = |time_s: f64| self.relative_turns(time_s).abs();
         let all = made(until_s);
@@ -340,7 +347,8 @@ struct Readme;
 mod tests {
     use super::*;
 
-    /// The mean of a course over adjacent intervals adds up to its integral, to the rounding of some thousand sums.
+    /// The mean of a course over adjacent intervals adds up to its integral, to the rounding of some thousand
+    /// sums.
     #[test]
     fn invariant_means_of_adjacent_intervals_add_up_to_the_integral() {
         const ROUNDING: f64 = 1e-12;

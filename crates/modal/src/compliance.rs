@@ -1,4 +1,5 @@
-//! How much bodies give way beside a contact, beyond penalty and modes, as a curve over the force (THEORY §9.3).
+//! How much bodies give way beside a contact, beyond penalty and modes, as a curve over the force (THEORY
+//! §9.3).
 
 use serde::{Deserialize, Serialize};
 
@@ -79,7 +80,8 @@ impl Compliance {
     }
 }
 
-/// Length 2a [m] of a round contact with the relative radius R [m] under a load F [N] on a penalty k t [N/m²]: F = ⅔ k t a³/R.
+/// Length 2a [m] of a round contact with the relative radius R [m] under a load F [N] on a penalty k t
+/// [N/m²]: F = ⅔ k t a³/R.
 pub fn contact_length(load: f64, penalty: f64, radius: f64) -> f64 {
     2.0 * (1.5 * load * radius / penalty).cbrt()
 }
@@ -107,7 +109,8 @@ impl Curve {
         force * force * (0.5 * intercept + 0.6 * slope * y) - self.more[piece]
     }
 
-    /// Approach [m] and its derivative [m/N] at a force that is not negative [N], and the piece that it lies on.
+    /// Approach [m] and its derivative [m/N] at a force that is not negative [N], and the piece that it lies
+    /// on.
     #[inline(always)]
     pub fn approach(&self, force: f64) -> ([f64; 2], usize) {
         let y = force.sqrt();
@@ -115,7 +118,8 @@ impl Curve {
         (self.on(piece, force, y), piece)
     }
 
-    /// Of the piece at y = √F: where it begins over y, g there, by how much it grows with y, and where it ends.
+    /// Of the piece at y = √F: where it begins over y, g there, by how much it grows with y, and where it
+    /// ends.
     #[inline(always)]
     pub fn piece_at(&self, y: f64) -> [f64; 4] {
         let last = self.pieces.len() - 1;
@@ -145,7 +149,8 @@ impl Curve {
 mod tests {
     use super::*;
 
-    /// What is stored grows with the force by as much as the approach does times the force, on every piece and from one to the next.
+    /// What is stored grows with the force by as much as the approach does times the force, on every piece
+    /// and from one to the next.
     /// Source: own, d(F C − ∫ C dF)/dF = F dC/dF.
     #[test]
     fn analytic_the_energy_of_a_compliance_is_the_work_of_its_force() {

@@ -3,8 +3,8 @@
 /// A facet that takes less than this share of the mean angle is a wall.
 const WALL: f64 = 0.05;
 
-/// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls, which run along a radius. Vertices go
-/// counter-clockwise [m].
+/// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls, which run along a
+/// radius. Vertices go counter-clockwise [m].
 pub fn per_angle(vertices: &[[f64; 2]]) -> Vec<f64> {
     let n = vertices.len();
     (0..n)

@@ -13,7 +13,8 @@ pub struct Reduction {
     pub padded: usize,
     /// ω² of each mode [rad²/s²].
     pub squares: Vec<f64>,
-    /// Vertices of the outer raceway, counter-clockwise, at the preload but without the local dents of the rollers [m].
+    /// Vertices of the outer raceway, counter-clockwise, at the preload but without the local dents of the
+    /// rollers [m].
     pub outer: Vec<[f64; 2]>,
     /// Shapes at these vertices [1/√kg]: x of all modes, then y, vertex by vertex.
     pub shapes: Vec<f64>,
@@ -29,7 +30,8 @@ pub struct Reduction {
     pub external: Vec<f64>,
     /// Forces of the load on each mode.
     pub load: Load,
-    /// Forces of dampers on each mode by a unit velocity of every mode [1/s], row by row; empty without dampers.
+    /// Forces of dampers on each mode by a unit velocity of every mode [1/s], row by row; empty without
+    /// dampers.
     pub dampers: Vec<f64>,
     /// The frame around springs, which moves as one piece.
     pub frame: Option<Frame>,
@@ -58,7 +60,8 @@ pub struct Reduction {
 pub struct Sensor {
     /// Shapes at its node [1/√kg]: x of all modes, then y.
     pub shape: Vec<f64>,
-    /// Residual displacement (x, y), beyond the modes, by a unit force towards the outside at each vertex of the raceway [m/N].
+    /// Residual displacement (x, y), beyond the modes, by a unit force towards the outside at each vertex of
+    /// the raceway [m/N].
     pub residual: Vec<[f64; 2]>,
 }
 

@@ -1,13 +1,14 @@
 //! One step of a reduced bearing in WebAssembly, beside the same step on another machine.
 //!
-//! Compiled for `wasm32-unknown-unknown`, the program holds a bearing, a state and the state after a step, as `one_step` of
-//! `stribeck-simulation` writes them into the file that `STRIBECK_STEP` names. It takes the step, and ends with 0 where both agree to
-//! rounding, with 1 where they do not, and with 2 where the file is another one's. `.ci/wasm` builds and runs it.
+//! Compiled for `wasm32-unknown-unknown`, the program holds a bearing, a state and the state after a step, as
+//! `one_step` of `stribeck-simulation` writes them into the file that `STRIBECK_STEP` names. It takes the
+//! step, and ends with 0 where both agree to rounding, with 1 where they do not, and with 2 where the file is
+//! another one's. `.ci/wasm` builds and runs it.
 
 use std::process::ExitCode;
 
-/// Differences that are rounding, over the largest number of a list. Sums over lanes are taken in another order; a force follows
-/// from a penetration that is a difference of places, a ten-thousandth of them.
+/// Differences that are rounding, over the largest number of a list. Sums over lanes are taken in another
+/// order; a force follows from a penetration that is a difference of places, a ten-thousandth of them.
 #[cfg(target_arch = "wasm32")]
 const ROUNDING: f64 = 1e-10;
 

@@ -1,4 +1,5 @@
-//! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
+//! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY
+//! §9.2–9.4).
 
 use stribeck_modal::{
     ModalBearing, OVERLOAD, Parameters, Reduction, STICKING,
@@ -54,17 +55,19 @@ pub(crate) struct Raceway {
     pub(crate) sides: Sides,
     pub(crate) compliance: Compliance,
     pub(crate) curve: Curve,
-    /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
-    /// one around.
+    /// Radius of the circle that touches the raceway from the side of the rollers [m]: inscribed for the
+    /// outer one, circumscribed for the inner one.
     pub(crate) bound: f64,
-    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the inner one.
+    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the
+    /// inner one.
     pub(crate) bounds: Vec<f64>,
     /// Largest relative radius [m].
     pub(crate) relative: f64,
 }
 
 impl Raceway {
-    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before it.
+    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before
+    /// it.
     #[inline(always)]
     pub(crate) fn outwards(&self) -> f64 {
         if self.sides.along { 1.0 } else { -1.0 }
@@ -119,9 +122,10 @@ impl Bearing {
         })
     }
 
-    /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with raceways as stiff as at the
-    /// largest load that the local problem was solved for, friction over those of the fullest roller, and the cage on corners
-    /// of all pockets, or on straight walls that lie flush with a facet of each roller.
+    /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with
+    /// raceways as stiff as at the largest load that the local problem was solved for, friction over those of
+    /// the fullest roller, and the cage on corners of all pockets, or on straight walls that lie flush with a
+    /// facet of each roller.
     pub fn critical_time_step(&self) -> f64 {
         let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
         let [mass, inertia] = self.reduction.roller_inertia;
@@ -242,7 +246,8 @@ impl Bearing {
     }
 }
 
-/// Largest distance of a straight facet from the circle through its vertices [m], where facets do not stand for arcs.
+/// Largest distance of a straight facet from the circle through its vertices [m], where facets do not stand
+/// for arcs.
 fn sag(parameters: &Parameters, radius: f64, facets: f64) -> f64 {
     if parameters.outlines.arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
 }
@@ -286,12 +291,14 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
     ]
 }
 
-/// On even ground no contact reaches farther to either side than this share of the roller's radius: it would be a fortieth of it deep.
+/// On even ground no contact reaches farther to either side than this share of the roller's radius: it would
+/// be a fortieth of it deep.
 const BESIDE: f64 = 0.25;
 
-/// For every facet, how near to the origin an outline comes where a roller over that facet may touch it [m]: as far to either side as a
-/// contact on even ground, and beyond that at what stands out so far that the roller, which falls away by u² / 2R over u, meets it, such
-/// as the edge of a deep spall. `relative` is R [m].
+/// Smallest radius of the outline within reach of a roller over each facet [m]:
+/// as far to either side as a contact on even ground, and beyond that at what stands out so far that the
+/// roller, which falls away by u² / 2R over u, meets it, such as the edge of a deep spall. `relative` is R
+/// [m].
 fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {
     let place = |i: usize| [outline.x[i], outline.y[i]];
     let apart = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| (bx - ax).hypot(by - ay);

@@ -22,7 +22,8 @@ pub(crate) struct Cage {
     pub(crate) inertia: f64,
     /// Centre of mass at the start [m].
     pub(crate) centre: [f64; 2],
-    /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre of mass.
+    /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre
+    /// of mass.
     pub(crate) walls: Vec<[Wall; 2]>,
     /// The same, of eight rollers side by side.
     pub(crate) wall_rows: Vec<[WallRows; 2]>,
@@ -30,7 +31,7 @@ pub(crate) struct Cage {
     pub(crate) corners: [Corner; 2],
     /// Whether rollers stand between the ends of the walls, not at one of them.
     pub(crate) has_flats: bool,
-    /// What a roller gives way by on a wall.
+    /// Compliance of a roller on a wall.
     pub(crate) curve: Curve,
 }
 
@@ -80,7 +81,8 @@ impl Wall {
 }
 
 impl Cage {
-    /// From its pockets, mass and moment of inertia and centre of mass. On a wall rollers give way by `compliance`.
+    /// From its pockets, mass and moment of inertia and centre of mass. On a wall rollers give way by
+    /// `compliance`.
     pub(crate) fn new(
         pockets: &Pockets,
         [mass, inertia]: [f64; 2],

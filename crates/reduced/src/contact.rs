@@ -1,4 +1,5 @@
-//! Rollers and raceways: their outlines, how deep they sink into each other, and the forces that follow (THEORY §9.3, §9.4).
+//! Rollers and raceways: their outlines, how deep they sink into each other, and the forces that follow
+//! (THEORY §9.3, §9.4).
 
 pub mod outline;
 

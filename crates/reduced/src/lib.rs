@@ -1,9 +1,11 @@
 //! Rolling element bearings in a few modes: a simulated second in a few seconds.
 //!
-//! Outer ring and housing move in their natural modes, made from the mesh and elements of the full model by `stribeck-reduction` and
-//! handed over as plain data ([`stribeck_modal`]). Rollers and cage are rigid, with the facets that they are meshed with. Contact is
-//! integrated exactly over these facets ([`contact::penetration`]), in series with curves for the local compliance of the bodies. A
-//! program drives a [`BearingInMotion`](motion::BearingInMotion) from one sampling interval to the next, and reads it in between.
+//! Outer ring and housing move in their natural modes, made from the mesh and elements of the full model by
+//! `stribeck-reduction` and handed over as plain data ([`stribeck_modal`]). Rollers and cage are rigid, with
+//! the facets that they are meshed with. Contact is integrated exactly over these facets
+//! ([`contact::penetration`]), in series with curves for the local compliance of the bodies. A program drives
+//! a [`BearingInMotion`](motion::BearingInMotion) from one sampling interval to the next, and reads it in
+//! between.
 //!
 //! The crate uses no files, threads or clock, and compiles for `wasm32-unknown-unknown`.
 //!

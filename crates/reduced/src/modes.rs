@@ -1,5 +1,5 @@
-//! Modes of outer ring and adapter in a step, in vectors over modes: how the raceway moves under a roller, what the roller does
-//! to them, and how they move on (THEORY §9.3, §9.4).
+//! Modes of outer ring and adapter in a step, in vectors over modes: how the raceway moves under a roller,
+//! what the roller does to them, and how they move on (THEORY §9.3, §9.4).
 
 use pulp::Simd;
 use stribeck_modal::{
@@ -74,7 +74,8 @@ pub(crate) struct Structure {
     shapes: Vec<Single>,
     /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
     pub(crate) farthest: Vec<Row>,
-    /// Dampers of the housing, in rows: forces on every mode by a unit velocity of each; empty without dampers.
+    /// Dampers of the housing, in rows: forces on every mode by a unit velocity of each; empty without
+    /// dampers.
     pub(crate) dampers: Vec<Row>,
     /// Mass damping [1/s] and stiffness damping [s].
     mass_damping: f64,
@@ -114,8 +115,9 @@ impl Structure {
         RacewayPoint { share, shapes: [shapes(facet), shapes(second)] }
     }
 
-    /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity [m/s], and by how much more the
-    /// second vertex of its facet is displaced than the first [m]. Both vertices are summed over all modes, and what lies between follows.
+    /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity
+    /// [m/s], and by how much more the second vertex of its facet is displaced than the first [m]. Both
+    /// vertices are summed over all modes, and what lies between follows.
     #[inline(always)]
     pub(crate) fn moved<S: Simd>(&self, simd: S, point: &RacewayPoint<'_>, modes: &Modes) -> [Vector<S>; 6] {
         let groups = self.groups;

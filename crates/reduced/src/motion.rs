@@ -26,7 +26,8 @@ pub struct Saved {
     pub(crate) memory: Memory,
 }
 
-/// Energies at the positions before the last step of an interval [J]: what is stored, and work and heat since the start.
+/// Energies at the positions before the last step of an interval [J]: what is stored, and work and heat since
+/// the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Time of these positions [s].

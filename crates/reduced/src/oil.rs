@@ -1,7 +1,8 @@
-//! Oil between rollers and raceways: the films of the full model between the circles that the polygons stand for (THEORY §4.6, §9.4).
+//! Oil between rollers and raceways: the films of the full model between the circles that the polygons stand
+//! for (THEORY §4.6, §9.4).
 //!
-//! A film follows from where a roller is and how it moves; what it remembers is in the state. A bearing without oil has nothing of
-//! this.
+//! A film follows from where a roller is and how it moves; what it remembers is in the state. A bearing
+//! without oil has nothing of this.
 
 mod bodies;
 pub(crate) mod forces;
@@ -82,8 +83,8 @@ pub(crate) struct FilmStep {
 /// What films do to a roller in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FilmForces {
-    /// Sum of the sizes of their forces [N], and where the seat feels them, by how much they fall when the raceway gives way, the oil
-    /// staying as thick as it is [N/m].
+    /// Sum of the sizes of their forces [N], and where the seat responds to them, their decrease as the
+    /// raceway gives way, the oil staying as thick as it is [N/m].
     pub(crate) normal: f64,
     pub(crate) stiffness: f64,
     /// Force on the roller [N] in the frame of the raceway, and moment about its centre [N m].
@@ -95,8 +96,8 @@ pub(crate) struct FilmForces {
 }
 
 impl Lubrication {
-    /// Oil between the outer and the inner raceway and these rims, the first of which is round, on a penalty [N/m²] of bodies of a
-    /// thickness [m].
+    /// Oil between the outer and the inner raceway and these rims, the first of which is round, on a penalty
+    /// [N/m²] of bodies of a thickness [m].
     pub(crate) fn new(
         oil: &modal::Oil,
         raceways: &[Raceway; 2],

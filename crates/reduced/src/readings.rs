@@ -1,4 +1,5 @@
-//! What can be read of a bearing in motion at the end of a sampling interval. Forces are means over the interval.
+//! What can be read of a bearing in motion at the end of a sampling interval. Forces are means over the
+//! interval.
 
 use pulp::Scalar;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,5 @@
-//! Rollers: their rims and inertia, in groups of eight with one number of each side by side, and the raceway under them.
+//! Rollers: their rims and inertia, in groups of eight with one number of each side by side, and the raceway
+//! under them.
 
 pub(crate) mod block;
 mod motion;

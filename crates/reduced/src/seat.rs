@@ -17,30 +17,31 @@ pub(crate) use responses::RollerResponses;
 pub use state::SeatState;
 use sums::dot;
 
-/// When passes over the panels end.
+/// When the iteration over the panels ends.
 #[derive(Debug, Clone, Copy)]
 struct Passes {
-    /// After so many at most …
+    /// Most passes.
     most: usize,
-    /// … or when no tension would change by more [N].
+    /// Largest change of a tension at which it has converged [N].
     still: f64,
 }
 
-/// A tension that changes by less than this share of the mean force on a panel takes no further pass …
+/// The iteration has converged when no tension changes by more than this share of the mean force on a panel …
 const STILL: f64 = 1e-4;
 
-/// … nor in a step one that changes by less than this times the square of the step [1/s²], as the error of the step goes: what rollers will
-/// press is not known better.
+/// … or in a step, where that is more, than this times the square of the time step [1/s²]: roller forces are
+/// extrapolated with an error of that order.
 const STILL_IN_STEP: f64 = 2.5e8;
 
-/// What is looked up of the seat in every step, in rows.
+/// The seat's tables for a step, in rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Springs {
     padded: usize,
     /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
     by_mode: Vec<Single>,
     by_spring: Vec<Single>,
-    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of the preload.
+    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of
+    /// the preload.
     by_rollers: Vec<Single>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
@@ -48,9 +49,9 @@ pub(crate) struct Springs {
     /// The same of each by its own [N/m], and one over it, zero where there is no spring.
     own: Vec<Row>,
     per_own: Vec<Row>,
-    /// What the raceway gives way by on each facet, at the vertex where that is more, under a unit force there if the whole seat lets go
-    /// [m/N].
-    give: Vec<f64>,
+    /// Displacement of the raceway at the softer vertex of each facet, under a unit force there with all
+    /// panels open [m/N].
+    flexibility: Vec<f64>,
     /// Force that presses each panel at the preload [N].
     pressed: Vec<Row>,
     /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
@@ -77,7 +78,7 @@ impl Springs {
         let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
         let per_own: Vec<f64> =
             own.iter().map(|stiffness| if *stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }).collect();
-        let give = &seat.flexibility;
+        let flexibility = &seat.flexibility;
         let mean = seat.pressed.iter().sum::<f64>() / seat.panels as f64;
         Self {
             padded: seat.padded,
@@ -86,7 +87,11 @@ impl Springs {
             by_rollers,
             at_preload: rows(&seat.at_preload),
             per_own: rows(&per_own),
-            give: give.iter().zip(give.iter().cycle().skip(1)).map(|(a, b)| a.max(*b)).collect(),
+            flexibility: flexibility
+                .iter()
+                .zip(flexibility.iter().cycle().skip(1))
+                .map(|(a, b)| a.max(*b))
+                .collect(),
             own: rows(&own),
             stiffness,
             pressed: rows(&seat.pressed),
@@ -135,8 +140,9 @@ impl Springs {
         panels.before.copy_from_slice(&panels.open);
     }
 
-    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to `push`. Returns the heat of this
-    /// step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
+    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to
+    /// `push`. Returns the heat of this step [J] and, when it is the `last` of a sample, the energy that is
+    /// stored by it [J].
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one seat, with all that it reads and adds to")]
     pub(crate) fn respond<S: Simd>(
@@ -169,7 +175,8 @@ impl Springs {
         [heat, self.stored(simd, panels, tension) + by_rollers]
     }
 
-    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet [m], in parts to be summed.
+    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet
+    /// [m], in parts to be summed.
     #[inline(always)]
     pub(crate) fn under<S: Simd>(&self, simd: S, panels: &SeatState, facet: usize) -> [Vector<S>; 2] {
         let [first, second] = self.ends(facet);
@@ -211,7 +218,8 @@ impl Springs {
 mod tests {
     use super::*;
 
-    /// A seat of one panel and two modes, the first of which opens it and the second shifts it: 1 N/µm each, pressed by 100 N.
+    /// A seat of one panel and two modes, the first of which opens it and the second shifts it: 1 N/µm each,
+    /// pressed by 100 N.
     fn one_panel(friction: f64) -> (Springs, SeatState) {
         let padded = LANES;
         let n = 2 * padded;
@@ -280,7 +288,7 @@ mod tests {
         assert!((found / expected - 1.0).abs() < 2e-3, "{found} J, {expected} J");
     }
 
-    /// What opens lets go of all tension, and takes the energy of the springs along: nothing is lost on the way there and back.
+    /// A panel that opens loses all tension and its energy; both return when it closes.
     #[test]
     fn analytic_a_panel_opens_where_it_would_pull() {
         let (springs, mut panels) = one_panel(0.2);

@@ -1,4 +1,5 @@
-//! What sensors measure: the modes, and beyond them what rollers press and what the seat does (THEORY §9.1).
+//! Motion of the sensors: with the modes, and quasi-statically beyond them under rollers and seat (THEORY
+//! §9.1).
 
 use pulp::Simd;
 use stribeck_modal::Reduction;
@@ -6,8 +7,8 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{roller_force::RollerForce, rollers::row::Row, seat::SeatState, state::State};
 
-/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of the next one, filled up with
-/// zeros to whole rows.
+/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of
+/// the next one, filled up with zeros to whole rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensors {
     /// Rows of components.
@@ -16,7 +17,8 @@ pub(crate) struct Sensors {
     by_mode: Vec<Row>,
     /// Beyond the modes by a unit force towards the outside at each vertex of the raceway [m/N].
     by_vertex: Vec<Row>,
-    /// The same by a unit gap of each panel of the seat [1], whose tension is missing then, and by a unit tension along it [m/N].
+    /// The same by a unit gap of each panel of the seat [1], whose tension is missing then, and by a unit
+    /// tension along it [m/N].
     by_gap: Vec<Row>,
     by_tension: Vec<Row>,
 }
@@ -76,7 +78,8 @@ impl Sensors {
         Self { rows, by_mode: by_mode.collect(), by_vertex: by_vertex.collect(), by_gap, by_tension }
     }
 
-    /// What they measure at the velocities of a state, while rollers press as `roller_forces` and the seat has these tensions [N].
+    /// What they measure at the velocities of a state, while rollers press as `roller_forces` and the seat
+    /// has these tensions [N].
     #[inline(always)]
     pub(crate) fn measure<S: Simd>(
         &self,

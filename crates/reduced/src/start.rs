@@ -8,15 +8,15 @@ use crate::{
     roller_force::RollerForce, state::State,
 };
 
-/// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings the solver, so that this
-/// crate needs none.
+/// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings
+/// the solver, so that this crate needs none.
 pub type Solve<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<f64>;
 
 /// Newton iterations for modes and rollers.
 const ITERATIONS: usize = 200;
 
-/// How far an iteration moves the raceway under a roller at most [m], halved whenever it would go back: under a light load few rollers
-/// touch or none, and what holds the ring is not known before they do.
+/// How far an iteration moves the raceway under a roller at most [m], halved whenever it would go back: under
+/// a light load few rollers touch or none, and what holds the ring is not known before they do.
 const FARTHEST: f64 = 10e-6;
 
 /// Unbalanced force on a roller or a mode that is left, over the load.
@@ -29,7 +29,8 @@ const REGULARISATION: f64 = 1e4;
 const SEATINGS: usize = 8;
 
 impl Bearing {
-    /// The state of equilibrium under load, gravity and the inertia of rolling, with rolling velocities half a step earlier.
+    /// The state of equilibrium under load, gravity and the inertia of rolling, with rolling velocities half
+    /// a step earlier.
     ///
     /// # Errors
     /// When the iteration does not converge.
@@ -37,7 +38,8 @@ impl Bearing {
         let mut state = self.rest();
         self.equilibrium(solve, &mut state)?;
         if let Some(seat) = &self.seat {
-            // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction holds it.
+            // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction
+            // holds it.
             for _ in 0..SEATINGS {
                 let State { seat: hold, q, .. } = &mut state;
                 hold.iter_mut().for_each(|hold| seat.slip(hold, q));
@@ -93,8 +95,9 @@ impl Bearing {
                     let [outer, inner] = self.pressed(state, i, moved);
                     (inner + inertia(rho) - outer, outer)
                 };
-                // The balance falls with the radius: a bracket, then bisection. Films keep a roller with clearance between the circles;
-                // beyond them polygons that do not touch yet would leave it a second balance.
+                // The balance falls with the radius: a bracket, then bisection. Films keep a roller with
+                // clearance between the circles; beyond them polygons that do not touch yet would leave it a
+                // second balance.
                 let floats = self.oil.as_ref().and_then(|oil| oil.floating(&self.rollers, state, i, moved));
                 let [mut low, mut high] = floats.unwrap_or([at; 2]);
                 let mut width = 1e-7;
@@ -198,7 +201,8 @@ impl Bearing {
         moved
     }
 
-    /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.
+    /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between
+    /// them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
         let (s, c) = (state.angle[i] + self.rollers.starts[i].vertex_angle).sin_cos();
         let shaft = Rotation::by(state.shaft);

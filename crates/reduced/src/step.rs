@@ -1,6 +1,7 @@
 //! One step of the reduced bearing, and many of them in the instruction set of the processor (THEORY §9.4).
 //!
-//! Rollers are taken eight at a time: what all of them share is computed in vectors, facet-dependent work roller by roller.
+//! Rollers are taken eight at a time: what all of them share is computed in vectors, facet-dependent work
+//! roller by roller.
 
 pub(crate) mod drive;
 mod scratch;
@@ -91,7 +92,8 @@ impl Bearing {
     fn follow_rollers<S: Simd>(&self, simd: S, scratch: &mut Scratch, drive: &Drive) {
         for block in &mut scratch.blocks {
             self.follow_facets(simd, block, drive.outer);
-            // A roller presses where it is now: the seat's displacement under it and the work of both depend on that place.
+            // A roller presses where it is now: the seat's displacement under it and the work of both depend
+            // on that place.
             let forces = &mut scratch.roller_forces[block.first..block.first + block.count];
             for ((force, facet), share) in forces.iter_mut().zip(&block.facet).zip(block.share.iter()) {
                 (force.facet, force.share) = (*facet, *share);

@@ -1,4 +1,5 @@
-//! How deep rollers sink into raceways: closed forms for arcs, and forces as the gradient of the energy for polygons.
+//! How deep rollers sink into raceways: closed forms for arcs, and forces as the gradient of the energy for
+//! polygons.
 
 use std::f64::consts::TAU;
 
@@ -41,7 +42,8 @@ fn pressed(
     pair.overlap(0.0, 2e-3)
 }
 
-/// Two arcs that approach by δ overlap by (4/3) δ √(2Rδ), with the relative radius R (Johnson 1985, §4.2, of the gap x²/2R).
+/// Two arcs that approach by δ overlap by (4/3) δ √(2Rδ), with the relative radius R (Johnson 1985, §4.2, of
+/// the gap x²/2R).
 #[test]
 fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
     // The parabola leaves out terms of δ/R.
@@ -77,8 +79,9 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
         energy,
         TOLERANCE,
     );
-    // Nothing across in the middle, but for what parabolas of one curvature leave out between vertices on a circle: of
-    // u⁴/8R³ the part between the ends of a facet of the width w, at most (3u²/2R³) w²/8. Its first moment over the area:
+    // Nothing across in the middle, but for what parabolas of one curvature leave out between vertices on a
+    // circle: of u⁴/8R³ the part between the ends of a facet of the width w, at most (3u²/2R³) w²/8. Its
+    // first moment over the area:
     let width = TAU * ROLLER / 112.0;
     let left_out = 1.5 * half.powi(2) / ROLLER.powi(3) * width.powi(2) / 8.0;
     let bound = left_out * half.powi(2) / (ROLLER * found.area);
@@ -88,8 +91,8 @@ fn analytic_arcs_overlap_by_a_segment_of_a_parabola() {
     assert!(bound < 1e-4, "{bound}");
 }
 
-/// ½∫p² falls by the forces along the normal, the tangent and the turn, wherever vertices lie: of chords on a round raceway, and of arcs
-/// where the edge of a spall is touched far beside the middle of a coarse roller.
+/// ½∫p² falls by the forces along the normal, the tangent and the turn, wherever vertices lie: of chords on a
+/// round raceway, and of arcs where the edge of a spall is touched far beside the middle of a coarse roller.
 #[test]
 fn invariant_forces_are_the_gradient_of_the_energy() {
     const TOLERANCE: f64 = 1e-5;
@@ -141,7 +144,8 @@ fn invariant_forces_are_the_gradient_of_the_energy() {
 fn conserves_energy_along_a_path_over_an_edge() {
     let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
     let roller = polygon(ROLLER, 112);
-    // About the y axis, 0.2 mm deep, with radial walls: seen from beyond an edge its wall leans over the bottom.
+    // About the y axis, 0.2 mm deep, with radial walls: seen from beyond an edge its wall leans over the
+    // bottom.
     let half = 0.05;
     let vertex = |radius: f64, angle: f64| [radius * angle.cos(), radius * angle.sin()];
     let [first, last] = [0.25 * TAU - half, 0.25 * TAU + half];
@@ -160,8 +164,8 @@ fn conserves_energy_along_a_path_over_an_edge() {
         let (s, c) = angle.sin_cos();
         pressed(&roller, &raceway, chords, [path * c, path * s], turn, [c, s])
     };
-    // From before the edge, where it is all there, until nothing overlaps: the error of the midpoint rule is left, also where the wall
-    // leans over and cuts the overlap off along d, which turns.
+    // From before the edge, where it is all there, until nothing overlaps: the error of the midpoint rule is
+    // left, also where the wall leans over and cuts the overlap off along d, which turns.
     const TOLERANCE: f64 = 1e-7;
     let (from, to, steps) = (1.64, 1.605, 20_000);
     let by = (to - from) / f64::from(steps);
@@ -177,7 +181,8 @@ fn conserves_energy_along_a_path_over_an_edge() {
     assert!((work / first - 1.0).abs() < TOLERANCE, "{work} of {first}");
 }
 
-/// A polygon with a floor 0.1 mm deep about the y axis, half as long as `half` says [rad], its edges one facet long.
+/// A polygon with a floor 0.1 mm deep about the y axis, half as long as `half` says [rad], its edges one
+/// facet long.
 fn with_spall(radius: f64, facets: usize, half: f64, outwards: f64) -> Outline {
     let facet = TAU / facets as f64;
     let vertex = |i: usize| {
@@ -218,10 +223,12 @@ fn conserves_energy_along_a_path_of_arcs_over_a_slope() {
     }
 }
 
-/// Steep walls of a spall on the roller, which lean over the floor or over the rim as they go by: the energy of a path closes.
+/// Steep walls of a spall on the roller, which lean over the floor or over the rim as they go by: the energy
+/// of a path closes.
 #[test]
 fn conserves_energy_along_a_path_over_walls_of_a_roller() {
-    // Chords: the error of the midpoint rule, 5e-8. Arcs: 1.3e-5 are left with half of the steps as well, the cause of which is not known.
+    // Chords: the error of the midpoint rule, 5e-8. Arcs: 1.3e-5 are left with half of the steps as well, the
+    // cause of which is not known.
     const TOLERANCE: [f64; 2] = [1e-6, 2e-5];
     let relative = 1.0 / ROLLER - 1.0 / RACEWAY;
     let chords = Sides { along: true, bulge: 0.0, curvature: 0.0 };
@@ -287,11 +294,12 @@ impl WithSimd for Both<'_> {
     }
 }
 
-/// Eight facets in vectors make the same overlap as one after the other, on either raceway, straight or round; where walls are
-/// near there are no vectors.
+/// Eight facets in vectors make the same overlap as one after the other, on either raceway, straight or
+/// round; where walls are near there are no vectors.
 #[test]
 fn invariant_facets_in_vectors_overlap_as_one_by_one() {
-    // Lines through facets are taken at the roller's middle, 9 mm away from what overlaps by 1e-5 m: some 2e-18 m of it.
+    // Lines through facets are taken at the roller's middle, 9 mm away from what overlaps by 1e-5 m: some
+    // 2e-18 m of it.
     const TOLERANCE: f64 = 1e-11;
     let roller = polygon(ROLLER, 112);
     let (outer, inner) = (polygon(RACEWAY, 1257), polygon(RACEWAY - 2.0 * ROLLER, 1030));

@@ -1,5 +1,5 @@
-//! Reduced meshes of earlier runs, kept beside their folders: one serves every start, speed and duration of the same mesh under the
-//! same load.
+//! Reduced meshes of earlier runs, kept beside their folders: one serves every start, speed and duration of
+//! the same mesh under the same load.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,8 +21,8 @@ const FOLDER: &str = ".reduced";
 /// First bytes of the file, with the version of its content.
 const MAGIC: &[u8; 20] = b"stribeck reduced vD\n";
 
-/// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have their defaults. Rollers
-/// are half a spacing from their places, so that none is in the first groove.
+/// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
+/// their defaults. Rollers are half a spacing from their places, so that none is in the first groove.
 pub fn reference(scene: &Scene) -> Scene {
     let ContactScene {
         method,
@@ -79,9 +79,9 @@ pub fn reference(scene: &Scene) -> Scene {
     }
 }
 
-/// At rest, half-way between the least and the largest load of a profile: linearised there, the reduction errs least over all of them.
-/// The speed adds a few newtons by which idle rollers press outwards; they are in the equilibrium that a run starts from, so that one
-/// reduction serves all speeds.
+/// At rest, half-way between the least and the largest load of a profile: linearised there, the reduction
+/// errs least over all of them. The speed adds a few newtons by which idle rollers press outwards; they are
+/// in the equilibrium that a run starts from, so that one reduction serves all speeds.
 fn between(scene: &Scene) -> OperationScene {
     let fields = OperationScene {
         speed_rpm: 0.0,
@@ -97,8 +97,8 @@ fn between(scene: &Scene) -> OperationScene {
     OperationScene { load_n: 0.5 * (least + most), ..fields }
 }
 
-/// The reduced mesh of a scene, and whether it was cached. `runs` is the parent of the run's folder. Of several processes that ask for
-/// the same one at once, the first makes it and the others wait.
+/// The reduced mesh of a scene, and whether it was cached. `runs` is the parent of the run's folder. Of
+/// several processes that ask for the same one at once, the first makes it and the others wait.
 ///
 /// # Errors
 /// When it cannot be made. One that cannot be cached is made again next time.

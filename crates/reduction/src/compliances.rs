@@ -1,4 +1,5 @@
-//! Compliances beside the contacts: flexibilities of patches of each surface, and the local problems through them (THEORY §9.3).
+//! Compliances beside the contacts: flexibilities of patches of each surface, and the local problems through
+//! them (THEORY §9.3).
 
 use std::f64::consts::{PI, TAU};
 
@@ -37,7 +38,8 @@ struct Size<'a> {
 }
 
 impl Size<'_> {
-    /// Nodes to either side of the middle that a contact may reach, on nodes so far apart [m], at a relative radius [m].
+    /// Nodes to either side of the middle that a contact may reach, on nodes so far apart [m], at a relative
+    /// radius [m].
     fn half_count(&self, radius: f64, spacing: f64) -> usize {
         let g = self.g;
         let e_star = g.material.youngs_modulus / (2.0 * (1.0 - g.material.poissons_ratio.powi(2)));
@@ -87,7 +89,8 @@ impl Compliances {
     }
 }
 
-/// Angle of a place beside a groove, or between two, that is far from all of them; without grooves that of the load [rad].
+/// Angle of a place beside a groove, or between two, that is far from all of them; without grooves that of
+/// the load [rad].
 fn beside_grooves(scene: &Scene, g: &Geometry) -> f64 {
     let beside_of =
         |d: &DefectGeometry| d.angle + (0.5 * d.length + 2.0 * g.outer_ring_thickness) / g.outer_race_radius;
@@ -206,8 +209,8 @@ fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
     Modes { squares: vec![0.0; 3], shapes }
 }
 
-/// Solves the local contact problem at several loads up to `most` [N]; `across` is how much a roller gives way by an equal force on its
-/// other side [m/N].
+/// Solves the local contact problem at several loads up to `most` [N]; `across` is how much a roller gives
+/// way by an equal force on its other side [m/N].
 fn curve(pressed: &Pressed<'_>, most: f64, across: f64) -> Compliance {
     // Nodes of both surfaces lie anyhow to each other under a contact; a few cases stand for all.
     let phases = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];

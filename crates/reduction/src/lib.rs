@@ -1,9 +1,11 @@
-//! From the finite elements of a preloaded rolling bearing to a few modes: once a mesh, what `stribeck-reduced` steps.
+//! From the finite elements of a preloaded rolling bearing to a few modes: once a mesh, what
+//! `stribeck-reduced` steps.
 //!
-//! The full model of a scene is meshed and brought to equilibrium under its load. Outer ring and housing are reduced there to their
-//! natural modes below a frequency and a residual flexibility; the seat between them to the springs of some panels; what bodies give way
-//! by beside a contact to curves of small static problems. The result, [`ReducedMesh`], is kept in a file for later runs. A scene then
-//! adds its numbers: outlines, damping, cage, oil and speeds ([`modal_bearing`]).
+//! The full model of a scene is meshed and brought to equilibrium under its load. Outer ring and housing are
+//! reduced there to their natural modes below a frequency and a residual flexibility; the seat between them
+//! to the springs of some panels; what bodies give way by beside a contact to curves of small static
+//! problems. The result, [`ReducedMesh`], is kept in a file for later runs. A scene then adds its numbers:
+//! outlines, damping, cage, oil and speeds ([`modal_bearing`]).
 //!
 //! ```
 //! use stribeck_reduction::local_contact::Pressed;

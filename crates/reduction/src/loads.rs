@@ -53,8 +53,8 @@ impl Loads {
     }
 }
 
-/// Forces on each mode by a unit velocity of every mode [1/s], row by row, of the dampers beside the springs of a housing; empty
-/// without them.
+/// Forces on each mode by a unit velocity of every mode [1/s], row by row, of the dampers beside the springs
+/// of a housing; empty without them.
 pub(crate) fn dampers(scene: &Scene, structure: &Structure, preload: &Preload, padded: usize) -> Vec<f64> {
     let HousingScene::Springs(housing) = &scene.housing else { return Vec::new() };
     // Each spring has its damper, in the same proportion.

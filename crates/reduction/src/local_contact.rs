@@ -1,11 +1,13 @@
-//! The local contact problem: two surfaces pressed together at a place, each with the flexibility of its nodes (THEORY §9.3).
+//! The local contact problem: two surfaces pressed together at a place, each with the flexibility of its
+//! nodes (THEORY §9.3).
 
 /// Two surfaces that are pressed together.
 #[derive(Debug, Clone)]
 pub struct Pressed<'a> {
     /// Distance of the nodes of raceway and roller [m].
     pub spacing: [f64; 2],
-    /// Displacement of node i by a unit force at node j [m/N], square, by rows; the middle node lies under the contact.
+    /// Displacement of node i by a unit force at node j [m/N], square, by rows; the middle node lies under
+    /// the contact.
     pub flexibility: [&'a [Vec<f64>]; 2],
     /// Relative radius of curvature [m].
     pub radius: f64,
@@ -13,8 +15,8 @@ pub struct Pressed<'a> {
     pub penalty: f64,
 }
 
-/// An integration point: the gap between the undeformed surfaces [m], and the nodes that move it, with their shares: two of each
-/// surface.
+/// An integration point: the gap between the undeformed surfaces [m], and the nodes that move it, with their
+/// shares: two of each surface.
 struct Point {
     gap: f64,
     nodes: [(usize, f64); 4],
@@ -28,7 +30,8 @@ const ITERATIONS: usize = 60;
 const BALANCED: f64 = 1e-10;
 
 impl Pressed<'_> {
-    /// Force [N] at the approach `delta` [m], with the middle nodes off the contact's middle by these shares of a facet.
+    /// Force [N] at the approach `delta` [m], with the middle nodes off the contact's middle by these shares
+    /// of a facet.
     pub fn force(&self, delta: f64, phase: [f64; 2]) -> f64 {
         let touching = (2.0 * self.radius * delta).sqrt();
         let step = (self.spacing[0].min(self.spacing[1]).min(touching)) / POINTS as f64;
@@ -51,7 +54,8 @@ impl Pressed<'_> {
         result
     }
 
-    /// Approach of rigid surfaces on the penalty alone at a force [m]: q = k ∫(δ − x²/2R) dx = (4/3) k δ √(2Rδ).
+    /// Approach of rigid surfaces on the penalty alone at a force [m]: q = k ∫(δ − x²/2R) dx = (4/3) k δ
+    /// √(2Rδ).
     pub fn rigid(&self, force: f64) -> f64 {
         (0.75 * force / (self.penalty * (2.0 * self.radius).sqrt())).powf(2.0 / 3.0)
     }
@@ -96,8 +100,8 @@ impl Pressed<'_> {
         moved
     }
 
-    /// The system of a Newton step with its right-hand side in the last column. load(f) − f = 0 with d load = −T A df:
-    /// (1 + T A) df = load − f.
+    /// The system of a Newton step with its right-hand side in the last column. load(f) − f = 0 with d load =
+    /// −T A df: (1 + T A) df = load − f.
     fn newton(&self, f: &[f64], load: &[f64], tangent: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let total = f.len();
         let mut matrix = vec![vec![0.0; total + 1]; total];
@@ -115,7 +119,8 @@ impl Pressed<'_> {
     }
 }
 
-/// Total force [N], nodal forces [N] and their derivatives by nodal displacements [N/m], where surfaces have moved at their nodes.
+/// Total force [N], nodal forces [N] and their derivatives by nodal displacements [N/m], where surfaces have
+/// moved at their nodes.
 fn integrate(points: &[Point], moved: &[f64], delta: f64, weight: f64) -> (f64, Vec<f64>, Vec<Vec<f64>>) {
     let total = moved.len();
     let (mut force, mut load) = (0.0, vec![0.0; total]);

@@ -24,7 +24,8 @@ use crate::{error::Error, seat};
 /// The bearing of a scene whose mesh has been reduced.
 ///
 /// # Errors
-/// When contact's law has impossible numbers, the structural damping cannot be fitted, or films have no loaded contact to follow from.
+/// When contact's law has impossible numbers, the structural damping cannot be fitted, or films have no
+/// loaded contact to follow from.
 pub fn modal_bearing(scene: &Scene, reduction: Reduction) -> Result<ModalBearing, Error> {
     let parameters = parameters(scene, &reduction)?;
     let mut reduction = reduction;
@@ -32,8 +33,9 @@ pub fn modal_bearing(scene: &Scene, reduction: Reduction) -> Result<ModalBearing
     Ok(ModalBearing { reduction, parameters })
 }
 
-/// Rounds the tables that a step looks up to single precision, once for all that is computed from them, and levels what cannot differ:
-/// a roller that passes over a wall has no height to tell its ends apart by. Mass damping brakes no frame.
+/// Rounds the tables that a step looks up to single precision, once for all that is computed from them, and
+/// levels what cannot differ: a roller that passes over a wall has no height to tell its ends apart by. Mass
+/// damping brakes no frame.
 fn prepare(reduction: &mut Reduction, parameters: &Parameters) {
     let per_angle = per_angle(&parameters.outlines.outer);
     level_walls(&mut reduction.shapes, &per_angle);

@@ -56,7 +56,8 @@ pub(crate) fn without_dents(
     extraction.nodes.outer.iter().zip(&dents).map(without_dent).collect()
 }
 
-/// Shapes at the vertices of the raceway [1/√kg], less what the seat takes back: x of all modes, then y, vertex by vertex.
+/// Shapes at the vertices of the raceway [1/√kg], less what the seat takes back: x of all modes, then y,
+/// vertex by vertex.
 pub(crate) fn shapes(
     raceway: &[RacewayNode],
     structure: &Structure,

@@ -1,7 +1,7 @@
 //! The panels of the seat of the outer ring in its housing (THEORY §9.1).
 //!
-//! Each panel has a normal spring, which cannot pull, and a tangential one, which friction holds. Tensions of all springs follow from the
-//! modes and from how far panels have opened and slipped.
+//! Each panel has a normal spring, which cannot pull, and a tangential one, which friction holds. Tensions of
+//! all springs follow from the modes and from how far panels have opened and slipped.
 
 use faer::{Mat, Side, linalg::solvers::Solve};
 use stribeck_modal::{GROUP, STICKING, Seat};
@@ -13,7 +13,8 @@ use crate::{
     structure::{Structure, product},
 };
 
-/// Panels to either side of the middle, at least and at most, and their width in thicknesses of the outer ring.
+/// Panels to either side of the middle, at least and at most, and their width in thicknesses of the outer
+/// ring.
 const PANELS: [f64; 2] = [8.0, 31.0];
 const WIDTH: f64 = 0.7;
 
@@ -62,7 +63,8 @@ struct Panels {
     pressed: Vec<f64>,
 }
 
-/// What tangential springs hold: A τ = stretch − slip, with A their own flexibility and that of the bodies (9.1b).
+/// What tangential springs hold: A τ = stretch − slip, with A their own flexibility and that of the bodies
+/// (9.1b).
 struct Tangential {
     /// A⁻¹ [N/m].
     inverse: Mat<f64>,
@@ -75,8 +77,8 @@ struct Tangential {
     held_by_rollers: Mat<f64>,
 }
 
-/// Divides the seat into panels, and turns the modes of a structure whose seat slides into those of one whose seat holds. `None`
-/// where there is no seat.
+/// Divides the seat into panels, and turns the modes of a structure whose seat slides into those of one whose
+/// seat holds. `None` where there is no seat.
 ///
 /// # Errors
 /// When the modes of the held seat are not found.
@@ -108,7 +110,8 @@ pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<
     }))
 }
 
-/// Displacement of the raceway at each vertex under a unit force there [m/N], beyond the modes, if all springs let go.
+/// Displacement of the raceway at each vertex under a unit force there [m/N], beyond the modes, if all
+/// springs let go.
 pub(crate) fn flexibility(seat: &Seat) -> Vec<f64> {
     let n = 2 * seat.padded;
     let gives: Vec<usize> = (0..n).filter(|at| seat.stiffness[at * n + at] > 0.0).collect();
@@ -201,7 +204,8 @@ impl Tangential {
         })
     }
 
-    /// Turns the modes of the structure into those of a seat that holds; returns them as combinations of the old ones, in columns.
+    /// Turns the modes of the structure into those of a seat that holds; returns them as combinations of the
+    /// old ones, in columns.
     fn modes(&self, structure: &mut Structure) -> Result<Mat<f64>, Error> {
         let squares = structure.squares();
         let modes = squares.len();
@@ -338,8 +342,9 @@ impl Panels {
     }
 }
 
-/// Force that presses each spring at the preload [N]: that on each node of the ring goes through the springs that reach the node, by their
-/// parts of the stiffness there. A panel that held whole nodes instead would let go too early or too late where its edges lie between them.
+/// Force that presses each spring at the preload [N]: that on each node of the ring goes through the springs
+/// that reach the node, by their parts of the stiffness there. A panel that held whole nodes instead would
+/// let go too early or too late where its edges lie between them.
 fn pressing(parts: &Parts<'_>) -> Vec<f64> {
     let mut inwards = vec![0.0; parts.x.len()];
     for (slot, [fx, fy]) in parts.back {
@@ -371,8 +376,9 @@ mod tests {
 
     use super::*;
 
-    /// A ring's back on springs alike, three points a facet, that a pressure alike presses: wherever the edges of panels lie between
-    /// nodes, all of them are pressed as hard for their stiffness, but for the two at the ends, whose last nodes have half a facet each.
+    /// A ring's back on springs alike, three points a facet, that a pressure alike presses: wherever the
+    /// edges of panels lie between nodes, all of them are pressed as hard for their stiffness, but for the
+    /// two at the ends, whose last nodes have half a facet each.
     #[test]
     fn invariant_panels_of_a_uniform_seat_are_pressed_alike() {
         const NODES: usize = 101;

@@ -13,7 +13,8 @@ use crate::{
     extraction::{Extraction, Preload},
 };
 
-/// Shift of the factorised matrix K + σM [rad²/s²]: (2π · 200 Hz)², far above rounding and far below the lowest mode that bends.
+/// Shift of the factorised matrix K + σM [rad²/s²]: (2π · 200 Hz)², far above rounding and far below the
+/// lowest mode that bends.
 pub(crate) const SHIFT: f64 = 1.6e6;
 
 /// Frequency below which a scene keeps modes [kHz].
@@ -58,7 +59,8 @@ impl Structure {
         }
     }
 
-    /// Replaces the modes by linear combinations of them: those of each new mode are a column of `turned`, `squares` are their ω².
+    /// Replaces the modes by linear combinations of them: those of each new mode are a column of `turned`,
+    /// `squares` are their ω².
     pub(crate) fn turn(&mut self, turned: MatRef<'_, f64>, squares: Vec<f64>) {
         let Self::Elastic { modes, .. } = self else { return };
         let n = modes.shapes.first().map_or(0, Vec::len);
@@ -106,7 +108,8 @@ impl Structure {
         sums
     }
 
-    /// Stretch of a spring by a unit of each mode [1/√kg], which is also the generalised force of a unit tension.
+    /// Stretch of a spring by a unit of each mode [1/√kg], which is also the generalised force of a unit
+    /// tension.
     pub(crate) fn stretch(&self, spring: &Spring, padded: usize) -> Vec<f64> {
         let mut stretch = vec![0.0; padded];
         for (&slot, along) in spring.slots.iter().zip(spring.direction.chunks_exact(2)) {
@@ -159,8 +162,8 @@ fn field(motions: &SmallMotions, slots: &[u32], force: &NodeForces) -> Vec<f64> 
     field
 }
 
-/// Applies `seen` to the displacements by each of some fields of forces; with modes, to the residual ones, (K + σM)⁻¹ (1 − MΦΦᵀ) f.
-/// Eight fields at a time, because modes and factor are larger than a cache.
+/// Applies `seen` to the displacements by each of some fields of forces; with modes, to the residual ones, (K
+/// + σM)⁻¹ (1 − MΦΦᵀ) f. Eight fields at a time, because modes and factor are larger than a cache.
 fn each_response<T>(
     motions: &mut SmallMotions,
     modes: Option<&Modes>,
@@ -204,7 +207,8 @@ pub(crate) fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     product
 }
 
-/// Displacement of node i along its direction by a unit force on node j along its own, beyond the modes [m/N].
+/// Displacement of node i along its direction by a unit force on node j along its own, beyond the modes
+/// [m/N].
 pub(crate) fn flexibility(
     motions: &mut SmallMotions,
     modes: Option<&Modes>,
@@ -272,8 +276,8 @@ mod tests {
         *slots.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("a ring has nodes")
     }
 
-    /// Two opposite forces from within on a free ring: modal plus residual displacement under one of them equals the full static one,
-    /// however few modes there are, and the residual falls with their number.
+    /// Two opposite forces from within on a free ring: modal plus residual displacement under one of them
+    /// equals the full static one, however few modes there are, and the residual falls with their number.
     #[test]
     fn converges_a_static_deflection_is_that_of_all_elements() {
         const TOLERANCE: f64 = 1e-3;

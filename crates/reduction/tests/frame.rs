@@ -17,8 +17,9 @@ fn small(more: &str) -> Scene {
     Scene::parse(&text, "here").expect("a sound scene")
 }
 
-/// Of a frame on springs so soft that the ring stays round: both move together, in either direction, without resistance, or against
-/// each other with ω² = k (1/m + 1/M). Dampers of c take c (1/m + 1/M) of such a motion's momentum a second.
+/// Of a frame on springs so soft that the ring stays round: both move together, in either direction, without
+/// resistance, or against each other with ω² = k (1/m + 1/M). Dampers of c take c (1/m + 1/M) of such a
+/// motion's momentum a second.
 /// Source: two masses on a spring, Meirovitch 2001, §5.1.
 #[test]
 fn analytic_a_ring_on_springs_bounces_in_its_frame() {
@@ -48,9 +49,10 @@ fn analytic_a_ring_on_springs_bounces_in_its_frame() {
     }
 }
 
-/// A ring of the mass m in a frame of M on soft springs, which bounce against each other: α brakes the ring alone and takes α M/(m + M)
-/// of such a motion's momentum a second. In a rigid housing it takes nothing. With the housing's mass braked, too, the paper's ring in
-/// one of 10 kg had 25 dB too little where it bounces on its rollers.
+/// A ring of the mass m in a frame of M on soft springs, which bounce against each other: α brakes the ring
+/// alone and takes α M/(m + M) of such a motion's momentum a second. In a rigid housing it takes nothing.
+/// With the housing's mass braked, too, the paper's ring in one of 10 kg had 25 dB too little where it
+/// bounces on its rollers.
 /// Source: two masses on a spring, Meirovitch 2001, §5.1.
 #[test]
 fn analytic_mass_damping_brakes_no_frame() {

@@ -1,5 +1,5 @@
-//! Writes a reduced bearing, its state at the start and the state after one step into a file, for `one_step_in_wasm` of
-//! `stribeck-reduced`.
+//! Writes a reduced bearing, its state at the start and the state after one step into a file, for
+//! `one_step_in_wasm` of `stribeck-reduced`.
 
 use std::{env, error::Error, fs};
 

@@ -1,7 +1,7 @@
 //! An end of a pocket's wall that presses on a roller (THEORY §9.4).
 
-/// An end of a wall at the facet of a roller in the middle of its pocket. What it does hangs on its depth in the facet alone, whose gradient
-/// is the facet's normal.
+/// An end of a wall at the facet of a roller in the middle of its pocket. Its force depends on its depth in
+/// the facet alone, whose gradient is the facet's normal.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Corner {
     /// Length of cage that its own point stands for [m].
@@ -9,8 +9,8 @@ pub(crate) struct Corner {
     /// The same of each further point of the wall [m], and how many there are.
     share: f64,
     points: usize,
-    /// A point of the wall is less deep than the corner by its distance times this, which is the sine of how the wall leans, and by the
-    /// square of its distance times that [1/m], because the roller is round.
+    /// A point of the wall is less deep than the corner by its distance times this, which is the sine of how
+    /// the wall leans, and by the square of its distance times that [1/m], because the roller is round.
     lean: f64,
     bend: f64,
     /// What the corner cuts from the facet presses with half of a pass's penalty times this and depth².
@@ -18,14 +18,16 @@ pub(crate) struct Corner {
 }
 
 impl Corner {
-    /// `d` goes from the roller's centre to the corner, on the x axis the middle of the pocket, whose walls go along it, with the other side
-    /// of the corner at a right angle. The wall has facets of the length `facet` with `points` each, or, collocated, one at either end.
+    /// `d` goes from the roller's centre to the corner, on the x axis the middle of the pocket, whose walls
+    /// go along it, with the other side of the corner at a right angle. The wall has facets of the length
+    /// `facet` with `points` each, or, collocated, one at either end.
     pub(crate) fn new(d: [f64; 2], facet: f64, points: Option<usize>) -> Self {
         let distance = d[0].hypot(d[1]);
         let (cosine, sine) = ((d[1] / distance).abs().max(1e-3), (d[0] / distance).abs().max(1e-3));
         let (lean, bend) = (sine, 0.5 * cosine * cosine / distance);
-        // The cut is depth (cot a + tan a) long, between sides at the angles a and 90° − a to the facet; what is nearest to either presses
-        // along its normal. By the energy of all points, whose slope is along that of the facet.
+        // The cut is depth (cot a + tan a) long, between sides at the angles a and 90° − a to the facet; what
+        // is nearest to either presses along its normal. By the energy of all points, whose slope is along
+        // that of the facet.
         let wedge = 1.0 / (sine * cosine * (sine + cosine).powi(2));
         match points {
             Some(n) => {
@@ -36,8 +38,9 @@ impl Corner {
         }
     }
 
-    /// Force [N], stiffness [N/m] and stored energy [J] of a corner that is `depth` deep: of its own points, as far along the wall as they
-    /// lie in the facet, and of those of the roller in the wedge that it cuts from it, each with half of the `penalty` [N/m²].
+    /// Force [N], stiffness [N/m] and stored energy [J] of a corner that is `depth` deep: of its own points,
+    /// as far along the wall as they lie in the facet, and of those of the roller in the wedge that it cuts
+    /// from it, each with half of the `penalty` [N/m²].
     #[inline(always)]
     pub(crate) fn press(&self, penalty: f64, depth: f64) -> [f64; 3] {
         let half = 0.5 * penalty;

@@ -1,10 +1,12 @@
-//! A roller on a straight wall of its pocket: what of it lies beyond the wall, in series with what it gives way by (THEORY §9.4).
+//! A roller on a straight wall of its pocket: what of it lies beyond the wall, in series with what it gives
+//! way by (THEORY §9.4).
 
 use stribeck_modal::compliance::Curve;
 
 use crate::cage::polygon::{Cut, Polygon};
 
-/// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its centre.
+/// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its
+/// centre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Shape<'a> {
     Circle(f64),
@@ -44,18 +46,20 @@ pub(crate) struct OnFlat {
     pub(crate) stored: f64,
 }
 
-/// Most steps of Newton's method for the force, and the share of it below which the last one leaves its square.
+/// Most steps of Newton's method for the force, and the share of it below which the last one leaves its
+/// square.
 const STEPS: usize = 20;
 const ENOUGH: f64 = 1e-6;
 
-/// Force between a roller, `distance` from its centre to the flat, and the flat on a penalty [N/m²], where the roller gives way by `curve`;
-/// `None` where they are clear of each other.
+/// Force between a roller, `distance` from its centre to the flat, and the flat on a penalty [N/m²], where
+/// the roller gives way by `curve`; `None` where they are clear of each other.
 pub(crate) fn press(shape: Shape<'_>, distance: f64, penalty: f64, curve: &Curve) -> Option<OnFlat> {
     let mut cut = shape.cut(distance);
     if cut.area <= 0.0 {
         return None;
     }
-    // From the penalty alone, which is too much. The first step may go past the force, those after it come to it from one side.
+    // From the penalty alone, which is too much. The first step may go past the force, those after it come to
+    // it from one side.
     let mut force = penalty * cut.area;
     let mut flexibility = 0.0;
     for _ in 0..STEPS {
@@ -86,7 +90,8 @@ mod tests {
         Compliance::through(&[10.0, 1e3, 1e4], &[2e-8, 2e-6, 1.8e-5], 48).curve()
     }
 
-    /// Of many facets it is the circle: 4/3 p √(2Rp), the chord of which is the contact; of few it is what a walk along the outline adds up.
+    /// Of many facets it is the circle: 4/3 p √(2Rp), the chord of which is the contact; of few it is what a
+    /// walk along the outline adds up.
     /// Source: own, plane geometry.
     #[test]
     fn analytic_what_lies_beyond_a_flat_is_that_of_the_outline() {

@@ -102,8 +102,8 @@ struct Pressed {
     couple: f64,
 }
 
-/// A roller whose wall was nearer than this share of its radius in a step is still seen in the next, when half of the work of the last
-/// force is counted.
+/// A roller whose wall was nearer than this share of its radius in a step is still seen in the next, when
+/// half of the work of the last force is counted.
 const STILL_SEEN: f64 = 1.01;
 
 /// Rollers in the pockets of a cage, in one step.
@@ -117,8 +117,8 @@ pub(crate) struct InPockets<'a> {
 }
 
 impl InPockets<'_> {
-    /// Forces and moments on eight rollers by the walls of their pockets, added to theirs. Returns those on the cage: two components [N] and the
-    /// moment about its centre of mass [N m].
+    /// Forces and moments on eight rollers by the walls of their pockets, added to theirs. Returns those on
+    /// the cage: two components [N] and the moment about its centre of mass [N m].
     #[inline(always)]
     pub(crate) fn push<S: Simd>(
         &self,
@@ -155,7 +155,8 @@ impl InPockets<'_> {
         on_cage
     }
 
-    /// Those of eight rollers that touch one wall of their pockets each, or did so in the last step. The others let go of it.
+    /// Those of eight rollers that touch one wall of their pockets each, or did so in the last step. The
+    /// others let go of it.
     #[inline(always)]
     fn near_walls<S: Simd>(&self, simd: S, rows: &WallRows, centre: &Rows, walls: &mut Walls) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
@@ -177,7 +178,8 @@ impl InPockets<'_> {
             let [drag, damping] = load(simd, &walls.passive, at);
             let moved = (drag * drag).max(damping * damping);
             let reach = STILL_SEEN * top;
-            // A wall that was touched in the last step is still seen a little beyond the circle around the roller.
+            // A wall that was touched in the last step is still seen a little beyond the circle around the
+            // roller.
             let limit = zero.choose_below(moved, all(reach * reach), all(top * top));
             let touches = square.choose_below(limit, zero.choose_below(-within, zero, one), zero);
             touch |= touches.bits() << at;

@@ -2,12 +2,14 @@
 
 use crate::plane::{Rotation, Vec2};
 
-/// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A corner that passes a sharp vertex
-/// meets another force at once, and the step, which falls on it somewhere, gives or takes energy by its length; over a tenth of a facet,
-/// which takes several steps, that is gone, and a tenth of what vertices stand out by with it.
+/// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A
+/// corner that passes a sharp vertex meets another force at once, and the step, which falls on it somewhere,
+/// gives or takes energy by its length; over a tenth of a facet, which takes several steps, that is gone, and
+/// a tenth of what vertices stand out by with it.
 const ROUNDED: f64 = 0.05;
 
-/// What of a roller lies beyond a flat, over the penetration p and the distance u from the foot of its centre, counter-clockwise about it.
+/// Part of a roller beyond a flat, with the penetration p over the distance u from the foot of its
+/// centre, counter-clockwise about it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Cut {
     /// ∫ p du [m²].
@@ -52,14 +54,15 @@ pub(crate) struct Polygon {
     rounded: f64,
     /// Directions of the middles of the facets.
     middles: Vec<[f64; 2]>,
-    /// Cosine and sine of half the angle of a facet and of the whole, and the sine of what is not rounded of half of it.
+    /// Cosine and sine of half the angle of a facet and of the whole, and the sine of what is not rounded of
+    /// half of it.
     half_turn: [f64; 2],
     turn: [f64; 2],
     sine_sharp: f64,
 }
 
 impl Polygon {
-    /// With so many facets, and vertices on a circle [m].
+    /// With `facets` facets and vertices on a circle of a radius [m].
     pub(crate) fn new(facets: usize, radius: f64) -> Self {
         let half = std::f64::consts::PI / facets as f64;
         let rounded = 2.0 * half * ROUNDED;
@@ -79,8 +82,8 @@ impl Polygon {
         }
     }
 
-    /// How deep the point at `distance` from the centre in the direction `d` lies within [m], and by how much a metre along d and one
-    /// across it, counter-clockwise, bring it outwards.
+    /// Depth of the point at `distance` from the centre in the direction `d` [m], and how far
+    /// a metre along d and one across it, counter-clockwise, bring it outwards.
     #[inline(always)]
     pub(crate) fn depth(&self, d: [f64; 2], distance: f64) -> (f64, [f64; 2]) {
         let [cosine, sine] = self.beside_middle(d);
@@ -88,7 +91,8 @@ impl Polygon {
         if sine.abs() <= self.sine_sharp {
             return (self.apothem - distance * cosine, [cosine, sine]);
         }
-        // Beside a vertex the distance from it is that of a parabola, which is even there and goes on smoothly.
+        // Beside a vertex the distance from it is that of a parabola, which is even there and goes on
+        // smoothly.
         let tilt = sine.asin();
         let from_vertex = self.half - tilt.abs();
         let smooth = 0.5 * (from_vertex * from_vertex / self.rounded + self.rounded);
@@ -163,9 +167,9 @@ fn rough_turns(x: f64, y: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// All around polygons of few and of many facets: beside a middle as deep as below the line through both vertices, beside a vertex less
-    /// deep than that by no more than the vertex stands out by, at a vertex as deep as its parabola and even, and everywhere the gradient is that
-    /// of the depth.
+    /// All around polygons of few and of many facets: beside a middle as deep as below the line through both
+    /// vertices, beside a vertex less deep than that by no more than the vertex stands out by, at a vertex as
+    /// deep as its parabola and even, and everywhere the gradient is that of the depth.
     /// Source: own, plane geometry.
     #[test]
     fn analytic_depths_are_those_below_facets_and_their_gradients_theirs() {

@@ -1,4 +1,5 @@
-//! Eight facets of a boundary about a contact, seen at once: in vectors, and only where all of them go by with growing u.
+//! Eight facets of a boundary about a contact, seen at once: in vectors, and only where all of them go by
+//! with growing u.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -22,8 +23,8 @@ pub struct EightFacets {
 }
 
 impl EightFacets {
-    /// Sees the facets about that of a view; false where a wall or the far side of the boundary is among them. `along` says
-    /// whether vertices go by along +t.
+    /// Sees the facets about that of a view; false where a wall or the far side of the boundary is among
+    /// them. `along` says whether vertices go by along +t.
     #[inline(always)]
     pub(crate) fn look<S: Simd>(&mut self, simd: S, view: &View<'_>, along: bool) -> bool {
         let n = view.outline.len();
@@ -78,8 +79,8 @@ impl EightFacets {
     }
 }
 
-/// Goes along roller and raceway up to `reach` [m] to either side, and hands over what lies between two places where neither
-/// has a vertex. False, and nothing handed over, where the eights do not reach so far.
+/// Goes along roller and raceway up to `reach` [m] to either side, and hands over what lies between two
+/// places where neither has a vertex. False, and nothing handed over, where the eights do not reach so far.
 #[inline(always)]
 pub(crate) fn segments<S: Simd>(
     simd: S,
@@ -103,7 +104,8 @@ pub(crate) fn segments<S: Simd>(
         if end >= reach {
             break;
         }
-        // A branch, because the processor guesses it: mostly one passes after the other. The last facet ends beyond the reach.
+        // A branch, because the processor guesses it: mostly one passes after the other. The last facet ends
+        // beyond the reach.
         if of_roller <= of_raceway { i = (i + 1) % LANES } else { j = (j + 1) % LANES }
     }
     true

@@ -1,4 +1,5 @@
-//! What a raceway does to eight rollers that it is pressed against: normal force, damping and friction (THEORY §9.4).
+//! What a raceway does to eight rollers that it is pressed against: normal force, damping and friction
+//! (THEORY §9.4).
 
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
@@ -43,8 +44,9 @@ pub(crate) struct ContactLaw {
 }
 
 impl ContactLaw {
-    /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. `heat` grows by twice the power against friction and
-    /// damping [W]; `energy`, where it is asked for, by what penalty and springs of friction store.
+    /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. `heat` grows by twice
+    /// the power against friction and damping [W]; `energy`, where it is asked for, by what penalty and
+    /// springs of friction store.
     #[inline(always)]
     pub(crate) fn push<S: Simd>(
         &self,

@@ -1,5 +1,6 @@
-//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies flexibility way by (THEORY §9.3). Eight
-//! rollers side by side, and one by itself where its force is far from what was expected.
+//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies
+//! flexibility way by (THEORY §9.3). Eight rollers side by side, and one by itself where its force is far
+//! from what was expected.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -15,12 +16,13 @@ use crate::{
     rollers::{Rim, Rollers, block::Contacts},
 };
 
-/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's method after each.
+/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's
+/// method after each.
 const SEARCHES: usize = 4;
 const NEWTON: usize = 2;
 
-/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap was integrated, its
-/// series leaves an error of the third power.
+/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap
+/// was integrated, its series leaves an error of the third power.
 const ENOUGH: f64 = 3e-2;
 const LITTLE: f64 = 1e-2;
 
@@ -52,8 +54,8 @@ pub(crate) struct RollerOnRaceway<'a> {
 }
 
 impl ContactLaw {
-    /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when centres and directions of vertex 0
-    /// are known in its frame. `parts` is room to compute in.
+    /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when
+    /// centres and directions of vertex 0 are known in its frame. `parts` is room to compute in.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -120,7 +122,8 @@ impl ContactLaw {
         }
     }
 
-    /// What the bodies flexibility way by at the forces that are expected, and how far from their middles contacts may reach then.
+    /// What the bodies flexibility way by at the forces that are expected, and how far from their middles
+    /// contacts may reach then.
     #[inline(always)]
     fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut Contacts) {
         let all = |value: f64| Vector::all(simd, value);
@@ -164,8 +167,8 @@ impl ContactLaw {
         }
     }
 
-    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then; `parts` is room for that. Returns those that have to be looked at
-    /// by themselves, because a wall is near.
+    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then; `parts`
+    /// is room for that. Returns those that have to be looked at by themselves, because a wall is near.
     #[inline(always)]
     fn integrate<S: Simd>(
         simd: S,
@@ -317,8 +320,8 @@ impl ContactLaw {
     }
 }
 
-/// A direction in the roller's own frame: turned back by its spin. Products are rounded here, so that eight rollers side by side see the
-/// bits of one.
+/// A direction in the roller's own frame: turned back by its spin. Products are rounded here, so that eight
+/// rollers side by side see the bits of one.
 #[inline(always)]
 fn turned_back<N: Number>([c, s]: [N; 2], d: [N; 2]) -> [N; 2] {
     [c * d[0] + s * d[1], c * d[1] - s * d[0]]

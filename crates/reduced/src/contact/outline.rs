@@ -1,9 +1,9 @@
-//! Boundaries of raceways and rollers, and how a roller's centre sees them (THEORY §9.3): d points to the raceway and t is d
-//! turned by a right angle; a point is (u, h), u along t and h along d.
+//! Boundaries of raceways and rollers, and how a roller's centre sees them (THEORY §9.3): d points to the
+//! raceway and t is d turned by a right angle; a point is (u, h), u along t and h along d.
 
 use stribeck_simd::lanes::Number;
 
-/// So many vertices are repeated before the first and after the last one, for who reads several at once.
+/// Vertices repeated before the first and after the last one, for vector loads.
 pub(crate) const PAD: usize = 16;
 
 /// Closed boundary of a raceway or roller, counter-clockwise, in the frame of its body.
@@ -74,7 +74,8 @@ impl Outline {
         self.x.is_empty()
     }
 
-    /// Whether neither a facet nor its neighbours are walls: seen from a roller that it is near to, it goes by with growing u.
+    /// Whether neither a facet nor its neighbours are walls: seen from a roller that it is near to, it goes
+    /// by with growing u.
     #[inline(always)]
     pub(crate) fn is_plain(&self, facet: usize) -> bool {
         self.plain[facet]
@@ -90,8 +91,8 @@ impl Outline {
         if i == 0 { self.x.len() - 1 } else { i - 1 }
     }
 
-    /// The facet that the ray from `from` along `d` goes through, near facet `hint`. With `sign` −1 seen from outside, where
-    /// vertices go by the other way.
+    /// The facet that the ray from `from` along `d` goes through, near facet `hint`. With `sign` −1 seen from
+    /// outside, where vertices go by the other way.
     #[inline(always)]
     pub fn facet_along(&self, from: [f64; 2], d: [f64; 2], hint: usize, sign: f64) -> usize {
         let side = |i: usize| sign * (d[0] * (self.y[i] - from[1]) - d[1] * (self.x[i] - from[0]));
@@ -155,7 +156,8 @@ impl<N: Number> Facet<N> {
         (u - self.from) * (self.to - u)
     }
 
-    /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its slope, as a series.
+    /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its
+    /// slope, as a series.
     #[inline(always)]
     pub(crate) fn stretch(&self) -> N {
         let square = self.slope * self.slope;
@@ -166,13 +168,13 @@ impl<N: Number> Facet<N> {
     }
 }
 
-/// What becomes of the parts between two places where neither boundary has a vertex. A trait, because what a closure does is
-/// compiled without the vectors' instruction set.
+/// What becomes of the parts between two places where neither boundary has a vertex. A trait, because what a
+/// closure does is compiled without the vectors' instruction set.
 pub(crate) trait Parts {
     /// Takes the part between two places along t [m], below these facets of roller and raceway.
     fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet);
-    /// Takes a wall of the roller that leans over its own boundary: at `u` one facet of the roller ends and another goes on, higher or
-    /// lower.
+    /// Takes a wall of the roller that leans over its own boundary: at `u` one facet of the roller ends and
+    /// another goes on, higher or lower.
     fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet);
 }
 

@@ -1,4 +1,4 @@
-//! How far a roller sinks into a raceway, integrated exactly over the facets that overlap (THEORY §9.3).
+//! Penetration of a roller into a raceway, integrated exactly over the facets that overlap (THEORY §9.3).
 //!
 //! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
 
@@ -16,7 +16,8 @@ use crate::{
 pub struct Sides {
     /// Whether the vertices of the raceway go by along +t: those of the outer one do.
     pub along: bool,
-    /// Height of the parabola over a segment of unit length [1/m]: half the relative curvature for arcs, 0 for chords.
+    /// Height of the parabola over a segment of unit length [1/m]: half the relative curvature for arcs, 0
+    /// for chords.
     pub bulge: f64,
     /// Curvature of the roller [1/m]; 0 for chords.
     pub curvature: f64,
@@ -51,17 +52,17 @@ pub struct Penetration<N = f64> {
     pub slope: N,
     /// ∫ (u + h h′) du over the overlap [m²].
     pub arm: N,
-    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins), less what arcs stay as d turns [m³]: by how much
-    /// the square grows with a turn of d by one towards t.
+    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins), less what arcs stay as
+    /// d turns [m³]: by how much the square grows with a turn of d by one towards t.
     pub skew: N,
-    /// By how much the overlap is shorter for a shift [1]: the sum of 1/|p′| over its ends.
+    /// Decrease of the length with a shift [1]: the sum of 1/|p′| over both ends.
     pub ends: N,
     /// Deepest penetration [m].
     pub deepest: N,
 }
 
 impl<N: Number> Penetration<N> {
-    /// Nothing overlaps; `zero` tells the kind of number.
+    /// No penetration; `zero` gives the kind of number.
     #[inline(always)]
     pub fn none(zero: N) -> Self {
         Self {
@@ -93,7 +94,8 @@ impl<N: Number> Penetration<N> {
     #[inline(always)]
     pub fn shifted(&self, shift: N, [area, length]: [N; 2]) -> Self {
         let (zero, half, sixth) = (shift.constant(0.0), shift.constant(0.5), shift.constant(1.0 / 6.0));
-        // p² falls by 2 ∫ p ds, and ∫ p ds holds two thirds of a step of the curvature (Simpson's rule on a parabola).
+        // p² falls by 2 ∫ p ds, and ∫ p ds holds two thirds of a step of the curvature (Simpson's rule on a
+        // parabola).
         let mean = self.area - shift * (half * self.length - sixth * self.ends * shift);
         let over = zero.choose_below(self.length, self.length, shift.constant(1.0));
         let share = zero.choose_below(self.length, length / over, zero);
@@ -221,7 +223,8 @@ impl<'a, S: Simd> Pair<'a, S> {
         Self { simd, roller, raceway, sides, eights, in_eights }
     }
 
-    /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either side.
+    /// The overlap of a roller that is pressed back by `shift` [m], looked for up to `reach` [m] to either
+    /// side.
     #[inline(always)]
     pub fn penetration(&self, shift: f64, reach: f64) -> Penetration {
         let sides = self.sides;
@@ -315,8 +318,9 @@ impl Parts for Arcs {
     }
 }
 
-/// Adds what a wall of the roller that leans over does to the overlap, though no part holds it: its upper corner hides what is below,
-/// and there the penetration goes from one value to another [m]. Both come with the height of the roller.
+/// Adds what a wall of the roller that leans over does to the overlap, though no part holds it: its upper
+/// corner hides what is below, and there the penetration goes from one value to another [m]. Both come with
+/// the height of the roller.
 #[inline(always)]
 fn jump(sum: &mut Penetration, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
     let [corner, deepest] = [h1.max(h2), p1.max(p2)];
@@ -396,8 +400,8 @@ fn chords<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], [p1, p2]: [N; 2
     sum.deepest = sum.deepest.max(higher);
 }
 
-/// A part between two parabolas on chords: penetration at both ends [m], the curvature of the roller and half the relative one over u
-/// [1/m].
+/// A part between two parabolas on chords: penetration at both ends [m], the curvature of the roller and half
+/// the relative one over u [1/m].
 #[derive(Clone, Copy)]
 struct Round<N> {
     p: [N; 2],
@@ -415,7 +419,8 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
     let (of_r, of_w) = (half * curvature, of_raceway);
     let p1 = p1 + of_r * r.inside(u1) + of_w * w.inside(u1);
     let p2 = p2 + of_r * r.inside(u2) + of_w * w.inside(u2);
-    // A wall of the roller is no arc, and what a raceway curves away over it, narrow as it is, no more than rounding.
+    // A wall of the roller is no arc, and what a raceway curves away over it, narrow as it is, no more than
+    // rounding.
     let bulge = half.times_plus(curvature, of_raceway).max(shift.constant(0.0));
     Round { p: [p1, p2], curvature, bulge }
 }
@@ -423,8 +428,8 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
 /// The outer points of Gauss' rule with three of them, √0.6.
 const GAUSS: f64 = 0.774_596_669_241_483_4;
 
-/// Penetration at τ, times what the arc of the roller stands out from its chord and the slope of that, less the same of the raceway; with
-/// half of both curvatures over u [1/m].
+/// Penetration at τ, times what the arc of the roller stands out from its chord and the slope of that, less
+/// the same of the raceway; with half of both curvatures over u [1/m].
 #[inline(always)]
 fn leaning<N: Number>(
     tau: N,
@@ -489,11 +494,13 @@ fn arcs<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], seen: Round<N>, r
     sum.square = sum.square + square;
     sum.length = sum.length + width;
     sum.first = width.times_plus(middle, sum.first);
-    // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out, in a defect more.
+    // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out,
+    // in a defect more.
     let lean = (half * curvature).times_plus(r.from + r.to, r.slope);
     sum.across = lean.times_plus(i0, sum.across) - curvature * first;
-    // By how much the roller's height h grows with its angle: u + h h′, but for the product of the arc's height over the chord and the
-    // slope of that, because a parabola on a chord that turns stays one. Over τ it is a₀ + a₁ τ + a₂ τ².
+    // Growth of the roller's height h with its angle: u + h h′, but for the product of the arc's
+    // height over the chord and the slope of that, because a parabola on a chord that turns stays one. Over τ
+    // it is a₀ + a₁ τ + a₂ τ².
     let (before, behind) = (u1 - r.from, r.to - u1);
     let (chord, tip) = (r.slope.times_plus(u1, r.base), curvature * (behind - before));
     let inside = half * (curvature * r.slope * before * behind + chord * tip);
@@ -505,7 +512,8 @@ fn arcs<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], seen: Round<N>, r
     sum.arm = length.times_plus(arm0.times_plus(t0, arm1.times_plus(t1, arm2 * t2)), sum.arm);
     let (pa, pz) = (c.times_plus(from, b).times_plus(from, p1), c.times_plus(to, b).times_plus(to, p1));
     let skewed = (lean - curvature * middle).times_plus(square, third * (pz * pz * pz - pa * pa * pa));
-    // As in the moment, but for both bodies and with d: parabolas on chords stay parabolas. Gauss' rule with three points is exact.
+    // As in the moment, but for both bodies and with d: parabolas on chords stay parabolas. Gauss' rule with
+    // three points is exact.
     let of_both = [half * curvature, bulge - half * curvature];
     let (beside, centre) = (u1.constant(0.5 * GAUSS) * (to - from), half * (from + to));
     let first = leaning(centre - beside, [u1, length], [p1, b, c], of_both, [r, w]);

@@ -34,13 +34,15 @@ impl ContactLaw {
             let (centre, radial) = (load(simd, &block.centre, at), load(simd, &block.radial, at));
             let (velocity, spin) = (load(simd, &block.velocity, at), Vector::load(simd, &block.spin, at));
             let (moving, tilt) = (load(simd, &block.moving, at), load(simd, &block.tilt, at));
-            // The raceway under the roller moves with the modes, and because the roller goes on to another place of it.
+            // The raceway under the roller moves with the modes, and because the roller goes on to another
+            // place of it.
             let orbit = velocity[1].times_plus(radial[0], -(velocity[0] * radial[1])) / distance;
             let mut relative =
                 [velocity[0] - moving[0] - orbit * tilt[0], velocity[1] - moving[1] - orbit * tilt[1]];
             let mut race = all(0.0);
             if let Some(outer) = outer {
-                // It turns about its own centre, which the load has moved: drive and friction see the same velocity of it.
+                // It turns about its own centre, which the load has moved: drive and friction see the same
+                // velocity of it.
                 race = all(outer.rate);
                 let along = race * (Vector::load(simd, &on_outer.distance, at) + arm);
                 let (d, [rx, ry]) = (load(simd, &on_outer.d, at), outer.back(simd, relative));
@@ -58,7 +60,8 @@ impl ContactLaw {
             }
             let [fx, fy] = force;
             store(force, &mut block.force[0], at);
-            // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY §9.3).
+            // Along its path the roller meets the raceway displaced more or less: it goes downhill (THEORY
+            // §9.3).
             let downhill = -(fx.times_plus(tilt[0], fy * tilt[1]) / distance);
             let uphill = [-(downhill * radial[1]), downhill * radial[0]];
             store(uphill, &mut block.downhill, at);

@@ -1,7 +1,8 @@
 //! Parts of one overlap, kept from step to step and seen side by side (THEORY §9.3).
 //!
-//! A part lies between two places where neither roller nor raceway has a vertex. Which facets meet in it changes when vertices pass each
-//! other or the middle of the contact, every fifty steps or so; in between their vertices only have to be seen anew, all in vectors.
+//! A part lies between two places where neither roller nor raceway has a vertex. Which facets meet in it
+//! changes when vertices pass each other or the middle of the contact, every fifty steps or so; in between
+//! their vertices only have to be seen anew, all in vectors.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -15,13 +16,14 @@ use crate::{
 /// Most parts of an overlap that are kept.
 const MOST: usize = 2 * LANES;
 
-/// Parts of a roller and a raceway with growing u, all of whose facets are plain. Part k from the middle of the contact is in lane k
-/// modulo eight, so that sums over all of them are the same wherever the list begins.
+/// Parts of a roller and a raceway with growing u, all of whose facets are plain. Part k from the middle of
+/// the contact is in lane k modulo eight, so that sums over all of them are the same wherever the list
+/// begins.
 #[derive(Debug, Clone, Default)]
 #[repr(align(64))]
 pub(crate) struct Segments {
-    /// x and y of both ends of the roller's facet, then of the raceway's, in the frames of their bodies. Where there is no part the
-    /// first one stands again …
+    /// x and y of both ends of the roller's facet, then of the raceway's, in the frames of their bodies.
+    /// Where there is no part the first one stands again …
     columns: [[f64; MOST]; 8],
     /// … and not one.
     present: [f64; MOST],
@@ -31,7 +33,8 @@ pub(crate) struct Segments {
     middle: usize,
 }
 
-/// How roller and raceway are seen: d in the frame of each, and the roller's centre in that of the raceway [m].
+/// How roller and raceway are seen: d in the frame of each, and the roller's centre in that of the raceway
+/// [m].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pose {
     pub(crate) own: [f64; 2],
@@ -40,8 +43,9 @@ pub(crate) struct Pose {
 }
 
 impl Segments {
-    /// The overlap of a roller that is pressed back by `shift` [m], into `found` by parts, in its first lanes. False where the parts are no
-    /// longer in this order, the middle has gone on to other facets, or `reach` [m] goes beyond them.
+    /// The overlap of a roller that is pressed back by `shift` [m], into `found` by parts, in its first
+    /// lanes. False where the parts are no longer in this order, the middle has gone on to other facets, or
+    /// `reach` [m] goes beyond them.
     #[inline(always)]
     pub(crate) fn penetration<S: Simd>(
         &self,
@@ -83,7 +87,8 @@ impl Segments {
         wrong == 0 && before != every && behind != every && (middle >> self.middle) & 1 == 1
     }
 
-    /// Lists the parts anew, as far as to `reach` [m] to either side. None are left where a wall is among them or there are too many.
+    /// Lists the parts anew, as far as to `reach` [m] to either side. None are left where a wall is among
+    /// them or there are too many.
     #[inline(always)]
     pub(crate) fn list(&mut self, [roller, raceway]: &[View<'_>; 2], along: bool, reach: f64) {
         self.groups = 0;
@@ -122,7 +127,8 @@ impl Segments {
     }
 }
 
-/// A facet between its ends: where they are seen, the height of the first, and by how much the last is higher.
+/// A facet between its ends: where they are seen, the height of the first, and by how much the last is
+/// higher.
 struct Projected<N> {
     from: N,
     to: N,
@@ -145,7 +151,8 @@ impl<N: Number> Projected<N> {
     }
 }
 
-/// Facets of two bodies as they are seen along d, the first and last ends of which are given from where they are seen.
+/// Facets of two bodies as they are seen along d, the first and last ends of which are given from where they
+/// are seen.
 #[inline(always)]
 fn seen<N: Number>(d: [[N; 2]; 2], first: [[N; 2]; 2], last: [[N; 2]; 2]) -> [Facet<N>; 2] {
     let [r, w] = [Projected::of(d[0], first[0], last[0]), Projected::of(d[1], first[1], last[1])];

@@ -1,9 +1,11 @@
-//! What roller and raceway give under a film: penalty on a round contact, and in series with it the bodies behind (THEORY §9.3).
+//! Deflection of roller and raceway under a film: penalty on a round contact in series with the local
+//! compliance (THEORY §9.3).
 
 use stribeck_film::Spring;
 use stribeck_modal::compliance::{Compliance, Curve};
 
-/// Corrections of the force at a depth at most, and the share of it below which the last one leaves its square: nothing.
+/// Corrections of the force at a depth at most, and the share of it below which the last one leaves its
+/// square: nothing.
 const CORRECTIONS: usize = 30;
 const ENOUGH: f64 = 1e-8;
 
@@ -26,7 +28,7 @@ impl BodySpring {
         }
     }
 
-    /// By how much a force grows with the depth [N/m].
+    /// Growth of a force with the depth [N/m].
     pub(crate) fn stiffness(&self, force: f64) -> f64 {
         if force > 0.0 { 1.0 / self.depth(force).1 } else { 0.0 }
     }

@@ -1,4 +1,5 @@
-//! What films of oil do to rollers, and through them to modes and rings, in a step and at the start (THEORY §9.4, §9.5).
+//! What films of oil do to rollers, and through them to modes and rings, in a step and at the start (THEORY
+//! §9.4, §9.5).
 
 use stribeck_simd::lanes::LANES;
 
@@ -13,7 +14,7 @@ use crate::{
 /// What films do to eight rollers, beside the forces on these.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct OilForces {
-    /// What they carry at the outer raceway [N], and by how much that falls when it gives way [N/m].
+    /// Normal force at the outer raceway [N], and its decrease as the raceway recedes [N/m].
     pub(crate) normal: [f64; LANES],
     pub(crate) stiffness: [f64; LANES],
     /// Moments that the drives of outer and inner ring make good [N m].
@@ -35,7 +36,8 @@ impl Lubrication {
         films
     }
 
-    /// Forces on a roller by the films of steady rolling at the outer and the inner raceway, away from these [N].
+    /// Forces on a roller by the films of steady rolling at the outer and the inner raceway, away from these
+    /// [N].
     pub(crate) fn carried(
         &self,
         rollers: &Rollers,
@@ -55,7 +57,8 @@ impl Lubrication {
         [-outwards[0], outwards[1]]
     }
 
-    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no clearance.
+    /// Between which distances from the bearing's centre a roller floats in oil [m]; `None` when it has no
+    /// clearance.
     pub(crate) fn floating(
         &self,
         rollers: &Rollers,
@@ -74,7 +77,8 @@ impl Lubrication {
         Some([at - gaps[1], at + gaps[0]]).filter(|[low, high]| low < high)
     }
 
-    /// Adds the forces of films to those on eight rollers between the raceways, the outer and the inner one of which turn as given.
+    /// Adds the forces of films to those on eight rollers between the raceways, the outer and the inner one
+    /// of which turn as given.
     #[inline(never)]
     pub(crate) fn add_film_forces(
         &self,
@@ -94,7 +98,8 @@ impl Lubrication {
             let [tx, ty] = of_one(&block.tilt, lane);
             let distance = block.distance[lane];
             let orbit = (x * vy - y * vx) / (distance * distance);
-            // The outer raceway under the roller moves with the modes, and because the roller goes on to another place of it.
+            // The outer raceway under the roller moves with the modes, and because the roller goes on to
+            // another place of it.
             let from_raceway = [[x - bx, y - by], [x, y]];
             let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
             for (k, race) in self.raceways.iter().enumerate() {
@@ -132,7 +137,8 @@ impl Lubrication {
 }
 
 impl Rollers {
-    /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former displaced.
+    /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former
+    /// displaced.
     fn view_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> RollerView {
         let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
         let [x, y] = [state.x[i], state.y[i]];

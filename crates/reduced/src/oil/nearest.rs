@@ -1,4 +1,5 @@
-//! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast both sweep past there.
+//! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast
+//! both sweep past there.
 
 use stribeck_film::{Land, Place, Point};
 use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};

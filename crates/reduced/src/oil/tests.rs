@@ -35,9 +35,9 @@ fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> RollerView {
     RollerView { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
 }
 
-/// What a weight does to a roller between the raceways: place, velocity and thickness of the outer film above the least, by
-/// F = 3√2 π η L (R/h)^{3/2} (−ḣ) in the film that closes, nothing in the one that opens (A. Cameron, The Principles of Lubrication,
-/// Longmans 1966, chapter 7), and springs in series.
+/// What a weight does to a roller between the raceways: place, velocity and thickness of the outer film above
+/// the least, by F = 3√2 π η L (R/h)^{3/2} (−ḣ) in the film that closes, nothing in the one that opens (A.
+/// Cameron, The Principles of Lubrication, Longmans 1966, chapter 7), and springs in series.
 struct Sinking {
     at: [f64; 3],
 }
@@ -72,12 +72,13 @@ impl Sinking {
     }
 }
 
-/// The thickness of the film under a roller that is driven into it from 10 µm to 3.5 µm, where the circles are about to overlap and
-/// contact would act, too, against [`Sinking`]; the film goes by implicit steps of the first order. A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7.
+/// The thickness of the film under a roller that is driven into it from 10 µm to 3.5 µm, where the circles
+/// are about to overlap and contact would act, too, against [`Sinking`]; the film goes by implicit steps of
+/// the first order. A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7.
 #[test]
 fn analytic_a_roller_sinks_through_its_film() {
-    // At 0.15 m/s it closes by its own thickness in some 25 µs: steps of 0.125 µs leave about as much as they are of that, and half as
-    // much half as long.
+    // At 0.15 m/s it closes by its own thickness in some 25 µs: steps of 0.125 µs leave about as much as they
+    // are of that, and half as much half as long.
     const TOLERANCE: f64 = 0.01;
     const ORDER: std::ops::Range<f64> = 0.8..1.2;
     let raceways = [race(OUTER, true), race(INNER, false)];
@@ -110,9 +111,10 @@ fn analytic_a_roller_sinks_through_its_film() {
     assert!(ORDER.contains(&(coarse / fine).log2()), "{coarse}, {fine}");
 }
 
-/// Rolling without slip both surfaces sweep past a contact as fast as the contact past the raceway (THEORY §5.1); pivoting about a corner
-/// without slip draws in nothing; a roller that spins in place draws in half of its own speed. Plane kinematics of a rolling circle:
-/// T. A. Harris, Rolling Bearing Analysis, Wiley 2001, chapter 8.
+/// Rolling without slip both surfaces sweep past a contact as fast as the contact past the raceway (THEORY
+/// §5.1); pivoting about a corner without slip draws in nothing; a roller that spins in place draws in half
+/// of its own speed. Plane kinematics of a rolling circle: T. A. Harris, Rolling Bearing Analysis, Wiley
+/// 2001, chapter 8.
 #[test]
 fn analytic_entrainment_follows_from_rolling() {
     const ROUNDING: f64 = 1e-9;

@@ -33,22 +33,24 @@ pub(crate) struct Block {
     /// From the bearing's centre [m], and the direction there.
     pub(crate) distance: Row,
     pub(crate) radial: Rows,
-    /// The direction in the frame of the outer raceway, both ends of the facet that it goes through there, and for whom these are known.
+    /// The direction in the frame of the outer raceway, both ends of the facet that it goes through there,
+    /// and for whom these are known.
     pub(crate) along: Rows,
     pub(crate) ends: [Rows; 2],
     pub(crate) placed: u64,
-    /// The place on the outer raceway: facet and share of its second vertex; one over the angle that the facet
-    /// takes [1/rad]; displacement there [m], velocity [m/s], and change of the displacement with the angle [m/rad].
+    /// The place on the outer raceway: facet and share of its second vertex; one over the angle that the
+    /// facet takes [1/rad]; displacement there [m], velocity [m/s], and change of the displacement with the
+    /// angle [m/rad].
     pub(crate) facet: [u32; LANES],
     pub(crate) share: Row,
     pub(crate) per_angle: Row,
     pub(crate) by: Rows,
     pub(crate) moving: Rows,
     pub(crate) tilt: Rows,
-    /// By how much the raceway may have moved under them at most since these were known [m].
+    /// Largest displacement of the raceway under them since these were known [m].
     pub(crate) drift: Row,
-    /// What these come from: by the modes, as [`Bearing::moved`] says, and by the seat at both vertices, roller by roller in parts, and
-    /// summed.
+    /// What these come from: by the modes, as [`Bearing::moved`] says, and by the seat at both vertices,
+    /// roller by roller in parts, and summed.
     pub(crate) parts_of_motion: [[Row; 8]; LANES],
     pub(crate) moved: [Row; 8],
     /// At outer and inner raceway.
@@ -67,28 +69,29 @@ pub(crate) struct Block {
 /// Contacts of eight rollers with a raceway, in the frame of its outline.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Contacts {
-    /// What the state holds of them: normal force of the last step and by how much it had grown [N], elastic slip [m], drag and damping
-    /// force [N] and damping moment [N m], facets of roller and raceway.
+    /// From the state: normal force of the last step and its growth [N], elastic
+    /// slip [m], drag and damping force [N] and damping moment [N m], facets of roller and raceway.
     pub(crate) force: Row,
     pub(crate) growth: Row,
     pub(crate) slip: Row,
     pub(crate) passive: [Row; 3],
     pub(crate) hints: [[u32; 2]; LANES],
-    /// Centre, its distance from that of the raceway, the direction of the roller's vertex 0, and that to the contact, in the frame of the
-    /// roller, too.
+    /// Centre, its distance from that of the raceway, the direction of the roller's vertex 0, and that to the
+    /// contact, in the frame of the roller, too.
     pub(crate) centre: Rows,
     pub(crate) distance: Row,
     pub(crate) spin: Rows,
     pub(crate) d: Rows,
     pub(crate) own: Rows,
-    /// Circle that nothing of the raceway stands out from there [m], and the depth between the circles around both.
+    /// Circle that nothing of the raceway stands out from there [m], and the depth between the circles around
+    /// both.
     pub(crate) bound: Row,
     pub(crate) most: Row,
     /// Those that may touch.
     pub(crate) near: u64,
     pub(crate) segments: [Segments; LANES],
-    /// What the search for the force begins with: a force [N] and its root, what the bodies flexibility way by at it [m], the derivative of that
-    /// [m/N], and how far from its middle the contact may reach [m].
+    /// What the search for the force begins with: a force [N] and its root, what the bodies flexibility way
+    /// by at it [m], the derivative of that [m/N], and how far from its middle the contact may reach [m].
     pub(crate) start: Row,
     pub(crate) root: Row,
     pub(crate) shift: Row,
@@ -105,7 +108,7 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
-    /// By how much the force on one of the rollers falls when the raceway gives way [N/m].
+    /// Stiffness of one contact as the raceway recedes and the roller stays [N/m].
     #[inline(always)]
     pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {
         let own = penalty * self.overlap.length[lane];
@@ -178,7 +181,8 @@ impl Block {
         }
     }
 
-    /// Begins a sample, of which `anew` is a roller: its direction is taken from its angle, because turning it step by step rounds.
+    /// Begins a sample, of which `anew` is a roller: its direction is taken from its angle, because turning
+    /// it step by step rounds.
     pub(crate) fn begin(&mut self, bearing: &Bearing, anew: usize) {
         self.sums = Default::default();
         // A roller that is clear of the outer raceway goes along it nevertheless.
@@ -221,7 +225,8 @@ impl Block {
                 state.passive[k][i] = contacts.passive.map(|column| column[lane]);
                 state.hints[k][i] = contacts.hints[lane];
             }
-            // Not that of the contact, which goes on only when its parts are listed: a continued run lists them earlier.
+            // Not that of the contact, which goes on only when its parts are listed: a continued run lists
+            // them earlier.
             state.hints[0][i][1] = self.facet[lane];
             for (side, walls) in self.walls.iter().enumerate() {
                 state.wall_slip[i][side] = walls.slip[lane];

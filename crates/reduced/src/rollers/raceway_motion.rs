@@ -33,8 +33,8 @@ impl Bearing {
         }
     }
 
-    /// Finds the places of eight rollers, whose facets are known, by raceways that may turn. No vertex of the outer one has moved by more
-    /// than `farthest` [m] in this step.
+    /// Finds the places of eight rollers, whose facets are known, by raceways that may turn. No vertex of the
+    /// outer one has moved by more than `farthest` [m] in this step.
     #[inline(always)]
     pub(crate) fn locate_on_raceways<S: Simd>(
         &self,
@@ -82,8 +82,8 @@ impl Bearing {
         }
     }
 
-    /// Rollers that cannot touch the outer raceway, wherever it has moved since they were looked at: where it is under them need not be
-    /// known (THEORY §9.3).
+    /// Rollers that cannot touch the outer raceway, wherever it has moved since they were looked at: where it
+    /// is under them need not be known (THEORY §9.3).
     #[inline(always)]
     fn clear_of_raceway<S: Simd>(
         &self,
@@ -101,7 +101,8 @@ impl Bearing {
             let [tx, ty] = load(simd, &block.tilt, at);
             let speed = vx.times_plus(vx, vy * vy).sqrt();
             let steep = tx.times_plus(tx, ty * ty).sqrt();
-            // Both vertices move, and by as much the slope between them may change while the roller goes along.
+            // Both vertices move, and by as much the slope between them may change while the roller goes
+            // along.
             let along = dt * (speed / Vector::load(simd, &block.distance, at) + race);
             let further = steep.times_plus(along, all(3.0 * farthest));
             let drift = Vector::load(simd, &block.drift, at) + further;
@@ -137,8 +138,8 @@ impl Bearing {
         }
     }
 
-    /// How the rays to eight rollers go through the facets of the outer raceway that they went through last. Returns those that have
-    /// gone on to another one.
+    /// How the rays to eight rollers go through the facets of the outer raceway that they went through last.
+    /// Returns those that have gone on to another one.
     #[inline(always)]
     fn test_facets<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<RingRotation>) -> u64 {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));

@@ -33,7 +33,8 @@ impl AsMut<[f64]> for Row {
     }
 }
 
-/// The same in single precision: of a table that is looked up in every step, and has been rounded for all its uses.
+/// The same in single precision: of a table that is looked up in every step, and has been rounded for all its
+/// uses.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(32))]
 pub(crate) struct Single([f32; LANES]);
@@ -94,7 +95,8 @@ pub(crate) fn of_one(from: &Rows, lane: usize) -> [f64; 2] {
     [from[0][lane], from[1][lane]]
 }
 
-/// What a sum of products cannot exceed in size, when some numbers have these sizes and others are at most so large.
+/// What a sum of products cannot exceed in size, when some numbers have these sizes and others are at most so
+/// large.
 #[inline(always)]
 pub(crate) fn largest_sum<S: Simd>(simd: S, sizes: &[Row], others: &[Row]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
@@ -107,7 +109,8 @@ pub(crate) fn largest_sum<S: Simd>(simd: S, sizes: &[Row], others: &[Row]) -> f6
     sum.sum()
 }
 
-/// The largest size of a vector of each kind, of lists of them with the components of all kinds one after the other.
+/// The largest size of a vector of each kind, of lists of them with the components of all kinds one after the
+/// other.
 pub(crate) fn largest_of<const N: usize>(lists: &[f64], kinds: usize) -> Vec<Row> {
     let mut largest = vec![0.0_f64; kinds];
     for list in lists.chunks_exact(N * kinds) {

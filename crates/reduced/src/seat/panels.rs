@@ -10,13 +10,14 @@ use super::{
 };
 use crate::rollers::row::Row;
 
-/// Every other panel, beginning with the first and with the second. Their number is odd, so that the mirrored seat has mirrored ones.
+/// Every other panel, beginning with the first and with the second. Their number is odd, so that the mirrored
+/// seat has mirrored ones.
 const EVERY_OTHER: [Row; 2] =
     [Row([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]), Row([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0])];
 
 impl Springs {
-    /// Begins a step: what opened and slipped in the last one is taken to go on alike, which leaves few passes to take. Returns the springs
-    /// that have moved by that, a bit for each.
+    /// Begins a step: what opened and slipped in the last one is taken to go on alike, which leaves few
+    /// passes to take. Returns the springs that have moved by that, a bit for each.
     #[inline(always)]
     pub(super) fn extrapolate<S: Simd>(&self, simd: S, panels: &mut SeatState) -> u128 {
         let zero = Vector::all(simd, 0.0);
@@ -36,8 +37,8 @@ impl Springs {
         moved
     }
 
-    /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost before this step and by the springs that
-    /// have `moved` since, a bit for each; across the seat beyond the preload.
+    /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost before this
+    /// step and by the springs that have `moved` since, a bit for each; across the seat beyond the preload.
     #[inline(always)]
     pub(super) fn tensions<S: Simd>(
         &self,
@@ -63,8 +64,8 @@ impl Springs {
         add_all(simd, tension, &self.stiffness, moves);
     }
 
-    /// Passes over the panels until no tension would change any more, some springs having `moved` already, a bit for each; returns the heat
-    /// [J].
+    /// Passes over the panels until no tension would change any more, some springs having `moved` already, a
+    /// bit for each; returns the heat [J].
     #[inline(always)]
     pub(super) fn settle<S: Simd>(
         &self,
@@ -107,8 +108,9 @@ impl Springs {
         heat.sum()
     }
 
-    /// Lets those of some panels that pull open, and those slip that friction does not panels, all at once. Returns which springs have moved,
-    /// a bit for each, and whether that changed a tension by more than `still` [N].
+    /// Lets those of some panels that pull open, and those slip that friction does not panels, all at once.
+    /// Returns which springs have moved, a bit for each, and whether that changed a tension by more than
+    /// `still` [N].
     #[inline(always)]
     pub(super) fn release<S: Simd>(
         &self,
@@ -134,7 +136,8 @@ impl Springs {
                 let had = gap(&panels.open, across);
                 let opens = pulls.times_plus(of(&self.per_own, across), had).max(zero) - had;
                 let loses = opens * of(&self.own, across);
-                // Held where it was before, and let go by what friction cannot panels: what slips first must not slip too far.
+                // Held where it was before, and let go by what friction cannot panels: what slips first must
+                // not slip too far.
                 let limit = friction * (loses - pulls).max(zero);
                 let was = gap(&panels.open, along);
                 let held = (was - gap(&panels.before, along)) * of(&self.own, along);
@@ -159,8 +162,8 @@ impl Springs {
         (moved, far != 0)
     }
 
-    /// What follows from the springs that have opened and slipped in this step, a bit for each: what all tensions have lost, and what is done
-    /// to the modes.
+    /// What follows from the springs that have opened and slipped in this step, a bit for each: what all
+    /// tensions have lost, and what is done to the modes.
     #[inline(always)]
     pub(super) fn accumulate<S: Simd>(
         &self,

@@ -12,8 +12,8 @@ use crate::{
     rollers::row::{Numbers, Row},
 };
 
-/// A roller responses to the seat where that takes more than this part of its force if all panels let go. Where less, its force of the
-/// step before serves, taken on as it grew, which is stable up to a third.
+/// Contact forces are updated within the step if opening all panels would change them by more than this
+/// share. Below it they are extrapolated from the step before, which is stable up to a third.
 const RESPONSIVE: f64 = 0.2;
 
 /// What rollers press in a step, and how they answer to a seat that gives way.
@@ -22,7 +22,7 @@ pub(crate) struct RollerResponses {
     pub(super) rollers: Vec<RollerResponse>,
     /// Tensions by a unit force of each, roller by roller.
     pub(super) by: Vec<Row>,
-    /// Springs that move, and by how much: room for a list.
+    /// Springs that move, with their displacements: room for a list.
     pub(super) moves: Vec<(usize, f64)>,
 }
 
@@ -34,15 +34,16 @@ pub(super) struct RollerResponse {
     /// What it is expected to be, which may be below zero, if the seat has given way under it by `given` [m].
     expected: f64,
     given: f64,
-    /// By how much it falls where the seat gives way further [N/m]; zero where that is not felt.
+    /// Decrease of the force as the seat recedes further [N/m]; zero where it is negligible.
     stiffness: f64,
     /// The part of each change that a pass takes.
     part: f64,
 }
 
 impl Springs {
-    /// What rollers do to the tensions, each by itself: a unit force at its place, the force that is expected if the seat goes on as in the
-    /// step before, and how much less it presses where the seat gives way by more.
+    /// What rollers do to the tensions, each by itself: a unit force at its place, the force that is expected
+    /// if the seat goes on as in the step before, and how much less it presses where the seat gives way by
+    /// more.
     #[inline(always)]
     pub(super) fn answer<S: Simd>(
         &self,
@@ -73,9 +74,10 @@ impl Springs {
             let expected = roller.next();
             let mut answer =
                 RollerResponse { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
-            let gain = roller.stiffness * self.give[roller.facet as usize];
+            let gain = roller.stiffness * self.flexibility[roller.facet as usize];
             if gain > RESPONSIVE {
-                // Where panels let go a change comes back times −gain, where they panels not at all: halfway between the two.
+                // Where panels let go a change comes back times −gain, where they panels not at all: halfway
+                // between the two.
                 let part = 1.0 / (1.0 + 0.5 * gain);
                 answer = RollerResponse { given: given.sum(), stiffness: roller.stiffness, part, ..answer };
             }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::roller_force::RollerForce;
 
-/// By how much the seat has opened and slipped, and what comes of it: part of the checkpoint.
+/// Opening and slip of the panels, and the tensions and modal forces that follow: part of the checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeatState {
     /// Gap of each panel, then its slip [m].

@@ -52,7 +52,8 @@ impl RingRotation {
     }
 }
 
-/// Load beyond that of the preload: shares of it that are not zero, and the force of a share of one on each mode.
+/// Load beyond that of the preload: shares of it that are not zero, and the force of a share of one on each
+/// mode.
 pub(crate) struct LoadChange<'a>(pub(crate) [(f64, &'a [f64]); 2]);
 
 impl<'a> LoadChange<'a> {
@@ -102,7 +103,8 @@ impl Operation {
         }
     }
 
-    /// Load beyond that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of it.
+    /// Load beyond that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of
+    /// it.
     #[inline(always)]
     pub(crate) fn load_change(&self, time: f64) -> [f64; 2] {
         let Some(duty) = &self.duty else { return [0.0; 2] };
@@ -110,7 +112,8 @@ impl Operation {
         [duty.load_n(time) * per - 1.0, duty.load_across_n(time).map_or(0.0, |across| across * per)]
     }
 
-    /// Speeds and load of a step of `dt` [s], after these steps, with the inner ring at the angle `shaft` [rad].
+    /// Speeds and load of a step of `dt` [s], after these steps, with the inner ring at the angle `shaft`
+    /// [rad].
     #[inline(always)]
     pub(crate) fn drive(&self, steps: u64, dt: f64, shaft: f64) -> Drive {
         let now = steps as f64 * dt;

@@ -19,8 +19,8 @@ use crate::{
 };
 
 impl Bearing {
-    /// Forces of raceways, oil and cage on all rollers, which move under them. Returns the forces of rollers on the cage: two components
-    /// [N] and the moment about its centre of mass [N m].
+    /// Forces of raceways, oil and cage on all rollers, which move under them. Returns the forces of rollers
+    /// on the cage: two components [N] and the moment about its centre of mass [N m].
     #[inline(always)]
     pub(crate) fn advance_rollers<S: Simd>(
         &self,
@@ -81,8 +81,8 @@ impl Bearing {
         on_cage
     }
 
-    /// Adds the forces of oil films to those on a group of rollers. Returns normal forces [N] and stiffnesses [N/m] of the films at the
-    /// outer raceway.
+    /// Adds the forces of oil films to those on a group of rollers. Returns normal forces [N] and stiffnesses
+    /// [N/m] of the films at the outer raceway.
     #[inline(always)]
     fn push_by_oil(
         &self,
@@ -102,7 +102,8 @@ impl Bearing {
         [by_oil.normal, by_oil.stiffness]
     }
 
-    /// Adds the forces of a group of rollers to those on the modes, and keeps what sensors and seat respond to beyond the modes.
+    /// Adds the forces of a group of rollers to those on the modes, and keeps what sensors and seat respond
+    /// to beyond the modes.
     #[inline(always)]
     fn push_modes<S: Simd>(&self, simd: S, scratch: &mut Scratch, b: usize, by_film: [[f64; LANES]; 2]) {
         let block = &scratch.blocks[b];

@@ -25,7 +25,7 @@ pub struct Scratch {
     pub(crate) summed: usize,
     /// Normal forces on the outer raceway [N], and where they are.
     pub(crate) roller_forces: Vec<RollerForce>,
-    /// What sensors measure before the last step of a sample and after it.
+    /// Motion of the sensors before and after the last step of a sample.
     pub(crate) before: SensorMotion,
     pub(crate) now: SensorMotion,
     /// Energies at the positions of the last step, when it was asked for.
