@@ -15,7 +15,6 @@ use stribeck_dsp::{
     means_over_angle,
 };
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::run_dir::Run;
@@ -95,7 +94,7 @@ pub struct OrderLine {
 impl DutyFinding {
     /// Of a scene and its record; `None` where nothing changes.
     pub fn of(scene: &Scene, record: &Record<'_>) -> Option<Self> {
-        let duty = Duty::varying(scene)?;
+        let duty = scene.varying_duty()?;
         let [from_s, until_s] = record.stretch_s();
         let recorded = record.channel(LOAD).filter(|load| !load.is_empty()).map(|load| {
             load.iter()
@@ -140,7 +139,7 @@ pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
     let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
     recorded.map_or(of_run, |load_n| {
-        of_run - Duty::of(&run.scene).mean_load_n(Geometry::of(&run.scene).duration) + load_n
+        of_run - run.scene.duty().mean_load_n(Geometry::of(&run.scene).duration) + load_n
     })
 }
 

@@ -2,7 +2,6 @@
 //! defect when, and who carries how much.
 
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
@@ -263,7 +262,7 @@ fn by_place(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 /// Passages over a defect where a speed changes: they follow the angle of the rings against each other. None where these turn back
 /// on the way.
 fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
-    let (duty, until_s) = (Duty::of(scene), Geometry::of(scene).duration);
+    let (duty, until_s) = (scene.duty(), Geometry::of(scene).duration);
     if !duty.is_one_way(until_s) {
         return Vec::new();
     }

@@ -468,7 +468,7 @@ impl Assembly {
         plan.surface(LOADED, self.housing.as_ref().map_or(back, |housing| &housing.loaded).clone())?;
         let (load_n, [along_x, along_y]) = (scene.operation.load_n, scene.load_direction());
         plan.load(LOADED, [load_n * along_x, load_n * along_y])?;
-        if Duty::of(scene).load_across_n(0.0).is_some() {
+        if scene.duty().load_across_n(0.0).is_some() {
             let nodes = plan.nodes(LOADED)?;
             let share = load_n / nodes.len() as f64;
             let across = nodes.iter().map(|&n| (n, [-share * along_y, share * along_x]));
@@ -480,7 +480,7 @@ impl Assembly {
         let pairs = self.touch(&mut plan, scene)?;
         oil(&mut plan, scene, &rollers)?;
         let mut system = plan.build(threads)?;
-        if let Some(duty) = Duty::varying(scene) {
+        if let Some(duty) = scene.varying_duty() {
             load(&mut system, &duty, load_n, 0.0)?;
         }
         Ok(Machine {

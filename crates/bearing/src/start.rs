@@ -8,7 +8,6 @@ use crate::{
     error::Error,
 };
 use stribeck_scene::{
-    duty::Duty,
     geometry::Geometry,
     kinematics::Kinematics,
     scene::{DampingFrame, Scene},
@@ -56,7 +55,7 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });
     }
     let mut preload = Preload {
-        load: Some(Duty::of(scene).load_n(0.0).max(1.0)),
+        load: Some(scene.duty().load_n(0.0).max(1.0)),
         undecided,
         acceleration: rolling_acceleration(machine, k),
         ..Preload::default()
@@ -70,7 +69,7 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
         format!(
             "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a little. A softer \
              `contact.penalty_scale` converges better",
-            force / Duty::of(scene).load_n(0.0)
+            force / scene.duty().load_n(0.0)
         )
     }))
 }

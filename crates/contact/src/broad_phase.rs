@@ -11,7 +11,7 @@ use parry2d_f64::{
     partitioning::{Bvh, BvhBuildStrategy, BvhNode},
 };
 
-use crate::surface::Surface;
+use stribeck_surface::Surface;
 
 /// Bounding-volume tree over the facets of one surface, each box grown by half a skin.
 pub(crate) struct Tree {

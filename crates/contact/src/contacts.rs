@@ -14,16 +14,13 @@ use stribeck_solver::{
 
 use crate::{
     broad_phase::Tree,
-    error::Error,
-    foot::Push,
     kernel::evaluate::Sum,
-    law::Law,
     memory::Memory,
     pass::Pass,
     pass_law::{LEAST_SPEED, MOST_STEPS_APART, PassLaw, SPEED_MARGIN},
     points::{Method, Points},
-    surface::Surface,
 };
+use stribeck_surface::{Error, Law, Surface, foot::Push};
 
 /// Two surfaces that may touch.
 #[derive(Debug, Clone, Copy)]
@@ -170,7 +167,7 @@ impl Contacts {
     ) -> Result<Self, Error> {
         check(&surfaces, pairs, thickness, x.len().min(y.len()))?;
         let shortest =
-            surfaces.iter().flat_map(|s| &s.length).copied().fold(f64::INFINITY, f64::min).min(1.0);
+            surfaces.iter().flat_map(|s| s.lengths()).copied().fold(f64::INFINITY, f64::min).min(1.0);
         let mean = surfaces.iter().map(Surface::mean_length).fold(f64::INFINITY, f64::min);
         let skin = 0.4 * mean.max(shortest);
         let trees = surfaces.iter().map(|s| Tree::new(s, x, y, 0.5 * skin + s.largest_sag())).collect();

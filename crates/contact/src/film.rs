@@ -5,23 +5,17 @@
 //! is no stiffer than contact.
 
 mod divided;
-mod law;
-mod reynolds;
-mod spring;
-mod track;
 
 use serde::{Deserialize, Serialize};
 
+use stribeck_film::{Bed, FilmLaw, Land, Layer, Oil, Place, Pushed, Spring, WIDEST};
 use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
 };
 
-use crate::{error::Error, smooth::Smoothing, surface::Surface};
-pub use law::{FilmLaw, Layer, Oil, Pushed, WIDEST};
-pub use spring::{Bed, Spring};
-pub use track::{Land, Place, Point};
+use stribeck_surface::{Error, Smoothing, Surface};
 
 /// Steps from one look for the nearest places to the next; in between the film stays at the nodes where it was.
 const LOOK_EVERY: u64 = 16;

@@ -87,15 +87,14 @@
 //!
 //! | Question | File |
 //! |---|---|
-//! | What is a surface, what acts between two? | `surface.rs`, `polyline.rs`, `law.rs` |
-//! | Which curve does a polyline stand for, and how does it move? | `smooth.rs`, `spline.rs`, `splined.rs` |
+//! | What is a surface, which curve does it stand for, what is the gap to it? | the crate [`stribeck_surface`] |
+//! | Which law acts between two surfaces? | `law.rs` of the same crate, the numbers; `pass_law.rs` |
 //! | Where does the law act? | `points.rs` |
 //! | Which facets are near each other? | `broad_phase.rs` |
-//! | What is the gap, at corners and ends too? | `narrow_phase.rs`, on facets of two kinds: `chord.rs`, `spline_facet.rs` and `patch.rs` |
-//! | What does a pass ask of a facet? | `facet.rs` |
-//! | How do points move against facets, what do forces on them do to facets? | `foot.rs`, `plane.rs`, `polynomial.rs` |
-//! | What does a pass do, and remember from step to step? | `pass.rs`, `pass_law.rs`, `memory.rs` |
+//! | How does a facet move, and gather forces? | `moving_facet.rs` |
+//! | What does a pass do, and remember from step to step? | `pass.rs`, `memory.rs` |
 //! | How does it all become one force? | `contacts.rs` |
+//! | And oil between surfaces? | `film.rs`, by the law of the crate [`stribeck_film`] |
 //!
 //! What is hot lies in `kernel/`:
 //!
@@ -116,42 +115,22 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod broad_phase;
-mod chord;
 mod contacts;
-mod error;
-mod facet;
 mod film;
-mod foot;
 mod interactions;
 mod kernel;
-mod law;
 mod memory;
-mod narrow_phase;
+mod moving_facet;
 mod pass;
 mod pass_law;
-mod patch;
-mod plane;
 mod points;
-mod polyline;
-mod polynomial;
-mod smooth;
-mod spline;
-mod spline_facet;
-mod splined;
-mod surface;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
-pub use error::Error;
-pub use film::{
-    Bed, FilmLaw, FilmResultant, FilmSpec, FilmState, Films, Land, Layer, Oil, Place, Point, Pushed, Spring,
-    WIDEST,
-};
+pub use film::{FilmResultant, FilmSpec, FilmState, Films};
 pub use interactions::Interactions;
-pub use law::Law;
-pub use narrow_phase::{Projection, project};
 pub use points::Method;
-pub use smooth::Smoothing;
-pub use surface::Surface;
+pub use stribeck_film::{Bed, FilmLaw, Land, Layer, Oil, Place, Point, Pushed, Spring, WIDEST};
+pub use stribeck_surface::{Error, Law, Projection, Smoothing, Surface, project};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

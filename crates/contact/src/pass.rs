@@ -7,22 +7,21 @@ use pulp::Arch;
 use stribeck_simd::lanes::LANES;
 use stribeck_solver::{force::RankOne, state::Moment};
 
+use stribeck_surface::{
+    Law, Surface, chord::ChordFacet, facet::Facet, foot::Push, narrow_phase::find_foot,
+    spline_facet::SplineFacet,
+};
+
 use crate::{
-    chord::ChordFacet,
-    facet::{Facet, MovingFacet},
-    foot::Push,
     interactions::within_reach,
     kernel::{
         evaluate::{Evaluation, Sum},
         nearest_chord::NearestChord,
     },
-    law::Law,
     memory::{Arrangement, Candidate, Histories, Memory, NEVER},
-    narrow_phase::find_foot,
+    moving_facet::MovingFacet,
     pass_law::PassLaw,
     points::{FEW_POINTS, Points},
-    spline_facet::SplineFacet,
-    surface::Surface,
 };
 
 /// Most nodes that a facet hangs on.
@@ -258,7 +257,7 @@ impl Pass {
         w: &PassLaw,
         visit: &mut dyn FnMut(RankOne<'_>),
     ) {
-        match [self.secondary, self.primary].map(|s| surfaces[s].spline.is_some()) {
+        match [self.secondary, self.primary].map(|s| surfaces[s].spline().is_some()) {
             [false, false] => self.tangent_as::<ChordFacet, ChordFacet>(surfaces, x, y, w, visit),
             [false, true] => self.tangent_as::<ChordFacet, SplineFacet>(surfaces, x, y, w, visit),
             [true, false] => self.tangent_as::<SplineFacet, ChordFacet>(surfaces, x, y, w, visit),

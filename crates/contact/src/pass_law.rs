@@ -1,7 +1,7 @@
 //! The law of a pair as one pass applies it: its share of the stiffness, the static preload's rounded corner, and the speeds
 //! that inactive points count on (THEORY §3.2, §4.1).
 
-use crate::law::{Law, Onset};
+use stribeck_surface::{Law, law::Onset};
 
 /// Speeds are allowed for with this margin until the next look.
 pub(crate) const SPEED_MARGIN: f64 = 2.0;

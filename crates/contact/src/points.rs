@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use stribeck_simd::lanes::LANES;
 
-use crate::surface::Surface;
+use stribeck_surface::Surface;
 
 /// Where the penalty acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,8 +72,8 @@ impl Points {
             match method {
                 Method::Collocated => push(0.0, tributary[f]),
                 Method::Integrated { points: n } => {
-                    let share = surface.length[f] / n as f64;
-                    if surface.corner[f] {
+                    let share = surface.lengths()[f] / n as f64;
+                    if surface.corners()[f] {
                         push(0.0, 0.5 * share);
                     }
                     (0..n).for_each(|i| push((i as f64 + 0.5) / n as f64, share));
@@ -83,11 +83,11 @@ impl Points {
             if !surface.closed && f + 1 == surface.facets() {
                 let weight = match method {
                     Method::Collocated => tributary[f + 1],
-                    Method::Integrated { points: n } => 0.5 * surface.length[f] / n as f64,
+                    Method::Integrated { points: n } => 0.5 * surface.lengths()[f] / n as f64,
                 };
                 push(1.0, weight);
             }
-            let alike = |pattern: &&Pattern| all.agrees(**pattern, &points, surface.length[f]);
+            let alike = |pattern: &&Pattern| all.agrees(**pattern, &points, surface.lengths()[f]);
             let pattern = patterns.iter().rev().take(COMPARED).find(alike).copied();
             let pattern = pattern.unwrap_or_else(|| {
                 let new = Pattern { first: all.place.len() as u32, points: points.len() as u32 };

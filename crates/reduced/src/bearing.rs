@@ -1,119 +1,73 @@
-//! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY §9.2–9.4).
+//! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY
+//! §9.2–9.4).
 
-use stribeck_contact::Law;
-use stribeck_mesh::{Circle, FormDeviation};
-use stribeck_scene::{
-    deviation::Relief,
-    duty::Duty,
-    geometry::Geometry,
-    kinematics::Kinematics,
-    scene::{ContactSurface, DampingFrame, RollerCopies, Scene},
+use stribeck_modal::{
+    ModalBearing, OVERLOAD, Parameters, Reduction, STICKING,
+    compliance::{Compliance, Curve, contact_length},
+    outline::per_angle,
 };
-use stribeck_simd::lanes::{LANES, Number};
-use stribeck_solver::structural_damping::{Branch, StructuralDamping};
+use stribeck_simd::lanes::Number;
 
 use crate::{
     cage::Cage,
-    compliance::{Compliance, Curve, contact_length},
+    contact::{force::ContactLaw, outline::Outline, penetration::Sides},
     error::Error,
+    modes::Structure,
     oil::Lubrication,
-    outline::Outline,
-    overlap::Sides,
-    polygon::Polygon,
-    reduction::{OVERLOAD, Reduction},
-    row::{Row, Single, in_single, largest_of},
-    seat::{STICKING, Springs},
+    rollers::Rollers,
+    seat::Springs,
     sensors::Sensors,
     state::State,
+    step::drive::Operation,
 };
 
-/// What does not change during a run.
+/// A reduced bearing: what does not change during a run.
 #[derive(Debug, Clone)]
 pub struct Bearing {
     /// Time step [s].
     pub time_step: f64,
-    /// Rollers.
-    pub rollers: usize,
-    /// The pocket of each of them, from 0.
-    pub(crate) pockets: Vec<usize>,
-    /// The reduced rings.
+    /// Numbers of the mesh.
     pub reduction: Reduction,
-    /// Their shapes at the vertices of the outer raceway again, in rows.
-    pub(crate) shapes: Vec<Single>,
-    /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
-    pub(crate) farthest: Vec<Row>,
-    /// What sensors hear.
-    pub(crate) sensors: Sensors,
-    /// Dampers of the housing, in rows: what a unit velocity of each mode makes of every mode; empty without dampers.
-    pub(crate) dampers: Vec<Row>,
-    /// Contact with the outer raceway.
-    pub(crate) outer: Track,
-    /// Contact with the inner raceway.
-    pub(crate) inner: Track,
-    /// Rims of rollers: the round one first, then those that are not round.
-    pub(crate) rims: Vec<Rim>,
-    /// The round one as the cage meets it.
-    pub(crate) polygon: Polygon,
-    /// Which of them each roller has.
-    pub(crate) rim_of: Vec<u32>,
-    /// Angle of vertex 0 of each roller at the start [rad].
-    pub(crate) vertex_angle: Vec<f64>,
-    /// Normal and tangential stiffness and damping a metre of contact: [N/m²], [N/m²], [N s/m²].
-    pub(crate) penalty: f64,
-    pub(crate) sticking: f64,
-    pub(crate) damping: f64,
-    pub(crate) friction: f64,
-    /// Radius at which friction acts [m].
-    pub(crate) arm: f64,
-    /// Mass damping of rollers and of the modes [1/s], and its frame.
-    pub(crate) alpha: f64,
-    pub(crate) mode_alpha: f64,
-    pub(crate) frame: DampingFrame,
-    /// Stiffness damping β [s].
-    pub(crate) beta: f64,
-    /// Branches of the structural damping of outer ring and adapter.
-    pub(crate) branches: Vec<Branch>,
-    pub(crate) gravity: f64,
-    pub(crate) kinematics: Kinematics,
-    /// Whether the outer ring turns.
-    pub(crate) outer_turns: bool,
+    /// Modes of outer ring and housing.
+    pub(crate) structure: Structure,
+    /// The outer and the inner raceway.
+    pub(crate) raceways: [Raceway; 2],
+    /// The law of contact.
+    pub(crate) law: ContactLaw,
+    /// Rollers.
+    pub rollers: Rollers,
     pub(crate) cage: Option<Cage>,
     /// Seat of the outer ring, where it may open and slip.
     pub(crate) seat: Option<Springs>,
     /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
-    /// Speeds and load, where they change.
-    pub(crate) duty: Option<Duty>,
-}
-
-/// The rim of a roller.
-#[derive(Debug, Clone)]
-pub(crate) struct Rim {
-    pub(crate) outline: Outline,
-    /// Radius of the circle around it [m].
-    pub(crate) top: f64,
+    pub(crate) sensors: Sensors,
+    /// Speeds and load.
+    pub(crate) operation: Operation,
 }
 
 /// One raceway.
 #[derive(Debug, Clone)]
-pub(crate) struct Track {
+pub(crate) struct Raceway {
     pub(crate) outline: Outline,
     /// One over the angle that each facet takes [1/rad]; 0 for walls.
     pub(crate) angle: Vec<f64>,
     pub(crate) sides: Sides,
     pub(crate) compliance: Compliance,
     pub(crate) curve: Curve,
-    /// Circle that nothing of the raceway stands out from towards the rollers [m]; for the outer one within, for the inner
-    /// one around.
+    /// Radius of the circle that touches the raceway from the side of the rollers [m]: inscribed for the
+    /// outer one, circumscribed for the inner one.
     pub(crate) bound: f64,
-    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the inner one.
+    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the
+    /// inner one.
     pub(crate) bounds: Vec<f64>,
     /// Largest relative radius [m].
     pub(crate) relative: f64,
 }
 
-impl Track {
-    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before it.
+impl Raceway {
+    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before
+    /// it.
     #[inline(always)]
     pub(crate) fn outwards(&self) -> f64 {
         if self.sides.along { 1.0 } else { -1.0 }
@@ -127,169 +81,76 @@ impl Track {
 }
 
 impl Bearing {
-    /// The bearing of a scene whose rings have been reduced.
+    /// The bearing that moves in steps of `time_step` [s].
     ///
     /// # Errors
-    /// When the structural damping cannot be fitted.
-    pub fn new(scene: &Scene, reduction: Reduction, time_step: f64) -> Result<Self, Error> {
-        let g = Geometry::of(scene);
-        let [outer, inner, roller] = reduction.outlines();
-        let outer = formed(&outer, g.outer_relief.as_ref(), Circle::Inner);
-        let inner = formed(&inner, g.inner_relief.as_ref(), Circle::Outer);
-        let arcs = scene.contact.surface != ContactSurface::Facet;
-        let law = Law::penalty(g.penalty_stiffness)
-            .and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass));
-        let law = law?;
-        let radius = g.roller_radius;
-        let n = roller.len() as f64;
-        let sag = |radius: f64, facets: f64| {
-            if arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
+    /// When oil finds no smooth surface to lie on.
+    pub fn new(modal: ModalBearing, time_step: f64) -> Result<Self, Error> {
+        let ModalBearing { reduction, parameters } = modal;
+        let Parameters { radii, thickness, contact, .. } = &parameters;
+        let raceways = raceways(&parameters, &reduction);
+        let rollers = Rollers::new(&parameters, reduction.roller_inertia);
+        let facets = rollers.rims[0].outline.len() as f64;
+        let law = ContactLaw {
+            penalty: contact.stiffness * thickness,
+            sticking: STICKING * contact.stiffness * thickness,
+            damping: contact.damping * thickness,
+            friction: contact.friction,
+            arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
+            time_step,
         };
-        let [kr, ko, ki] = [1.0 / radius, 1.0 / g.outer_race_radius, 1.0 / g.inner_race_radius];
-        let sides = |along: bool, relative: f64| Sides {
-            along,
-            bulge: if arcs { 0.5 * relative } else { 0.0 },
-            curvature: if arcs { kr } else { 0.0 },
-        };
-        let radii = |outline: &Outline| {
-            outline.x.iter().zip(&outline.y).map(|(x, y)| x.hypot(*y)).collect::<Vec<f64>>()
-        };
-        let sag_of_outer = sag(g.outer_race_radius, outer.len() as f64);
-        let nearest = radii(&outer).into_iter().fold(f64::INFINITY, f64::min) - sag_of_outer;
-        let farthest = radii(&inner).into_iter().fold(0.0, f64::max);
-        let track =
-            |outline: Outline, along: bool, compliance: &Compliance, bound: f64, relative: f64| Track {
-                sides: sides(along, relative),
-                angle: per_angle(&outline),
-                outline,
-                curve: compliance.curve(),
-                compliance: compliance.clone(),
-                bound,
-                bounds: Vec::new(),
-                relative: 1.0 / relative,
-            };
-        let pockets: Vec<usize> = scene.rollers_in_place().map(|number| number - 1).collect();
-        let vertex_angle: Vec<f64> = pockets
-            .iter()
-            .map(|&pocket| match scene.mesh.roller_copies {
-                RollerCopies::Translated => g.roller_phase,
-                RollerCopies::Rotated => g.roller_angle(pocket) + g.roller_phase,
-            })
-            .collect();
-        // Vertex 0 of the outline lies on the x axis.
-        let round = Rim { top: roller.x[0], outline: roller.clone() };
-        let (mut rims, mut rim_of) = (vec![round], vec![0; pockets.len()]);
-        for (of, relief) in &g.roller_reliefs {
-            let Some(i) = pockets.iter().position(|pocket| pocket == of) else { continue };
-            // A rim is seen from its vertex 0.
-            let own = formed(&roller, Some(&relief.turned(-vertex_angle[i])), Circle::Outer);
-            rim_of[i] = rims.len() as u32;
-            rims.push(Rim { top: radii(&own).into_iter().fold(0.0, f64::max), outline: own });
-        }
-        let branches = match (&scene.solver.structural_damping, g.structural_damping) {
-            (Some(chosen), Some(band)) => {
-                StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
-                    .branches()
-                    .to_vec()
-            }
-            _ => Vec::new(),
-        };
-        let cage = reduction.cage.map(|(inertia, centre)| {
-            Cage::new(&g, &pockets, inertia, centre, &reduction.wall_compliance, scene)
+        let oil = parameters.oil.as_ref();
+        let oil = oil.map(|oil| Lubrication::new(oil, &raceways, &rollers, law.penalty, *thickness));
+        let seat = reduction.springs.as_ref();
+        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
+        let cage = reduction.cage.zip(parameters.pockets.as_ref());
+        let cage = cage.map(|((inertia, centre), pockets)| {
+            Cage::new(pockets, inertia, centre, &reduction.wall_compliance)
         });
-        let kinematics = Kinematics::of(scene);
-        let mut reduction = reduction;
-        let angles = per_angle(&outer);
-        level_walls(&mut reduction.shapes, &angles);
-        reduction.springs.iter_mut().for_each(|seat| level_walls(&mut seat.by_rollers, &angles));
-        let frame = scene.solver.damping_frame;
-        let alpha = scene.solver.mass_damping_per_s;
-        // As in the full model, what moves as one piece is not damped by its mass.
-        let undamped = frame == DampingFrame::RigidMotion || scene.housing.is_rigid();
-        let mode_alpha = if undamped { 0.0 } else { alpha };
-        if let Some(frame) = &reduction.frame {
-            for shape in frame.shape.chunks_exact(reduction.padded) {
-                for (row, a) in reduction.dampers.chunks_exact_mut(reduction.padded).zip(shape) {
-                    row.iter_mut().zip(shape).for_each(|(sum, b)| *sum -= mode_alpha * frame.mass * a * b);
-                }
-            }
-        }
-        let dampers = reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect();
-        let shapes = in_single(&mut reduction.shapes);
-        let bounds = nearest_about(&outer, BESIDE * radius, 1.0 / (kr - ko));
-        let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
-        let mut outer = track(outer, true, &reduction.outer_compliance, nearest, kr - ko);
-        outer.bounds = bounds;
-        let inner = track(inner, false, &reduction.inner_compliance, farthest, kr + ki);
-        let penalty = law.stiffness * g.thickness;
-        let rounded: Vec<&Outline> = rims.iter().map(|rim| &rim.outline).collect();
-        let raceways = [&outer, &inner].map(|track| (&track.outline, &track.compliance));
-        let oil = Lubrication::new(scene, raceways, &rounded, penalty)?;
-        let seat = reduction.springs.as_mut();
-        let friction = scene.contact.seat_friction;
-        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, friction, time_step));
         Ok(Self {
             time_step,
+            structure: Structure::new(&reduction, &parameters.damping),
+            raceways,
+            law,
+            rollers,
+            cage,
             seat,
-            rollers: pockets.len(),
-            pockets,
-            oil,
-            outer,
-            inner,
-            vertex_angle,
-            penalty,
-            sticking: STICKING * law.stiffness * g.thickness,
-            damping: law.damping * g.thickness,
-            friction: scene.contact.friction,
-            arm: radius - 2.0 / 3.0 * sag(radius, n),
-            alpha,
-            mode_alpha,
-            frame,
-            beta: g.stiffness_damping,
-            branches,
-            gravity: g.gravity,
-            outer_turns: scene.operation.outer_turns(),
-            kinematics,
-            duty: Duty::varying(scene),
-            cage: cage.flatten(),
-            polygon: Polygon::new(rims[0].outline.len(), rims[0].top),
-            rims,
-            rim_of,
-            shapes,
-            farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
+            oil: oil.transpose()?,
             sensors: Sensors::new(&reduction),
-            dampers,
+            operation: Operation::new(&parameters, reduction.load.force),
             reduction,
         })
     }
 
-    /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with raceways as stiff as at the
-    /// largest load that the local problem was solved for, friction over those of the fullest roller, and the cage on corners
-    /// of all pockets, or on straight walls that lie flush with a facet of each roller.
+    /// Critical time step [s] of modes, contacts and springs of friction (own; THEORY §9.4): contacts with
+    /// raceways as stiff as at the largest load that the local problem was solved for, friction over those of
+    /// the fullest roller, and the cage on corners of all pockets, or on straight walls that lie flush with a
+    /// facet of each roller.
     pub fn critical_time_step(&self) -> f64 {
         let highest = self.reduction.squares.iter().copied().fold(0.0, f64::max);
         let [mass, inertia] = self.reduction.roller_inertia;
         let r = self.reduction.padded;
-        let both = [&self.outer, &self.inner];
-        let [outer, inner] = both.map(|track| track.compliance.stiffest(self.penalty, track.relative));
-        let along = |track: &Track| {
-            let fullest = track.compliance.largest_load() / OVERLOAD;
-            let stiffness = self.sticking * contact_length(fullest, self.penalty, track.relative);
-            if self.friction > 0.0 { stiffness } else { 0.0 }
+        let both = &self.raceways;
+        let [outer, inner] =
+            both.each_ref().map(|raceway| raceway.compliance.stiffest(self.law.penalty, raceway.relative));
+        let along = |raceway: &Raceway| {
+            let fullest = raceway.compliance.largest_load() / OVERLOAD;
+            let stiffness = self.law.sticking * contact_length(fullest, self.law.penalty, raceway.relative);
+            if self.law.friction > 0.0 { stiffness } else { 0.0 }
         };
-        let [along_outer, along_inner] = both.map(along);
+        let [along_outer, along_inner] = both.each_ref().map(along);
         // A contact pulls on the roller and on the modes under it; (a − b)² ≤ (1 + c) a² + (1 + 1/c) b².
         let under = |vertex: usize| {
             let shape = &self.reduction.shapes[2 * r * vertex..2 * r * (vertex + 1)];
             (0..r).map(|k| shape[k] * shape[k] + shape[r + k] * shape[r + k]).sum::<f64>()
         };
-        let modes = (0..self.outer.outline.len()).map(under).fold(0.0, f64::max);
+        let modes = (0..self.raceways[0].outline.len()).map(under).fold(0.0, f64::max);
         let c = (modes * mass).sqrt();
         let of_roller = ((1.0 + c) * outer + inner) / mass;
-        // Both raceways hold a roller along the track: one way if it spins, the other if it moves on.
+        // Both raceways hold a roller along the raceway: one way if it spins, the other if it moves on.
         let of_friction = 2.0
             * ((1.0 + c) * along_outer).max(along_inner)
-            * (1.0 / mass).max(self.arm * self.arm / inertia);
+            * (1.0 / mass).max(self.law.arm * self.law.arm / inertia);
         // Few rollers share the modes of highest participation; each adds its own part.
         let of_modes = highest + (1.0 + 1.0 / c) * outer.max(along_outer) * modes;
         // All rollers may press on the cage at once.
@@ -300,9 +161,9 @@ impl Bearing {
                 .flatten()
                 .map(|wall| wall.inner[0].hypot(wall.inner[1]))
                 .fold(0.0, f64::max);
-            let of_all = self.rollers as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
-            let corner = 0.5 * self.penalty * cage.corners[0].end;
-            let facet = if cage.has_flats { self.penalty * self.polygon.facet() } else { 0.0 };
+            let of_all = self.rollers.count as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
+            let corner = 0.5 * self.law.penalty * cage.corners[0].end;
+            let facet = if cage.has_flats { self.law.penalty * self.rollers.polygon.facet() } else { 0.0 };
             let facet = facet / (1.0 + facet * cage.curve.approach(0.0).0[1]);
             corner.max(facet) * (1.0 / mass + of_all)
         });
@@ -317,30 +178,25 @@ impl Bearing {
         self.seat.is_some()
     }
 
-    /// The rim of a roller, from 0.
-    #[inline(always)]
-    pub(crate) fn rim(&self, roller: usize) -> &Rim {
-        &self.rims[self.rim_of[roller] as usize]
-    }
-
     /// A state before its first step, not in equilibrium yet.
-    pub fn rest(&self, scene: &Scene) -> State {
-        let g = Geometry::of(scene);
-        let path = g.outer_race_radius - g.roller_radius;
-        let k = &self.kinematics;
-        let r = self.reduction.padded;
-        let n = self.rollers;
+    pub fn rest(&self) -> State {
+        let (r, n, path) = (self.reduction.padded, self.rollers.count, self.rollers.path);
         let mut state = State {
             q: vec![0.0; r],
             v: vec![0.0; r],
-            branches: vec![vec![0.0; r]; self.branches.len()],
+            branches: vec![vec![0.0; r]; self.structure.branches.len()],
             x: vec![0.0; n],
             y: vec![0.0; n],
             vx: vec![0.0; n],
             vy: vec![0.0; n],
             angle: vec![0.0; n],
-            turned: self.vertex_angle.iter().map(|angle| [angle.cos(), angle.sin()]).collect(),
-            spin: vec![k.roller_rad_s; n],
+            turned: self
+                .rollers
+                .starts
+                .iter()
+                .map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()])
+                .collect(),
+            spin: vec![self.operation.speeds.roller; n],
             slip: [vec![0.0; n], vec![0.0; n]],
             wall_slip: vec![[0.0; 2]; n],
             passive: [vec![[0.0; 3]; n], vec![[0.0; 3]; n]],
@@ -349,20 +205,20 @@ impl Bearing {
             growth: [vec![0.0; n], vec![0.0; n]],
             hints: [vec![[0; 2]; n], vec![[0; 2]; n]],
             cage: [0.0; 3],
-            cage_velocity: [0.0, 0.0, k.cage_rad_s],
+            cage_velocity: [0.0, 0.0, self.operation.speeds.cage],
             shaft: 0.0,
             work: Default::default(),
             seat: None,
             films: None,
             steps: 0,
         };
-        for (i, &pocket) in self.pockets.iter().enumerate() {
-            let (s, c) = g.roller_angle(pocket).sin_cos();
+        for (i, start) in self.rollers.starts.iter().enumerate() {
+            let (s, c) = start.angle.sin_cos();
             (state.x[i], state.y[i]) = (path * c, path * s);
         }
         state.seat = self.seat.as_ref().map(|seat| seat.at_rest(r, n));
         state.hints = self.first_hints(&state);
-        state.films = self.first_films(&state);
+        state.films = self.oil.as_ref().map(|oil| oil.first_films(&self.rollers, &state));
         state
     }
 
@@ -374,54 +230,75 @@ impl Bearing {
             };
             (0..outline.len()).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0) as u32
         };
-        let hints = |track: &Track, turned: f64, outwards: f64| {
+        let hints = |raceway: &Raceway, turned: f64, outwards: f64| {
             (0..state.x.len())
                 .map(|i| {
                     let at = state.y[i].atan2(state.x[i]);
-                    let own = at - state.angle[i] - self.vertex_angle[i]
+                    let own = at - state.angle[i] - self.rollers.starts[i].vertex_angle
                         + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
                     let of = |angle: f64| [angle.cos(), angle.sin()];
-                    [nearest(&self.rim(i).outline, of(own)), nearest(&track.outline, of(on_race))]
+                    [nearest(&self.rollers.rim(i).outline, of(own)), nearest(&raceway.outline, of(on_race))]
                 })
                 .collect()
         };
-        [hints(&self.outer, 0.0, 1.0), hints(&self.inner, state.shaft, -1.0)]
+        [hints(&self.raceways[0], 0.0, 1.0), hints(&self.raceways[1], state.shaft, -1.0)]
     }
 }
 
-/// A boundary with what deviates from round.
-fn formed(outline: &Outline, relief: Option<&Relief>, circle: Circle) -> Outline {
-    let Some(relief) = relief else { return outline.clone() };
-    let mut vertices: Vec<[f64; 2]> = outline.x.iter().zip(&outline.y).map(|(x, y)| [*x, *y]).collect();
-    let (depth, corners) = (|angle: f64| relief.depth(angle), relief.corners());
-    FormDeviation { depth: &depth, corners: &corners, circle }.of_polygon(&mut vertices);
-    Outline::new(&vertices)
+/// Largest distance of a straight facet from the circle through its vertices [m], where facets do not stand
+/// for arcs.
+fn sag(parameters: &Parameters, radius: f64, facets: f64) -> f64 {
+    if parameters.outlines.arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
 }
 
-/// Gives both ends of a wall the mean of what belongs to them, vertex by vertex: a roller that passes over it has no height to tell them
-/// apart by.
-fn level_walls(of_vertices: &mut [f64], per_angle: &[f64]) {
-    let n = per_angle.len();
-    let width = of_vertices.len() / n;
-    for (a, _) in per_angle.iter().enumerate().filter(|(_, angle)| **angle == 0.0) {
-        let b = (a + 1) % n;
-        for k in 0..width {
-            let mean = 0.5 * (of_vertices[a * width + k] + of_vertices[b * width + k]);
-            (of_vertices[a * width + k], of_vertices[b * width + k]) = (mean, mean);
-        }
-    }
+/// The outer and the inner raceway.
+fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
+    let Parameters { outlines, radii, .. } = parameters;
+    let [kr, ko, ki] = [1.0 / radii.roller, 1.0 / radii.outer, 1.0 / radii.inner];
+    let [outer, inner] = [&outlines.outer, &outlines.inner].map(|vertices| Outline::new(vertices));
+    let sag_of_outer = sag(parameters, radii.outer, outer.len() as f64);
+    let nearest = outer.radii().fold(f64::INFINITY, f64::min) - sag_of_outer;
+    let farthest = inner.radii().fold(0.0, f64::max);
+    let bounds = nearest_about(&outer, BESIDE * radii.roller, 1.0 / (kr - ko));
+    let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
+    let sides = |along: bool, relative: f64| Sides {
+        along,
+        bulge: if outlines.arcs { 0.5 * relative } else { 0.0 },
+        curvature: if outlines.arcs { kr } else { 0.0 },
+    };
+    [
+        Raceway {
+            sides: sides(true, kr - ko),
+            angle: per_angle(&outlines.outer),
+            outline: outer,
+            curve: reduction.outer_compliance.curve(),
+            compliance: reduction.outer_compliance.clone(),
+            bound: nearest,
+            bounds,
+            relative: 1.0 / (kr - ko),
+        },
+        Raceway {
+            sides: sides(false, kr + ki),
+            angle: per_angle(&outlines.inner),
+            outline: inner,
+            curve: reduction.inner_compliance.curve(),
+            compliance: reduction.inner_compliance.clone(),
+            bound: farthest,
+            bounds: Vec::new(),
+            relative: 1.0 / (kr + ki),
+        },
+    ]
 }
 
-/// A facet that takes less than this share of the mean angle is a wall.
-const WALL: f64 = 0.05;
-
-/// On even ground no contact reaches farther to either side than this share of the roller's radius: it would be a fortieth of it deep.
+/// On even ground no contact reaches farther to either side than this share of the roller's radius: it would
+/// be a fortieth of it deep.
 const BESIDE: f64 = 0.25;
 
-/// For every facet, how near to the origin an outline comes where a roller over that facet may touch it [m]: as far to either side as a
-/// contact on even ground, and beyond that at what stands out so far that the roller, which falls away by u² / 2R over u, meets it, such
-/// as the edge of a deep spall. `relative` is R [m].
+/// Smallest radius of the outline within reach of a roller over each facet [m]:
+/// as far to either side as a contact on even ground, and beyond that at what stands out so far that the
+/// roller, which falls away by u² / 2R over u, meets it, such as the edge of a deep spall. `relative` is R
+/// [m].
 fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {
     let place = |i: usize| [outline.x[i], outline.y[i]];
     let apart = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| (bx - ax).hypot(by - ay);
@@ -451,65 +328,4 @@ fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {
         nearest
     };
     (0..outline.len()).map(about).collect()
-}
-
-/// One over the angle that each facet takes, seen from the origin [1/rad]; 0 for walls.
-fn per_angle(outline: &Outline) -> Vec<f64> {
-    let n = outline.len();
-    (0..n)
-        .map(|i| {
-            let j = (i + 1) % n;
-            let sine = outline.x[i] * outline.y[j] - outline.y[i] * outline.x[j];
-            let cosine = outline.x[i] * outline.x[j] + outline.y[i] * outline.y[j];
-            let angle = sine.atan2(cosine);
-            if angle > WALL * std::f64::consts::TAU / n as f64 { 1.0 / angle } else { 0.0 }
-        })
-        .collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use stribeck_testing::ledger::compare;
-
-    use super::*;
-
-    /// A ring of the mass m in a frame of M on soft springs, which bounce against each other: α brakes the ring alone and takes α M/(m + M)
-    /// of such a motion's momentum a second. In a rigid housing it takes nothing. With the housing's mass braked, too, the paper's ring in
-    /// one of 10 kg had 25 dB too little where it bounces on its rollers.
-    /// Source: two masses on a spring, Meirovitch 2001, §5.1.
-    #[test]
-    fn analytic_mass_damping_brakes_no_frame() {
-        const TOLERANCE: f64 = 0.01;
-        let of = |housing: &str| {
-            let text = format!(
-                "(bearing: \"NU 205\", model: reduced(modes_khz: 30), film: None, defect: None, operation: (load_n: 100), housing: {housing},
-                  mesh: (size_mm: 0.7, roller_facets: 64), solver: (mass_damping_per_s: 2000, structural_damping: None))"
-            );
-            let scene = Scene::parse(&text, "here").expect("a sound scene");
-            let reduction = Reduction::new(&scene).expect("modes");
-            Bearing::new(&scene, reduction, 1e-6).expect("a bearing")
-        };
-        let frame = 1.5;
-        let bearing = of("springs(stiffness_n_um: 1, damping_n_s_m: 0, mass_kg: 1.5)");
-        let reduction = &bearing.reduction;
-        let ring = reduction.structure_mass - frame;
-        let hz = (1e6 * (1.0 / ring + 1.0 / frame)).sqrt() / std::f64::consts::TAU;
-        let bounces = |n: &usize| {
-            (reduction.squares[*n].max(0.0).sqrt() / std::f64::consts::TAU / hz - 1.0).abs() < 0.05
-        };
-        // The third turns them against each other.
-        for n in (0..reduction.modes).filter(bounces).take(2) {
-            let braked = bearing.mode_alpha + reduction.dampers[n * reduction.padded + n];
-            let expected = 2000.0 * frame / (ring + frame);
-            compare(
-                "mass damping of a ring in its frame",
-                "two masses on a spring, Meirovitch 2001, §5.1",
-                "1/s",
-                braked,
-                expected,
-                TOLERANCE,
-            );
-        }
-        assert_eq!(of("rigid(mass_kg: 10)").mode_alpha, 0.0);
-    }
 }

@@ -1,24 +1,29 @@
 //! The cage as a reduced bearing has it: a rigid body with the walls of its pockets.
 
-use stribeck_bearing::assembly::CAGE_ELEMENT_MM;
-use stribeck_scene::{
-    geometry::{Geometry, pocket_half_width},
-    scene::{ContactMethod, Scene},
+pub(crate) mod pocket;
+
+mod corner;
+mod flat;
+pub(crate) mod polygon;
+
+use stribeck_modal::{
+    compliance::{Compliance, Curve},
+    parameters::Pockets,
 };
 use stribeck_simd::lanes::LANES;
 
-use crate::{
-    compliance::{Compliance, Curve},
-    corner::Corner,
-    row::Rows,
-};
+use crate::{rollers::row::Rows, state::State, step::sums::Tally};
+use corner::Corner;
 
 /// The cage as a rigid body with corners and walls.
 #[derive(Debug, Clone)]
 pub(crate) struct Cage {
     pub(crate) mass: f64,
     pub(crate) inertia: f64,
-    /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre of mass.
+    /// Centre of mass at the start [m].
+    pub(crate) centre: [f64; 2],
+    /// Two walls for each roller: the one behind it, clockwise, and the one before it, seen from the centre
+    /// of mass.
     pub(crate) walls: Vec<[Wall; 2]>,
     /// The same, of eight rollers side by side.
     pub(crate) wall_rows: Vec<[WallRows; 2]>,
@@ -26,7 +31,7 @@ pub(crate) struct Cage {
     pub(crate) corners: [Corner; 2],
     /// Whether rollers stand between the ends of the walls, not at one of them.
     pub(crate) has_flats: bool,
-    /// What a roller gives way by on a wall.
+    /// Compliance of a roller on a wall.
     pub(crate) curve: Curve,
 }
 
@@ -76,24 +81,20 @@ impl Wall {
 }
 
 impl Cage {
-    /// Of rollers in these pockets, from its mass and moment of inertia and its centre of mass; `None` without a cage. On a wall rollers give
-    /// way by `compliance`.
+    /// From its pockets, mass and moment of inertia and centre of mass. On a wall rollers give way by
+    /// `compliance`.
     pub(crate) fn new(
-        g: &Geometry,
-        pockets: &[usize],
+        pockets: &Pockets,
         [mass, inertia]: [f64; 2],
         centre: [f64; 2],
         compliance: &Compliance,
-        scene: &Scene,
-    ) -> Option<Self> {
-        let cage = g.cage.as_ref()?;
-        let path = g.outer_race_radius - g.roller_radius;
-        let [inner, outer] = cage.walls(path, g.roller_radius);
-        let half = pocket_half_width(inner, outer, path, g.roller_radius + cage.pocket_clearance);
+    ) -> Self {
+        let ([inner, outer], half, path) = (pockets.ends, pockets.half_width, pockets.path);
         let walls: Vec<[Wall; 2]> = pockets
+            .angles
             .iter()
-            .map(|&pocket| {
-                let (s, c) = g.pocket_angle(pocket).sin_cos();
+            .map(|angle| {
+                let (s, c) = angle.sin_cos();
                 let wall = |side: f64| {
                     let end = |radius: f64| {
                         let along = (radius * radius - half * half).sqrt();
@@ -105,19 +106,39 @@ impl Cage {
                 [wall(-1.0), wall(1.0)]
             })
             .collect();
-        let points = match scene.contact.method {
-            ContactMethod::Integrated => Some(scene.contact.points_per_facet),
-            ContactMethod::Collocated => None,
-        };
-        let rows = (1e3 * (outer - inner) / CAGE_ELEMENT_MM).round().max(1.0);
         // On the x axis, with the wall on the side of +y.
         let corners = [inner, outer].map(|radius: f64| {
             let along = (radius * radius - half * half).sqrt();
-            Corner::new([along - path, half], (outer - inner) / rows, points)
+            Corner::new([along - path, half], pockets.facet, pockets.points_per_facet)
         });
         let wall_rows = walls.chunks(LANES).map(WallRows::of).collect();
         let [before, behind] = [inner, outer].map(|radius: f64| (radius * radius - half * half).sqrt());
         let has_flats = before < path && path < behind;
-        Some(Self { mass, inertia, walls, wall_rows, corners, has_flats, curve: compliance.curve() })
+        Self { mass, inertia, centre, walls, wall_rows, corners, has_flats, curve: compliance.curve() }
+    }
+
+    /// Moves in a step of `dt` [s] under the forces of all rollers [N], their moment [N m] and its weight.
+    #[inline(always)]
+    pub(crate) fn advance(
+        &self,
+        dt: f64,
+        gravity: f64,
+        on_cage: [f64; 3],
+        state: &mut State,
+        tally: &mut Tally,
+    ) {
+        let old = state.cage_velocity;
+        let acceleration =
+            [on_cage[0] / self.mass, on_cage[1] / self.mass - gravity, on_cage[2] / self.inertia];
+        let new: [f64; 3] = std::array::from_fn(|c| old[c] + dt * acceleration[c]);
+        tally.spent.external -= 0.5 * dt * gravity * self.mass * (old[1] + new[1]);
+        if tally.last {
+            tally.stored.kinetic +=
+                0.5 * (self.mass * (old[0] * new[0] + old[1] * new[1]) + self.inertia * old[2] * new[2]);
+        }
+        state.cage_velocity = new;
+        for (coordinate, v) in state.cage.iter_mut().zip(new) {
+            *coordinate += dt * v;
+        }
     }
 }

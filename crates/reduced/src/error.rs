@@ -1,24 +1,12 @@
 //! The error type of this crate.
 
-/// Everything that can go wrong between a scene and a reduced bearing in equilibrium.
+/// Everything that can go wrong before a reduced bearing takes its first step.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The full model, from which the reduced one is made, cannot be made or preloaded.
-    #[error(transparent)]
-    Bearing(#[from] stribeck_bearing::error::Error),
-
-    /// Modes cannot be found.
-    #[error("solver: {0}")]
-    Solver(#[from] stribeck_solver::Error),
-
-    /// Modes of the seat that holds cannot be found.
-    #[error("the modes of outer ring and housing cannot be found: their stiffness is no finite number")]
-    NoModes,
-
-    /// Contact's law has impossible numbers.
+    /// Oil finds no smooth surface to lie on.
     #[error("contact: {0}")]
-    Contact(#[from] stribeck_contact::Error),
+    Surface(#[from] stribeck_surface::Error),
 
     /// Start positions in equilibrium cannot be found.
     #[error(
@@ -31,16 +19,4 @@ pub enum Error {
         /// Newton iterations.
         iterations: usize,
     },
-}
-
-impl From<stribeck_scene::Error> for Error {
-    fn from(error: stribeck_scene::Error) -> Self {
-        Self::Bearing(error.into())
-    }
-}
-
-impl From<stribeck_scene::scene_file::SceneError> for Error {
-    fn from(error: stribeck_scene::scene_file::SceneError) -> Self {
-        Self::Bearing(error.into())
-    }
 }

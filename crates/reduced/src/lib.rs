@@ -1,53 +1,43 @@
 //! Rolling element bearings in a few modes: a simulated second in a few seconds.
 //!
-//! Outer ring and housing are reduced, from the very mesh and elements of the full model at its preload, to their natural
-//! modes below a frequency ([`reduction`]); what contacts press in locally is a curve from a small static problem
-//! ([`compliance`]). Rollers and cage are rigid, with the facets that they are meshed with; what overlaps is integrated exactly
-//! ([`overlap`]). A program drives a [`BearingInMotion`](motion::BearingInMotion) from one sampling interval to the next.
+//! Outer ring and housing move in their natural modes, made from the mesh and elements of the full model by
+//! `stribeck-reduction` and handed over as plain data ([`stribeck_modal`]). Rollers and cage are rigid, with
+//! the facets that they are meshed with. Contact is integrated exactly over these facets
+//! ([`contact::penetration`]), in series with curves for the local compliance of the bodies. A program drives
+//! a [`BearingInMotion`](motion::BearingInMotion) from one sampling interval to the next, and reads it in
+//! between.
+//!
+//! The crate uses no files, threads or clock, and compiles for `wasm32-unknown-unknown`.
 //!
 //! # Where to look
 //!
 //! | Question | File |
 //! |---|---|
-//! | What does a time loop drive? | `motion.rs`; what is read of it: `readings.rs` |
-//! | What is kept of the finite elements? | `reduction.rs`, `structure.rs`, `compliance.rs`; of an earlier run, `cache.rs` |
-//! | What is a bearing in a few modes, and how does it start? | `bearing.rs`, `cage.rs`, `start.rs` |
+//! | What does a time loop drive, and what is read of it? | `motion.rs`, `readings.rs` |
+//! | What is a bearing, and how does it start? | `bearing.rs`, in parts; `start.rs` |
 //! | What changes in time? | `state.rs` |
-//! | What is one step? | `step.rs`; eight rollers as it takes them: `block.rs`, in rows of `row.rs`; its parts: `modes.rs`, `touch.rs`, `raceway.rs`, `lift.rs`, `pocket.rs` with `polygon.rs`, `flat.rs` and `corner.rs` |
-//! | What does oil do? | `oil.rs`; to rollers, modes and rings, `lift.rs` |
-//! | How deep does a polygon sink into a raceway? | `overlap.rs`, seen as in `outline.rs` and, in vectors, `window.rs` |
-
-pub mod cache;
-pub mod compliance;
-pub mod reduction;
-mod structure;
+//! | What is one step? | `step.rs`, a page of stages in files of `step/` |
+//! | How do rings and housing move? | `modes.rs` |
+//! | How do rollers press on raceways? | `contact/` |
+//! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` |
+//! | How are eight rollers taken at once? | `rollers/` |
 
 pub mod bearing;
-pub mod outline;
-pub mod overlap;
 pub mod start;
 pub mod state;
-pub mod window;
 
-mod block;
+pub mod step;
+
 mod cage;
-mod corner;
-pub mod heard;
-mod lift;
+pub mod contact;
 mod modes;
 pub mod oil;
-mod place;
-mod pocket;
-mod polygon;
-mod raceway;
-mod row;
-mod seam;
+mod plane;
+pub mod roller_force;
+mod rollers;
 pub mod seat;
 mod sensors;
-pub mod step;
-mod touch;
 
-mod flat;
 pub mod motion;
 pub mod readings;
 

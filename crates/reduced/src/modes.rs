@@ -1,20 +1,24 @@
-//! Modes of outer ring and adapter in a step, in vectors over modes: how the raceway moves under a roller, what the roller does
-//! to them, and how they move on (THEORY §9.3, §9.4).
+//! Modes of outer ring and adapter in a step, in vectors over modes: how the raceway moves under a roller,
+//! what the roller does to them, and how they move on (THEORY §9.3, §9.4).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_modal::{
+    Reduction,
+    parameters::{Branch, Damping},
+};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
-    heard::Heard,
-    row::{Numbers, Row, Single},
-    seat::{Answers, Springs},
-    state::{Spent, State, Stored},
+    rollers::row::{Numbers, Row, Single, in_single, largest_of},
+    seat::{RollerResponses, Springs},
+    state::State,
+    step::{drive::LoadChange, sums::Tally},
 };
 
 /// A place on a facet of the outer raceway: the share of its second vertex, and the shapes at both of them.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Place<'a> {
+pub(crate) struct RacewayPoint<'a> {
     pub(crate) share: f64,
     /// Of x and of y, in groups of modes.
     shapes: [[&'a [Single]; 2]; 2],
@@ -31,7 +35,7 @@ pub(crate) struct Modes {
     /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
     pub(crate) tension: Vec<Row>,
     /// What rollers do to the seat.
-    pub(crate) answers: Answers,
+    pub(crate) responses: RollerResponses,
 }
 
 impl Modes {
@@ -39,8 +43,15 @@ impl Modes {
     pub(crate) fn new(bearing: &Bearing) -> Self {
         let rows = vec![Row::default(); bearing.reduction.padded / LANES];
         let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
-        let drag = if bearing.dampers.is_empty() { Vec::new() } else { rows.clone() };
-        Self { q: rows.clone(), v: rows.clone(), push: rows, drag, tension, answers: Answers::default() }
+        let drag = if bearing.structure.dampers.is_empty() { Vec::new() } else { rows.clone() };
+        Self {
+            q: rows.clone(),
+            v: rows.clone(),
+            push: rows,
+            drag,
+            tension,
+            responses: RollerResponses::default(),
+        }
     }
 
     /// Takes coordinates and velocities of a state, and forces to begin with.
@@ -54,39 +65,69 @@ impl Modes {
     }
 }
 
-impl Bearing {
-    /// What a roller in this direction presses with `force`, near the facet `hint`.
-    pub(crate) fn heard_at(&self, hint: u32, radial: [f64; 2], force: f64) -> Heard {
-        let outline = &self.outer.outline;
-        let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
-        Heard { facet: facet as u32, share: outline.share(facet, radial), force, ..Heard::default() }
+/// Modes of outer ring and housing: what a step looks up of them.
+#[derive(Debug, Clone)]
+pub(crate) struct Structure {
+    /// Groups of modes.
+    groups: usize,
+    /// Shapes at the vertices of the outer raceway, in rows.
+    shapes: Vec<Single>,
+    /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
+    pub(crate) farthest: Vec<Row>,
+    /// Dampers of the housing, in rows: forces on every mode by a unit velocity of each; empty without
+    /// dampers.
+    pub(crate) dampers: Vec<Row>,
+    /// Mass damping [1/s] and stiffness damping [s].
+    mass_damping: f64,
+    stiffness_damping: f64,
+    /// Branches of the structural damping.
+    pub(crate) branches: Vec<Branch>,
+}
+
+impl Structure {
+    pub(crate) fn new(reduction: &Reduction, damping: &Damping) -> Self {
+        Self {
+            groups: reduction.padded / LANES,
+            shapes: in_single(&reduction.shapes),
+            farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
+            dampers: reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect(),
+            mass_damping: damping.mass_of_modes,
+            stiffness_damping: damping.stiffness,
+            branches: damping.branches.clone(),
+        }
+    }
+
+    /// Vertices of the outer raceway.
+    #[inline(always)]
+    fn vertices(&self) -> usize {
+        self.shapes.len() / (2 * self.groups)
     }
 
     /// The place on a facet with this share of its second vertex.
     #[inline(always)]
-    pub(crate) fn place(&self, facet: usize, share: f64) -> Place<'_> {
-        let second = if facet + 1 == self.outer.outline.len() { 0 } else { facet + 1 };
-        let groups = self.reduction.padded / LANES;
+    pub(crate) fn raceway_point(&self, facet: usize, share: f64) -> RacewayPoint<'_> {
+        let second = if facet + 1 == self.vertices() { 0 } else { facet + 1 };
+        let groups = self.groups;
         let shapes = |vertex: usize| {
             let both = &self.shapes[2 * groups * vertex..2 * groups * (vertex + 1)];
             [&both[..groups], &both[groups..2 * groups]]
         };
-        Place { share, shapes: [shapes(facet), shapes(second)] }
+        RacewayPoint { share, shapes: [shapes(facet), shapes(second)] }
     }
 
-    /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity [m/s], and by how much more the
-    /// second vertex of its facet is displaced than the first [m]. Both vertices are summed over all modes, and what lies between follows.
+    /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity
+    /// [m/s], and by how much more the second vertex of its facet is displaced than the first [m]. Both
+    /// vertices are summed over all modes, and what lies between follows.
     #[inline(always)]
-    pub(crate) fn moved<S: Simd>(&self, simd: S, place: &Place<'_>, modes: &Modes) -> [Vector<S>; 6] {
-        let groups = self.reduction.padded / LANES;
-        let [[ax, ay], [bx, by]] = place.shapes;
+    pub(crate) fn moved<S: Simd>(&self, simd: S, point: &RacewayPoint<'_>, modes: &Modes) -> [Vector<S>; 6] {
+        let groups = self.groups;
+        let [[ax, ay], [bx, by]] = point.shapes;
         let (q, v) = (&modes.q[..groups], &modes.v[..groups]);
         let zero = Vector::all(simd, 0.0);
         let (mut first, mut second) = ([zero; 4], [zero; 4]);
         let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
         for (((q, v), (ax, ay)), (bx, by)) in q.iter().zip(v).zip(ahead).zip(behind) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let (q, v) = (Vector::load(simd, q, at), Vector::load(simd, v, at));
                 let (x, y) = (ax.load(simd, at), ay.load(simd, at));
                 first[0] = x.times_plus(q, first[0]);
@@ -98,10 +139,9 @@ impl Bearing {
                 second[1] = y.times_plus(q, second[1]);
                 second[2] = x.times_plus(v, second[2]);
                 second[3] = y.times_plus(v, second[3]);
-                at += Vector::<S>::LEN;
             }
         }
-        let share = Vector::all(simd, place.share);
+        let share = Vector::all(simd, point.share);
         let [dx, dy] = [second[0] - first[0], second[1] - first[1]];
         let [vx, vy] = [second[2] - first[2], second[3] - first[3]];
         [
@@ -116,39 +156,29 @@ impl Bearing {
 
     /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
     #[inline(always)]
-    pub(crate) fn press<S: Simd>(&self, simd: S, place: &Place<'_>, force: [f64; 2], modes: &mut Modes) {
-        let groups = self.reduction.padded / LANES;
-        let [[ax, ay], [bx, by]] = place.shapes;
+    pub(crate) fn press<S: Simd>(
+        &self,
+        simd: S,
+        point: &RacewayPoint<'_>,
+        force: [f64; 2],
+        modes: &mut Modes,
+    ) {
+        let groups = self.groups;
+        let [[ax, ay], [bx, by]] = point.shapes;
         let push = &mut modes.push[..groups];
-        let [first, second] = [place.share - 1.0, -place.share];
+        let [first, second] = [point.share - 1.0, -point.share];
         let (fx, fy) = (Vector::all(simd, first * force[0]), Vector::all(simd, first * force[1]));
         let (sx, sy) = (Vector::all(simd, second * force[0]), Vector::all(simd, second * force[1]));
         let (ahead, behind) = (ax.iter().zip(ay), bx.iter().zip(by));
         for ((push, (ax, ay)), (bx, by)) in push.iter_mut().zip(ahead).zip(behind) {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let here = ax.load(simd, at).times_plus(fx, Vector::load(simd, push, at));
                 let here = ay.load(simd, at).times_plus(fy, here);
                 let there = bx.load(simd, at) * sx;
                 let there = by.load(simd, at).times_plus(sy, there);
                 (here + there).store(push, at);
-                at += Vector::<S>::LEN;
             }
         }
-    }
-
-    /// What the load exceeds that of the preload by: shares that are not zero, and what a share of one does to each mode.
-    #[inline(always)]
-    pub(crate) fn loads(&self, further: [f64; 2]) -> impl Iterator<Item = (f64, &[f64])> {
-        let load = &self.reduction.load;
-        further.into_iter().zip([&load.along[..], &load.across]).filter(|(share, _)| *share != 0.0)
-    }
-
-    /// Its power [W].
-    #[inline(always)]
-    fn power(&self, further: [f64; 2], state: &State) -> f64 {
-        let of = |load: &[f64]| state.v.iter().zip(load).map(|(v, load)| v * load).sum::<f64>();
-        self.loads(further).map(|(share, load)| share * of(load)).sum()
     }
 
     /// Forces of the housing's dampers at the velocities of the modes, into `push`; `drag` keeps them.
@@ -160,11 +190,9 @@ impl Bearing {
         for (column, v) in columns.zip(v.iter().flat_map(|row| row.iter())) {
             let v = Vector::all(simd, *v);
             for (drag, column) in drag.iter_mut().zip(column) {
-                let mut at = 0;
-                while at < LANES {
+                for at in vector_starts(simd) {
                     let sum = Vector::load(simd, column, at).times_plus(v, Vector::load(simd, drag, at));
                     sum.store(drag, at);
-                    at += Vector::<S>::LEN;
                 }
             }
         }
@@ -175,24 +203,22 @@ impl Bearing {
         }
     }
 
-    /// Modes move under the forces `push`; `further` is what the load exceeds that of the preload by, as
-    /// [`Bearing::beside_the_preload`] says.
+    /// Modes move in a step of `dt` [s] under the forces `push`, with `load` beyond that of the preload.
     #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "one motion, with all that it reads and adds to")]
-    pub(crate) fn move_modes<S: Simd>(
+    pub(crate) fn advance<S: Simd>(
         &self,
         simd: S,
+        dt: f64,
+        reduction: &Reduction,
         state: &mut State,
         modes: &Modes,
-        further: [f64; 2],
-        last: bool,
-        energy: &mut Stored,
-        spent: &mut Spent,
+        load: &LoadChange<'_>,
+        tally: &mut Tally,
     ) {
-        let dt = self.time_step;
-        let r = self.reduction.padded;
-        let h = 0.5 * self.mode_alpha * dt;
-        spent.external += 0.5 * dt * self.power(further, state);
+        let Tally { last, stored: energy, spent } = tally;
+        let r = reduction.padded;
+        let h = 0.5 * self.mass_damping * dt;
+        spent.external += 0.5 * dt * load.power(&state.v);
         for (branch, stretch) in self.branches.iter().zip(&mut state.branches) {
             let e = (-dt / branch.relaxation_time).exp();
             for (u, v) in stretch.iter_mut().zip(&state.v) {
@@ -201,9 +227,9 @@ impl Bearing {
         }
         let all = |value: f64| Vector::all(simd, value);
         let (kept, gain) = (all((1.0 - h) / (1.0 + h)), all(dt / (1.0 + h)));
-        let (alpha, beta, half, step) = (all(2.0 * h / dt), all(self.beta), all(0.5), all(dt));
-        let squares = &self.reduction.squares[..r];
-        let (external, constant) = (&self.reduction.external[..r], &self.reduction.constant[..r]);
+        let (alpha, beta, half, step) = (all(2.0 * h / dt), all(self.stiffness_damping), all(0.5), all(dt));
+        let squares = &reduction.squares[..r];
+        let (external, constant) = (&reduction.external[..r], &reduction.constant[..r]);
         let mut sums = [all(0.0); 4];
         for at in (0..r).step_by(Vector::<S>::LEN) {
             let (q, v) = (Vector::load(simd, &state.q, at), Vector::load(simd, &state.v, at));
@@ -221,7 +247,7 @@ impl Bearing {
             if let Some(drag) = modes.drag.get(at / LANES) {
                 sums[1] = mean.times_plus(Vector::load(simd, drag, at % LANES), sums[1]);
             }
-            if last {
+            if *last {
                 sums[2] = v.times_plus(new, sums[2]);
                 let held = outside - Vector::load(simd, constant, at);
                 sums[3] = (half * square).times_plus(q, held).times_plus(q, sums[3]);
@@ -230,11 +256,11 @@ impl Bearing {
             step.times_plus(new, q).store(&mut state.q, at);
         }
         spent.external += dt * sums[0].sum();
-        spent.external += 0.5 * dt * self.power(further, state);
+        spent.external += 0.5 * dt * load.power(&state.v);
         spent.damped += dt * sums[1].sum();
-        if last {
+        if *last {
             energy.kinetic += 0.5 * sums[2].sum();
-            energy.strain += self.reduction.strain + sums[3].sum();
+            energy.strain += reduction.strain + sums[3].sum();
         }
     }
 }

@@ -26,7 +26,8 @@ pub struct Saved {
     pub(crate) memory: Memory,
 }
 
-/// Energies at the positions before the last step of an interval [J]: what is stored, and work and heat since the start.
+/// Energies at the positions before the last step of an interval [J]: what is stored, and work and heat since
+/// the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Time of these positions [s].
@@ -59,7 +60,7 @@ impl Saved {
 
     /// Whether it may belong to this bearing: all arrays have its lengths.
     pub fn fits(&self, bearing: &Bearing) -> bool {
-        let (n, r, s) = (bearing.rollers, bearing.reduction.padded, &self.state);
+        let (n, r, s) = (bearing.rollers.count, bearing.reduction.padded, &self.state);
         let of_rollers = [
             &s.x,
             &s.y,
@@ -81,14 +82,14 @@ impl Saved {
             && s.passive.iter().all(|p| p.len() == n)
             && s.hints.iter().all(|h| h.len() == n)
             && [&s.q, &s.v].iter().all(|v| v.len() == r)
-            && s.branches.len() == bearing.branches.len()
+            && s.branches.len() == bearing.structure.branches.len()
             && s.branches.iter().all(|v| v.len() == r)
             && match (&bearing.seat, &s.seat) {
-                (Some(seat), Some(hold)) => seat.fits(hold, r, n),
-                (seat, hold) => seat.is_none() && hold.is_none(),
+                (Some(seat), Some(panels)) => seat.fits(panels, r, n),
+                (seat, panels) => seat.is_none() && panels.is_none(),
             }
             && match (&bearing.oil, &s.films) {
-                (Some(oil), Some(films)) => oil.fits(films, &bearing.rim_of),
+                (Some(oil), Some(films)) => oil.fits(films, &bearing.rollers.rim_of),
                 (oil, films) => oil.is_none() && films.is_none(),
             }
             && self.memory.fits(bearing)

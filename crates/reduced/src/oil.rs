@@ -1,22 +1,21 @@
-//! Oil between rollers and raceways: the films of the full model between the circles that the polygons stand for (THEORY §4.6, §9.4).
+//! Oil between rollers and raceways: the films of the full model between the circles that the polygons stand
+//! for (THEORY §4.6, §9.4).
 //!
-//! A film follows from where a roller is and how it moves; what it remembers is in the state. A bearing without oil has nothing of
-//! this.
+//! A film follows from where a roller is and how it moves; what it remembers is in the state. A bearing
+//! without oil has nothing of this.
 
-mod give;
+mod bodies;
+pub(crate) mod forces;
 mod nearest;
 
 use serde::{Deserialize, Serialize};
-use stribeck_contact::{Error as ContactError, FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
-use stribeck_scene::{
-    geometry::Geometry,
-    lubrication::{self, LoadedFilm},
-    scene::Scene,
-};
+use stribeck_film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
+use stribeck_modal::parameters as modal;
+use stribeck_surface::Error as SurfaceError;
 
-use crate::{compliance::Compliance, error::Error, outline::Outline};
-use give::Give;
-pub(crate) use nearest::Seen;
+use crate::{bearing::Raceway, error::Error, rollers::Rollers};
+use bodies::BodySpring;
+pub(crate) use nearest::RollerView;
 use nearest::{Curved, Nearest, Rim};
 
 /// Steps between two looks for a film where there is none.
@@ -29,16 +28,16 @@ const FIXED: u64 = 4;
 #[derive(Debug, Clone)]
 pub(crate) struct Lubrication {
     /// Of the outer and the inner raceway.
-    pub(crate) raceways: [Raceway; 2],
+    pub(crate) raceways: [OiledRaceway; 2],
     /// Rims of rollers, in the order of the bearing's.
     rims: Vec<Rim>,
 }
 
 /// The lands of a raceway, with the law of a film on each.
 #[derive(Debug, Clone)]
-pub(crate) struct Raceway {
+pub(crate) struct OiledRaceway {
     curved: Curved,
-    films: Vec<FilmLaw<Give>>,
+    films: Vec<FilmLaw<BodySpring>>,
     /// Entrainment speed of rolling without slip [m/s].
     speed: f64,
 }
@@ -72,7 +71,7 @@ impl Films {
 
 /// The present step of all films.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Now {
+pub(crate) struct FilmStep {
     pub(crate) step: u64,
     pub(crate) dt: f64,
     /// Whether energy is asked for.
@@ -83,9 +82,9 @@ pub(crate) struct Now {
 
 /// What films do to a roller in a step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Lifted {
-    /// Sum of the sizes of their forces [N], and where the seat feels them, by how much they fall when the raceway gives way, the oil
-    /// staying as thick as it is [N/m].
+pub(crate) struct FilmForces {
+    /// Sum of the sizes of their forces [N], and where the seat responds to them, their decrease as the
+    /// raceway gives way, the oil staying as thick as it is [N/m].
     pub(crate) normal: f64,
     pub(crate) stiffness: f64,
     /// Force on the roller [N] in the frame of the raceway, and moment about its centre [N m].
@@ -97,47 +96,43 @@ pub(crate) struct Lifted {
 }
 
 impl Lubrication {
-    /// The oil of a scene between the outer and the inner raceway and these rims, the first of which is round, on a penalty [N/m²];
-    /// `None` without any.
+    /// Oil between the outer and the inner raceway and these rims, the first of which is round, on a penalty
+    /// [N/m²] of bodies of a thickness [m].
     pub(crate) fn new(
-        scene: &Scene,
-        raceways: [(&Outline, &Compliance); 2],
-        rims: &[&Outline],
+        oil: &modal::Oil,
+        raceways: &[Raceway; 2],
+        rollers: &Rollers,
         penalty: f64,
-    ) -> Result<Option<Self>, Error> {
-        let g = Geometry::of(scene);
-        let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(None) };
-        let [round, others @ ..] = rims else { return Ok(None) };
-        let curvature = Curved::rim(round)?.lands[0].curvature;
-        let race = |name: &str,
-                    (outline, compliance),
-                    hollow,
-                    loaded: LoadedFilm|
-         -> Result<Raceway, Error> {
-            let curved = Curved::new(name, outline, hollow)?;
-            let oil = Oil { viscosity: film.viscosity, least: loaded.least };
+        thickness: f64,
+    ) -> Result<Self, Error> {
+        let [round, others @ ..] = &rollers.rims[..] else { unreachable!("the round rim comes first") };
+        let curvature = Curved::rim(&round.outline)?.lands[0].curvature;
+        let race = |name: &str, on: &Raceway, hollow, loaded: modal::Film| -> Result<OiledRaceway, Error> {
+            let curved = Curved::new(name, &on.outline, hollow)?;
+            let oil = Oil { viscosity: oil.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
                 if relative <= 0.0 {
                     let reason = "is too narrow for its rollers: a film needs a larger radius than `bearing.roller_diameter_mm` has";
-                    return Err(ContactError::BadSurface { name: name.to_owned(), reason });
+                    return Err(SurfaceError::BadSurface { name: name.to_owned(), reason });
                 }
-                let give = Give::new(penalty, 1.0 / relative, compliance);
-                Ok(FilmLaw::new(oil, 1.0 / relative, g.thickness, give))
+                let give = BodySpring::new(penalty, 1.0 / relative, &on.compliance);
+                Ok(FilmLaw::new(oil, 1.0 / relative, thickness, give))
             };
             let films = curved.lands.iter().map(law).collect::<Result<_, _>>()?;
-            Ok(Raceway { curved, films, speed: loaded.speed })
+            Ok(OiledRaceway { curved, films, speed: loaded.speed })
         };
-        let ([outer, inner], [on_outer, on_inner]) = (raceways, loaded);
-        let formed = |outline: &&Outline| Curved::rim(outline).map(|rim| Rim::Formed(Box::new(rim)));
+        let [outer, inner] = raceways;
+        let formed =
+            |rim: &crate::rollers::Rim| Curved::rim(&rim.outline).map(|rim| Rim::Formed(Box::new(rim)));
         let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
-        Ok(Some(Self {
+        Ok(Self {
             raceways: [
-                race("outer raceway", outer, true, on_outer)?,
-                race("inner raceway", inner, false, on_inner)?,
+                race("outer raceway", outer, true, oil.outer)?,
+                race("inner raceway", inner, false, oil.inner)?,
             ],
-            rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
-        }))
+            rims: std::iter::once(Rim::Round(round.outline.x[0])).chain(others).collect(),
+        })
     }
 
     /// The rim of this number.
@@ -162,16 +157,22 @@ impl Lubrication {
     }
 }
 
-impl Raceway {
+impl OiledRaceway {
     /// Films of a roller before the first step: none yet, but known places.
-    pub(crate) fn first_films(&self, rim: &Rim, seen: &Seen) -> impl Iterator<Item = Film> {
+    pub(crate) fn first_films(&self, rim: &Rim, seen: &RollerView) -> impl Iterator<Item = Film> {
         let places = |land| nearest::begin(&self.curved, land, rim, seen);
         self.curved.lands.iter().map(move |land| Film { places: places(land), ..Film::default() })
     }
 
     /// What the films of a roller do in a step.
-    pub(crate) fn lift(&self, rim: &Rim, films: &mut [Film], seen: &Seen, now: Now) -> Lifted {
-        let mut lifted = Lifted::default();
+    pub(crate) fn film_forces(
+        &self,
+        rim: &Rim,
+        films: &mut [Film],
+        seen: &RollerView,
+        now: FilmStep,
+    ) -> FilmForces {
+        let mut by_film = FilmForces::default();
         for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
             if film.layer.is_none() {
                 if !now.step.is_multiple_of(REST) {
@@ -201,22 +202,22 @@ impl Raceway {
                 }
             };
             film.fixed = pushed.fixed;
-            lifted.add(&nearest, &pushed);
+            by_film.add(&nearest, &pushed);
             if let (true, Some(layer)) = (now.felt, film.layer) {
-                // What dry contact would carry there answers by itself.
+                // What dry contact would carry there responses by itself.
                 let [all, dry] =
                     [layer.force, layer.force - pushed.force].map(|force| law.spring.stiffness(force));
-                lifted.stiffness += all - dry;
+                by_film.stiffness += all - dry;
             }
             if now.last {
-                lifted.stored += law.stored(&pushed);
+                by_film.stored += law.stored(&pushed);
             }
         }
-        lifted
+        by_film
     }
 
     /// The smallest gap between a roller and its lands [m].
-    pub(crate) fn gap(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> f64 {
+    pub(crate) fn gap(&self, rim: &Rim, films: &mut [Film], seen: &RollerView) -> f64 {
         let each = self.curved.lands.iter().zip(films);
         let gap = |(land, film): (&Land, &mut Film)| {
             Nearest::new(&self.curved, land, rim, seen, &mut film.places).gap
@@ -225,16 +226,16 @@ impl Raceway {
     }
 
     /// What the films of a roller carry in steady rolling.
-    pub(crate) fn carried(&self, rim: &Rim, films: &mut [Film], seen: &Seen) -> Lifted {
-        let mut lifted = Lifted::default();
+    pub(crate) fn carried(&self, rim: &Rim, films: &mut [Film], seen: &RollerView) -> FilmForces {
+        let mut by_film = FilmForces::default();
         for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
             let nearest = Nearest::new(&self.curved, land, rim, seen, &mut film.places);
             if nearest.gap <= WIDEST {
                 let share = law.share(nearest.ends, nearest.tilt, &Layer::at(nearest.gap));
-                lifted.add(&nearest, &law.settled(nearest.gap, self.speed, share).1);
+                by_film.add(&nearest, &law.settled(nearest.gap, self.speed, share).1);
             }
         }
-        lifted
+        by_film
     }
 
     /// The films of a roller among those of all.
@@ -247,7 +248,7 @@ impl Raceway {
     pub(crate) fn thickness(&self, films: &[Film], roller: usize) -> f64 {
         let lands = self.films.len();
         let own = &films[lands * roller..lands * (roller + 1)];
-        let of = |(law, film): (&FilmLaw<Give>, &Film)| film.layer.map(|layer| law.thickness(&layer));
+        let of = |(law, film): (&FilmLaw<BodySpring>, &Film)| film.layer.map(|layer| law.thickness(&layer));
         self.films.iter().zip(own).filter_map(of).fold(WIDEST, f64::min)
     }
 }
@@ -259,7 +260,7 @@ impl Films {
     }
 }
 
-impl Lifted {
+impl FilmForces {
     fn add(&mut self, nearest: &Nearest, pushed: &Pushed) {
         let force = pushed.force;
         self.normal += force;

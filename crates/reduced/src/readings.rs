@@ -1,4 +1,5 @@
-//! What can be read of a bearing in motion at the end of a sampling interval. Forces are means over the interval.
+//! What can be read of a bearing in motion at the end of a sampling interval. Forces are means over the
+//! interval.
 
 use pulp::Scalar;
 use serde::{Deserialize, Serialize};
@@ -7,8 +8,8 @@ use stribeck_simd::lanes::LANES;
 use crate::{
     bearing::Bearing,
     motion::BearingInMotion,
-    row::{Row, Rows},
-    sensors::Sound,
+    rollers::row::{Row, Rows},
+    sensors::SensorMotion,
     state::State,
     step::Scratch,
 };
@@ -55,14 +56,19 @@ impl Memory {
 impl Bearing {
     /// Memory before the first step.
     pub(crate) fn first_memory(&self, state: &State) -> Memory {
-        let mut sound = Sound::default();
-        self.sensors.hear_modes(Scalar::new(), state, &mut sound);
-        let of = |sensor: usize| [sound.velocity(2 * sensor), sound.velocity(2 * sensor + 1)];
+        let mut motion = SensorMotion::default();
+        self.sensors.measure_modes(Scalar::new(), state, &mut motion);
+        let of = |sensor: usize| [motion.velocity(2 * sensor), motion.velocity(2 * sensor + 1)];
         Memory { velocity: (0..self.reduction.sensors.len()).map(of).collect() }
     }
 
     /// What sensors measure at the end of an interval.
-    pub(crate) fn read_sensors(&self, scratch: &Scratch, memory: &mut Memory, readings: &mut [SensorReading]) {
+    pub(crate) fn read_sensors(
+        &self,
+        scratch: &Scratch,
+        memory: &mut Memory,
+        readings: &mut [SensorReading],
+    ) {
         let dt = self.time_step;
         let interval = dt * scratch.summed as f64;
         let (now, before) = (&scratch.now, &scratch.before);
@@ -89,7 +95,7 @@ impl BearingInMotion {
     pub fn rollers(&self) -> impl Iterator<Item = RollerReading> {
         let (state, scratch) = (&self.saved.state, &self.scratch);
         let steps = scratch.summed as f64;
-        (0..self.bearing.rollers).map(move |i| {
+        (0..self.bearing.rollers.count).map(move |i| {
             let (sums, lane) = (&scratch.blocks[i / LANES].sums, i % LANES);
             let mean = |sum: &Rows| [sum[0][lane] / steps, sum[1][lane] / steps];
             let [outer, inner, cage] = sums;

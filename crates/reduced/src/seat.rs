@@ -1,405 +1,305 @@
-//! The seat of the outer ring in its housing: where it holds, opens and slips (THEORY §9.1).
-//!
-//! The seat is divided into panels, each with a spring across it, which cannot pull, and one along it, which friction holds. Tensions of
-//! all springs follow from the modes, and from how far panels have opened and slipped.
+//! The seat of the outer ring during a run: its springs hold, open and slip (THEORY §9.1).
 
-mod hold;
+mod panels;
+mod responses;
+mod state;
+mod sums;
 
-use faer::{Mat, Side, linalg::solvers::Solve};
-use serde::{Deserialize, Serialize};
-use stribeck_simd::lanes::LANES;
-use stribeck_solver::{state::NodeForces, statics::Spring};
+use pulp::{Scalar, Simd};
+use stribeck_modal::Seat;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-pub use self::hold::Hold;
-pub(crate) use self::hold::{Answers, Springs};
 use crate::{
-    error::Error,
-    structure::{Structure, product},
+    roller_force::RollerForce,
+    rollers::row::{Numbers, Row, Single, in_single, largest_of},
 };
+pub(crate) use responses::RollerResponses;
+pub use state::SeatState;
+use sums::dot;
 
-/// Panels to either side of the middle, at least and at most, and their width in thicknesses of the outer ring.
-const PANELS: [f64; 2] = [8.0, 31.0];
-const WIDTH: f64 = 0.7;
-
-/// Tangential over normal stiffness of contact, as in the full model (THEORY §4.3).
-pub(crate) const STICKING: f64 = 0.8;
-
-/// The seat as a reduction has it. Springs are across all panels, then along them, each filled up with zeros to whole groups.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Seat {
-    /// Panels.
-    pub panels: usize,
-    /// The same, filled up to whole groups.
-    pub padded: usize,
-    /// Force that presses each panel at the preload [N].
-    pub pressed: Vec<f64>,
-    /// Stiffness across each panel [N/m].
-    pub across: Vec<f64>,
-    /// Tension of each spring by a unit of every mode when nothing opens or slips [N/(√kg m)], mode by mode.
-    pub tension: Vec<f64>,
-    /// Tension of each spring beyond the modes by a unit force towards the outside at each vertex of the raceway, vertex by vertex.
-    pub by_rollers: Vec<f64>,
-    /// The same by the rollers of the preload [N].
-    pub at_preload: Vec<f64>,
-    /// Loss of tension of each spring by a unit that another opens or slips [N/m], spring by spring.
-    pub stiffness: Vec<f64>,
-    /// Force on the ring by a unit tension of each spring.
-    pub on_ring: Vec<[f64; 2]>,
-    /// What of each mode's displacement of the raceway to the outside the tensions along the seat take back [1/√kg], vertex by vertex.
-    pub taken_back: Vec<f64>,
-    /// Displacement of each sensor beyond the modes by a unit tension of each spring [m/N]; across the seat, of tension that is missing.
-    pub heard: Vec<Vec<[f64; 2]>>,
+/// When the iteration over the panels ends.
+#[derive(Debug, Clone, Copy)]
+struct Passes {
+    /// Most passes.
+    most: usize,
+    /// Largest change of a tension at which it has converged [N].
+    still: f64,
 }
 
-/// What the seat is made of, while the mesh is still there.
-pub(crate) struct Parts<'a> {
-    /// Springs across the seat, one for each contact point that carries.
-    pub(crate) springs: &'a [Spring],
-    /// Whether there is friction along it.
-    pub(crate) friction: bool,
-    /// Places by slot [m].
-    pub(crate) x: &'a [f64],
-    pub(crate) y: &'a [f64],
-    /// Slots of the ring's back, with the force of the seat on each at the preload [N].
-    pub(crate) back: &'a [(u32, [f64; 2])],
-    /// Slots of the raceway, the direction to the outside at each, and the force of the rollers on it at the preload along that [N].
-    pub(crate) raceway: &'a [(u32, [f64; 2], f64)],
-    /// Slots of the sensors.
-    pub(crate) sensors: &'a [u32],
-    /// Whether a slot is one of the ring.
-    pub(crate) of_ring: &'a dyn Fn(u32) -> bool,
-    /// Thickness of the outer ring [m].
-    pub(crate) thickness: f64,
-}
+/// The iteration has converged when no tension changes by more than this share of the mean force on a panel …
+const STILL: f64 = 1e-4;
 
-/// What bodies do whose seat slides: stretches of its springs, across, then along.
-struct Responses {
-    /// By a unit of each mode [1/√kg].
-    by_modes: Mat<f64>,
-    /// By a unit tension of each spring, beyond the modes [m/N].
-    flexibility: Mat<f64>,
-    /// By a unit force towards the outside at each vertex of the raceway, beyond the modes [m/N].
-    by_rollers: Mat<f64>,
-    /// Force on the ring by a unit tension of each spring.
-    on_ring: Vec<[f64; 2]>,
-    /// Displacement of each sensor by the same, beyond the modes [m/N].
-    heard: Vec<Vec<[f64; 2]>>,
-}
+/// … or in a step, where that is more, than this times the square of the time step [1/s²]: roller forces are
+/// extrapolated with an error of that order.
+const STILL_IN_STEP: f64 = 2.5e8;
 
-/// Springs of the panels and what they do, before friction holds any.
-struct Panels {
-    count: usize,
+/// The seat's tables for a step, in rows.
+#[derive(Debug, Clone)]
+pub(crate) struct Springs {
     padded: usize,
-    /// Across, then along: the springs of a panel and their stiffness [N/m].
-    members: Vec<Vec<Spring>>,
-    stiffness: Vec<f64>,
-    pressed: Vec<f64>,
+    /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
+    by_mode: Vec<Single>,
+    by_spring: Vec<Single>,
+    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of
+    /// the preload.
+    by_rollers: Vec<Single>,
+    at_preload: Vec<Row>,
+    /// Loss of tension of all springs by a unit that one opens or slips.
+    stiffness: Vec<Single>,
+    /// The same of each by its own [N/m], and one over it, zero where there is no spring.
+    own: Vec<Row>,
+    per_own: Vec<Row>,
+    /// Displacement of the raceway at the softer vertex of each facet, under a unit force there with all
+    /// panels open [m/N].
+    flexibility: Vec<f64>,
+    /// Force that presses each panel at the preload [N].
+    pressed: Vec<Row>,
+    /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
+    farthest: Vec<Row>,
+    friction: f64,
+    at_rest: Passes,
+    in_step: Passes,
 }
 
-impl Seat {
-    /// Divides the seat into panels, and turns the modes of a structure whose seat slides into those of one whose seat holds. `None`
-    /// where there is no seat.
-    ///
-    /// # Errors
-    /// When the modes of the held seat are not found.
-    pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<Self>, Error> {
-        let Some(panels) = Panels::of(parts) else { return Ok(None) };
-        let (p, stiffness) = (panels.padded, &panels.stiffness);
-        let Responses { by_modes, flexibility, by_rollers, on_ring, heard } =
-            Responses::of(structure, parts, &panels);
-        let (modes, vertices) = (by_modes.ncols(), parts.raceway.len());
-
-        // Tensions along the seat hold it: A τ = stretch − slip, A their own flexibility and that of the bodies (9.1b).
-        let along = |i: usize| p + i;
-        let own = Mat::from_fn(p, p, |i, j| {
-            let spring = match (i == j, stiffness[along(i)]) {
-                (false, _) => 0.0,
-                (true, 0.0) => 1.0,
-                (true, stiffness) => 1.0 / stiffness,
-            };
-            spring + 0.5 * (flexibility[(along(i), along(j))] + flexibility[(along(j), along(i))])
-        });
-        let holds = |i: usize| f64::from(u8::from(stiffness[along(i)] > 0.0));
-        let inverse = own.partial_piv_lu().solve(Mat::<f64>::identity(p, p));
-        let inverse =
-            Mat::from_fn(p, p, |i, j| holds(i) * holds(j) * 0.5 * (inverse[(i, j)] + inverse[(j, i)]));
-        let slides = Mat::from_fn(p, modes, |i, mode| by_modes[(along(i), mode)]);
-        let coupling = Mat::from_fn(p, p, |i, j| stiffness[i] * flexibility[(i, along(j))]);
-        let held = product(inverse.as_ref(), slides.as_ref());
-        let held_by_rollers = product(inverse.as_ref(), by_rollers.get(p.., ..));
-        let lifted_by_rollers = product(coupling.as_ref(), held_by_rollers.as_ref());
-        let taken_back = product(held_by_rollers.transpose(), slides.as_ref());
-        let by_rollers = Mat::from_fn(2 * p, vertices, |i, vertex| {
-            if i < p {
-                stiffness[i] * by_rollers[(i, vertex)] - lifted_by_rollers[(i, vertex)]
-            } else {
-                held_by_rollers[(i - p, vertex)]
-            }
-        });
-        let forces = Mat::from_fn(vertices, 1, |vertex, _| parts.raceway[vertex].2);
-        let at_preload = product(by_rollers.as_ref(), forces.as_ref());
-        let crossed = product(coupling.as_ref(), inverse.as_ref());
-        let opened = product(crossed.as_ref(), coupling.transpose());
-        let lifted = product(coupling.as_ref(), held.as_ref());
-        let loss = Mat::from_fn(2 * p, 2 * p, |i, j| match (i < p, j < p) {
-            (true, true) => {
-                let spring = if i == j { stiffness[i] } else { 0.0 };
-                spring - stiffness[i] * flexibility[(i, j)] * stiffness[j] + opened[(i, j)]
-            }
-            (true, false) => -crossed[(i, j - p)],
-            (false, true) => -crossed[(j, i - p)],
-            (false, false) => inverse[(i - p, j - p)],
-        });
-
-        // The modes of what holds, made of those of what slides.
-        let squares = structure.squares();
-        let stiffer = product(slides.transpose(), held.as_ref());
-        let matrix =
-            Mat::from_fn(modes, modes, |i, j| stiffer[(i, j)] + if i == j { squares[i] } else { 0.0 });
-        let eigen = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| Error::NoModes)?;
-        let squares: Vec<f64> = (0..modes).map(|i| eigen.S()[i].max(0.0)).collect();
-        structure.turn(eigen.U(), squares);
-        let tension = Mat::from_fn(2 * p, modes, |i, mode| {
-            if i < p { stiffness[i] * by_modes[(i, mode)] - lifted[(i, mode)] } else { held[(i - p, mode)] }
-        });
-        let tension = product(tension.as_ref(), eigen.U());
-        let taken_back = product(eigen.U().transpose(), taken_back.transpose());
-        let listed = |of: &Mat<f64>| -> Vec<f64> {
-            (0..of.ncols()).flat_map(|j| (0..of.nrows()).map(move |i| of[(i, j)])).collect()
-        };
-        Ok(Some(Self {
-            panels: panels.count,
-            padded: p,
-            pressed: panels.pressed,
-            across: panels.stiffness[..p].to_vec(),
-            tension: listed(&tension),
-            by_rollers: listed(&by_rollers),
-            at_preload: listed(&at_preload),
-            stiffness: listed(&loss),
-            on_ring,
-            taken_back: listed(&taken_back),
-            heard,
-        }))
-    }
-}
-
-impl Seat {
-    /// Displacement of the raceway at each vertex under a unit force there [m/N], beyond the modes, if the springs from `first` on give
-    /// way: all of them, or those along the seat.
-    pub(crate) fn give(&self, first: usize) -> Vec<f64> {
-        let n = 2 * self.padded;
-        let gives: Vec<usize> = (first..n).filter(|at| self.stiffness[at * n + at] > 0.0).collect();
-        let of = |i: usize, j: usize| self.stiffness[gives[i] * n + gives[j]];
-        let vertices = self.by_rollers.len() / n;
-        if gives.is_empty() {
-            return vec![0.0; vertices];
+impl Springs {
+    /// Of a seat whose tables have been rounded to single precision.
+    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64, time_step: f64) -> Self {
+        let n = 2 * seat.padded;
+        let rows =
+            |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
+        let by_mode = in_single(&seat.tension);
+        let by_rollers = in_single(&seat.by_rollers);
+        let stiffness = in_single(&seat.stiffness);
+        let found = seat.tension.len() / n;
+        let of =
+            |spring: usize, mode: usize| if mode < found { seat.tension[mode * n + spring] } else { 0.0 };
+        let by_spring: Vec<f64> =
+            (0..n).flat_map(|spring| (0..modes).map(move |mode| of(spring, mode))).collect();
+        let own: Vec<f64> = seat.stiffness.iter().step_by(n + 1).copied().collect();
+        let per_own: Vec<f64> =
+            own.iter().map(|stiffness| if *stiffness > 0.0 { 1.0 / stiffness } else { 0.0 }).collect();
+        let flexibility = &seat.flexibility;
+        let mean = seat.pressed.iter().sum::<f64>() / seat.panels as f64;
+        Self {
+            padded: seat.padded,
+            by_mode,
+            by_spring: in_single(&by_spring),
+            by_rollers,
+            at_preload: rows(&seat.at_preload),
+            per_own: rows(&per_own),
+            flexibility: flexibility
+                .iter()
+                .zip(flexibility.iter().cycle().skip(1))
+                .map(|(a, b)| a.max(*b))
+                .collect(),
+            own: rows(&own),
+            stiffness,
+            pressed: rows(&seat.pressed),
+            farthest: largest_of::<1>(&seat.by_rollers, n),
+            friction,
+            at_rest: Passes { most: 1000, still: STILL * mean },
+            in_step: Passes { most: 200, still: STILL.max(STILL_IN_STEP * time_step * time_step) * mean },
         }
-        let stiffness = Mat::from_fn(gives.len(), gives.len(), of);
-        let pulled = Mat::from_fn(gives.len(), vertices, |i, vertex| self.by_rollers[vertex * n + gives[i]]);
-        let given = stiffness.partial_piv_lu().solve(&pulled);
-        let under = |at: usize| (0..gives.len()).map(|i| pulled[(i, at)] * given[(i, at)]).sum();
-        (0..vertices).map(under).collect()
     }
-}
 
-impl Responses {
-    fn of(structure: &mut Structure, parts: &Parts<'_>, panels: &Panels) -> Self {
-        let Panels { padded: p, members, stiffness, .. } = panels;
-        let p = *p;
-        let modes = structure.squares().len();
-        let mut slots: Vec<u32> = parts.springs.iter().flat_map(|s| s.slots.iter().copied()).collect();
-        slots.sort_unstable();
-        slots.dedup();
-        let at_sensors = slots.len();
-        let at_raceway = at_sensors + parts.sensors.len();
-        let mut index = vec![usize::MAX; parts.x.len()];
-        slots.iter().enumerate().for_each(|(i, slot)| index[*slot as usize] = i);
-        slots.extend(parts.sensors);
-        slots.extend(parts.raceway.iter().map(|(slot, ..)| slot));
+    /// Rows of tensions.
+    pub(crate) fn rows(&self) -> usize {
+        2 * self.padded / LANES
+    }
 
-        // Stretches by modes, and by unit tensions beyond them.
-        let mut by_modes = Mat::<f64>::zeros(2 * p, modes);
-        let mut flexibility = Mat::<f64>::zeros(2 * p, 2 * p);
-        let vertices = parts.raceway.len();
-        let mut by_rollers = Mat::<f64>::zeros(2 * p, vertices);
-        let mut on_ring = vec![[0.0; 2]; 2 * p];
-        let mut heard = vec![vec![[0.0; 2]; 2 * p]; parts.sensors.len()];
-        let shares = |at: usize| {
-            members[at].iter().flat_map(move |spring| {
-                let share = spring.stiffness / stiffness[at];
-                let along = spring.direction.chunks_exact(2);
-                spring.slots.iter().zip(along).map(move |(slot, d)| (*slot, [share * d[0], share * d[1]]))
-            })
-        };
-        let there: Vec<usize> = (0..2 * p).filter(|at| !members[*at].is_empty()).collect();
-        let mut units = Vec::with_capacity(there.len());
-        for &at in &there {
-            let mut opening = NodeForces::zeros(parts.x.len());
-            for (slot, [fx, fy]) in shares(at) {
-                opening.fx[slot as usize] += fx;
-                opening.fy[slot as usize] += fy;
-                if (parts.of_ring)(slot) {
-                    on_ring[at] = [on_ring[at][0] - fx, on_ring[at][1] - fy];
-                }
-            }
-            units.push(opening);
+    /// Nothing has opened or slipped yet.
+    pub(crate) fn at_rest(&self, modes: usize, rollers: usize) -> SeatState {
+        let zeros = vec![0.0; 2 * self.padded];
+        SeatState {
+            open: zeros.clone(),
+            before: zeros.clone(),
+            lost: zeros,
+            push: vec![0.0; modes],
+            pressed: vec![RollerForce::default(); rollers],
         }
-        let responses = structure.residuals(&units, &slots);
-        for ((&at, opening), moved) in there.iter().zip(&units).zip(&responses) {
-            for (mode, stretch) in structure.generalised(opening, modes).into_iter().enumerate() {
-                by_modes[(at, mode)] = stretch;
-            }
-            for (heard, [x, y]) in heard.iter_mut().zip(&moved[at_sensors..]) {
-                heard[at] = [-x, -y];
-            }
-            for (vertex, ((_, [nx, ny], _), [x, y])) in
-                parts.raceway.iter().zip(&moved[at_raceway..]).enumerate()
-            {
-                by_rollers[(at, vertex)] = nx * x + ny * y;
-            }
-            for other in 0..2 * p {
-                flexibility[(other, at)] = shares(other)
-                    .map(|(slot, [dx, dy])| {
-                        let [x, y] = moved[index[slot as usize]];
-                        dx * x + dy * y
-                    })
-                    .sum();
+    }
+
+    /// Whether it may belong to this seat.
+    pub(crate) fn fits(&self, panels: &SeatState, modes: usize, rollers: usize) -> bool {
+        [&panels.open, &panels.before, &panels.lost].iter().all(|v| v.len() == 2 * self.padded)
+            && panels.push.len() == modes
+            && panels.pressed.len() == rollers
+            && panels
+                .pressed
+                .iter()
+                .all(|roller| (roller.facet as usize) < self.by_rollers.len() / self.rows())
+    }
+
+    /// Lets the seat open and slip where it does at rest, the modes being at `q`.
+    pub(crate) fn slip(&self, panels: &mut SeatState, q: &[f64]) {
+        let simd = Scalar::new();
+        let (mut tension, mut responses) = (vec![Row::default(); self.rows()], RollerResponses::default());
+        self.answer(simd, panels, &panels.pressed, &mut responses);
+        self.tensions(simd, panels, 0, q, &mut responses, &mut tension);
+        self.settle(simd, panels, 0, &mut tension, &mut responses, self.at_rest);
+        panels.before.copy_from_slice(&panels.open);
+    }
+
+    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to
+    /// `push`. Returns the heat of this step [J] and, when it is the `last` of a sample, the energy that is
+    /// stored by it [J].
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "one seat, with all that it reads and adds to")]
+    pub(crate) fn respond<S: Simd>(
+        &self,
+        simd: S,
+        panels: &mut SeatState,
+        q: &[f64],
+        rollers: &[RollerForce],
+        responses: &mut RollerResponses,
+        [push, tension]: [&mut [Row]; 2],
+        last: bool,
+    ) -> [f64; 2] {
+        let moved = self.extrapolate(simd, panels);
+        self.answer(simd, panels, rollers, responses);
+        self.tensions(simd, panels, moved, q, responses, tension);
+        let heat = self.settle(simd, panels, moved, tension, responses, self.in_step);
+        for (push, more) in push.iter_mut().zip(panels.push.as_chunks::<LANES>().0) {
+            for (push, more) in push.iter_mut().zip(more) {
+                *push += more;
             }
         }
-        Self { by_modes, flexibility, by_rollers, on_ring, heard }
+        if !last {
+            return [heat, 0.0];
+        }
+        // What rollers press is part of the tensions, and its work part of their own energy.
+        let mut by_rollers = 0.0;
+        for (roller, by) in responses.rollers.iter().zip(responses.by.chunks_exact(self.rows())) {
+            by_rollers += roller.force * dot(simd, by, panels.open.as_chunks().0);
+        }
+        [heat, self.stored(simd, panels, tension) + by_rollers]
     }
-}
 
-impl Panels {
-    fn of(parts: &Parts<'_>) -> Option<Self> {
-        let place = |slot: u32| [parts.x[slot as usize], parts.y[slot as usize]];
-        let angle_of = |spring: &Spring| {
-            let sum = spring.slots.iter().map(|slot| place(*slot));
-            let [x, y] = sum.fold([0.0; 2], |[x, y], [px, py]| [x + px, y + py]);
-            y.atan2(x)
-        };
-        let springs: Vec<(&Spring, f64)> =
-            parts.springs.iter().map(|spring| (spring, angle_of(spring))).collect();
-        // Angles count from the middle of the seat, so that none lies behind a full turn.
-        let [sx, sy] = springs.iter().fold([0.0; 2], |[x, y], (_, a)| [x + a.cos(), y + a.sin()]);
-        let middle = sy.atan2(sx);
-        let from_middle = |angle: f64| {
-            let (s, c) = (angle - middle).sin_cos();
-            s.atan2(c)
-        };
-        let all = springs.iter().map(|(_, angle)| from_middle(*angle));
-        let [first, last] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], at| [a.min(at), b.max(at)]);
-        let [x, y] = place(*parts.springs.first()?.slots.first()?);
-        let width = WIDTH * parts.thickness / x.hypot(y);
-        // An odd number of them, counted from the middle: the mirrored seat has mirrored panels.
-        let half = (0.5 * (last - first) / width).ceil().clamp(PANELS[0], PANELS[1]);
-        let count = 2 * half as usize + 1;
-        let panel_of = |angle: f64| {
-            let share = (from_middle(angle) - 0.5 * (first + last)) / (last - first).max(f64::MIN_POSITIVE);
-            (half + (share * count as f64).round().clamp(-half, half)) as usize
-        };
-        let padded = count.next_multiple_of(LANES);
-        let mut stiffness = vec![0.0; 2 * padded];
-        let mut members: Vec<Vec<Spring>> = vec![Vec::new(); 2 * padded];
-        for (spring, angle) in &springs {
-            let panel = panel_of(*angle);
-            let along = parts.friction.then(|| (padded + panel, sticking(spring)));
-            for (at, own) in std::iter::once((panel, (*spring).clone())).chain(along) {
-                stiffness[at] += own.stiffness;
-                members[at].push(own);
+    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet
+    /// [m], in parts to be summed.
+    #[inline(always)]
+    pub(crate) fn under<S: Simd>(&self, simd: S, panels: &SeatState, facet: usize) -> [Vector<S>; 2] {
+        let [first, second] = self.ends(facet);
+        let mut sums = [Vector::all(simd, 0.0); 2];
+        for ((first, second), open) in first.iter().zip(second).zip(panels.open.as_chunks::<LANES>().0) {
+            for at in vector_starts(simd) {
+                let open = Vector::load(simd, open, at);
+                sums[0] = first.load(simd, at).times_plus(open, sums[0]);
+                sums[1] = second.load(simd, at).times_plus(open, sums[1]);
             }
         }
-        let mut pressed = vec![0.0; padded];
-        for ((_, angle), force) in springs.iter().zip(pressing(parts)) {
-            pressed[panel_of(*angle)] += force;
+        sums
+    }
+
+    /// How far a vertex of the raceway moves at most by what has opened and slipped in this step [m].
+    #[inline(always)]
+    pub(crate) fn farthest<S: Simd>(&self, simd: S, panels: &SeatState) -> f64 {
+        let mut sum = Vector::all(simd, 0.0);
+        let gaps = panels.open.as_chunks::<LANES>().0.iter().zip(panels.before.as_chunks::<LANES>().0);
+        for (farthest, (open, before)) in self.farthest.iter().zip(gaps) {
+            for at in vector_starts(simd) {
+                let by = Vector::load(simd, open, at) - Vector::load(simd, before, at);
+                sum = by.max(-by).times_plus(Vector::load(simd, farthest, at), sum);
+            }
         }
-        pressed.iter_mut().for_each(|force| *force = force.max(0.0));
-        Some(Self { count, padded, members, stiffness, pressed })
+        sum.sum()
     }
-}
 
-/// Force that presses each spring at the preload [N]: that on each node of the ring goes through the springs that reach the node, by their
-/// parts of the stiffness there. A panel that held whole nodes instead would let go too early or too late where its edges lie between them.
-fn pressing(parts: &Parts<'_>) -> Vec<f64> {
-    let mut inwards = vec![0.0; parts.x.len()];
-    for (slot, [fx, fy]) in parts.back {
-        let [x, y] = [parts.x[*slot as usize], parts.y[*slot as usize]];
-        inwards[*slot as usize] = -(fx * x + fy * y) / x.hypot(y);
+    /// Tensions by a unit force at both vertices of a facet.
+    #[inline(always)]
+    fn ends(&self, facet: usize) -> [&[Single]; 2] {
+        let groups = self.rows();
+        let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
+        [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]]
     }
-    let reach = |spring: &Spring| -> Vec<(usize, f64)> {
-        let nodes = spring.slots.iter().zip(spring.direction.chunks_exact(2));
-        let parts = nodes.map(|(slot, d)| (*slot as usize, spring.stiffness * d[0].hypot(d[1])));
-        parts.filter(|(_, stiffness)| *stiffness > 0.0).collect()
-    };
-    let mut held = vec![0.0; parts.x.len()];
-    for (slot, stiffness) in parts.springs.iter().flat_map(reach) {
-        held[slot] += stiffness;
-    }
-    let of = |spring: &Spring| reach(spring).iter().map(|(slot, k)| inwards[*slot] * k / held[*slot]).sum();
-    parts.springs.iter().map(of).collect()
-}
-
-/// The spring across a normal one: the same nodes, directions turned by a right angle.
-fn sticking(normal: &Spring) -> Spring {
-    let turned = normal.direction.chunks_exact(2).flat_map(|d| [-d[1], d[0]]).collect();
-    Spring { slots: normal.slots.clone(), direction: turned, stiffness: STICKING * normal.stiffness }
 }
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::FRAC_PI_2;
-
     use super::*;
 
-    /// A ring's back on springs alike, three points a facet, that a pressure alike presses: wherever the edges of panels lie between
-    /// nodes, all of them are pressed as hard for their stiffness, but for the two at the ends, whose last nodes have half a facet each.
+    /// A seat of one panel and two modes, the first of which opens it and the second shifts it: 1 N/µm each,
+    /// pressed by 100 N.
+    fn one_panel(friction: f64) -> (Springs, SeatState) {
+        let padded = LANES;
+        let n = 2 * padded;
+        let (mut tension, mut stiffness) = (vec![0.0; n * LANES], vec![0.0; n * n]);
+        (tension[0], tension[n + padded]) = (1e6, 1e6);
+        (stiffness[0], stiffness[padded * n + padded]) = (1e6, 1e6);
+        let mut pressed = vec![0.0; padded];
+        pressed[0] = 100.0;
+        let seat = Seat {
+            panels: 1,
+            padded,
+            pressed,
+            across: vec![1e6; padded],
+            tension,
+            by_rollers: vec![0.0; n],
+            at_preload: vec![0.0; n],
+            stiffness,
+            on_ring: vec![[0.0; 2]; n],
+            taken_back: Vec::new(),
+            at_sensors: Vec::new(),
+            flexibility: vec![1e-6],
+        };
+        let springs = Springs::new(&seat, LANES, friction, 1e-6);
+        let panels = springs.at_rest(LANES, 0);
+        (springs, panels)
+    }
+
+    /// Heat of a step, energy and tensions across and along at the coordinates of both modes [m].
+    fn at(springs: &Springs, panels: &mut SeatState, q: [f64; 2]) -> [f64; 4] {
+        let mut all = vec![0.0; LANES];
+        all[..2].copy_from_slice(&q);
+        let mut tension = vec![Row::default(); springs.rows()];
+        let mut responses = RollerResponses::default();
+        let moved = springs.extrapolate(Scalar::new(), panels);
+        springs.tensions(Scalar::new(), panels, moved, &all, &mut responses, &mut tension);
+        let heat =
+            springs.settle(Scalar::new(), panels, moved, &mut tension, &mut responses, springs.in_step);
+        [
+            heat,
+            springs.stored(Scalar::new(), panels, &tension),
+            tension[0][0] - springs.pressed[0][0],
+            tension[1][0],
+        ]
+    }
+
+    /// A spring and a slider in series: 4 µN (A − µN/k) of heat in a cycle of the amplitude A.
+    /// Source: own, the area of the loop; a Jenkins element.
     #[test]
-    fn invariant_panels_of_a_uniform_seat_are_pressed_alike() {
-        const NODES: usize = 101;
-        let (radius, spacing) = (0.1, 0.0123);
-        let angle = |node: f64| FRAC_PI_2 + spacing * (node - 0.5 * (NODES - 1) as f64);
-        let place = |node: usize| angle(node as f64).sin_cos();
-        let x: Vec<f64> = (0..NODES).map(|n| radius * place(n).1).collect();
-        let y: Vec<f64> = (0..NODES).map(|n| radius * place(n).0).collect();
-        let on_facet = |facet: usize, share: f64| {
-            let (s, c) = angle(facet as f64 + share).sin_cos();
-            let ends = [(facet, 1.0 - share), (facet + 1, share)];
-            Spring {
-                slots: ends.iter().map(|(node, _)| *node as u32).collect(),
-                direction: ends.iter().flat_map(|(_, part)| [part * c, part * s]).collect(),
-                stiffness: 1e8,
+    fn analytic_a_panel_that_slips_back_and_forth_turns_the_area_of_its_loop_into_heat() {
+        let (springs, mut panels) = one_panel(0.2);
+        let (amplitude, limit, stiffness) = (100e-6, 20.0, 1e6);
+        let mut heat = 0.0;
+        let cycle = |panels: &mut SeatState, heat: &mut f64| {
+            for n in 0..4000 {
+                let shift = amplitude * (std::f64::consts::TAU * n as f64 / 4000.0).sin();
+                let [of_step, _, _, along] = at(&springs, panels, [0.0, shift]);
+                *heat += of_step;
+                assert!(along.abs() <= limit * (1.0 + 1e-12), "{along} N");
             }
         };
-        let springs: Vec<Spring> = (0..NODES - 1)
-            .flat_map(|n| [1.0 / 6.0, 0.5, 5.0 / 6.0].map(|share| on_facet(n, share)))
-            .collect();
-        let force = |n: usize| if n == 0 || n == NODES - 1 { 50.0 } else { 100.0 };
-        let back: Vec<(u32, [f64; 2])> =
-            (0..NODES).map(|n| (n as u32, [-force(n) * place(n).1, -force(n) * place(n).0])).collect();
-        for thickness in [0.004, 0.0071, 0.01, 0.0137] {
-            let parts = Parts {
-                springs: &springs,
-                friction: true,
-                x: &x,
-                y: &y,
-                back: &back,
-                raceway: &[],
-                sensors: &[],
-                of_ring: &|_| true,
-                thickness,
-            };
-            let panels = Panels::of(&parts).expect("a seat");
-            let all: f64 = panels.pressed.iter().sum();
-            assert!((all - 100.0 * (NODES - 1) as f64).abs() < 1e-9, "{all} N");
-            let alike = 100.0 / 3e8;
-            for n in 1..panels.count - 1 {
-                let given = panels.pressed[n] / panels.stiffness[n];
-                assert!(
-                    (given / alike - 1.0).abs() < 1e-9,
-                    "{given} m, {alike} m at panel {n} of {}",
-                    panels.count
-                );
-            }
-        }
+        cycle(&mut panels, &mut heat);
+        let first = heat;
+        cycle(&mut panels, &mut heat);
+        let expected = 4.0 * limit * (amplitude - limit / stiffness);
+        let found = heat - first;
+        assert!((found / expected - 1.0).abs() < 2e-3, "{found} J, {expected} J");
+    }
+
+    /// A panel that opens loses all tension and its energy; both return when it closes.
+    #[test]
+    fn analytic_a_panel_opens_where_it_would_pull() {
+        let (springs, mut panels) = one_panel(0.2);
+        // 100 N over 1 N/µm: it opens 100 µm off.
+        let [heat, stored, across, _] = at(&springs, &mut panels, [150e-6, 0.0]);
+        assert!(across.abs() < 1e-9 && heat == 0.0, "{across} N, {heat} J");
+        assert!((panels.open[0] - 50e-6).abs() < 1e-15, "{}", panels.open[0]);
+        // A spring that holds would have ½k (50 µm)² more than one that lets go.
+        assert!((stored + 0.5 * 1e6 * 50e-6_f64.powi(2)).abs() < 1e-12, "{stored} J");
+        let [_, stored, across, _] = at(&springs, &mut panels, [50e-6, 0.0]);
+        assert!(stored == 0.0 && panels.open[0] == 0.0, "{stored} J");
+        assert!((across + 50.0).abs() < 1e-9, "{across} N");
     }
 }

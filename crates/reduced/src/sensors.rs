@@ -1,12 +1,14 @@
-//! What sensors hear: the modes, and beyond them what rollers press and what the seat does (THEORY §9.1).
+//! Motion of the sensors: with the modes, and quasi-statically beyond them under rollers and seat (THEORY
+//! §9.1).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_modal::Reduction;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::{heard::Heard, reduction::Reduction, row::Row, seat::Hold, state::State};
+use crate::{roller_force::RollerForce, rollers::row::Row, seat::SeatState, state::State};
 
-/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of the next one, filled up with
-/// zeros to whole rows.
+/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of
+/// the next one, filled up with zeros to whole rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensors {
     /// Rows of components.
@@ -15,21 +17,22 @@ pub(crate) struct Sensors {
     by_mode: Vec<Row>,
     /// Beyond the modes by a unit force towards the outside at each vertex of the raceway [m/N].
     by_vertex: Vec<Row>,
-    /// The same by a unit gap of each panel of the seat [1], whose tension is missing then, and by a unit tension along it [m/N].
+    /// The same by a unit gap of each panel of the seat [1], whose tension is missing then, and by a unit
+    /// tension along it [m/N].
     by_gap: Vec<Row>,
     by_tension: Vec<Row>,
 }
 
-/// What they hear at a time, all components.
+/// What they measure at a time, all components.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sound {
+pub(crate) struct SensorMotion {
     /// Velocity with the modes [m/s].
     velocity: Vec<Row>,
     /// Displacement beyond them [m].
     beyond: Vec<Row>,
 }
 
-impl Sound {
+impl SensorMotion {
     /// Of a component, velocity with the modes [m/s].
     #[inline(always)]
     pub(crate) fn velocity(&self, component: usize) -> f64 {
@@ -63,8 +66,9 @@ impl Sensors {
         let (mut by_gap, mut by_tension) = (Vec::new(), Vec::new());
         if let Some(seat) = springs {
             for panel in 0..seat.panels {
-                let of = |spring: usize| seat.heard.iter().flat_map(move |heard| heard[spring]);
-                by_gap.extend(row_of(&mut of(panel).map(|heard| -seat.across[panel] * heard)));
+                let of = |spring: usize| seat.at_sensors.iter().flat_map(move |sensor| sensor[spring]);
+                by_gap
+                    .extend(row_of(&mut of(panel).map(|roller_forces| -seat.across[panel] * roller_forces)));
                 by_tension.extend(row_of(&mut of(seat.padded + panel)));
             }
             for table in [&mut by_gap, &mut by_tension] {
@@ -74,34 +78,34 @@ impl Sensors {
         Self { rows, by_mode: by_mode.collect(), by_vertex: by_vertex.collect(), by_gap, by_tension }
     }
 
-    /// What they hear at the velocities of a state, while rollers press as `heard` and the seat has these tensions [N].
+    /// What they measure at the velocities of a state, while rollers press as `roller_forces` and the seat
+    /// has these tensions [N].
     #[inline(always)]
-    pub(crate) fn hear<S: Simd>(
+    pub(crate) fn measure<S: Simd>(
         &self,
         simd: S,
         state: &State,
-        heard: &[Heard],
+        roller_forces: &[RollerForce],
         tension: &[Row],
-        sound: &mut Sound,
+        sound: &mut SensorMotion,
     ) {
         let all = |value: f64| Vector::all(simd, value);
-        self.hear_modes(simd, state, sound);
+        self.measure_modes(simd, state, sound);
         sound.beyond.resize(self.rows, Row::default());
         for (row, beyond) in sound.beyond.iter_mut().enumerate() {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let of = |table: &[Row], n: usize| Vector::load(simd, &table[self.rows * n + row], at);
                 // Four sums, none of which waits for another.
                 let (mut ahead, mut behind, mut by_gaps, mut by_tensions) =
                     (all(0.0), all(0.0), all(0.0), all(0.0));
-                for roller in heard.iter().filter(|roller| roller.force != 0.0) {
+                for roller in roller_forces.iter().filter(|roller| roller.force != 0.0) {
                     let first = roller.facet as usize;
                     let second = if self.rows * (first + 1) == self.by_vertex.len() { 0 } else { first + 1 };
                     let of_second = roller.share * roller.force;
                     ahead = of(&self.by_vertex, first).times_plus(all(roller.force - of_second), ahead);
                     behind = of(&self.by_vertex, second).times_plus(all(of_second), behind);
                 }
-                if let Some(Hold { open, .. }) = &state.seat {
+                if let Some(SeatState { open, .. }) = &state.seat {
                     let across = open.as_chunks::<LANES>().0;
                     let along = &tension[across.len() / 2..];
                     for (eight, (across, along)) in across.iter().zip(along).enumerate() {
@@ -113,18 +117,16 @@ impl Sensors {
                     }
                 }
                 ((ahead + behind) + (by_gaps + by_tensions)).store(beyond, at);
-                at += Vector::<S>::LEN;
             }
         }
     }
 
     /// Velocities with the modes.
     #[inline(always)]
-    pub(crate) fn hear_modes<S: Simd>(&self, simd: S, state: &State, sound: &mut Sound) {
+    pub(crate) fn measure_modes<S: Simd>(&self, simd: S, state: &State, sound: &mut SensorMotion) {
         sound.velocity.resize(self.rows, Row::default());
         for (row, velocity) in sound.velocity.iter_mut().enumerate() {
-            let mut at = 0;
-            while at < LANES {
+            for at in vector_starts(simd) {
                 let of = |mode: usize| Vector::load(simd, &self.by_mode[self.rows * mode + row], at);
                 let (mut even, mut odd) = (Vector::all(simd, 0.0), Vector::all(simd, 0.0));
                 for (pair, [v, w]) in state.v.as_chunks().0.iter().enumerate() {
@@ -132,7 +134,6 @@ impl Sensors {
                     odd = of(2 * pair + 1).times_plus(Vector::all(simd, *w), odd);
                 }
                 (even + odd).store(velocity, at);
-                at += Vector::<S>::LEN;
             }
         }
     }

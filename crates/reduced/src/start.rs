@@ -1,48 +1,55 @@
 //! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
 
-use faer::{Mat, linalg::solvers::Solve};
 use pulp::Scalar;
-use stribeck_scene::{duty::Duty, scene::Scene};
 use stribeck_simd::lanes::Vector;
 
-use crate::{bearing::Bearing, error::Error, oil::Films, state::State, touch::Near};
+use crate::{
+    bearing::Bearing, contact::normal_force::RollerOnRaceway, error::Error, oil::Films, plane::Rotation,
+    roller_force::RollerForce, state::State,
+};
+
+/// Solves a dense system of equations from its matrix, row by row, and its right-hand side. The caller brings
+/// the solver, so that this crate needs none.
+pub type Solve<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<f64>;
 
 /// Newton iterations for modes and rollers.
 const ITERATIONS: usize = 200;
 
-/// How far an iteration moves the raceway under a roller at most [m], halved whenever it would go back: under a light load few rollers
-/// touch or none, and what holds the ring is not known before they do.
+/// How far an iteration moves the raceway under a roller at most [m], halved whenever it would go back: under
+/// a light load few rollers touch or none, and what holds the ring is not known before they do.
 const FARTHEST: f64 = 10e-6;
 
 /// Unbalanced force on a roller or a mode that is left, over the load.
 const TOLERANCE: f64 = 1e-9;
 
 /// Holds motions of modes that nothing resists while the iteration runs [rad²/s²].
-const HOLD: f64 = 1e4;
+const REGULARISATION: f64 = 1e4;
 
 /// How often the seat slips and all comes into equilibrium again.
 const SEATINGS: usize = 8;
 
 impl Bearing {
-    /// The state of equilibrium under load, gravity and the inertia of rolling, with rolling velocities half a step earlier.
+    /// The state of equilibrium under load, gravity and the inertia of rolling, with rolling velocities half
+    /// a step earlier.
     ///
     /// # Errors
     /// When the iteration does not converge.
-    pub fn at_start(&self, scene: &Scene) -> Result<State, Error> {
-        let mut state = self.rest(scene);
-        self.equilibrium(scene, &mut state)?;
+    pub fn at_start(&self, solve: Solve<'_>) -> Result<State, Error> {
+        let mut state = self.rest();
+        self.equilibrium(solve, &mut state)?;
         if let Some(seat) = &self.seat {
-            // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction holds it.
+            // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction
+            // holds it.
             for _ in 0..SEATINGS {
                 let State { seat: hold, q, .. } = &mut state;
                 hold.iter_mut().for_each(|hold| seat.slip(hold, q));
-                self.equilibrium(scene, &mut state)?;
+                self.equilibrium(solve, &mut state)?;
             }
         }
         let half = 0.5 * self.time_step;
-        for i in 0..self.rollers {
+        for i in 0..self.rollers.count {
             let [x, y] = [state.x[i], state.y[i]];
-            let (orbit, square) = (self.kinematics.cage_rad_s, self.kinematics.cage_rad_s.powi(2));
+            let (orbit, square) = (self.operation.speeds.cage, self.operation.speeds.cage.powi(2));
             (state.vx[i], state.vy[i]) = (-orbit * y + half * square * x, orbit * x + half * square * y);
         }
         state.hints = self.first_hints(&state);
@@ -52,18 +59,16 @@ impl Bearing {
     }
 
     /// Brings modes and rollers into equilibrium while the seat stays as it is.
-    fn equilibrium(&self, scene: &Scene, state: &mut State) -> Result<(), Error> {
+    fn equilibrium(&self, solve: Solve<'_>, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
-        let k = &self.kinematics;
-        let at_start = Duty::of(scene).load_n(0.0);
-        let load = at_start.max(1.0);
-        let further = self.duty.as_ref().map_or([0.0; 2], |duty| self.beside_the_preload(duty, 0.0));
+        let load = self.operation.load_at_start.max(1.0);
+        let further = self.operation.load_change(0.0);
         let [mass, _] = self.reduction.roller_inertia;
-        let mut shapes = vec![0.0; 2 * r * self.rollers];
+        let mut shapes = vec![0.0; 2 * r * self.rollers.count];
         let (mut farthest, mut last) = (FARTHEST, vec![0.0; r]);
         for iteration in 0..ITERATIONS {
             let mut force = self.reduction.constant.clone();
-            let mut matrix = Mat::<f64>::zeros(r, r);
+            let mut matrix = vec![0.0; r * r];
             if let Some(hold) = &state.seat {
                 force.iter_mut().zip(&hold.push).for_each(|(force, push)| *force += push);
             }
@@ -71,25 +76,29 @@ impl Bearing {
                 force[n] += further[0] * self.reduction.load.along[n]
                     + further[1] * self.reduction.load.across[n]
                     - self.reduction.squares[n] * state.q[n];
-                matrix[(n, n)] = self.reduction.squares[n] + HOLD;
+                matrix[n * r + n] = self.reduction.squares[n] + REGULARISATION;
             }
-            for i in 0..self.rollers {
+            for i in 0..self.rollers.count {
                 let angle = state.y[i].atan2(state.x[i]);
                 let (s, c) = angle.sin_cos();
                 let under = &mut shapes[2 * r * i..2 * r * (i + 1)];
                 let moved = self.shapes_under(state, i, [c, s], under);
                 let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
                 // The roller's own balance: pressed outwards by the inner raceway and its orbit.
-                let inertia = |rho: f64| mass * (k.cage_rad_s * k.cage_rad_s * rho - self.gravity * s);
+                let inertia = |rho: f64| {
+                    mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho
+                        - self.rollers.gravity * s)
+                };
                 let mut at = state.x[i].hypot(state.y[i]);
                 let balance = |state: &mut State, rho: f64| {
                     (state.x[i], state.y[i]) = (rho * c, rho * s);
                     let [outer, inner] = self.pressed(state, i, moved);
                     (inner + inertia(rho) - outer, outer)
                 };
-                // The balance falls with the radius: a bracket, then bisection. Films keep a roller with clearance between the circles;
-                // beyond them polygons that do not touch yet would leave it a second balance.
-                let floats = self.floating(state, i, moved);
+                // The balance falls with the radius: a bracket, then bisection. Films keep a roller with
+                // clearance between the circles; beyond them polygons that do not touch yet would leave it a
+                // second balance.
+                let floats = self.oil.as_ref().and_then(|oil| oil.floating(&self.rollers, state, i, moved));
                 let [mut low, mut high] = floats.unwrap_or([at; 2]);
                 let mut width = 1e-7;
                 while balance(state, low).0 < 0.0 && width < 1e-2 {
@@ -123,21 +132,20 @@ impl Bearing {
                 let inner_stiffness = (b1 - b0) / step;
                 (state.x[i], state.y[i]) = (at * c, at * s);
                 if let Some(hold) = &mut state.seat {
-                    hold.pressed[i] = self.heard_at(state.hints[0][i][1], [c, s], outer);
+                    hold.pressed[i] = self.roller_force_at(state.hints[0][i][1], [c, s], outer);
                 }
                 let both = outer_stiffness + inner_stiffness;
                 let together = if both > 0.0 { outer_stiffness * inner_stiffness / both } else { 0.0 };
                 for n in 0..r {
                     force[n] += outer * radial[n];
                     for m in 0..r {
-                        matrix[(n, m)] += together * radial[n] * radial[m];
+                        matrix[n * r + m] += together * radial[n] * radial[m];
                     }
                 }
             }
             // A motion that nothing resists, the turn of ring and adapter, is left to inertia.
-            let step = matrix.partial_piv_lu().solve(&Mat::from_fn(r, 1, |n, _| force[n]));
-            let residual = (0..r).map(|n| (force[n] * step[(n, 0)]).abs()).sum::<f64>();
-            let step: Vec<f64> = (0..r).map(|n| step[(n, 0)]).collect();
+            let step = solve(&matrix, &force);
+            let residual = (0..r).map(|n| (force[n] * step[n]).abs()).sum::<f64>();
             let along =
                 |shapes: &[f64]| shapes.iter().zip(&step).map(|(shape, step)| shape * step).sum::<f64>();
             let moves = shapes.chunks_exact(2 * r).map(|both| along(&both[..r]).hypot(along(&both[r..])));
@@ -159,17 +167,22 @@ impl Bearing {
         Ok(())
     }
 
-    /// By what the load exceeds that of the preload at a time [s], along it and a quarter of a turn ahead, in shares of it.
-    #[inline(always)]
-    pub(crate) fn beside_the_preload(&self, duty: &Duty, time_s: f64) -> [f64; 2] {
-        let per = 1.0 / self.reduction.load.force;
-        [duty.load_n(time_s) * per - 1.0, duty.load_across_n(time_s).map_or(0.0, |across| across * per)]
+    /// What a roller in this direction presses with `force`, near the facet `hint`.
+    fn roller_force_at(&self, hint: u32, radial: [f64; 2], force: f64) -> RollerForce {
+        let outline = &self.raceways[0].outline;
+        let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);
+        RollerForce {
+            facet: facet as u32,
+            share: outline.share(facet, radial),
+            force,
+            ..RollerForce::default()
+        }
     }
 
     /// Shapes under roller `i` in the direction of its centre, and the displacement there.
     fn shapes_under(&self, state: &State, i: usize, radial: [f64; 2], under: &mut [f64]) -> [f64; 2] {
         let r = self.reduction.padded;
-        let outline = &self.outer.outline;
+        let outline = &self.raceways[0].outline;
         let facet = outline.facet_along([0.0; 2], radial, state.hints[0][i][1] as usize, 1.0);
         let second = if facet + 1 == outline.len() { 0 } else { facet + 1 };
         let share = outline.share(facet, radial);
@@ -188,27 +201,40 @@ impl Bearing {
         moved
     }
 
-    /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between them.
+    /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between
+    /// them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (s, c) = (state.angle[i] + self.vertex_angle[i]).sin_cos();
-        let (ss, sc) = state.shaft.sin_cos();
-        let back = |v: [f64; 2]| [sc * v[0] + ss * v[1], sc * v[1] - ss * v[0]];
+        let (s, c) = (state.angle[i] + self.rollers.starts[i].vertex_angle).sin_cos();
+        let shaft = Rotation::by(state.shaft);
         let centre = [state.x[i], state.y[i]];
         let seen = [centre[0] - moved[0], centre[1] - moved[1]];
         let mut hints = [state.hints[0][i], state.hints[1][i]];
-        let simd = Scalar::new();
+        let (simd, [on_outer, on_inner]) = (Scalar::new(), &self.raceways);
         // A force found with steps of Newton's method: from the one before until it stands.
         let mut forces = [state.force[0][i], state.force[1][i]];
         for _ in 0..40 {
             let [before, other] = forces;
-            let rim = self.rim(i);
-            let near =
-                Near { track: &self.outer, rim, centre: seen, spin: [c, s], bound: self.outer.bound, before };
-            let outer = self.touch(simd, near, &mut hints[0]);
-            let (centre, spin) = (back(centre), back([c, s]));
-            let inner = self.touch(
+            let rim = self.rollers.rim(i);
+            let near = RollerOnRaceway {
+                raceway: on_outer,
+                rim,
+                centre: seen,
+                spin: [c, s],
+                bound: on_outer.bound,
+                before,
+            };
+            let outer = self.law.normal_force(simd, near, &mut hints[0]);
+            let (centre, spin) = (shaft.back(centre), shaft.back([c, s]));
+            let inner = self.law.normal_force(
                 simd,
-                Near { track: &self.inner, rim, centre, spin, bound: self.inner.bound, before: other },
+                RollerOnRaceway {
+                    raceway: on_inner,
+                    rim,
+                    centre,
+                    spin,
+                    bound: on_inner.bound,
+                    before: other,
+                },
                 &mut hints[1],
             );
             let next = [outer.normal, inner.normal];
@@ -221,7 +247,7 @@ impl Bearing {
         state.hints[0][i] = hints[0];
         state.hints[1][i] = hints[1];
         (state.force[0][i], state.force[1][i]) = (forces[0], forces[1]);
-        let by_oil = self.carried_by_oil(state, i, moved);
+        let by_oil = self.oil.as_ref().map_or([0.0; 2], |oil| oil.carried(&self.rollers, state, i, moved));
         [forces[0] + by_oil[0], forces[1] + by_oil[1]]
     }
 }

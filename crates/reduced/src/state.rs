@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{oil::Films, seat::Hold};
+use crate::{oil::Films, seat::SeatState};
 
 /// Positions at one time, velocities half a step earlier.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,8 @@ pub struct State {
     pub vx: Vec<f64>,
     /// Their velocities [m/s].
     pub vy: Vec<f64>,
-    /// By how much rollers have turned since the start [rad], and the directions of their vertices 0, turned step by step.
+    /// Angles of rollers since the start [rad], and the directions of their vertices 0, turned
+    /// step by step.
     pub angle: Vec<f64>,
     /// Cosines and sines of these.
     pub turned: Vec<[f64; 2]>,
@@ -31,13 +32,14 @@ pub struct State {
     pub slip: [Vec<f64>; 2],
     /// Elastic slip at the two walls of each pocket [m].
     pub wall_slip: Vec<[f64; 2]>,
-    /// Drag, damping force [N] and damping moment [N m] of the last step at both raceways: half of their work is counted then.
+    /// Drag, damping force [N] and damping moment [N m] of the last step at both raceways: half of their work
+    /// is counted then.
     pub passive: [Vec<[f64; 3]>; 2],
     /// Drag and damping force of the last step at the two walls of each pocket [N].
     pub wall_passive: Vec<[[f64; 2]; 2]>,
     /// Normal forces of the last step at both raceways [N].
     pub force: [Vec<f64>; 2],
-    /// By how much they had grown in it [N]: the next one begins its search where they go on alike.
+    /// Growth of these forces in the last step [N], with which the next search is extrapolated.
     pub growth: [Vec<f64>; 2],
     /// Facets of roller and raceway found last, at both raceways.
     pub hints: [Vec<[u32; 2]>; 2],
@@ -49,15 +51,16 @@ pub struct State {
     pub shaft: f64,
     /// Work since the start.
     pub work: Work,
-    /// By how much the seat has opened and slipped; `None` where there is none.
-    pub seat: Option<Hold>,
+    /// Opening and slip of the seat; `None` without a seat.
+    pub seat: Option<SeatState>,
     /// Films of oil; `None` without any.
     pub films: Option<Films>,
     /// Steps taken.
     pub steps: u64,
 }
 
-/// Work since the start [J]. Pairs are sums over steps, and of the last step alone, half of which lies behind the positions.
+/// Work since the start [J]. Pairs are sums over steps, and of the last step alone, half of which lies behind
+/// the positions.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Work {
     /// Against friction, in all contacts.

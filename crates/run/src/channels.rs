@@ -109,7 +109,7 @@ impl Channels {
             sensors: scene.output.sensors.iter().map(|sensor| sensor.name.clone()).collect(),
             rollers: scene.rollers_in_place().collect(),
             shaft: ShaftChannels {
-                duty: Duty::varying(scene),
+                duty: scene.varying_duty(),
                 outer: o.varies() && o.outer_turns(),
                 load: o.load_varies(),
             },

@@ -15,7 +15,9 @@ pub enum Error {
     System(#[from] stribeck_system::Error),
 
     /// Ranks that run one model together do not understand each other.
-    #[error("the ranks of this run do not understand each other ({0}): start the same program on all of them")]
+    #[error(
+        "the ranks of this run do not understand each other ({0}): start the same program on all of them"
+    )]
     Ranks(String),
 
     /// A run cannot be continued.

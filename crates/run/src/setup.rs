@@ -1,7 +1,6 @@
 //! What is known of a run before its first step.
 
 use stribeck_scene::{
-    duty::Duty,
     geometry::Geometry,
     run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status},
     scene::Scene,
@@ -70,7 +69,7 @@ impl Setup {
 
 /// Mean force that the rollers carry [N]: the load, and the weight of a mass [kg] that rests on them.
 fn expected_support(scene: &Scene, carried_mass: f64) -> f64 {
-    let load = Duty::of(scene).mean_load_n(Geometry::of(scene).duration);
+    let load = scene.duty().mean_load_n(Geometry::of(scene).duration);
     let [_, up] = scene.load_direction();
     load - up * scene.operation.gravity_m_s2 * carried_mass
 }

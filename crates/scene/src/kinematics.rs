@@ -7,7 +7,6 @@
 
 use std::f64::consts::TAU;
 
-use crate::duty::Duty;
 use crate::geometry::DefectGeometry;
 use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
 
@@ -108,7 +107,7 @@ pub struct Crossing {
 impl Kinematics {
     /// Kinematics of a scene's bearing at its speed at the start.
     pub fn of(scene: &Scene) -> Self {
-        let duty = Duty::of(scene);
+        let duty = scene.duty();
         Self::between(&scene.bearing, duty.speed_rpm(0.0), duty.outer_speed_rpm(0.0))
     }
 
@@ -116,7 +115,7 @@ impl Kinematics {
     /// the rings against each other are what holds.
     pub fn at_mean_speed(scene: &Scene) -> Self {
         let duration_s = 1e-3 * scene.solver.duration_ms;
-        let [inner_rpm, outer_rpm] = Duty::of(scene).mean_speeds_rpm(duration_s);
+        let [inner_rpm, outer_rpm] = scene.duty().mean_speeds_rpm(duration_s);
         Self::between(&scene.bearing, inner_rpm, outer_rpm)
     }
 

@@ -2,7 +2,7 @@
 //! keeps (THEORY §4.6). No pressure is computed.
 
 use crate::{
-    duty::{Duty, LONGEST_RUN_S},
+    duty::LONGEST_RUN_S,
     error::Error,
     geometry::Geometry,
     kinematics::Kinematics,
@@ -42,7 +42,7 @@ pub fn loaded_films(scene: &Scene) -> Result<Option<[LoadedFilm; 2]>, Error> {
     ];
     let modulus = 2.0 * g.material.contact_modulus();
     // The least film is that of the slowest moment of the profile, however long the run: it can be made longer.
-    let slowest = Duty::varying(scene).map_or(1.0, |duty| {
+    let slowest = scene.varying_duty().map_or(1.0, |duty| {
         let slowest = duty.slowest_rpm(LONGEST_RUN_S) / 60.0;
         let at_start = k.cage_on_outer_hz + k.cage_on_inner_hz;
         if at_start > 0.0 { slowest / at_start } else { 0.0 }

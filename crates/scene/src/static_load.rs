@@ -4,7 +4,6 @@
 //! half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the ring's thickness
 //! (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
 
-use crate::duty::Duty;
 use crate::error::Error;
 use crate::geometry::Geometry;
 use crate::kinematics::roller_angles_deg;
@@ -220,7 +219,7 @@ impl Residual {
 /// As [`RigidRings::distribute`].
 pub fn at_start(scene: &Scene) -> Result<StaticLoad, Error> {
     let rings = RigidRings::new(&Geometry::of(scene));
-    rings.distribute(Duty::of(scene).load_n(0.0), &angles_to_load_deg(scene))
+    rings.distribute(scene.duty().load_n(0.0), &angles_to_load_deg(scene))
 }
 
 /// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their order, without those

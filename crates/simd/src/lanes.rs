@@ -14,8 +14,8 @@ pub const LANES: usize = 8;
 
 /// What a kernel does with numbers.
 ///
-/// A kernel that is written over it chooses between two values where a program for single numbers would branch; flags are
-/// numbers too, one for yes and zero for no.
+/// A kernel that is written over it chooses between two values where a program for single numbers would
+/// branch; flags are numbers too, one for yes and zero for no.
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
@@ -86,6 +86,42 @@ impl Number for f64 {
     }
 }
 
+/// Indices at which the vectors of [`LANES`] numbers begin: one for vectors of eight, two for vectors of
+/// four.
+///
+/// ```
+/// # use pulp::Scalar;
+/// # use stribeck_simd::lanes::{LANES, Vector, vector_starts};
+/// let (numbers, mut doubled) = ([3.0; LANES], [0.0; LANES]);
+/// for at in vector_starts(Scalar::new()) {
+///     let of = Vector::load(Scalar::new(), &numbers, at);
+///     (of + of).store(&mut doubled, at);
+/// }
+/// assert_eq!(doubled, [6.0; LANES]);
+/// ```
+#[inline(always)]
+pub fn vector_starts<S: Simd>(_: S) -> VectorStarts {
+    VectorStarts { at: 0, step: Vector::<S>::LEN }
+}
+
+/// See [`vector_starts`].
+#[derive(Debug, Clone)]
+pub struct VectorStarts {
+    at: usize,
+    step: usize,
+}
+
+impl Iterator for VectorStarts {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let at = self.at;
+        self.at += self.step;
+        if at < LANES { Some(at) } else { None }
+    }
+}
+
 /// Numbers side by side, in a register of the instruction set `S`.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
@@ -139,7 +175,8 @@ impl<S: Simd> Vector<S> {
         Self { simd, lanes: S::as_simd_f64s(&from[at..at + Self::LEN]).0[0] }
     }
 
-    /// The numbers of `from` from index `at` on, which are kept in single precision: half the bytes where a table is looked up.
+    /// The numbers of `from` from index `at` on, which are kept in single precision: half the bytes where a
+    /// table is looked up.
     ///
     /// # Panics
     /// When fewer than [`Self::LEN`] are left.
@@ -232,8 +269,8 @@ impl<S: Simd> Vector<S> {
         self.simd.reduce_sum_f64s(self.lanes)
     }
 
-    /// Writes the sums of eight vectors side by side, which lie at the beginning of `from`: a third of the instructions that eight sums take
-    /// one by one.
+    /// Writes the sums of eight vectors side by side, which lie at the beginning of `from`: a third of the
+    /// instructions that eight sums take one by one.
     ///
     /// # Panics
     /// When one of them has fewer than [`Self::LEN`] numbers.
@@ -242,7 +279,8 @@ impl<S: Simd> Vector<S> {
         Self::store_joined::<SUM>(simd, from, to);
     }
 
-    /// Writes the largest numbers of eight vectors side by side, as [`store_sums`](Self::store_sums) does their sums.
+    /// Writes the largest numbers of eight vectors side by side, as [`store_sums`](Self::store_sums) does
+    /// their sums.
     ///
     /// # Panics
     /// When one of them has fewer than [`Self::LEN`] numbers.
@@ -255,7 +293,8 @@ impl<S: Simd> Vector<S> {
     fn store_joined<const HOW: u8>(simd: S, from: [&[f64]; LANES], to: &mut [f64; LANES]) {
         #[cfg(target_arch = "x86_64")]
         if let Some(v4) = (&simd as &dyn Any).downcast_ref::<V4>() {
-            // Neighbours of two vectors, then what they come from in four and in eight. Written out: loops would keep all in memory.
+            // Neighbours of two vectors, then what they come from in four and in eight. Written out: loops
+            // would keep all in memory.
             let [a, b, c, d, e, f, g, h] = from;
             let ab = Self::joined::<HOW>(Self::load(simd, a, 0).neighbours(*v4, Self::load(simd, b, 0)));
             let cd = Self::joined::<HOW>(Self::load(simd, c, 0).neighbours(*v4, Self::load(simd, d, 0)));

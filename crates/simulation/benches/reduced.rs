@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stribeck_reduced::bearing::Bearing;
-use stribeck_reduced::cache;
 use stribeck_reduced::motion::{BearingInMotion, Saved};
+use stribeck_reduction::{cache, dense, modal_bearing};
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
 
@@ -27,10 +27,11 @@ fn step(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(STEPS as u64));
     for (name, scene) in [(polygons, scene), arcs] {
         let kept = std::env::temp_dir().join("stribeck-bench");
-        let (reduction, _) = cache::reduction(&scene, Some(&kept)).expect("the scene can be reduced");
+        let (mesh, _) = cache::reduced_mesh(&scene, Some(&kept)).expect("the scene can be reduced");
         let interval = Geometry::of(&scene).interval;
-        let bearing = Bearing::new(&scene, reduction, interval / STEPS as f64).expect("a bearing");
-        let state = bearing.at_start(&scene).expect("an equilibrium");
+        let modal = modal_bearing(&scene, mesh.reduction).expect("a sound scene");
+        let bearing = Bearing::new(modal, interval / STEPS as f64).expect("a bearing");
+        let state = bearing.at_start(&dense::solve).expect("an equilibrium");
         let saved = Saved::first(&bearing, state);
         let mut motion = BearingInMotion::new(bearing, saved);
         let sample = |motion: &mut BearingInMotion| motion.interval(STEPS);

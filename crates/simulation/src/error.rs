@@ -12,9 +12,13 @@ pub enum Error {
     #[error(transparent)]
     Bearing(stribeck_bearing::error::Error),
 
-    /// The bearing cannot be reduced, or the reduced one has no equilibrium.
+    /// The bearing cannot be reduced.
     #[error(transparent)]
-    Reduced(stribeck_reduced::error::Error),
+    Reduction(stribeck_reduction::error::Error),
+
+    /// The reduced bearing has no equilibrium.
+    #[error(transparent)]
+    Reduced(#[from] stribeck_reduced::error::Error),
 
     /// The run cannot start, continue or be written.
     #[error(transparent)]
@@ -42,11 +46,11 @@ impl From<stribeck_bearing::error::Error> for Error {
     }
 }
 
-impl From<stribeck_reduced::error::Error> for Error {
-    fn from(error: stribeck_reduced::error::Error) -> Self {
+impl From<stribeck_reduction::error::Error> for Error {
+    fn from(error: stribeck_reduction::error::Error) -> Self {
         match error {
-            stribeck_reduced::error::Error::Bearing(error) => error.into(),
-            other => Self::Reduced(other),
+            stribeck_reduction::error::Error::Bearing(error) => error.into(),
+            other => Self::Reduction(other),
         }
     }
 }

@@ -13,11 +13,7 @@ use stribeck_bearing::{
     start::{damp, launch, preload},
 };
 use stribeck_run::{
-    channels::Sample,
-    error::Error as RunError,
-    host::Progress,
-    setup::Setup,
-    time_loop::Motion,
+    channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
 use stribeck_scene::{
     duty::Duty,
@@ -75,7 +71,7 @@ impl Full {
             recorder,
             frames: with.dir.and_then(|dir| Frames::of(scene, dir.frames())),
             guards: Guards::new(scene, &assembly, &machine),
-            duty: Duty::varying(scene).map(|duty| (duty, scene.operation.load_n)),
+            duty: scene.varying_duty().map(|duty| (duty, scene.operation.load_n)),
             outer_turns: scene.operation.outer_turns(),
             assembly,
             machine,

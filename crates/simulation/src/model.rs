@@ -29,11 +29,7 @@ impl Preparation<'_> {
     }
 
     /// Tells `watch` that another phase begins; it cannot break off before the first sample.
-    pub(crate) fn enter(
-        &mut self,
-        phase: &'static str,
-        watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-    ) {
+    pub(crate) fn enter(&mut self, phase: &'static str, watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>) {
         self.progress.phase = phase;
         let _ = watch(&self.progress);
     }
@@ -81,7 +77,12 @@ pub(crate) trait Model: Sized {
     ///
     /// # Errors
     /// Why it is not.
-    fn go_on(self, with: &Preparation<'_>, info: &RunInfo, saved: Self::Saved) -> Result<Self::Motion, Misfit>;
+    fn go_on(
+        self,
+        with: &Preparation<'_>,
+        info: &RunInfo,
+        saved: Self::Saved,
+    ) -> Result<Self::Motion, Misfit>;
 }
 
 /// Why a checkpoint is of another model than this program makes of the scene.

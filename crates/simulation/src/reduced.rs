@@ -4,14 +4,12 @@ pub mod motion;
 
 mod guards;
 
-use std::{
-    f64::consts::TAU,
-    ops::ControlFlow,
-    path::Path,
-};
+use std::{f64::consts::TAU, ops::ControlFlow, path::Path};
 
 use stribeck_bearing::{assembly::Assembly, own_mesh};
-use stribeck_reduced::{bearing::Bearing, cache, reduction::Reduction, state::State};
+use stribeck_modal::ModalBearing;
+use stribeck_reduced::{bearing::Bearing, state::State};
+use stribeck_reduction::{ReducedMesh, cache, dense, modal_bearing};
 use stribeck_run::{host::Progress, setup::Setup};
 use stribeck_scene::{
     geometry::Geometry,
@@ -32,6 +30,8 @@ pub(crate) struct Reduced {
     /// What was meshed.
     assembly: Assembly,
     bearing: Bearing,
+    /// Displacements of the nodes of rings and housing at the preload [m].
+    moved: Vec<[f64; 2]>,
     /// Equilibrium to start from; none where a checkpoint has the state.
     start: Option<State>,
 }
@@ -48,7 +48,8 @@ impl Model for Reduced {
         watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(Self, Setup), Error> {
         let started = (with.host.wall_s)();
-        let (reduction, from_cache) = cache::reduction(with.scene, with.runs())?;
+        let (ReducedMesh { reduction, parts, moved, warning }, from_cache) =
+            cache::reduced_mesh(with.scene, with.runs())?;
         with.enter("preload", watch);
         let scene = with.scene;
         let summary = ReducedInfo {
@@ -56,13 +57,13 @@ impl Model for Reduced {
             highest_hz: reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / TAU,
             from_cache,
         };
-        let assembly = Assembly::of(scene, &reduction.parts)?;
+        let assembly = Assembly::of(scene, &parts)?;
         let carried_mass = reduction.structure_mass;
         let wanted = wanted(scene);
-        let (bearing, steps_per_sample) = in_steps(scene, &wanted, reduction)?;
-        let state = bearing.at_start(scene)?;
+        let (bearing, steps_per_sample) = in_steps(scene, &wanted, modal_bearing(scene, reduction)?)?;
+        let state = bearing.at_start(&dense::solve)?;
         let (time_step, critical_time_step) = (bearing.time_step, bearing.critical_time_step());
-        let mut warnings = Vec::from_iter(bearing.reduction.warning.clone());
+        let mut warnings = Vec::from_iter(warning);
         warnings.extend(shorter_steps(&wanted, time_step, critical_time_step));
         let setup = Setup {
             time_step,
@@ -75,14 +76,14 @@ impl Model for Reduced {
             notes: own_mesh::notes(scene),
             warnings,
         };
-        Ok((Self { assembly, bearing, start: Some(state) }, setup))
+        Ok((Self { assembly, bearing, moved, start: Some(state) }, setup))
     }
 
     fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error> {
-        let (reduction, _) = cache::reduction(with.scene, with.runs())?;
-        let assembly = Assembly::of(with.scene, &reduction.parts)?;
-        let bearing = Bearing::new(with.scene, reduction, info.time_step_s)?;
-        Ok(Self { assembly, bearing, start: None })
+        let (mesh, _) = cache::reduced_mesh(with.scene, with.runs())?;
+        let assembly = Assembly::of(with.scene, &mesh.parts)?;
+        let bearing = Bearing::new(modal_bearing(with.scene, mesh.reduction)?, info.time_step_s)?;
+        Ok(Self { assembly, bearing, moved: mesh.moved, start: None })
     }
 
     fn warnings(&self, scene: &Scene, _info: &RunInfo) -> Vec<String> {
@@ -92,7 +93,7 @@ impl Model for Reduced {
     /// Rings and housing as the preload of the reduction has left them; rollers and cage, which do not deform, where they are.
     fn mesh_file(&self, scene: &Scene) -> Result<Vec<u8>, Error> {
         let (g, mesh) = (Geometry::of(scene), &self.assembly.model.mesh);
-        let mut moved = self.bearing.reduction.moved.clone();
+        let mut moved = self.moved.clone();
         moved.resize(mesh.x.len(), [0.0; 2]);
         let rollers = mesh.bodies.iter().filter(|body| body.name.starts_with("roller "));
         let centres = self.start.iter().flat_map(|state| state.x.iter().zip(&state.y));
@@ -108,7 +109,7 @@ impl Model for Reduced {
     }
 
     fn start(self, with: &Preparation<'_>) -> ReducedMotion {
-        let state = self.start.unwrap_or_else(|| self.bearing.rest(with.scene));
+        let state = self.start.unwrap_or_else(|| self.bearing.rest());
         ReducedMotion::start(with.scene, self.bearing, state)
     }
 
@@ -148,21 +149,21 @@ fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced.
 pub fn steps_in_a_sample(scene: &Scene, runs: Option<&Path>) -> Result<usize, Error> {
-    let (reduction, _) = cache::reduction(scene, runs)?;
-    Ok(in_steps(scene, &wanted(scene), reduction)?.1)
+    let (mesh, _) = cache::reduced_mesh(scene, runs)?;
+    Ok(in_steps(scene, &wanted(scene), modal_bearing(scene, mesh.reduction)?)?.1)
 }
 
 /// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there are in a sample.
-fn in_steps(scene: &Scene, wanted: &ReducedScene, reduction: Reduction) -> Result<(Bearing, usize), Error> {
+fn in_steps(scene: &Scene, wanted: &ReducedScene, modal: ModalBearing) -> Result<(Bearing, usize), Error> {
     let interval = Geometry::of(scene).interval;
     let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
-    let bearing = Bearing::new(scene, reduction, interval / steps as f64)?;
+    let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
     let most = bearing.critical_time_step();
     if bearing.time_step <= most {
         return Ok((bearing, steps));
     }
     let steps = steps_per_sample(scene, most);
-    Ok((Bearing::new(scene, bearing.reduction, interval / steps as f64)?, steps))
+    Ok((Bearing::new(modal, interval / steps as f64)?, steps))
 }
 
 /// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor measures beyond the modes is a difference

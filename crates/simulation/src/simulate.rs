@@ -126,8 +126,7 @@ impl Task for Begin<'_> {
         let Self { scene, dir, host, watch } = self;
         let alone = host.on_one_thread();
         let working = if M::SHARED { host } else { &alone };
-        let mut with =
-            Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
+        let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
         with.enter("mesh", watch);
         lead::<M::Saved>(working, scene, None)?;
         let (model, setup) = M::prepare(&mut with, watch)?;
@@ -156,8 +155,7 @@ impl Task for Continue<'_> {
         let alone = host.on_one_thread();
         let working = if M::SHARED { host } else { &alone };
         let checkpoint = read_saved::<M::Saved>(dir, scene)?;
-        let mut with =
-            Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
+        let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
         with.enter("mesh", watch);
         lead(working, scene, Some(&checkpoint))?;
         let Checkpoint { mut info, motion: saved } = checkpoint;

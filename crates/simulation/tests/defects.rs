@@ -7,12 +7,12 @@ use std::ops::ControlFlow;
 
 use common::{coarse, host};
 use stribeck_bearing::assembly::Assembly;
-use stribeck_simulation::simulate;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 
 /// Sound raceways in elements of 1 mm with these deviations.

@@ -6,12 +6,12 @@ use std::{fs, ops::ControlFlow, path::Path};
 
 use common::{coarse, host, ranks::together};
 use stribeck_run::host::{Host, Progress};
-use stribeck_simulation::{follow, resume, simulate};
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::Status,
     scene::{Scene, Start},
 };
+use stribeck_simulation::{follow, resume, simulate};
 use stribeck_testing::Scratch;
 
 /// Runs a scene, or the rest of the run in the folder, over so many ranks; breaks off after `samples` unless that is zero.

@@ -5,7 +5,6 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::{run, trace};
-use stribeck_reduced::reduction::Reduction;
 use stribeck_scene::{
     kinematics::Kinematics,
     run_info::Status,
@@ -23,37 +22,6 @@ fn small(more: &str) -> Scene {
           solver: (duration_ms: 2, mass_damping_per_s: 2000, structural_damping: None), {more})"
     );
     Scene::parse(&text, "here").expect("a sound scene")
-}
-
-/// Of a frame on springs so soft that the ring stays round: both move together, in either direction, without resistance, or against
-/// each other with ω² = k (1/m + 1/M). Dampers of c take c (1/m + 1/M) of such a motion's momentum a second.
-/// Source: two masses on a spring, Meirovitch 2001, §5.1.
-#[test]
-fn analytic_a_ring_on_springs_bounces_in_its_frame() {
-    // The ring gives way by 1 % of what the springs do.
-    const TOLERANCE: f64 = 0.01;
-    let (k, c, frame) = (1e6, 100.0, 1.5);
-    let scene = small(
-        "housing: springs(stiffness_n_um: 1, damping_n_s_m: 100, mass_kg: 1.5), operation: (load_n: 100)",
-    );
-    let reduction = Reduction::new(&scene).expect("modes");
-    let ring = reduction.structure_mass - frame;
-    let both = 1.0 / ring + 1.0 / frame;
-    let lowest: Vec<f64> =
-        reduction.squares[..reduction.modes].iter().map(|square| square.max(0.0).sqrt() / TAU).collect();
-    println!("modes at {lowest:.1?} Hz");
-    let expected = (k * both).sqrt() / TAU;
-    assert!(lowest[..2].iter().all(|hz| hz.abs() < 1.0), "{lowest:?}");
-    let mut bouncing: Vec<usize> =
-        (0..reduction.modes).filter(|&n| (lowest[n] / expected - 1.0).abs() < 0.05).collect();
-    bouncing.truncate(2);
-    assert_eq!(bouncing.len(), 2, "{lowest:?}");
-    for n in bouncing {
-        let source = "two masses on a spring, Meirovitch 2001, §5.1";
-        compare("a ring bounces in its frame", source, "Hz", lowest[n], expected, TOLERANCE);
-        let damping = reduction.dampers[n * reduction.padded + n];
-        compare("dampers of the frame", source, "1/s", damping, c * both, TOLERANCE);
-    }
 }
 
 /// The shaft speeds up from rest beside an outer ring whose speed falls through rest: the cage goes by the weighted mean of both.
@@ -185,7 +153,7 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
     }
 }
 
-/// The outer ring turns about its own centre, which the load has moved: drive and friction see the same velocity of its raceway. Seen
+/// The outer ring turns about its own centre, which the load has moved: drive and friction see the same velocity of its raceway. RollerView
 /// about the middle of the bearing instead, 50 ms of this are off by 1.3 % with steps of any length.
 #[test]
 fn conserves_energy_while_the_outer_ring_turns_under_load() {

@@ -6,7 +6,6 @@ use std::{fs, ops::ControlFlow};
 
 use common::{host, run, trace};
 use stribeck_run::host::Progress;
-use stribeck_simulation::{resume, simulate};
 use stribeck_scene::{
     geometry::Geometry,
     lubrication::loaded_films,
@@ -15,6 +14,7 @@ use stribeck_scene::{
     scene::{ModelScene, ReducedScene, Scene},
     trace::Trace,
 };
+use stribeck_simulation::{resume, simulate};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse, with its oil.

@@ -9,10 +9,9 @@ use stribeck_bearing::assembly::Assembly;
 use stribeck_reduced::{
     bearing::Bearing,
     motion::{BearingInMotion, Saved},
-    reduction::Reduction,
 };
+use stribeck_reduction::{ReducedMesh, dense, modal_bearing};
 use stribeck_run::host::Progress;
-use stribeck_simulation::{resume, simulate};
 use stribeck_scene::{
     kinematics::Kinematics,
     mesh_file::RunMesh,
@@ -25,6 +24,7 @@ use stribeck_scene::{
     static_load,
     trace::Trace,
 };
+use stribeck_simulation::{resume, simulate};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse.
@@ -84,9 +84,10 @@ fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
     const BEFORE: usize = 2000;
     const STEPS: usize = 300;
     let scene = coarse(10.0);
-    let reduction = Reduction::new(&scene).expect("modes");
-    let bearing = Bearing::new(&scene, reduction, 2e-6).expect("a bearing");
-    let saved = Saved::first(&bearing, bearing.at_start(&scene).expect("an equilibrium"));
+    let mesh = ReducedMesh::new(&scene).expect("modes");
+    let modal = modal_bearing(&scene, mesh.reduction).expect("a sound scene");
+    let bearing = Bearing::new(modal, 2e-6).expect("a bearing");
+    let saved = Saved::first(&bearing, bearing.at_start(&dense::solve).expect("an equilibrium"));
     let mut motion = BearingInMotion::new(bearing.clone(), saved);
     motion.interval(BEFORE);
     let mut anew = motion.saved();

@@ -7,7 +7,6 @@ use std::ops::ControlFlow;
 use common::{coarse, host};
 use stribeck_bearing::assembly::{Assembly, Machine, Roller};
 use stribeck_run::host::Progress;
-use stribeck_simulation::simulate;
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
@@ -17,6 +16,7 @@ use stribeck_scene::{
     },
     trace::Trace,
 };
+use stribeck_simulation::simulate;
 use stribeck_testing::{Scratch, ledger};
 
 fn run_watched(

@@ -8,19 +8,24 @@ use anyhow::{Context, Result};
 const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 19] = [
+const LAYERS: [(&str, &[&str]); 24] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
     ("solver", &["mesh", "simd"]),
     ("mpi", &["solver"]),
-    ("contact", &["mesh", "simd", "solver"]),
-    ("scene", &[]),
+    ("surface", &["simd"]),
+    ("film", &["surface"]),
+    ("contact", &["film", "mesh", "simd", "solver", "surface"]),
+    ("duty", &[]),
+    ("scene", &["duty"]),
     ("system", &["contact", "mesh", "solver"]),
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
     ("run", &["scene", "solver", "system"]),
-    ("reduced", &["bearing", "contact", "mesh", "scene", "simd", "solver", "system"]),
-    ("simulation", &["bearing", "mesh", "reduced", "run", "scene", "solver", "system"]),
+    ("modal", &["duty"]),
+    ("reduction", &["bearing", "mesh", "modal", "scene", "solver", "surface", "system"]),
+    ("reduced", &["film", "modal", "simd", "surface"]),
+    ("simulation", &["bearing", "mesh", "modal", "reduced", "reduction", "run", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),

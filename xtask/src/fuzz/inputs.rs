@@ -7,7 +7,6 @@ use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
 use stribeck_run::host::Progress;
 use stribeck_scene::campaign::Campaign;
-use stribeck_scene::duty::Duty;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::trace::Trace;
@@ -194,7 +193,7 @@ fn table(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     std::fs::write(&file, scene)?;
     let (answer, scene) = answered(Scene::read(&file))?;
     if let Some(scene) = scene {
-        let duty = Duty::of(&scene);
+        let duty = scene.duty();
         let angle = duty.shaft_rad(0.02);
         ensure!(
             angle.is_finite() && duty.load_n(0.02) > 0.0,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use stribeck_scene::duty::Duty;
 use stribeck_scene::kinematics::Crossing;
 use stribeck_scene::scene::{DefectRing, Scene};
 
@@ -158,7 +157,7 @@ fn passages_of(
     let [begin, last] = [time_s.first(), time_s.last()].map(|t| t.copied().unwrap_or(f64::NEG_INFINITY));
     let ring = course.spall.ring;
     let edge = Edge::of(scene, ring);
-    let duty = Duty::of(scene);
+    let duty = scene.duty();
     let turned_rad = |t: f64| match ring {
         _ if !course.turns => 0.0,
         DefectRing::Inner => duty.shaft_rad(t),

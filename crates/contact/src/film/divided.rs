@@ -2,7 +2,9 @@
 
 use stribeck_solver::{ranks::Shared, state::Moment};
 
-use super::{Film, Films, Layer, Memory, Pushed};
+use stribeck_film::{Layer, Pushed};
+
+use super::{Film, Films, Memory};
 use crate::interactions::{Interactions, within_reach};
 
 /// Numbers of a report: heat, force, how far springs are pressed in, thickness, and where the force goes.

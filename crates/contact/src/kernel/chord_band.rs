@@ -12,12 +12,10 @@ use super::{
     law::{LawKernel, Totals},
 };
 use crate::{
-    foot::Push,
     memory::{Candidate, Histories},
-    plane::choose,
     points::{FEW_POINTS, Points},
-    surface::Surface,
 };
+use stribeck_surface::{Surface, foot::Push, plane::choose};
 
 /// Some facets of a pass, at most as many as there are lanes, whose points lie side by side.
 pub(crate) struct ChordBand<'a> {
@@ -159,7 +157,7 @@ impl Facing {
         let mut beside_corner = 0;
         let chords = ChordLanes::new(found.len(), |l| {
             let facet = found[l] as usize;
-            beside_corner |= u64::from(primary.beside_corner[facet]) << l;
+            beside_corner |= u64::from(primary.beside_corner()[facet]) << l;
             let (a, b) = primary.ends(facet);
             [a as u32, b as u32]
         });

@@ -5,7 +5,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use stribeck_solver::state::Moment;
 
 use super::chord_pair::MovingChord;
-use crate::{plane::minus, polynomial::Polynomial};
+use stribeck_surface::{plane::minus, polynomial::Polynomial};
 
 impl MovingChord<f64> {
     /// The chord between two slots.

@@ -7,7 +7,7 @@
 use stribeck_simd::lanes::Number;
 
 use super::law::{LawKernel, PointState, Reaction, Totals};
-use crate::{
+use stribeck_surface::{
     chord::within_chord,
     foot::Sliding,
     plane::{choose, choose_each, cross, dot, force_of, minus, unit_normal},

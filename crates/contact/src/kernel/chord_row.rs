@@ -11,7 +11,7 @@ use super::{
     law::{LawKernel, Totals},
     row::{Outcome, Row},
 };
-use crate::{foot::Push, plane::choose};
+use stribeck_surface::{foot::Push, plane::choose};
 
 impl Row<'_> {
     /// Chords against chords: evaluates the points that certainly touch and pushes their forces; those that certainly do not
@@ -39,11 +39,11 @@ impl Row<'_> {
             let last = untried.ilog2() as usize;
             untried &= untried - 1;
             let [a, b] = [k, last].map(|k| nearest[range.start + k] as usize);
-            if tried == Some(a) || primary.beside_corner[a] {
+            if tried == Some(a) || primary.beside_corner()[a] {
                 continue;
             }
             tried = Some(a);
-            let b = if primary.beside_corner[b] { a } else { b };
+            let b = if primary.beside_corner()[b] { a } else { b };
             if primary.adjoin(a, b) {
                 untried = 0;
             }

@@ -12,15 +12,12 @@ use super::{
     single_points::SinglePoints,
 };
 use crate::{
-    chord::ChordFacet,
-    facet::{Facet, MovingFacet},
-    foot::Push,
     memory::{Arrangement, Candidate, Histories, Memory},
+    moving_facet::MovingFacet,
     pass_law::{PACE_KEPT, PassLaw},
     points::{FEW_POINTS, Points},
-    spline_facet::SplineFacet,
-    surface::Surface,
 };
+use stribeck_surface::{Surface, chord::ChordFacet, facet::Facet, foot::Push, spline_facet::SplineFacet};
 
 /// What an evaluation needs; compiled for each instruction set.
 pub(crate) struct Evaluation<'a> {
@@ -123,7 +120,7 @@ impl WithSimd for Evaluation<'_> {
     fn with_simd<V: Simd>(self, simd: V) -> Sum {
         // Which curves meet is asked once a pass, and whether points remember; the loop over points is compiled for each.
         let memory = self.memory.history.is_some();
-        match [self.secondary, self.primary].map(|surface| surface.spline.is_some()) {
+        match [self.secondary, self.primary].map(|surface| surface.spline().is_some()) {
             [false, false] if memory => self.evaluate::<V, ChordFacet, ChordFacet, true>(simd),
             [false, false] => self.evaluate::<V, ChordFacet, ChordFacet, false>(simd),
             [true, true] if memory => self.evaluate::<V, SplineFacet, SplineFacet, true>(simd),
@@ -153,7 +150,7 @@ impl Evaluation<'_> {
         *pace *= PACE_KEPT;
         // Chords against chords and splines against splines, with the law itself: many points at a time.
         let flat = secondary.is_flat() && primary.is_flat();
-        let splines = secondary.spline.is_some() && primary.spline.is_some();
+        let splines = secondary.spline().is_some() && primary.spline().is_some();
         let together = pass_law.together && pass_law.softness == 0.0 && (flat || splines);
         let zero = Vector::all(simd, 0.0);
         let law = LawKernel::new(zero, pass_law, pass_law.thickness, at.dt, deepest, now, *pace);

@@ -3,10 +3,10 @@
 
 use stribeck_simd::lanes::Number;
 
-use crate::{
+use crate::pass_law::{MOST_STEPS_APART, PassLaw, SPEED_MARGIN};
+use stribeck_surface::{
     foot::Sliding,
     law::Onset,
-    pass_law::{MOST_STEPS_APART, PassLaw, SPEED_MARGIN},
     plane::{choose, magnitude},
 };
 
@@ -226,7 +226,7 @@ mod tests {
     use stribeck_simd::lanes::{LANES, Vector};
 
     use super::*;
-    use crate::law::Law;
+    use stribeck_surface::Law;
 
     const DT: f64 = 1e-4;
     const THICKNESS: f64 = 0.02;

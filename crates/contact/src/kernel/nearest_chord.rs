@@ -3,7 +3,8 @@
 use pulp::{Simd, WithSimd};
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-use crate::{points::Points, surface::Surface};
+use crate::points::Points;
+use stribeck_surface::Surface;
 
 /// The points of one facet, and facets of the other surface that may be near them.
 pub(crate) struct NearestChord<'a> {

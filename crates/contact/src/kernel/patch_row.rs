@@ -13,14 +13,15 @@ use super::{
     law::{LawKernel, PointState, Totals},
     row::{Outcome, Row},
 };
-use crate::{
-    facet::{Facet, MovingFacet},
+use crate::moving_facet::MovingFacet;
+use stribeck_surface::{
+    Surface,
+    facet::Facet,
     foot::Push,
     patch::{FOUND, Patch, choose_all, spread, within_patch},
     plane::{choose, choose_each, force_of},
     polynomial::{Coefficients, Polynomial},
     spline_facet::SplineFacet,
-    surface::Surface,
 };
 
 /// Corrections of a foot at most; on meshes that resolve their curves one is enough.
@@ -208,7 +209,7 @@ impl Row<'_> {
         while left != 0 {
             let k = if first.is_none() { left.trailing_zeros() } else { left.ilog2() };
             let facet = self.nearest[first_point + k as usize] as usize;
-            if !self.primary.beside_corner[facet] {
+            if !self.primary.beside_corner()[facet] {
                 match first {
                     None => {
                         first = Some(facet);

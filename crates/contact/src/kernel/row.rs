@@ -7,8 +7,8 @@ use stribeck_solver::state::Moment;
 use crate::{
     memory::{Candidate, Histories},
     points::{Method, Points},
-    surface::Surface,
 };
+use stribeck_surface::Surface;
 
 /// Room for the points of a facet: two of them may be corners.
 const ROOM: usize = Method::MOST_POINTS + LANES;

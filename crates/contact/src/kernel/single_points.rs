@@ -8,14 +8,17 @@ use super::{
     row::Outcome,
 };
 use crate::{
-    facet::{Facet, MovingFacet},
-    foot::{Push, Sliding},
     memory::{Candidate, Histories, NEVER},
-    narrow_phase::find_foot,
+    moving_facet::MovingFacet,
     pass_law::PassLaw,
-    plane::force_of,
     points::Points,
-    surface::Surface,
+};
+use stribeck_surface::{
+    Surface,
+    facet::Facet,
+    foot::{Push, Sliding},
+    narrow_phase::find_foot,
+    plane::force_of,
 };
 
 /// Points of facets of one kind against facets of another, one by one.

@@ -1,8 +1,10 @@
-//! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast both sweep past there.
+//! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast
+//! both sweep past there.
 
-use stribeck_contact::{Error as ContactError, Land, Place, Point, Smoothing, Surface};
+use stribeck_film::{Land, Place, Point};
+use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
 
-use crate::{error::Error, outline::Outline};
+use crate::{contact::outline::Outline, error::Error, plane::Rotation};
 
 /// The smooth curve that an outline stands for, in the frame of its body.
 #[derive(Debug, Clone)]
@@ -25,7 +27,7 @@ pub(crate) enum Rim {
 
 /// A roller as a raceway sees it, in the frame of its outline.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Seen {
+pub(crate) struct RollerView {
     /// Centre [m] and direction of vertex 0.
     pub(crate) centre: [f64; 2],
     pub(crate) spin: [f64; 2],
@@ -67,7 +69,7 @@ impl Curved {
         if lands.is_empty() {
             let reason = "has nothing but corners, which no film lies across: oil needs facets that meet at less than 20°, by `mesh.size_mm`, \
                           `mesh.outer_facets` and `mesh.inner_facets`";
-            return Err(ContactError::BadSurface { name: name.to_owned(), reason }.into());
+            return Err(SurfaceError::BadSurface { name: name.to_owned(), reason }.into());
         }
         Ok(Self { x, y, surface, lands })
     }
@@ -79,7 +81,7 @@ impl Curved {
     pub(crate) fn rim(outline: &Outline) -> Result<Self, Error> {
         let name = "rim of a roller";
         let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more `mesh.roller_facets`, 19 at least";
-        let corners = || ContactError::BadSurface { name: name.to_owned(), reason };
+        let corners = || SurfaceError::BadSurface { name: name.to_owned(), reason };
         let curved = Self::new(name, outline, false).map_err(|_| corners())?;
         if curved.lands.len() == 1 { Ok(curved) } else { Err(corners().into()) }
     }
@@ -98,16 +100,15 @@ impl Curved {
     }
 }
 
-impl Seen {
+impl RollerView {
     /// A point [m] in the frame of the roller.
     fn by_roller(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let ([c, s], x, y) = (self.spin, x - self.centre[0], y - self.centre[1]);
-        [c * x + s * y, c * y - s * x]
+        Rotation::to(self.spin).back([x - self.centre[0], y - self.centre[1]])
     }
 }
 
 /// Places on a land of a raceway and on a rim to search from.
-pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &Seen) -> [Place; 2] {
+pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &RollerView) -> [Place; 2] {
     let on_race = race.begin(land, seen.centre);
     let on_rim = match rim {
         Rim::Round(_) => Place::default(),
@@ -121,7 +122,13 @@ pub(crate) fn begin(race: &Curved, land: &Land, rim: &Rim, seen: &Seen) -> [Plac
 
 impl Nearest {
     /// Of a roller and a land of a raceway, walking on from other places.
-    pub(crate) fn new(race: &Curved, land: &Land, rim: &Rim, seen: &Seen, places: &mut [Place; 2]) -> Self {
+    pub(crate) fn new(
+        race: &Curved,
+        land: &Land,
+        rim: &Rim,
+        seen: &RollerView,
+        places: &mut [Place; 2],
+    ) -> Self {
         let foot = race.nearest(land, seen.centre, places[0]);
         places[0] = foot.place;
         let to = [foot.at[0] - seen.centre[0], foot.at[1] - seen.centre[1]];
@@ -132,9 +139,9 @@ impl Nearest {
                 let own = seen.by_roller(foot.at);
                 let point = rim.nearest(&rim.lands[0], own, places[1]);
                 places[1] = point.place;
-                let ([nx, ny], [c, s]) = (point.normal, seen.spin);
+                let [nx, ny] = point.normal;
                 let gap = nx * (own[0] - point.at[0]) + ny * (own[1] - point.at[1]);
-                (gap, [c * nx - s * ny, s * nx + c * ny], point.at[1] * nx - point.at[0] * ny)
+                (gap, Rotation::to(seen.spin).forth(point.normal), point.at[1] * nx - point.at[0] * ny)
             }
         };
         let ends = land.to_ends(&race.surface, foot.place);
@@ -142,7 +149,7 @@ impl Nearest {
     }
 
     /// Entrainment speed [m/s]: half of what both surfaces sweep past the closest approach.
-    pub(crate) fn speed(&self, seen: &Seen, land: &Land) -> f64 {
+    pub(crate) fn speed(&self, seen: &RollerView, land: &Land) -> f64 {
         let along = self.d[0] * seen.velocity[1] - self.d[1] * seen.velocity[0];
         let on_land = self.ends.iter().all(|&end| end > 0.0);
         // The closest approach stays at the end of a land, and d turns about it.

@@ -1,6 +1,9 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
+use stribeck_modal::compliance::Compliance;
+
 use super::*;
+use crate::contact::outline::Outline;
 
 /// The paper's raceways and roller [m], its oil and a roller's mass [kg].
 const OUTER: f64 = 0.1;
@@ -14,7 +17,7 @@ const MASS: f64 = 0.06;
 const PENALTY: f64 = 6e11;
 const FLEXIBILITY: f64 = 2e-9;
 
-fn race(radius: f64, hollow: bool) -> Raceway {
+fn race(radius: f64, hollow: bool) -> OiledRaceway {
     let vertices: Vec<[f64; 2]> = (0..1200)
         .map(|i| TAU * f64::from(i) / 1200.0)
         .map(|angle| [radius * angle.cos(), radius * angle.sin()])
@@ -23,18 +26,18 @@ fn race(radius: f64, hollow: bool) -> Raceway {
     let relative = 1.0 / (1.0 / RADIUS + curved.lands[0].curvature);
     let loads = [1.0, 1e4];
     let compliance = Compliance::through(&loads, &loads.map(|load| FLEXIBILITY * load), 48);
-    let give = Give::new(PENALTY, relative, &compliance);
+    let give = BodySpring::new(PENALTY, relative, &compliance);
     let films = vec![FilmLaw::new(OIL, relative, LENGTH, give)];
-    Raceway { curved, films, speed: 0.0 }
+    OiledRaceway { curved, films, speed: 0.0 }
 }
 
-fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> Seen {
-    Seen { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
+fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> RollerView {
+    RollerView { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
 }
 
-/// What a weight does to a roller between the raceways: place, velocity and thickness of the outer film above the least, by
-/// F = 3√2 π η L (R/h)^{3/2} (−ḣ) in the film that closes, nothing in the one that opens (A. Cameron, The Principles of Lubrication,
-/// Longmans 1966, chapter 7), and springs in series.
+/// What a weight does to a roller between the raceways: place, velocity and thickness of the outer film above
+/// the least, by F = 3√2 π η L (R/h)^{3/2} (−ḣ) in the film that closes, nothing in the one that opens (A.
+/// Cameron, The Principles of Lubrication, Longmans 1966, chapter 7), and springs in series.
 struct Sinking {
     at: [f64; 3],
 }
@@ -69,12 +72,13 @@ impl Sinking {
     }
 }
 
-/// The thickness of the film under a roller that is driven into it from 10 µm to 3.5 µm, where the circles are about to overlap and
-/// contact would act, too, against [`Sinking`]; the film goes by implicit steps of the first order. A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7.
+/// The thickness of the film under a roller that is driven into it from 10 µm to 3.5 µm, where the circles
+/// are about to overlap and contact would act, too, against [`Sinking`]; the film goes by implicit steps of
+/// the first order. A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7.
 #[test]
 fn analytic_a_roller_sinks_through_its_film() {
-    // At 0.15 m/s it closes by its own thickness in some 25 µs: steps of 0.125 µs leave about as much as they are of that, and half as
-    // much half as long.
+    // At 0.15 m/s it closes by its own thickness in some 25 µs: steps of 0.125 µs leave about as much as they
+    // are of that, and half as much half as long.
     const TOLERANCE: f64 = 0.01;
     const ORDER: std::ops::Range<f64> = 0.8..1.2;
     let raceways = [race(OUTER, true), race(INNER, false)];
@@ -88,10 +92,10 @@ fn analytic_a_roller_sinks_through_its_film() {
         let mut step = 0;
         while thickness > 3.5e-6 {
             assert!(step as f64 * dt < 1e-3, "the film stays at {thickness} m");
-            let now = Now { step, dt, last: false, felt: false };
+            let now = FilmStep { step, dt, last: false, felt: false };
             let mut force = Sinking::WEIGHT;
             for (race, films) in raceways.iter().zip(&mut films) {
-                force += race.lift(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
+                force += race.film_forces(&rim, films, &on_x_axis(x, [v, 0.0], 0.0), now).force[0];
             }
             thickness = raceways[0].thickness(&films[0], 0);
             off = off.max((thickness / (known.at[2] + OIL.least) - 1.0).abs());
@@ -107,9 +111,10 @@ fn analytic_a_roller_sinks_through_its_film() {
     assert!(ORDER.contains(&(coarse / fine).log2()), "{coarse}, {fine}");
 }
 
-/// Rolling without slip both surfaces sweep past a contact as fast as the contact past the raceway (THEORY §5.1); pivoting about a corner
-/// without slip draws in nothing; a roller that spins in place draws in half of its own speed. Plane kinematics of a rolling circle:
-/// T. A. Harris, Rolling Bearing Analysis, Wiley 2001, chapter 8.
+/// Rolling without slip both surfaces sweep past a contact as fast as the contact past the raceway (THEORY
+/// §5.1); pivoting about a corner without slip draws in nothing; a roller that spins in place draws in half
+/// of its own speed. Plane kinematics of a rolling circle: T. A. Harris, Rolling Bearing Analysis, Wiley
+/// 2001, chapter 8.
 #[test]
 fn analytic_entrainment_follows_from_rolling() {
     const ROUNDING: f64 = 1e-9;
@@ -143,7 +148,7 @@ fn patch_springs_hold_the_work_that_presses_them_in() {
     let mut work = 0.0;
     for i in 0..200 {
         let [a, b] = [i, i + 1].map(|n| most * f64::from(n) / 200.0);
-        let f = [a, 0.5 * (a + b), b].map(|depth| stribeck_contact::Spring::force(&law.spring, depth));
+        let f = [a, 0.5 * (a + b), b].map(|depth| stribeck_film::Spring::force(&law.spring, depth));
         work += (b - a) / 6.0 * (f[0] + 4.0 * f[1] + f[2]);
     }
     let pushed = Pushed { pressed: [most, 0.0], ..Pushed::default() };

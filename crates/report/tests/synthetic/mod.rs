@@ -6,7 +6,6 @@ mod mesh;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use stribeck_scene::duty::Duty;
 use stribeck_scene::ensemble::{Ensemble, start};
 use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
 use stribeck_scene::lubrication::loaded_films;
@@ -169,7 +168,7 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
         names.extend(per_roller.iter().map(|what| format!("roller.{roller}.{what}")));
     }
     names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad", "seat.fx_n", "seat.fy_n"].map(str::to_owned));
-    let duty = Duty::of(scene);
+    let duty = scene.duty();
     names.extend(scene.operation.load_varies().then(|| "adapter.load_n".to_owned()));
     let (films, oiled) = (loaded_films(scene).expect("a load"), roller_angles_deg(scene));
     if films.is_some() {

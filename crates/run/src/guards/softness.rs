@@ -1,7 +1,6 @@
 //! Contact that is softer than the bearing itself.
 
 use stribeck_scene::{
-    duty::Duty,
     geometry::Geometry,
     scene::Scene,
     static_load::{RigidRings, angles_to_load_deg},
@@ -26,7 +25,7 @@ pub(super) struct Softness {
 impl Softness {
     pub(super) fn of(scene: &Scene, g: &Geometry) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
-        let [_, most] = Duty::of(scene).load_range_n(g.duration);
+        let [_, most] = scene.duty().load_range_n(g.duration);
         let load = RigidRings::new(g).distribute(most, &angles_to_load_deg(scene));
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);

@@ -7,7 +7,6 @@ use super::finding::{Finding, Remedy};
 use super::limits::{self, LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, round_up, shown};
 use crate::deviation::RollingSurface;
-use crate::duty::Duty;
 use crate::faults::rolling_circle;
 use crate::housing::HousingScene;
 use crate::scene::{DefectRing, ModelScene, ProfileScene, Scene, Start};
@@ -395,7 +394,7 @@ fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Op
 fn rotating_load(scene: &Scene) -> Option<Finding> {
     const FORCE: &str = "operation.rotating_load.force_n";
     let rotating = scene.operation.rotating_load.as_ref()?;
-    let duty = Duty::of(scene);
+    let duty = scene.duty();
     let [least, _] = duty.load_range_n(1e-3 * scene.solver.duration_ms);
     if least > 0.0 {
         return None;

@@ -5,7 +5,6 @@
 
 use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
-use crate::duty::Duty;
 use crate::geometry::Geometry;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::line_contact::LineContacts;
@@ -127,7 +126,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     let area = |b: &BearingScene| b.rollers as f64 * b.roller_diameter_mm * b.thickness_mm;
     let load = paper.operation.load_n * area(&bearing) / area(&paper.bearing);
     follow("operation.load_n", &mut scene.operation.load_n, load);
-    let [least, most] = Duty::of(scene).speed_range_rpm(0.0, 1e-3 * scene.solver.duration_ms);
+    let [least, most] = scene.duty().speed_range_rpm(0.0, 1e-3 * scene.solver.duration_ms);
     if let Some(frames) = &mut scene.output.frames {
         let of_paper = FramesScene::default();
         follow("output.frames.half_width_mm", &mut frames.half_width_mm, size * of_paper.half_width_mm);

@@ -110,7 +110,12 @@ impl Guards {
     }
 
     /// Looks at a bearing after a sample, and at the imbalance of its energy: adds warnings to `info`; the reason to stop, if there is one.
-    pub(super) fn look(&mut self, info: &mut RunInfo, bearing: &BearingInMotion, off: LedgerError) -> Option<String> {
+    pub(super) fn look(
+        &mut self,
+        info: &mut RunInfo,
+        bearing: &BearingInMotion,
+        off: LedgerError,
+    ) -> Option<String> {
         let when = When::of(info);
         self.place(bearing);
         let share = self.placed.penetration_share;

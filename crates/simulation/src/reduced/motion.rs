@@ -1,7 +1,9 @@
 //! The reduced bearing as the time loop drives it: its readings become samples, its energies a ledger.
 
 use serde::{Deserialize, Serialize};
-use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion, motion::Energies, readings::RollerReading};
+use stribeck_reduced::{
+    bearing::Bearing, motion::BearingInMotion, motion::Energies, readings::RollerReading,
+};
 use stribeck_run::{
     channels::{CageSample, RollerSample, Sample, SensorSample},
     error::Error,

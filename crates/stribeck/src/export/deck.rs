@@ -6,7 +6,6 @@ use anyhow::{Result, bail};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
-use stribeck_scene::duty::Duty;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::mesh_file::{self, RunMesh};
@@ -93,7 +92,7 @@ fn step(scene: &Scene, mesh: &Mesh) -> Result<Step> {
              has the mesh alone"
         );
     }
-    let (g, duty) = (Geometry::of(scene), Duty::of(scene));
+    let (g, duty) = (Geometry::of(scene), scene.duty());
     let guided = assembly.guided();
     let mut velocity = vec![[0.0; 2]; mesh.x.len()];
     for body in &mesh.bodies {

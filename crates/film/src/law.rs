@@ -1,0 +1,217 @@
+//! What one film does: how thick it gets, what it carries and how much heat it makes, from the gap that the surfaces leave
+//! and the speed at which they draw in oil (THEORY §4.6). Where the gap comes from it does not know.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    reynolds::{EMPTY, Pressed, left_of_land},
+    spring::Spring,
+};
+
+/// Wider gaps hold no film [m].
+pub const WIDEST: f64 = 1e-3;
+
+/// Bodies that roll more slowly than this count as rolling at it [m/s]: enough to divide by, and a ten-thousandth of what
+/// a bearing does.
+const SLOWEST: f64 = 1e-3;
+
+/// Where a film ends that neither opens nor closes.
+const STEADY: f64 = 0.475_131;
+
+/// A land that ends this many film widths away has no end.
+const FAR: f64 = 20.0;
+
+/// A contact that carries so many times what its film can lift stays as it is for some steps.
+const FIXED: f64 = 4.0;
+
+/// Share of the way that is left when the end of a film is found. The next step makes up for it.
+const ACCURACY: f64 = 1e-6;
+
+/// Most corrections of the place where a film ends.
+const MOST_CORRECTIONS: usize = 30;
+
+/// What lies between two surfaces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oil {
+    /// Dynamic viscosity η [Pa s].
+    pub viscosity: f64,
+    /// Least film thickness [m]: that of a loaded contact, where the oil is as good as solid and contact alone acts.
+    pub least: f64,
+}
+
+/// The law of a film between two surfaces that give way as `S` says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FilmLaw<S> {
+    /// Relative radius R [m].
+    radius: f64,
+    /// 4ηRL [N s]: times u/h a force.
+    wedge: f64,
+    /// 1/√(2R) [1/√m].
+    slope: f64,
+    least: f64,
+    /// What the surfaces give under the film.
+    pub spring: S,
+}
+
+/// What a film remembers from step to step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Layer {
+    /// Thickness above the least [m].
+    pub above: f64,
+    /// Where it ends, in √(2Rh) behind the closest approach.
+    end: f64,
+    /// Force through it [N].
+    pub force: f64,
+}
+
+/// What a film does in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pushed {
+    /// Force that drives the surfaces apart, beside that of dry contact [N].
+    pub force: f64,
+    /// How far springs are pressed in with the film, and without it [m].
+    pub pressed: [f64; 2],
+    /// Heat [J].
+    pub heat: f64,
+    /// Whether it is so thin and so pressed that nothing can change for some steps.
+    pub fixed: bool,
+}
+
+impl Layer {
+    /// A film that fills a gap [m] and carries nothing yet.
+    pub fn at(gap: f64) -> Self {
+        Self { above: gap.max(0.0), end: STEADY, force: 0.0 }
+    }
+}
+
+impl<S: Spring> FilmLaw<S> {
+    /// A film of oil between surfaces of the relative radius R, over a `length` out of plane [m].
+    pub fn new(oil: Oil, radius: f64, length: f64, spring: S) -> Self {
+        let wedge = 4.0 * oil.viscosity * radius * length;
+        Self { radius, wedge, slope: 1.0 / (2.0 * radius).sqrt(), least: oil.least, spring }
+    }
+
+    /// Film thickness [m].
+    pub fn thickness(&self, layer: &Layer) -> f64 {
+        layer.above + self.least
+    }
+
+    /// Share of the force that is left where the land ends so far off on both sides [m]; `tilt` is the sine of the angle
+    /// between the film's normal and that of the land.
+    pub fn share(&self, ends: [f64; 2], tilt: f64, layer: &Layer) -> f64 {
+        let per_metre = self.slope / self.thickness(layer).sqrt();
+        ends.map(|end| {
+            // At the very end the closest approach may lie beyond it.
+            let edge = if end > 0.0 { end } else { -tilt.abs() * self.radius };
+            let edge = edge * per_metre;
+            if edge < FAR { left_of_land(edge) } else { 1.0 }
+        })
+        .iter()
+        .product()
+    }
+
+    /// The film of steady rolling at a gap [m] and an entrainment speed [m/s], where the land leaves a share of the force.
+    pub fn settled(&self, gap: f64, speed: f64, share: f64) -> (Layer, Pushed) {
+        let steady = Pressed::until(STEADY);
+        let carried = self.wedge * speed.abs().max(SLOWEST) * share * steady.force;
+        let dry = (-gap).max(0.0);
+        let mut above = gap.max(0.0);
+        if self.spring.force(dry) < carried / self.least {
+            // Spring force less film force rises with the thickness.
+            let (mut low, mut high) = (above, above + carried / self.least / self.spring.stiffest() + WIDEST);
+            for _ in 0..80 {
+                let middle = 0.5 * (low + high);
+                if self.spring.force(middle - gap) < carried / (middle + self.least) {
+                    low = middle
+                } else {
+                    high = middle
+                }
+            }
+            above = low;
+        }
+        let depth = above - gap;
+        let layer = Layer { above, end: STEADY, force: self.spring.force(depth) };
+        let force = layer.force - self.spring.force(dry);
+        (layer, Pushed { force, pressed: [depth, dry], ..Pushed::default() })
+    }
+
+    /// Lets a time step `dt` [s] pass at a gap [m] and an entrainment speed [m/s], where the land leaves a share of the
+    /// force.
+    pub fn flow(&self, layer: &mut Layer, gap: f64, speed: f64, share: f64, dt: f64) -> Pushed {
+        let above = layer.above;
+        let dry = (-gap).max(0.0);
+        let thickness = above + self.least;
+        let speed = speed.hypot(SLOWEST);
+        let lift = self.wedge * speed * share / thickness;
+        let rate = speed * thickness.sqrt() * self.slope;
+        let before = layer.force;
+        if above == 0.0 && dry > 0.0 {
+            let (carried, loose) = (self.spring.force_near(dry, before), lift * Pressed::until(STEADY).force);
+            if carried >= loose {
+                // Solid: contact alone acts.
+                (layer.force, layer.end) = (carried, STEADY);
+                return Pushed { pressed: [dry; 2], fixed: carried > FIXED * loose, ..Pushed::default() };
+            }
+        }
+        let room = above - gap;
+        let carried = match end_of(lift, rate * dt, room, layer.end, &self.spring) {
+            Some((end, film)) => {
+                (layer.above, layer.end) = ((above + rate * dt * film.opening).max(0.0), end);
+                lift * film.force
+            }
+            None => {
+                (layer.above, layer.end) = (gap.max(0.0), EMPTY);
+                before
+            }
+        };
+        let depth = (layer.above - gap).max(0.0);
+        layer.force = self.spring.force_near(depth, carried);
+        let force = layer.force - self.spring.force(dry);
+        let heat = 0.5 * (before + layer.force) * (above - layer.above);
+        Pushed { force, pressed: [depth, dry], heat, fixed: false }
+    }
+
+    /// Energy in its springs, beside what contact has [J].
+    pub fn stored(&self, pushed: &Pushed) -> f64 {
+        let [depth, dry] = pushed.pressed.map(|depth| self.spring.energy(depth));
+        depth - dry
+    }
+}
+
+/// Where the film ends that presses springs in by what is left of `room` [m] after it has opened for a time: at the force
+/// `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
+fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, Pressed)> {
+    let need = |c: f64| {
+        let film = Pressed::until(c);
+        let (depth, by_force) = spring.depth(lift * film.force);
+        let value = depth - opened * film.opening - room;
+        (value, by_force * lift * film.force_slope - opened * film.opening_slope, film)
+    };
+    let mut c = from.max(EMPTY);
+    let (mut low, mut high) = (EMPTY, f64::INFINITY);
+    for _ in 0..MOST_CORRECTIONS {
+        let (value, slope, film) = need(c);
+        if value >= 0.0 && c == EMPTY {
+            return None;
+        }
+        if value.abs() <= ACCURACY * (room.abs() + opened) {
+            return Some((c, film));
+        }
+        if value > 0.0 {
+            high = c
+        } else {
+            low = c
+        }
+        let next = c - value / slope;
+        c = if next > low && next < high {
+            next
+        } else if value > 0.0 {
+            if low == EMPTY { EMPTY } else { 0.5 * (low + high) }
+        } else if high.is_finite() {
+            0.5 * (low + high)
+        } else {
+            2.0 * c.abs() + 1.0
+        };
+    }
+    Some((c, Pressed::until(c)))
+}

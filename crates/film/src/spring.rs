@@ -1,0 +1,86 @@
+//! What the surfaces give under a film.
+
+/// Deepest indentation at which the force follows the growing contact; beyond it the force rises straight, so that the
+/// time step knows a stiffest [m]. A film that presses so hard is gone within microseconds.
+const DEEPEST: f64 = 2e-6;
+
+/// What two surfaces give under a film between them.
+pub trait Spring {
+    /// Force [N] at a depth of zero or more [m].
+    fn force(&self, depth: f64) -> f64;
+
+    /// The same when it is about `guess` [N], for springs whose force has to be sought.
+    fn force_near(&self, depth: f64, guess: f64) -> f64 {
+        let _ = guess;
+        self.force(depth)
+    }
+
+    /// Depth [m] under a force of zero or more [N], and its derivative [m/N].
+    fn depth(&self, force: f64) -> (f64, f64);
+
+    /// No stiffness is above this [N/m].
+    fn stiffest(&self) -> f64;
+
+    /// Energy at a depth of zero or more [J].
+    fn energy(&self, depth: f64) -> f64;
+}
+
+/// A cylinder that is pressed into a bed of springs, those of penalty contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bed {
+    /// Force over depth^{3/2} [N/m^{3/2}].
+    hardness: f64,
+    /// Force at the deepest.
+    bend: f64,
+    /// Stiffness from there on [N/m].
+    stiffest: f64,
+}
+
+impl Bed {
+    /// Springs of `stiffness` a length [N/m²] under a cylinder of the relative radius `radius` [m]: a strip of the half-width
+    /// √(2Rd) is pressed in, ∫ k (d − x²/2R) dx = 4/3 k √(2R) d^{3/2}.
+    pub fn new(stiffness: f64, radius: f64) -> Self {
+        let hardness = 4.0 / 3.0 * stiffness * (2.0 * radius).sqrt();
+        let root = DEEPEST.sqrt();
+        Self { hardness, bend: hardness * DEEPEST * root, stiffest: 1.5 * hardness * root }
+    }
+
+    /// Stiffness [N/m].
+    #[inline]
+    pub fn stiffness(&self, depth: f64) -> f64 {
+        1.5 * self.hardness * depth.min(DEEPEST).sqrt()
+    }
+}
+
+impl Spring for Bed {
+    #[inline]
+    fn force(&self, depth: f64) -> f64 {
+        if depth < DEEPEST {
+            self.hardness * depth * depth.sqrt()
+        } else {
+            self.bend + self.stiffest * (depth - DEEPEST)
+        }
+    }
+
+    #[inline]
+    fn depth(&self, force: f64) -> (f64, f64) {
+        if force < self.bend {
+            let root = (force / self.hardness).cbrt();
+            (root * root, 1.0 / (1.5 * self.hardness * root))
+        } else {
+            (DEEPEST + (force - self.bend) / self.stiffest, 1.0 / self.stiffest)
+        }
+    }
+
+    #[inline]
+    fn stiffest(&self) -> f64 {
+        self.stiffest
+    }
+
+    #[inline]
+    fn energy(&self, depth: f64) -> f64 {
+        let (curved, rest) = (depth.min(DEEPEST), (depth - DEEPEST).max(0.0));
+        0.4 * self.hardness * curved * curved * curved.sqrt()
+            + (self.bend + 0.5 * self.stiffest * rest) * rest
+    }
+}

@@ -1,0 +1,237 @@
+//! Eight rollers side by side: loaded from the state before some steps, and written back after them.
+
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Vector};
+
+use crate::{
+    bearing::Bearing,
+    contact::penetration::Penetration,
+    contact::segments::Segments,
+    rollers::row::{Row, Rows, lanes, of_one},
+    state::State,
+};
+
+/// Eight rollers; where there are fewer, those that are missing rest beside the bearing.
+#[derive(Debug, Clone, Default)]
+#[repr(align(64))]
+pub(crate) struct Block {
+    /// The first of them.
+    pub(crate) first: usize,
+    /// How many there are, a bit for each, and one for each.
+    pub(crate) count: usize,
+    pub(crate) bits: u64,
+    pub(crate) present: Row,
+    /// Centres [m], their velocities [m/s], angles [rad] and angular velocities [rad/s].
+    pub(crate) centre: Rows,
+    pub(crate) velocity: Rows,
+    pub(crate) angle: Row,
+    pub(crate) spin: Row,
+    /// Directions of vertex 0.
+    pub(crate) turned: Rows,
+    /// Radii of the circles around them [m].
+    pub(crate) top: Row,
+    /// From the bearing's centre [m], and the direction there.
+    pub(crate) distance: Row,
+    pub(crate) radial: Rows,
+    /// The direction in the frame of the outer raceway, both ends of the facet that it goes through there,
+    /// and for whom these are known.
+    pub(crate) along: Rows,
+    pub(crate) ends: [Rows; 2],
+    pub(crate) placed: u64,
+    /// The place on the outer raceway: facet and share of its second vertex; one over the angle that the
+    /// facet takes [1/rad]; displacement there [m], velocity [m/s], and change of the displacement with the
+    /// angle [m/rad].
+    pub(crate) facet: [u32; LANES],
+    pub(crate) share: Row,
+    pub(crate) per_angle: Row,
+    pub(crate) by: Rows,
+    pub(crate) moving: Rows,
+    pub(crate) tilt: Rows,
+    /// Largest displacement of the raceway under them since these were known [m].
+    pub(crate) drift: Row,
+    /// What these come from: by the modes, as [`Bearing::moved`] says, and by the seat at both vertices,
+    /// roller by roller in parts, and summed.
+    pub(crate) parts_of_motion: [[Row; 8]; LANES],
+    pub(crate) moved: [Row; 8],
+    /// At outer and inner raceway.
+    pub(crate) contacts: [Contacts; 2],
+    /// At the two walls of each pocket.
+    pub(crate) walls: [Walls; 2],
+    /// Forces by outer raceway, inner raceway and cage in this step [N], and their moment [N m].
+    pub(crate) force: [Rows; 3],
+    pub(crate) moment: Row,
+    /// What drives them along the outer raceway because that is displaced more there [N].
+    pub(crate) downhill: Rows,
+    /// The forces, summed over the steps since the last sample.
+    pub(crate) sums: [Rows; 3],
+}
+
+/// Contacts of eight rollers with a raceway, in the frame of its outline.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Contacts {
+    /// From the state: normal force of the last step and its growth [N], elastic
+    /// slip [m], drag and damping force [N] and damping moment [N m], facets of roller and raceway.
+    pub(crate) force: Row,
+    pub(crate) growth: Row,
+    pub(crate) slip: Row,
+    pub(crate) passive: [Row; 3],
+    pub(crate) hints: [[u32; 2]; LANES],
+    /// Centre, its distance from that of the raceway, the direction of the roller's vertex 0, and that to the
+    /// contact, in the frame of the roller, too.
+    pub(crate) centre: Rows,
+    pub(crate) distance: Row,
+    pub(crate) spin: Rows,
+    pub(crate) d: Rows,
+    pub(crate) own: Rows,
+    /// Circle that nothing of the raceway stands out from there [m], and the depth between the circles around
+    /// both.
+    pub(crate) bound: Row,
+    pub(crate) most: Row,
+    /// Those that may touch.
+    pub(crate) near: u64,
+    pub(crate) segments: [Segments; LANES],
+    /// What the search for the force begins with: a force [N] and its root, what the bodies flexibility way
+    /// by at it [m], the derivative of that [m/N], and how far from its middle the contact may reach [m].
+    pub(crate) start: Row,
+    pub(crate) root: Row,
+    pub(crate) shift: Row,
+    pub(crate) flexibility: Row,
+    pub(crate) reach: Row,
+    /// The piece of the compliance there, as [`stribeck_modal::compliance::Curve::piece_at`] says.
+    pub(crate) knot: Row,
+    pub(crate) first: Row,
+    pub(crate) slope: Row,
+    pub(crate) next: Row,
+    /// What it finds: normal force [N], what overlaps at it.
+    pub(crate) normal: Row,
+    pub(crate) overlap: Penetration<Row>,
+}
+
+impl Contacts {
+    /// Stiffness of one contact as the raceway recedes and the roller stays [N/m].
+    #[inline(always)]
+    pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {
+        let own = penalty * self.overlap.length[lane];
+        if self.normal[lane] > 0.0 { own / (1.0 + own * self.flexibility[lane]) } else { 0.0 }
+    }
+}
+
+/// Contacts of eight rollers with a wall of their pockets: elastic slip [m], drag and damping force [N].
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Walls {
+    pub(crate) slip: Row,
+    pub(crate) passive: Rows,
+}
+
+impl Block {
+    /// The rollers from `first` on, and what of them does not change.
+    pub(crate) fn new(bearing: &Bearing, first: usize) -> Self {
+        let count = (bearing.rollers.count - first).min(LANES);
+        let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
+        // Those that are missing keep clear of both raceways.
+        block.centre[0] = Row([bearing.raceways[0].bound; LANES]);
+        block.drift = Row([f64::INFINITY; LANES]);
+        for (contacts, raceway) in block.contacts.iter_mut().zip(&bearing.raceways) {
+            contacts.bound = Row([raceway.bound; LANES]);
+        }
+        for lane in 0..count {
+            block.present[lane] = 1.0;
+            block.top[lane] = bearing.rollers.rim(first + lane).top;
+        }
+        block
+    }
+
+    /// Sums up how the outer raceway moves under each of the rollers.
+    #[inline(always)]
+    pub(crate) fn sum_motion<S: Simd>(&mut self, simd: S) {
+        for (n, to) in self.moved.iter_mut().enumerate() {
+            Vector::store_sums(simd, self.parts_of_motion.each_ref().map(|pose| &pose[n][..]), &mut to.0);
+        }
+    }
+
+    /// Takes the rollers from a state.
+    pub(crate) fn load(&mut self, state: &State) {
+        for lane in 0..self.count {
+            let i = self.first + lane;
+            let of = |column: &mut Row, value: f64| column[lane] = value;
+            of(&mut self.centre[0], state.x[i]);
+            of(&mut self.centre[1], state.y[i]);
+            of(&mut self.velocity[0], state.vx[i]);
+            of(&mut self.velocity[1], state.vy[i]);
+            of(&mut self.angle, state.angle[i]);
+            of(&mut self.spin, state.spin[i]);
+            of(&mut self.turned[0], state.turned[i][0]);
+            of(&mut self.turned[1], state.turned[i][1]);
+            for (k, contacts) in self.contacts.iter_mut().enumerate() {
+                of(&mut contacts.force, state.force[k][i]);
+                of(&mut contacts.growth, state.growth[k][i]);
+                of(&mut contacts.slip, state.slip[k][i]);
+                for (column, value) in contacts.passive.iter_mut().zip(state.passive[k][i]) {
+                    of(column, value);
+                }
+                contacts.hints[lane] = state.hints[k][i];
+            }
+            self.facet[lane] = state.hints[0][i][1];
+            for (side, walls) in self.walls.iter_mut().enumerate() {
+                of(&mut walls.slip, state.wall_slip[i][side]);
+                for (column, value) in walls.passive.iter_mut().zip(state.wall_passive[i][side]) {
+                    of(column, value);
+                }
+            }
+        }
+    }
+
+    /// Begins a sample, of which `anew` is a roller: its direction is taken from its angle, because turning
+    /// it step by step rounds.
+    pub(crate) fn begin(&mut self, bearing: &Bearing, anew: usize) {
+        self.sums = Default::default();
+        // A roller that is clear of the outer raceway goes along it nevertheless.
+        let on_outer = &mut self.contacts[0];
+        for lane in lanes(self.bits & !on_outer.near) {
+            on_outer.hints[lane][1] = self.facet[lane];
+        }
+        if (self.first..self.first + self.count).contains(&anew) {
+            let lane = anew - self.first;
+            let (s, c) = (self.angle[lane] + bearing.rollers.starts[anew].vertex_angle).sin_cos();
+            (self.turned[0][lane], self.turned[1][lane]) = (c, s);
+        }
+    }
+
+    /// Shows the state what is sampled and looked at: places, angles and normal forces.
+    pub(crate) fn show(&self, state: &mut State) {
+        let (of, n) = (self.first..self.first + self.count, self.count);
+        let columns = [
+            (&mut state.x, &self.centre[0]),
+            (&mut state.y, &self.centre[1]),
+            (&mut state.angle, &self.angle),
+        ];
+        let forces = state.force.iter_mut().zip(self.contacts.iter().map(|contacts| &contacts.force));
+        for (column, row) in columns.into_iter().chain(forces) {
+            column[of.clone()].copy_from_slice(&row[..n]);
+        }
+    }
+
+    /// Leaves the rollers to a state.
+    pub(crate) fn store(&self, state: &mut State) {
+        self.show(state);
+        for lane in 0..self.count {
+            let i = self.first + lane;
+            [state.vx[i], state.vy[i]] = [self.velocity[0][lane], self.velocity[1][lane]];
+            state.spin[i] = self.spin[lane];
+            state.turned[i] = of_one(&self.turned, lane);
+            for (k, contacts) in self.contacts.iter().enumerate() {
+                state.growth[k][i] = contacts.growth[lane];
+                state.slip[k][i] = contacts.slip[lane];
+                state.passive[k][i] = contacts.passive.map(|column| column[lane]);
+                state.hints[k][i] = contacts.hints[lane];
+            }
+            // Not that of the contact, which goes on only when its parts are listed: a continued run lists
+            // them earlier.
+            state.hints[0][i][1] = self.facet[lane];
+            for (side, walls) in self.walls.iter().enumerate() {
+                state.wall_slip[i][side] = walls.slip[lane];
+                state.wall_passive[i][side] = walls.passive.map(|column| column[lane]);
+            }
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! How rollers respond to a seat that gives way under them, within a step.
+
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
+
+use super::{
+    SeatState, Springs,
+    sums::{add, dot},
+};
+use crate::{
+    roller_force::RollerForce,
+    rollers::row::{Numbers, Row},
+};
+
+/// Contact forces are updated within the step if opening all panels would change them by more than this
+/// share. Below it they are extrapolated from the step before, which is stable up to a third.
+const RESPONSIVE: f64 = 0.2;
+
+/// What rollers press in a step, and how they answer to a seat that gives way.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct RollerResponses {
+    pub(super) rollers: Vec<RollerResponse>,
+    /// Tensions by a unit force of each, roller by roller.
+    pub(super) by: Vec<Row>,
+    /// Springs that move, with their displacements: room for a list.
+    pub(super) moves: Vec<(usize, f64)>,
+}
+
+/// What one of them does.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RollerResponse {
+    /// Force on the raceway [N].
+    pub(super) force: f64,
+    /// What it is expected to be, which may be below zero, if the seat has given way under it by `given` [m].
+    expected: f64,
+    given: f64,
+    /// Decrease of the force as the seat recedes further [N/m]; zero where it is negligible.
+    stiffness: f64,
+    /// The part of each change that a pass takes.
+    part: f64,
+}
+
+impl Springs {
+    /// What rollers do to the tensions, each by itself: a unit force at its place, the force that is expected
+    /// if the seat goes on as in the step before, and how much less it presses where the seat gives way by
+    /// more.
+    #[inline(always)]
+    pub(super) fn answer<S: Simd>(
+        &self,
+        simd: S,
+        panels: &SeatState,
+        rollers: &[RollerForce],
+        responses: &mut RollerResponses,
+    ) {
+        let groups = self.rows();
+        responses.rollers.clear();
+        responses.by.clear();
+        for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
+            let ends = self.ends(roller.facet as usize);
+            let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
+            let mut given = Vector::all(simd, 0.0);
+            let first = responses.by.len();
+            responses.by.resize(first + groups, Row::default());
+            let gaps = panels.open.as_chunks::<LANES>().0;
+            let both = ends[0].iter().zip(ends[1]);
+            for ((by, gap), (ahead, behind)) in responses.by[first..].iter_mut().zip(gaps).zip(both) {
+                for at in vector_starts(simd) {
+                    let (ahead, behind) = (ahead.load(simd, at), behind.load(simd, at));
+                    let between = ahead.times_plus(a, behind * b);
+                    given = Vector::load(simd, gap, at).times_plus(between, given);
+                    between.store(by, at);
+                }
+            }
+            let expected = roller.next();
+            let mut answer =
+                RollerResponse { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
+            let gain = roller.stiffness * self.flexibility[roller.facet as usize];
+            if gain > RESPONSIVE {
+                // Where panels let go a change comes back times −gain, where they panels not at all: halfway
+                // between the two.
+                let part = 1.0 / (1.0 + 0.5 * gain);
+                answer = RollerResponse { given: given.sum(), stiffness: roller.stiffness, part, ..answer };
+            }
+            responses.rollers.push(answer);
+        }
+    }
+
+    /// Lets rollers answer to how far the seat has given way by now.
+    #[inline(always)]
+    pub(super) fn update_forces<S: Simd>(
+        &self,
+        simd: S,
+        panels: &SeatState,
+        tension: &mut [Row],
+        responses: &mut RollerResponses,
+    ) {
+        let RollerResponses { rollers, by, .. } = responses;
+        let felt =
+            rollers.iter_mut().zip(by.chunks_exact(self.rows())).filter(|(roller, _)| roller.stiffness > 0.0);
+        for (roller, by) in felt {
+            let further = dot(simd, by, panels.open.as_chunks().0) - roller.given;
+            let target = (roller.expected - roller.stiffness * further).max(0.0);
+            let force = roller.force + roller.part * (target - roller.force);
+            add(simd, tension, by, force - roller.force);
+            roller.force = force;
+        }
+    }
+}

@@ -1,0 +1,212 @@
+//! A preloaded bearing taken apart: which node is what, where nodes are, and the forces on them.
+
+use std::collections::BTreeSet;
+
+use stribeck_bearing::assembly::Machine;
+use stribeck_mesh::Mesh;
+use stribeck_scene::{geometry::Geometry, housing::HousingScene, scene::Scene};
+use stribeck_solver::{
+    Dynamics, Force,
+    state::{Moment, NodeForces},
+    statics::Spring,
+};
+use stribeck_system::Parts;
+
+use crate::error::Error;
+
+/// Node numbers, while the system still knows them by name.
+pub(crate) struct Nodes {
+    /// Outer raceway, counter-clockwise.
+    pub(crate) outer: Vec<u32>,
+    /// Inner raceway, counter-clockwise.
+    pub(crate) inner: Vec<u32>,
+    /// Rim of roller 1.
+    pub(crate) rim: Vec<u32>,
+    /// Outer ring and housing.
+    pub(crate) structure: Vec<u32>,
+    /// Outer ring.
+    pub(crate) outer_ring: Vec<u32>,
+    /// Inner ring.
+    pub(crate) inner_ring: Vec<u32>,
+    /// Roller 1.
+    pub(crate) roller: Vec<u32>,
+    /// Nodes of sensors, in their order.
+    pub(crate) sensors: Vec<u32>,
+    /// Outer surface of the outer ring.
+    pub(crate) back: Vec<u32>,
+}
+
+/// Mass [kg] and moment of inertia [kg m²] of a rigid body, and its centre of mass [m].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Inertia {
+    pub(crate) mass_and_moment: [f64; 2],
+    pub(crate) centre: [f64; 2],
+}
+
+/// What is known of a machine at its preload before it is taken apart.
+pub(crate) struct Extraction {
+    pub(crate) nodes: Nodes,
+    /// Places of all nodes [m], and contact forces on them [N].
+    pub(crate) places: Vec<[f64; 2]>,
+    pub(crate) contact_forces: Vec<[f64; 2]>,
+    /// Displacements of the nodes of rings and housing at the preload [m].
+    pub(crate) moved: Vec<[f64; 2]>,
+    /// Force of the housing on the outer ring [N].
+    pub(crate) seat: Option<[f64; 2]>,
+    pub(crate) roller: Inertia,
+    pub(crate) cage: Option<Inertia>,
+    /// Centre of roller 1 [m].
+    pub(crate) roller_centre: [f64; 2],
+    /// Mass of outer ring and housing [kg].
+    pub(crate) structure_mass: f64,
+    /// Mass of the frame around springs [kg] and one of its nodes.
+    pub(crate) frame: Option<(f64, u32)>,
+    /// Slot of each node in the solver's order.
+    slot_of: Vec<u32>,
+}
+
+/// Forces by slot at the preload [N], and the springs that hold it.
+pub(crate) struct Preload {
+    /// All forces, those of elements and contact included.
+    pub(crate) all: NodeForces,
+    /// The load, and load with weight.
+    pub(crate) load: NodeForces,
+    pub(crate) outside: NodeForces,
+    /// Springs of contact within the structure, one for each contact point that carries.
+    pub(crate) seat: Vec<Spring>,
+    /// Springs of the housing.
+    pub(crate) suspension: Vec<Spring>,
+    /// Strain energy of all bodies and of the springs of the housing [J].
+    pub(crate) strain: f64,
+}
+
+impl Extraction {
+    /// Reads a preloaded machine and takes it apart.
+    pub(crate) fn of(scene: &Scene, mut machine: Machine, mesh: &Mesh) -> Result<(Self, Parts), Error> {
+        let contact_forces = machine.system.contact_forces();
+        let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
+        let nodes = Nodes::of(&machine, &Geometry::of(scene))?;
+        let system = &machine.system;
+        let places: Vec<[f64; 2]> = (0..system.node_count() as u32).map(|n| system.position(n)).collect();
+        let of_rings = 0..mesh.bodies[machine.rollers[0].body].nodes.start;
+        let inertia = |body: usize| {
+            let motion = system.motion_of(body);
+            Inertia { mass_and_moment: [motion.mass, motion.inertia], centre: motion.centre }
+        };
+        let frame = match scene.housing {
+            HousingScene::Springs(_) => machine.housing.and_then(|body| {
+                let mass = system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
+                Some((mass, system.nodes_of(body).next()?))
+            }),
+            _ => None,
+        };
+        let mut extraction = Self {
+            moved: of_rings.map(|n| [places[n][0] - mesh.x[n], places[n][1] - mesh.y[n]]).collect(),
+            seat: machine.pairs.seat().map(|seat| resultants[seat]),
+            roller: inertia(machine.rollers[0].body),
+            cage: machine.cage.map(inertia),
+            roller_centre: places[machine.rollers[0].centre as usize],
+            structure_mass: nodes.structure.iter().map(|&n| system.mass(n)).sum(),
+            frame,
+            nodes,
+            places,
+            contact_forces,
+            slot_of: Vec::new(),
+        };
+        let parts = machine.system.into_parts();
+        extraction.slot_of.clone_from(&parts.dynamics.layout().slot_of_node);
+        Ok((extraction, parts))
+    }
+
+    /// Place of a node [m].
+    pub(crate) fn place(&self, node: u32) -> [f64; 2] {
+        self.places[node as usize]
+    }
+
+    /// Slot of a node in the solver's order.
+    pub(crate) fn slot(&self, node: u32) -> u32 {
+        self.slot_of[node as usize]
+    }
+
+    /// Slots of some nodes.
+    pub(crate) fn slots(&self, nodes: &[u32]) -> Vec<u32> {
+        nodes.iter().map(|&n| self.slot(n)).collect()
+    }
+}
+
+impl Preload {
+    /// Forces and springs of a machine taken apart, at its preload.
+    pub(crate) fn of(extraction: &Extraction, parts: &mut Parts, mesh: &Mesh) -> Self {
+        let elastic = parts.dynamics.elastic_energy();
+        let elastic = elastic.strain + elastic.hourglass;
+        let count = parts.dynamics.state.x.len();
+        // In the undeformed mesh springs of the housing do not push: what is left is the load.
+        let mut load = NodeForces::zeros(count);
+        let mut undeformed = parts.dynamics.state.clone();
+        for (n, &slot) in extraction.slot_of.iter().enumerate() {
+            (undeformed.x[slot as usize], undeformed.y[slot as usize]) = (mesh.x[n], mesh.y[n]);
+        }
+        let now = parts.dynamics.moment();
+        parts.others.accumulate(Moment { x: &undeformed.x, y: &undeformed.y, ..now }, &mut load);
+        let mut pushed = NodeForces::zeros(count);
+        parts.others.accumulate(now, &mut pushed);
+        let strain = elastic + parts.others.energy().stored;
+        let mut outside = load.clone();
+        let [gx, gy] = parts.dynamics.gravity();
+        for (n, mass) in parts.dynamics.mass().iter().enumerate() {
+            outside.fx[n] += mass * gx;
+            outside.fy[n] += mass * gy;
+        }
+        let mut suspension = Vec::new();
+        let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
+        parts.others.tangent(x, y, &mut |piece| suspension.push(Spring::from(piece)));
+        let mut all = NodeForces::zeros(count);
+        let seat = Self::contact(extraction, parts, &mut all);
+        let d: &Dynamics = &parts.dynamics;
+        d.elastic_forces(&d.state.x, &d.state.y, &mut all.fx, &mut all.fy);
+        for n in 0..count {
+            all.fx[n] += outside.fx[n] + (pushed.fx[n] - load.fx[n]);
+            all.fy[n] += outside.fy[n] + (pushed.fy[n] - load.fy[n]);
+        }
+        Self { all, load, outside, seat, suspension, strain }
+    }
+
+    /// Adds the forces of contact to `all`, and returns the springs of contact within the structure.
+    fn contact(extraction: &Extraction, parts: &mut Parts, all: &mut NodeForces) -> Vec<Spring> {
+        let mut springs = Vec::new();
+        let Some(contacts) = &mut parts.contacts else { return springs };
+        contacts.accumulate(parts.dynamics.moment(), all);
+        let of_structure: BTreeSet<u32> = extraction.slots(&extraction.nodes.structure).into_iter().collect();
+        let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
+        contacts.tangent(x, y, &mut |piece| {
+            if piece.nodes.iter().all(|slot| of_structure.contains(slot)) {
+                springs.push(Spring::from(piece));
+            }
+        });
+        springs
+    }
+}
+
+impl Nodes {
+    fn of(machine: &Machine, g: &Geometry) -> Result<Self, Error> {
+        let system = &machine.system;
+        let named = |name: &str| system.nodes(name).map_err(stribeck_bearing::error::Error::from);
+        // The mesh walks the outer raceway clockwise, with the solid on the left.
+        let mut outer = named("outer raceway")?;
+        outer.reverse();
+        Ok(Self {
+            outer,
+            inner: named("inner raceway")?,
+            rim: named("rim of roller 1")?,
+            structure: std::iter::once(machine.outer)
+                .chain(machine.housing)
+                .flat_map(|body| system.nodes_of(body))
+                .collect(),
+            outer_ring: system.nodes_of(machine.outer).collect(),
+            inner_ring: system.nodes_of(machine.inner).collect(),
+            roller: system.nodes_of(machine.rollers[0].body).collect(),
+            sensors: machine.nodes_on_back(&g.sensor_angles),
+            back: machine.back.clone(),
+        })
+    }
+}

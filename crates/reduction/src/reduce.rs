@@ -1,0 +1,133 @@
+//! From a scene to a reduced mesh, stage by stage (THEORY §9.1–9.3).
+
+use std::{collections::BTreeSet, f64::consts::TAU};
+
+use serde::{Deserialize, Serialize};
+use stribeck_bearing::{
+    assembly::{Assembly, MeshedParts},
+    start::preload,
+};
+use stribeck_mesh::Mesh;
+use stribeck_modal::{GROUP, Reduction, Seat};
+use stribeck_scene::{geometry::Geometry, scene::Scene};
+use stribeck_system::Parts;
+
+use crate::{
+    compliances::Compliances,
+    error::Error,
+    extraction::{Extraction, Preload},
+    loads::{Loads, dampers, frame},
+    raceway::{self, RacewayNode},
+    seat,
+    sensors::sensors,
+    structure::Structure,
+};
+
+/// A mesh that has been preloaded and reduced: the same for every start, speed and duration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ReducedMesh {
+    /// What rings, rollers and cage became.
+    pub reduction: Reduction,
+    /// Rings and a roller as they were meshed.
+    pub parts: MeshedParts,
+    /// Displacements of the nodes of rings and housing at the preload [m].
+    pub moved: Vec<[f64; 2]>,
+    /// Warning of a preload that did not quite come to rest.
+    pub warning: Option<String>,
+}
+
+impl ReducedMesh {
+    /// Makes the full model of the scene, preloads it and reduces it.
+    ///
+    /// # Errors
+    /// When the scene cannot be meshed or preloaded, or modes are not found.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let meshed = MeshedParts::new(scene)?;
+        let assembly = Assembly::of(scene, &meshed)?;
+        let mut machine = assembly.machine(scene, 1)?;
+        let warning = preload(&mut machine, scene, &assembly.kinematics)?;
+        let mesh = &assembly.model.mesh;
+        let (mut extraction, mut parts) = Extraction::of(scene, machine, mesh)?;
+        let moved = std::mem::take(&mut extraction.moved);
+        let reduction = reduce(scene, mesh, &extraction, &mut parts)?;
+        Ok(Self { reduction, parts: meshed, moved, warning })
+    }
+}
+
+/// Reduces a machine that has been taken apart at its preload.
+fn reduce(scene: &Scene, mesh: &Mesh, from: &Extraction, parts: &mut Parts) -> Result<Reduction, Error> {
+    let g = Geometry::of(scene);
+    let count = parts.dynamics.state.x.len();
+    let preload = Preload::of(from, parts, mesh);
+    let mut structure = Structure::of(scene, from, &preload, &parts.dynamics)?;
+    let nodes = raceway::nodes(from);
+    let springs = panels(scene, from, &preload, parts, &nodes, &mut structure)?;
+    let modes = structure.squares().len();
+    let padded = modes.next_multiple_of(GROUP);
+    let rollers = raceway::roller_forces(from, count);
+    let loads = Loads::of(&structure, &preload, &nodes, springs.as_ref(), &rollers, (g.load, padded));
+    let outer = raceway::without_dents(from, &mut structure, rollers);
+    let sensors = sensors(from, &mut structure, &outer, count, padded);
+    let compliances = Compliances::of(scene, &g, from, &parts.dynamics, &mut structure, &outer)?;
+    let mut squares = vec![0.0; padded];
+    squares[..modes].copy_from_slice(structure.squares());
+    Ok(Reduction {
+        modes,
+        padded,
+        squares,
+        shapes: raceway::shapes(&nodes, &structure, springs.as_ref(), padded),
+        outer,
+        // As it was meshed: it turns on as a rigid body.
+        inner: from.nodes.inner.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect(),
+        roller: round_rim(g.roller_radius, from.nodes.rim.len()),
+        sensors,
+        constant: loads.constant,
+        external: loads.external,
+        load: loads.load,
+        dampers: dampers(scene, &structure, &preload, padded),
+        frame: frame(from, &structure, padded),
+        strain: preload.strain,
+        outer_compliance: compliances.outer,
+        inner_compliance: compliances.inner,
+        wall_compliance: compliances.wall,
+        roller_inertia: from.roller.mass_and_moment,
+        cage: from.cage.map(|cage| (cage.mass_and_moment, cage.centre)),
+        structure_mass: from.structure_mass,
+        seat: from.seat,
+        springs,
+    })
+}
+
+/// Divides the seat into panels; the modes become those of a seat that holds.
+fn panels(
+    scene: &Scene,
+    from: &Extraction,
+    preload: &Preload,
+    parts: &Parts,
+    raceway: &[RacewayNode],
+    structure: &mut Structure,
+) -> Result<Option<Seat>, Error> {
+    let on_ring: BTreeSet<u32> = from.slots(&from.nodes.outer_ring).into_iter().collect();
+    let back: Vec<(u32, [f64; 2])> =
+        from.nodes.back.iter().map(|&n| (from.slot(n), from.contact_forces[n as usize])).collect();
+    let seat = seat::Parts {
+        raceway,
+        springs: &preload.seat,
+        friction: scene.contact.seat_friction > 0.0,
+        x: &parts.dynamics.state.x,
+        y: &parts.dynamics.state.y,
+        back: &back,
+        sensors: &from.slots(&from.nodes.sensors),
+        of_ring: &|slot| on_ring.contains(&slot),
+        thickness: Geometry::of(scene).outer_ring_thickness,
+    };
+    seat::of(structure, &seat)
+}
+
+/// Vertices of a round roller that is not turned, counter-clockwise [m].
+fn round_rim(radius: f64, facets: usize) -> Vec<[f64; 2]> {
+    (0..facets)
+        .map(|i| (TAU * i as f64 / facets as f64).sin_cos())
+        .map(|(s, c)| [radius * c, radius * s])
+        .collect()
+}
