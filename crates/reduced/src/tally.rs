@@ -4,8 +4,8 @@ use pulp::Simd;
 use stribeck_simd::lanes::Vector;
 
 use crate::{
+    drive::Drive,
     state::{Spent, State, Stored, count},
-    step::drive::Drive,
 };
 
 /// Energies and work of one step.

@@ -8,7 +8,7 @@ use stribeck_simd::lanes::LANES;
 use crate::{
     bearing::Bearing,
     motion::BearingInMotion,
-    rollers::row::{Row, Rows},
+    row::{Row, Rows},
     sensors::SensorMotion,
     state::State,
     step::Scratch,

@@ -5,11 +5,11 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
+    drive::RingRotation,
     modes::Modes,
     rollers::block::Block,
-    rollers::row::{Row, lanes, largest_sum, load, of_one, store},
+    row::{Row, lanes, largest_sum, load, of_one, store},
     seat::SeatState,
-    step::drive::RingRotation,
 };
 
 impl Bearing {

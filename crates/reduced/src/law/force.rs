@@ -4,10 +4,11 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
 
+use super::ContactLaw;
 use crate::{
-    bearing::Raceway,
+    contact::raceway::Raceway,
     rollers::block::Contacts,
-    rollers::row::{lanes, load},
+    row::{lanes, load},
     state::Stored,
 };
 
@@ -26,21 +27,6 @@ pub(crate) struct Rolling<V> {
 pub(crate) struct Pushed<V> {
     pub(crate) force: [V; 2],
     pub(crate) moment: V,
-}
-
-/// The law of contact, in numbers a metre of contact.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ContactLaw {
-    /// Normal and tangential stiffness [N/m²], and damping [N s/m²].
-    pub(crate) penalty: f64,
-    pub(crate) sticking: f64,
-    pub(crate) damping: f64,
-    /// Friction coefficient [-].
-    pub(crate) friction: f64,
-    /// Radius of a roller at which friction acts [m].
-    pub(crate) arm: f64,
-    /// Time step [s].
-    pub(crate) time_step: f64,
 }
 
 impl ContactLaw {

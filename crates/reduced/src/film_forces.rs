@@ -4,11 +4,11 @@
 use stribeck_simd::lanes::LANES;
 
 use crate::{
+    drive::RingRotation,
     oil::{FilmStep, Films, Lubrication, RollerView},
-    rollers::row::of_one,
     rollers::{Rollers, block::Block},
+    row::of_one,
     state::State,
-    step::drive::RingRotation,
 };
 
 /// What films do to eight rollers, beside the forces on these.

@@ -6,14 +6,14 @@ use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
-    bearing::Raceway,
     contact::eight_facets::EightFacets,
-    contact::force::ContactLaw,
     contact::outline::View,
     contact::penetration::{Pair, Penetration},
+    contact::raceway::Raceway,
     contact::segments::Pose,
-    rollers::row::{Row, lanes, load, of_one, store},
+    law::ContactLaw,
     rollers::{Rim, Rollers, block::Contacts},
+    row::{Row, lanes, load, of_one, store},
 };
 
 /// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's

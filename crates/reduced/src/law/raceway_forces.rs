@@ -4,13 +4,12 @@ use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
-    bearing::Raceway,
-    contact::force::{ContactLaw, Rolling},
-    rollers::{
-        block::Block,
-        row::{load, store},
-    },
-    step::{drive::Drive, sums::Sums},
+    contact::raceway::Raceway,
+    drive::Drive,
+    law::{ContactLaw, force::Rolling},
+    rollers::block::Block,
+    row::{load, store},
+    tally::Sums,
 };
 
 impl ContactLaw {
