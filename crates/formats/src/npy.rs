@@ -332,7 +332,7 @@ mod tests {
         };
         let layout = Layout::of(&file(&header("ddd"))).expect("a layout");
         let fields: Vec<(&str, usize)> =
-            layout.fields.iter().map(|(name, at, _)| (name.as_str(), *at)).collect();
+            layout.fields.iter().map(|field| (field.name.as_str(), field.place)).collect();
         assert_eq!((fields, layout.record), (vec![("time_s", 0), ("a", 8), ("b c", 16)], 24));
         assert!(Layout::of(&file(&header("dfd"))).is_err());
     }
