@@ -306,8 +306,8 @@ fn conserves_the_ledger_of_structural_damping() {
     assert!(worst < 1e-2 * (loss - none), "{:e} of the loss is missing", worst / (loss - none));
 }
 
-/// A disc that runs and spins while it vibrates; what is lost of its momentum, of its angular momentum and, by the springs, of
-/// its size.
+/// A disc that flies and spins while it vibrates keeps its momentum and its angular momentum, and the springs of
+/// its damping do not stretch it.
 #[test]
 fn conserves_momentum_and_the_size_of_a_spinning_disc() {
     let part = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");

@@ -20,17 +20,19 @@
 //!
 //! # Boundary conditions
 //!
-//! The block is rigid and free. Opposite forces act at the middles of the short sides and keep their directions.
+//! The block is rigid and free. Opposite forces act at the middles of the short sides and keep their
+//! directions.
 //!
 //! # Parameters
 //!
-//! F = 1 N, ρ = 7800 kg/m³, thickness 7 mm; 2000 steps of 1 µs, within which the block turns by less than 0.02 rad.
+//! F = 1 N, ρ = 7800 kg/m³, thickness 7 mm; 2000 steps of 1 µs, within which the block turns by less than
+//! 0.02 rad.
 //!
 //! # Expected
 //!
-//! θ = M t²/(2 I) with M = F a and the moment of inertia of masses lumped to a grid of m × n cells,
-//! I = m/12 [a² (1 + 2/m²) + b² (1 + 2/n²)]; leapfrog from rest has Δt² n (n + 1) for t². The centre stays where it is, and
-//! the work is the kinetic energy.
+//! θ = M t²/(2 I) with M = F a and the moment of inertia of masses lumped to a grid of m × n cells, I = m/12
+//! [a² (1 + 2/m²) + b² (1 + 2/n²)]; leapfrog from rest has Δt² n (n + 1) for t². The centre stays where it
+//! is, and the work is the kinetic energy.
 
 use stribeck_solver::{Behaviour, Dynamics, Force, force::NodalLoad};
 use stribeck_testing::{assert_close, ledger};
@@ -40,8 +42,8 @@ use crate::common::*;
 /// The centre may move by the rounding of coordinates of 10 mm [m].
 const CENTRE: f64 = 1e-15;
 
-/// The trapezoidal rule is exact for the work on a rigid body but for the curvature of the path within a step, (ωΔt)²: with
-/// rounding of 2000 sums below this.
+/// The trapezoidal rule is exact for the work on a rigid body but for the curvature of the path within a
+/// step, (ωΔt)²: with rounding of 2000 sums below this.
 const WORK: f64 = 1e-9;
 
 /// Work supplied by a load over kinetic energy, at the same instant.

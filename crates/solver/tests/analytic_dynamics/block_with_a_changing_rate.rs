@@ -20,8 +20,8 @@
 //!
 //! # Boundary conditions
 //!
-//! The block is rigid; in each step it turns at the mean rate of that step, α (t + Δt/2). The couple's forces keep their
-//! directions in space and have no resultant.
+//! The block is rigid; in each step it turns at the mean rate of that step, α (t + Δt/2). The couple's forces
+//! keep their directions in space and have no resultant.
 //!
 //! # Parameters
 //!
@@ -29,8 +29,8 @@
 //!
 //! # Expected
 //!
-//! θ = ½ α t². The drive leaves ½ I (α t)² in the block and supplies −∫ M ω dt = −F a sin θ on top, with the moment of
-//! inertia of lumped masses, I = m/12 [a² (1 + 2/m²) + b² (1 + 2/n²)] for m × n cells.
+//! θ = ½ α t². The drive leaves ½ I (α t)² in the block and supplies −∫ M ω dt = −F a sin θ on top, with the
+//! moment of inertia of lumped masses, I = m/12 [a² (1 + 2/m²) + b² (1 + 2/n²)] for m × n cells.
 
 use stribeck_solver::{Behaviour, force::NodalLoad};
 use stribeck_testing::assert_close;

@@ -4,7 +4,8 @@
 //!
 //! # Goal
 //!
-//! What a drive that prescribes the rotation leaves free (the centre), what it fixes (the angle), and the work it supplies.
+//! What a drive that prescribes the rotation leaves free (the centre), what it fixes (the angle), and the
+//! work it supplies.
 //!
 //! # Mesh
 //!
@@ -20,7 +21,8 @@
 //!
 //! # Boundary conditions
 //!
-//! The block is rigid, turns at Ω about its centre, and is free to move. Forces keep their directions in space.
+//! The block is rigid, turns at Ω about its centre, and is free to move. Forces keep their directions in
+//! space.
 //!
 //! # Parameters
 //!
@@ -28,8 +30,9 @@
 //!
 //! # Expected
 //!
-//! θ = Ω t. The centre moves by P t²/(2 m), with Δt² n (n + 1) for t². The drive supplies −∫ Ω M dt: the couple has the
-//! moment F a cos θ, and the push that about the centre, −P (a/2) sin θ, so W = −F a sin Ωt − P (a/2)(cos Ωt − 1).
+//! θ = Ω t. The centre moves by P t²/(2 m), with Δt² n (n + 1) for t². The drive supplies −∫ Ω M dt: the
+//! couple has the moment F a cos θ, and the push that about the centre, −P (a/2) sin θ, so W = −F a sin Ωt −
+//! P (a/2)(cos Ωt − 1).
 
 use stribeck_solver::{Behaviour, force::NodalLoad};
 use stribeck_testing::assert_close;

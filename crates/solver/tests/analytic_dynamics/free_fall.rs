@@ -2,8 +2,8 @@
 //!
 //! # Goal
 //!
-//! Gravity in both directions, through every path by which a node is moved: triangles, strips of quadrilaterals, congruent
-//! bodies, a rigid body.
+//! Gravity in both directions, through every path by which a node is moved: triangles, strips of
+//! quadrilaterals, congruent bodies, a rigid body.
 //!
 //! # Mesh
 //!
@@ -30,7 +30,8 @@
 //!
 //! # Expected
 //!
-//! From rest half a step before the start leapfrog sums the fall exactly: u = g Δt² n (n + 1)/2. Nothing is strained.
+//! From rest half a step before the start leapfrog sums the fall exactly: u = g Δt² n (n + 1)/2. Nothing is
+//! strained.
 
 use stribeck_mesh::{Disc, Mesh};
 use stribeck_solver::{Behaviour, Model};
@@ -44,7 +45,8 @@ const ROUNDING: f64 = 1e-12;
 /// Time is a product of the number of steps.
 const TIME: f64 = 1e-14;
 
-/// Share of the work of gravity: more than strains of rounding hold, less than any motion of a node against its neighbours.
+/// Share of the work of gravity: more than strains of rounding hold, less than any motion of a node against
+/// its neighbours.
 const STRAIN: f64 = 1e-12;
 
 #[test]

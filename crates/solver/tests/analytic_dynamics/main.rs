@@ -1,4 +1,5 @@
-//! Motion against closed forms: waves, vibration, free fall, rotation; and the order of the time step. One problem a file.
+//! Motion against closed forms: waves, vibration, free fall, rotation; and the order of the time step. One
+//! problem a file.
 
 #[path = "../common/mod.rs"]
 mod common;

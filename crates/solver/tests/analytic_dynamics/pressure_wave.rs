@@ -4,7 +4,8 @@
 //!
 //! # Goal
 //!
-//! The speed at which a longitudinal pulse travels through the mesh, and the area under it, which travels along.
+//! The speed at which a longitudinal pulse travels through the mesh, and the area under it, which travels
+//! along.
 //!
 //! # Mesh
 //!
@@ -30,8 +31,8 @@
 //!
 //! # Parameters
 //!
-//! E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; 0.9 of the critical time step. The pulse is 0.1 µm high and falls to 1/e within
-//! 20 mm to either side.
+//! E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; 0.9 of the critical time step. The pulse is 0.1 µm high and falls to
+//! 1/e within 20 mm to either side.
 //!
 //! # Expected
 //!
@@ -47,8 +48,8 @@ use crate::common::*;
 /// A wave of 40 cells, k h = 2π/40, runs (k h)²/24 = 0.1 % slow, less what the time step gives back.
 const SPEED: f64 = 1e-3;
 
-/// The velocities at the start are those of the continuum. What they lack in the mesh, whose waves are 0.1 % slower, goes
-/// the other way as a wave of half that share.
+/// The velocities at the start are those of the continuum. What they lack in the mesh, whose waves are 0.1 %
+/// slower, goes the other way as a wave of half that share.
 const AREA: f64 = 1e-3;
 
 #[test]

@@ -1,11 +1,12 @@
 //! A free thin ring vibrates in its first two bending modes.
 //!
-//! Love, *A Treatise on the Mathematical Theory of Elasticity* (1927), §293, inextensional bending in its plane; the
-//! benchmark of Code_Aster V2.03.109.
+//! Love, *A Treatise on the Mathematical Theory of Elasticity* (1927), §293, inextensional bending in its
+//! plane; the benchmark of Code_Aster V2.03.109.
 //!
 //! # Goal
 //!
-//! Bending frequencies from a run in time: the elements, their hourglass stiffness and the lumped mass together.
+//! Bending frequencies from a run in time: the elements, their hourglass stiffness and the lumped mass
+//! together.
 //!
 //! # Mesh
 //!
@@ -42,8 +43,8 @@ use stribeck_testing::ledger;
 
 use crate::common::*;
 
-/// Shear and rotary inertia, left out by Love, lower the frequency by about n² (h/R)²/3 = 0.5 % for n = 3; as much is left
-/// for the mesh of two cells through the thickness.
+/// Shear and rotary inertia, left out by Love, lower the frequency by about n² (h/R)²/3 = 0.5 % for n = 3; as
+/// much is left for the mesh of two cells through the thickness.
 const FREQUENCY: f64 = 0.01;
 
 /// Frequency [Hz] of a signal from its first and last upward zero crossing.

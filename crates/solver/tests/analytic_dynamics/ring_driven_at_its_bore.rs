@@ -4,7 +4,8 @@
 //!
 //! # Goal
 //!
-//! Nodes on a prescribed circular path about any centre, and the drive's work, which is zero in steady rotation.
+//! Nodes on a prescribed circular path about any centre, and the drive's work, which is zero in steady
+//! rotation.
 //!
 //! # Mesh
 //!
@@ -21,11 +22,13 @@
 //!
 //! # Boundary conditions
 //!
-//! The bore's nodes turn about the centre at ω; all others are free. All start with the velocities of rigid rotation.
+//! The bore's nodes turn about the centre at ω; all others are free. All start with the velocities of rigid
+//! rotation.
 //!
 //! # Parameters
 //!
-//! ω = −80 rad/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³, thickness 7 mm; 5000 steps of 0.9 of the critical one.
+//! ω = −80 rad/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³, thickness 7 mm; 5000 steps of 0.9 of the critical
+//! one.
 //!
 //! # Expected
 //!
@@ -37,8 +40,8 @@ use stribeck_testing::ledger;
 
 use crate::common::*;
 
-/// Held at its bore the ring stretches by less than ρ ω² h²/E = 1e-7 of its thickness h and rings about that; nothing else
-/// differs from a rigid body.
+/// Held at its bore the ring stretches by less than ρ ω² h²/E = 1e-7 of its thickness h and rings about that;
+/// nothing else differs from a rigid body.
 const ENERGY: f64 = 1e-6;
 
 #[test]

@@ -23,17 +23,18 @@
 //!
 //! # Boundary conditions
 //!
-//! All nodes are held in y (uniaxial strain); both ends are free in x. The bar starts undeformed at vx = v cos(π x/L): the
-//! acceleration is zero then, so this is the velocity half a step earlier too.
+//! All nodes are held in y (uniaxial strain); both ends are free in x. The bar starts undeformed at vx = v
+//! cos(π x/L): the acceleration is zero then, so this is the velocity half a step earlier too.
 //!
 //! # Parameters
 //!
-//! L = 16 mm, v = 10 mm/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; three quarters of a period in steps of 0.8, 0.4 and 0.2 of
-//! the critical one.
+//! L = 16 mm, v = 10 mm/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; three quarters of a period in steps of 0.8,
+//! 0.4 and 0.2 of the critical one.
 //!
 //! # Expected
 //!
-//! Against the end's displacement with a step 32 times shorter than the first, errors fall fourfold with each halving.
+//! Against the end's displacement with a step 32 times shorter than the first, errors fall fourfold with each
+//! halving.
 
 use std::f64::consts::PI;
 
@@ -42,7 +43,8 @@ use stribeck_testing::orders;
 
 use crate::common::*;
 
-/// The term of fourth order adds a little to the coarsest step; the reference's own error, 1/64 of the finest, adds the rest.
+/// The term of fourth order adds a little to the coarsest step; the reference's own error, 1/64 of the
+/// finest, adds the rest.
 const ORDERS: std::ops::Range<f64> = 1.9..2.2;
 
 #[test]

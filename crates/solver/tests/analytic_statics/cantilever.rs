@@ -1,6 +1,7 @@
 //! A cantilever under an end load.
 //!
-//! Timoshenko and Goodier, *Theory of Elasticity* (1970), §21, with Cowper's shear coefficient (J. Appl. Mech. 33, 1966).
+//! Timoshenko and Goodier, *Theory of Elasticity* (1970), §21, with Cowper's shear coefficient (J. Appl.
+//! Mech. 33, 1966).
 //!
 //! # Goal
 //!
@@ -38,8 +39,8 @@ use stribeck_testing::assert_close;
 use crate::ROUNDING;
 use crate::common::*;
 
-/// The hourglass stiffness of a square is exact in bending. What is left is the parabola of shear, which four linear cells
-/// follow in steps, and the clamp, which lets no section warp.
+/// The hourglass stiffness of a square is exact in bending. What is left is the parabola of shear, which four
+/// linear cells follow in steps, and the clamp, which lets no section warp.
 const FOUR_CELLS: f64 = 0.01;
 
 /// One cell through the height is right for the same reason, and has no parabola at all.

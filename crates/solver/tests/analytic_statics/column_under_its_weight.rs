@@ -19,8 +19,8 @@
 //!
 //! # Boundary conditions
 //!
-//! The base is held. In statics all other nodes are held in x, as between walls without friction (uniaxial strain); in the
-//! run in time the sides are free.
+//! The base is held. In statics all other nodes are held in x, as between walls without friction (uniaxial
+//! strain); in the run in time the sides are free.
 //!
 //! # Parameters
 //!

@@ -1,4 +1,5 @@
-//! Static equilibrium against closed forms: thick cylinder, spinning ring, cantilever, column. One problem a file.
+//! Static equilibrium against closed forms: thick cylinder, spinning ring, cantilever, column. One problem a
+//! file.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -14,8 +15,8 @@ use stribeck_solver::{Dynamics, Model};
 
 use common::*;
 
-/// Unbalanced force allowed [N]: E · thickness = 1.5e9 N/m rounds a force of strained cells to some 1e-8 N of loads of
-/// newtons.
+/// Unbalanced force allowed [N]: E · thickness = 1.5e9 N/m rounds a force of strained cells to some 1e-8 N of
+/// loads of newtons.
 const ROUNDING: f64 = 2e-7;
 
 /// Bore of the rings [m].

@@ -31,15 +31,16 @@
 //!
 //! # Expected
 //!
-//! In plane stress σ_θ = ρω²/8 [(3 + ν)(a² + b² + a² b²/r²) − (1 + 3ν) r²], and u = r σ_θ/E where σ_r vanishes, at r = a
-//! and r = b. Plane strain by E → E/(1 − ν²), ν → ν/(1 − ν).
+//! In plane stress σ_θ = ρω²/8 [(3 + ν)(a² + b² + a² b²/r²) − (1 + 3ν) r²], and u = r σ_θ/E where σ_r
+//! vanishes, at r = a and r = b. Plane strain by E → E/(1 − ν²), ν → ν/(1 − ν).
 
 use stribeck_testing::ledger;
 
 use crate::common::*;
 use crate::{INNER, OUTER, ROUNDING, growth, ring};
 
-/// Of second order with 12 layers, as the thick cylinder; the load lies farther outside, on the lumped masses of the polygon.
+/// Of second order with 12 layers, as the thick cylinder; the load lies farther outside, on the lumped masses
+/// of the polygon.
 const DISPLACEMENT: f64 = 4e-3;
 
 #[test]

@@ -21,8 +21,8 @@
 //!
 //! # Boundary conditions
 //!
-//! The pressure p acts on each chord of the bore, half of its force on each of its two nodes, along the chord's normal.
-//! Nothing is held: loads are in balance, and statics keeps the rigid motion of the start.
+//! The pressure p acts on each chord of the bore, half of its force on each of its two nodes, along the
+//! chord's normal. Nothing is held: loads are in balance, and statics keeps the rigid motion of the start.
 //!
 //! # Parameters
 //!
@@ -41,15 +41,16 @@ use crate::{INNER, OUTER, ROUNDING, growth, ring};
 /// Second order; terms of higher order move it in meshes of three layers.
 const ORDERS: std::ops::Range<f64> = 1.8..2.3;
 
-/// Of the finest mesh: (1/12)² of the thickness in layers is 0.7 %, of which the polygon and the linear elements each leave
-/// a part.
+/// Of the finest mesh: (1/12)² of the thickness in layers is 0.7 %, of which the polygon and the linear
+/// elements each leave a part.
 const DISPLACEMENT: f64 = 3e-3;
 
 /// Radial growth of bore and rim [m] under the inner pressure `p` [Pa].
 fn under_pressure(facets: usize, layers: usize, p: f64) -> [f64; 2] {
     let model = ring(facets, layers);
     let mut d = lay_out(&model);
-    // Half of the force on each of the two chords that meet at a node: p · chord · thickness, along the chord's normal.
+    // Half of the force on each of the two chords that meet at a node: p · chord · thickness, along the
+    // chord's normal.
     let half_angle = std::f64::consts::PI / facets as f64;
     let push = p * THICKNESS * 2.0 * INNER * half_angle.sin() * half_angle.cos();
     let at = |n: usize| (model.mesh.x[n] / INNER, model.mesh.y[n] / INNER);
