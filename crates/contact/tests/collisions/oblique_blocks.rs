@@ -34,7 +34,7 @@
 //! them, THEORY §2.5.
 
 use stribeck_contact::{Contacts, Law, Method};
-use stribeck_solver::Dynamics;
+use stribeck_solver::{Dynamics, Force};
 
 use crate::common::*;
 use crate::penalty;

@@ -32,6 +32,7 @@
 //!
 //! It stops after v²/(2 µ g), in the time v/(µ g), its energy ½ m v² turned into heat; then it stays.
 
+use stribeck_solver::Force;
 use stribeck_testing::assert_close;
 
 use crate::common::*;
