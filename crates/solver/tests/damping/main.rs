@@ -1,13 +1,18 @@
 //! Mass-proportional damping: rates of decay, what it leaves alone, its heat.
+//!
+//! Problems with a closed form have a file each.
 
+#[path = "../common/mod.rs"]
 mod common;
 
-use std::f64::consts::{PI, TAU};
+mod bar_that_vibrates;
+mod block_in_flight;
+mod disc_on_an_orbit;
 
 use common::*;
 use stribeck_mesh::Disc;
 use stribeck_solver::{
-    Dynamics, Model, Motion,
+    Dynamics, Model,
     damping::{Frame, MassDamping},
 };
 use stribeck_testing::{Noise, assert_close};
@@ -31,46 +36,6 @@ fn all(d: &Dynamics) -> Vec<u32> {
 fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
     let now = step_and_balance(d, &mut []);
     [now.mechanical(), d.heat.at_last_positions()]
-}
-
-/// Source: THEORY §2.6.
-#[test]
-fn analytic_mass_damping_brakes_a_flight() {
-    // v = v₀ exp(−α t), relative to rest.
-    let mut d = ready(&body(&rectangle(0.01, 0.01, 4, 4)), 0.9);
-    let rate = 3e4;
-    damp(&mut d, rate, Frame::Rest);
-    d.state.vx.fill(2.0);
-    run(&mut d, &mut [], 1000);
-    let expected = 2.0 * (-rate * d.state.time).exp();
-    // The step takes (1 − αΔt/2)/(1 + αΔt/2) for exp(−αΔt): off by (αΔt)²/12 of the exponent.
-    let share = (rate * d.time_step()).powi(2) / 12.0 * rate * d.state.time;
-    assert_close(d.rigid_motion(&all(&d)).velocity[0], expected, 1.1 * share, "speed");
-}
-
-/// Source: THEORY §2.6.
-#[test]
-fn analytic_mass_damping_decays_a_vibration() {
-    // A mode of a lightly damped oscillator falls as exp(−α t/2), its energy as exp(−α t), whatever its frequency. The bar
-    // vibrates in its first longitudinal mode cos(π x/L), sides held.
-    let (columns, length) = (40, 0.04);
-    let mut model = body(&rectangle(length, 1e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
-    let mut d = ready(&model, 0.9);
-    // One per cent of critical, over 30 periods.
-    let omega = PI * steel().dilatational_speed() / length;
-    let rate = 0.02 * omega;
-    damp(&mut d, rate, Frame::OwnMotion);
-    for s in massive(&d) {
-        d.state.vx[s] = 0.01 * (PI * d.state.x[s] / length).cos();
-    }
-    let [start, _] = step_and_count(&mut d);
-    let steps = (30.0 * TAU / omega / d.time_step()) as usize;
-    run(&mut d, &mut [], steps);
-    let [left, _] = step_and_count(&mut d);
-    let span = (steps + 1) as f64 * d.time_step();
-    // Damping takes kinetic energy only, so within a period the energy falls by fits of 2 % about the mean.
-    assert_close((left / start).ln(), -rate * span, 0.02, "logarithm of the energy left");
 }
 
 #[test]
@@ -127,37 +92,6 @@ fn conserves_rigid_motion_under_relative_damping() {
     assert!(left - carried < 1e-6 * vibration + 1e-5 * carried, "{left} J against {carried} J");
     // The heat is that of the mean velocity of two half steps; the start lies within the first of them.
     assert_close(heat, vibration, 0.01, "heat of damping");
-}
-
-/// Source: THEORY §2.6.
-#[test]
-fn analytic_mass_damping_on_an_orbit_takes_the_velocity_across_it() {
-    // A disc half a metre from the origin runs around it, spins and drifts outwards. Running and spin stay; the drift,
-    // and what departs from a rigid motion, fall by (1 − αΔt/2)/(1 + αΔt/2) in a step in which nothing else pushes.
-    let mut d = ready(&disc_at(0.3, 0.4), 0.9);
-    let (orbit, spin, drift, rate) = (20.0, -150.0, 3.0, 1e6);
-    damp(&mut d, rate, Frame::Tangential { centre: [0.0; 2] });
-    // The centre of mass; that of a mesh of cells of all shapes is not quite that of the circle.
-    let [cx, cy] = d.rigid_motion(&all(&d)).centre;
-    let radius = cx.hypot(cy);
-    let half = 0.5 * rate * d.time_step();
-    let keep = (1.0 - half) / (1.0 + half);
-    let mut expected = Vec::new();
-    for n in massive(&d) {
-        let (x, y) = (d.state.x[n], d.state.y[n]);
-        let u = [-orbit * cy - spin * (y - cy), orbit * cx + spin * (x - cx)];
-        // The drift and a stretch, which carries neither momentum nor angular momentum.
-        let off = [drift * cx / radius + 40.0 * (x - cx), drift * cy / radius - 40.0 * (y - cy)];
-        (d.state.vx[n], d.state.vy[n]) = (u[0] + off[0], u[1] + off[1]);
-        expected.push([u[0] + keep * off[0], u[1] + keep * off[1]]);
-    }
-    d.step(&mut []);
-    for (n, v) in massive(&d).into_iter().zip(expected) {
-        // Its unsymmetric mesh gives the stretch a shade of angular momentum, which the frame takes for spin: 5e-6 m/s at
-        // the rim, where 40/s of stretch are 0.4 m/s.
-        let off = (d.state.vx[n] - v[0]).hypot(d.state.vy[n] - v[1]);
-        assert!(off < 2e-5, "slot {n}: {off:e} m/s");
-    }
 }
 
 #[test]

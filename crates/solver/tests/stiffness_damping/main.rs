@@ -1,12 +1,16 @@
 //! Stiffness damping: rates of decay, the edge of stability, its heat, and what it leaves alone.
+//!
+//! Problems with a closed form have a file each.
 
+#[path = "../common/mod.rs"]
 mod common;
-use std::f64::consts::{PI, TAU};
+
+mod bar_modes;
+mod disc_that_spins;
 
 use common::*;
-use stribeck_mesh::Disc;
-use stribeck_solver::{Dynamics, Motion, critical::damped_time_step};
-use stribeck_testing::{assert_close, ledger};
+use stribeck_solver::{Dynamics, critical::damped_time_step};
+use stribeck_testing::assert_close;
 
 /// Sets the damping [s] and `factor` of the critical time step under it.
 fn damp(d: &mut Dynamics, beta: f64, factor: f64) {
@@ -20,43 +24,6 @@ fn damp(d: &mut Dynamics, beta: f64, factor: f64) {
 fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
     let now = step_and_balance(d, &mut []);
     [now.mechanical(), d.heat.at_last_positions()]
-}
-
-/// Source: THEORY §2.7.
-#[test]
-fn analytic_stiffness_damping_of_a_bar_grows_with_frequency() {
-    // A mode of the angular frequency ω falls as exp(−ζω t) with ζ = βω/2: energy as exp(−βω² t). Longitudinal modes
-    // cos(kπx/L) of a bar whose sides are held.
-    let (columns, length) = (64, 0.064);
-    let mut model = body(&rectangle(length, 1e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
-    for k in [1, 2, 4, 8] {
-        let wave = k as f64 * PI / length;
-        let omega = wave * steel().dilatational_speed();
-        let mut d = lay_out(&model);
-        // The first mode has 0.2 % of critical, the eighth 1.6 %.
-        let beta = 2.0 * 0.002 / (PI / length * steel().dilatational_speed());
-        damp(&mut d, beta, 0.5);
-        for s in massive(&d) {
-            d.state.vx[s] = 0.01 * (wave * d.state.x[s]).cos();
-        }
-        let [start, _] = step_and_count(&mut d);
-        let steps = (20.0 * TAU / omega / d.time_step()) as usize;
-        run(&mut d, &mut [], steps);
-        let [left, _] = step_and_count(&mut d);
-        let rate = (start / left).ln() / ((steps + 1) as f64 * d.time_step());
-        // Eight elements to half a wave lower ω² by (π/8)²/12 = 1.3 % for k = 8; damping acts on kinetic energy in fits,
-        // and half a step late.
-        let found = format!("bar, stiffness damping of mode {k}");
-        ledger::compare(
-            &found,
-            "ζ = βω/2, Géradin and Rixen 2015, §3.1",
-            "1/s",
-            rate,
-            beta * omega * omega,
-            0.02,
-        );
-    }
 }
 
 #[test]
@@ -119,44 +86,6 @@ fn conserves_the_ledger_of_stiffness_damping() {
     println!("heat {:.3e} of {start:.3e} J, missing {:.2e} of it", heat - none, worst / (heat - none));
     assert!(heat - none > 0.0);
     assert!(worst < 5e-3 * (heat - none), "{:e} of the heat is missing", worst / (heat - none));
-}
-
-/// Source: THEORY §2.7.
-#[test]
-fn analytic_forces_turned_ahead_brake_a_spin() {
-    // Elements see a body turned by βω ahead and push in directions turned by as much: momentum stays, and the centripetal
-    // forces, with the virial Iω², have the torque −βω·Iω², so a free spin falls as dω/dt = −βω³.
-    let part = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
-    let mut d = lay_out(&body(&part.translated(0.05, -0.02)));
-    let (beta, spin) = (2e-8, 300.0);
-    damp(&mut d, beta, 0.9);
-    for n in massive(&d) {
-        d.state.vx[n] = 2.0 - spin * (d.state.y[n] + 0.02);
-        d.state.vy[n] = spin * (d.state.x[n] - 0.05);
-    }
-    let all: Vec<u32> = massive(&d).into_iter().map(|n| n as u32).collect();
-    let before = momentum(&d);
-    let [start, _] = step_and_count(&mut d);
-    run(&mut d, &mut [], 20_000);
-    let after = momentum(&d);
-    for i in 0..2 {
-        assert!((after[i] - before[i]).abs() < 1e-10 * before[0], "{after:?} from {before:?}");
-    }
-    // The disc begins without the stretch of its spin and rings about it: 1e-9 of the moment of inertia.
-    let inertia = d.rigid_motion(&all).inertia;
-    let loss = (before[2] - after[2]) / (inertia * spin);
-    let source = "dω/dt = −βω³, own (THEORY §2.7)";
-    ledger::compare(
-        "free spin under stiffness damping",
-        source,
-        "-",
-        loss,
-        beta * spin * spin * d.state.time,
-        0.02,
-    );
-    // The heat is that of the spin.
-    let [left, heat] = step_and_count(&mut d);
-    assert_close(heat, start - left, 0.05, "heat");
 }
 
 #[test]

@@ -1,15 +1,24 @@
 //! Structural damping: the ratio over a band, what it does to a ring, a bar and a spin, its edge of stability and its ledger.
+//!
+//! Problems with a closed form have a file each.
 
+#[path = "../common/mod.rs"]
 mod common;
+
+mod bar_modes;
+mod ring_bending_modes;
+
+mod edge_of_stability;
+mod one_element_on_its_spring;
+
 use std::f64::consts::{PI, TAU};
 
 use common::*;
-use stribeck_mesh::{Annulus, Disc};
+use stribeck_mesh::Disc;
 use stribeck_solver::{
-    Dynamics, Motion,
+    Dynamics,
     structural_damping::{Branch, StructuralDamping},
 };
-use stribeck_testing::{Noise, assert_close, ledger, orders};
 
 /// Damps body 0 and sets the time step to `factor` of the critical one.
 fn damp(d: &mut Dynamics, branches: &[Branch], bodies: Vec<usize>, factor: f64) {
@@ -95,180 +104,6 @@ fn ring_down(d: &mut Dynamics, shape: &[[f64; 2]], guess: f64, cycles: f64) -> [
     [omega, (a0 / a1).ln() / (dt * (t1 - t0)) / omega]
 }
 
-/// Source: THEORY §2.8; the logarithmic decrement is 2πζ, Géradin and Rixen 2015, §3.1.
-#[test]
-fn analytic_structural_damping_of_a_bar_is_that_of_the_branches() {
-    // Longitudinal modes cos(kπx/L) of a bar whose sides are held; branches on either side of the modes' frequencies.
-    let (columns, length) = (128, 0.256);
-    let mut model = body(&rectangle(length, 2e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
-    let speed = steel().dilatational_speed();
-    for k in [1, 2, 4, 8] {
-        let wave = k as f64 * PI / length;
-        let mut d = lay_out(&model);
-        let fit = StructuralDamping::over_band(0.02, [1e4, 1e5], 2, vec![0]).expect("a possible band");
-        damp(&mut d, fit.branches(), vec![0], 0.5);
-        let shape: Vec<[f64; 2]> = d.state.x.iter().map(|x| [0.01 * (wave * x).cos(), 0.0]).collect();
-        let [omega, ratio] = ring_down(&mut d, &shape, wave * speed, 12.0);
-        let source = "root of s² + ω₀²(1 + Σ g sτ/(1 + sτ)), THEORY §2.8";
-        let [decay, expected] = root(fit.branches(), wave * speed);
-        // 16 elements to half a wave lower ω by (π/16)²/24 = 0.16 %; the ratio follows the frequency by less.
-        ledger::compare(
-            &format!("bar, structural damping, ratio of mode {k}"),
-            source,
-            "-",
-            ratio,
-            decay / expected,
-            0.02,
-        );
-        ledger::compare(
-            &format!("bar, structural damping, frequency of mode {k}"),
-            source,
-            "rad/s",
-            omega,
-            expected,
-            0.005,
-        );
-        // What the band promises is the same but for what changes with frequency: stiffness by 4ζ/π over a factor of e.
-        assert_close(decay / expected, fit.ratio(expected / TAU), 0.02, "half the loss factor");
-    }
-}
-
-/// Source: THEORY §2.8; bending modes of a thin ring, Love 1944, §293.
-#[test]
-fn analytic_structural_damping_of_a_rings_bending_modes() {
-    let (inner, outer) = (0.1, 0.11);
-    let ring = Annulus {
-        inner_radius: inner,
-        outer_radius: outer,
-        facets: 360,
-        layers: 6,
-        start_angle: 0.0,
-        grooves: Vec::new(),
-    };
-    let model = body(&ring.part().expect("a ring"));
-    let fit = StructuralDamping::over_band(0.02, [5e2, 1e4], 3, vec![0]).expect("a possible band");
-    for n in [2, 4, 6] {
-        let n = n as f64;
-        let radius = 0.5 * (inner + outer);
-        // The shape of a thin ring without stretch, sections turning as they do in bending.
-        let shape = |d: &Dynamics| -> Vec<[f64; 2]> {
-            let places = d.state.x.iter().zip(&d.state.y);
-            let velocity = |(x, y): (&f64, &f64)| {
-                let (r, phi) = (x.hypot(*y), y.atan2(*x));
-                let radial = (n * phi).cos();
-                let middle = -(n * phi).sin() / n;
-                let along = middle + (r / radius - 1.0) * (middle + n * (n * phi).sin());
-                let (s, c) = phi.sin_cos();
-                [1e-3 * (radial * c - along * s), 1e-3 * (radial * s + along * c)]
-            };
-            places.map(velocity).collect()
-        };
-        // Undamped, for the frequency of this mesh.
-        let mut free = ready(&model, 0.9);
-        let thin = n * (n * n - 1.0) / (n * n + 1.0).sqrt() * (outer - inner)
-            / (12.0_f64.sqrt() * radius * radius)
-            * (208e9 / (1.0 - 0.09) / 7800.0_f64).sqrt();
-        let shape_free = shape(&free);
-        let [omega, none] = ring_down(&mut free, &shape_free, thin, 8.0);
-        println!(
-            "n = {n}: {:.1} Hz, thin ring {:.1} Hz, ratio without damping {none:.1e}",
-            omega / TAU,
-            thin / TAU
-        );
-        let mut d = lay_out(&model);
-        damp(&mut d, fit.branches(), vec![0], 0.9);
-        let shape_damped = shape(&d);
-        let [_, ratio] = ring_down(&mut d, &shape_damped, omega, 8.0);
-        let [decay, expected] = root(fit.branches(), omega);
-        let source = "root of s² + ω₀²(1 + Σ g sτ/(1 + sτ)), THEORY §2.8";
-        ledger::compare(
-            &format!("ring, structural damping of n = {n}"),
-            source,
-            "-",
-            ratio,
-            decay / expected,
-            0.02,
-        );
-    }
-}
-
-/// Source: (2.35) for one node; leapfrog is of second order, Hairer, Lubich and Wanner 2003.
-#[test]
-fn converges_with_the_square_of_the_time_step() {
-    // One element, held on the left and sideways: two nodes on one spring, with ω² = 2c²/L² for half the mass of the element.
-    let length = 2e-3;
-    let mut model = body(&rectangle(length, length, 1, 1));
-    for n in 0..4 {
-        model.motion[n] = if model.mesh.x[n] > 0.5 * length { Motion::HeldY } else { Motion::Held };
-    }
-    let omega = 2.0_f64.sqrt() * steel().dilatational_speed() / length;
-    let branch = Branch { stiffness: 0.3, relaxation_time: 1.5 / omega };
-    let (end, speed) = (40.0 / omega, 1e-3);
-    // x' = v, v' = −ω²(x + g u), u' = v − u/τ by the classical Runge–Kutta method in steps too small to matter.
-    let rate = |[x, v, u]: [f64; 3]| {
-        [v, -omega * omega * (x + branch.stiffness * u), v - u / branch.relaxation_time]
-    };
-    let mut exact = [0.0, speed, 0.0];
-    let small = end / 40_000.0;
-    for _ in 0..40_000 {
-        let at = |k: [f64; 3], h: f64| std::array::from_fn(|i| exact[i] + h * k[i]);
-        let k1 = rate(exact);
-        let k2 = rate(at(k1, 0.5 * small));
-        let k3 = rate(at(k2, 0.5 * small));
-        let k4 = rate(at(k3, small));
-        exact = std::array::from_fn(|i| exact[i] + small / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
-    }
-    let errors: Vec<f64> = [100, 200, 400, 800]
-        .into_iter()
-        .map(|steps| {
-            let mut d = lay_out(&model);
-            damp(&mut d, &[branch], vec![0], 0.5);
-            d.set_time_step(end / f64::from(steps)).expect("a positive step");
-            let right = (0..4).find(|&n| model.motion[n] == Motion::HeldY).expect("two nodes are free");
-            let n = slot(&d, right);
-            let free: Vec<usize> = massive(&d).into_iter().filter(|&s| d.state.x[s] > 0.5 * length).collect();
-            free.into_iter().for_each(|s| d.state.vx[s] = speed);
-            run(&mut d, &mut [], steps as usize);
-            (d.state.x[n] - length - exact[0]).abs() / (speed / omega)
-        })
-        .collect();
-    println!("errors {errors:?}, orders {:?}", orders(&errors));
-    assert!(orders(&errors).into_iter().all(|order| (order - 2.0).abs() < 0.1), "{errors:?}");
-}
-
-/// Source: THEORY §2.8, (2.38).
-#[test]
-fn analytic_the_edge_of_stability_is_that_of_the_stiffer_elements() {
-    let model = body(&rectangle(4e-3, 3e-3, 4, 3));
-    let undamped = lay_out(&model).critical_time_step(&[], 0.0).time_step;
-    for (stiffness, over_step) in [(0.1, 300.0), (0.5, 30.0), (0.5, 3.0)] {
-        let branch = Branch { stiffness, relaxation_time: over_step * undamped };
-        let mut d = lay_out(&model);
-        damp(&mut d, &[branch], vec![0], 1.0);
-        assert_close(d.time_step(), undamped / (1.0 + stiffness).sqrt(), 2e-3, "critical step");
-        // A branch as fast as the step adds less: tanh(Δt/2τ)/(Δt/2τ) of its spring.
-        let half = 0.5 * d.time_step() / branch.relaxation_time;
-        let edge = undamped / (1.0 + stiffness * half.tanh() / half).sqrt();
-        let largest = |factor: f64| {
-            let mut d = lay_out(&model);
-            damp(&mut d, &[branch], vec![0], 1.0);
-            d.set_time_step(factor * edge).expect("a positive time step");
-            let mut noise = Noise::new(6);
-            for n in massive(&d) {
-                (d.state.vx[n], d.state.vy[n]) = (1e-3 * noise.uniform(), 1e-3 * noise.uniform());
-            }
-            run(&mut d, &mut [], 6000);
-            let speeds = massive(&d).into_iter().map(|n| d.state.vx[n].abs());
-            speeds.map(|v| if v.is_nan() { f64::INFINITY } else { v }).fold(0.0, f64::max)
-        };
-        // The eigenvalue is bounded within 0.2 %, the step within 0.1 %.
-        let (below, above) = (largest(0.999), largest(1.004));
-        assert!(below < 3e-3, "{branch:?}: {below:e} m/s below the limit");
-        assert!(above > 1.0, "{branch:?}: {above:e} m/s above the limit");
-    }
-}
-
 /// The ring and all discs; the block is not damped.
 const DAMPED: [usize; 4] = [0, 1, 2, 3];
 
@@ -306,8 +141,8 @@ fn conserves_the_ledger_of_structural_damping() {
     assert!(worst < 1e-2 * (loss - none), "{:e} of the loss is missing", worst / (loss - none));
 }
 
-/// A disc that runs and spins while it vibrates; what is lost of its momentum, of its angular momentum and, by the springs, of
-/// its size.
+/// A disc that flies and spins while it vibrates keeps its momentum and its angular momentum, and the springs of
+/// its damping do not stretch it.
 #[test]
 fn conserves_momentum_and_the_size_of_a_spinning_disc() {
     let part = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
