@@ -11,7 +11,7 @@ use stribeck_scene::scene::Scene;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
-use crate::measured::{Analysis, Defect, Family, Machine, sidebands_seen};
+use crate::measured::{AccelerationUnit, Analysis, Defect, Family, Machine, sidebands_seen};
 use crate::record::Record;
 
 /// Verdict on a record, beside the truth.
@@ -30,8 +30,8 @@ pub struct DiagnosisFinding {
 /// One family of lines in the envelope spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DiagnosedFamily {
-    /// `BPFO`, `BPFI`, `BSF` or `FTF`.
-    pub name: String,
+    /// Whose family it is.
+    pub name: Defect,
     /// Frequency of rolling without slip [Hz].
     pub expected_hz: f64,
     /// Frequency of the recorded motion [Hz].
@@ -112,7 +112,8 @@ fn judged(
         outer_speed_rpm: Machine::outer_speed_rpm(scene),
         bearing: Some(bearing),
     };
-    let channel = Channel::held(name.to_owned(), samples).in_unit(Some("m/s²".to_owned()));
+    let channel = Channel::held(name.to_owned(), samples)
+        .in_unit(Some(AccelerationUnit::MetrePerSecondSquared.symbol().to_owned()));
     match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         // A record that is too short, or a sensor that stands still.
         Err(Error::NoSignal(_)) => Ok(None),
@@ -134,14 +135,14 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
         };
         let sidebands = sides.and_then(|(of, hz)| sidebands(family, analysis.band_of(family)?, of, hz));
         DiagnosedFamily {
-            name: family.name.to_string(),
+            name: family.name,
             expected_hz: family.expected_hz,
             from_motion_hz: from_motion(family.name, family.in_passages, motion, &present, steady),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
             claimed: family.claimed,
-            present: present.iter().any(|on| family_of(*on) == family.name),
+            present: present.iter().any(|on| Defect::on(*on) == family.name),
             reason: family.reason.to_string(),
             sidebands,
         }
@@ -151,15 +152,6 @@ pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> Dia
         verdict: analysis.findings.verdict.clone(),
         resolution_hz: analysis.findings.resolution_hz,
         families: families.collect(),
-    }
-}
-
-/// The family of a defect on a surface.
-pub fn family_of(on: RollingSurface) -> Defect {
-    match on {
-        RollingSurface::Outer => Defect::Bpfo,
-        RollingSurface::Inner => Defect::Bpfi,
-        RollingSurface::Roller(_) => Defect::Bsf,
     }
 }
 

@@ -14,13 +14,13 @@ use stribeck_dsp::{
     Detrend, Envelope, PeriodCount, PeriodVerdict, Scaling, Spectrum, Welch, WelchOptions, Window,
     means_over_angle,
 };
-use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
 use crate::Error;
+use crate::defect::{Defect, Shocks};
 use crate::enveloping::band_hz;
 use crate::kinematics::{KinematicsFinding, mean};
 use crate::record::Record;
@@ -102,9 +102,16 @@ impl DutyFinding {
         });
         let k = Kinematics::new(&scene.bearing, 60.0);
         // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference of speeds.
-        let cage = if scene.operation.outer_turns() { "FTF against the outer ring" } else { "FTF" };
-        let families =
-            [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), (cage, k.cage_hz)];
+        let cage = match scene.operation.outer_turns() {
+            true => "FTF against the outer ring",
+            false => order_name(Defect::Ftf),
+        };
+        let families = [
+            (order_name(Defect::Bpfo), k.bpfo_hz),
+            (order_name(Defect::Bpfi), k.bpfi_hz),
+            (order_name(Defect::Bsf), 2.0 * k.bsf_hz),
+            (cage, k.cage_hz),
+        ];
         Some(Self {
             speed_rpm: duty.speed_range_rpm(from_s, until_s).into(),
             outer_speed_rpm: duty.outer_speed_range_rpm(from_s, until_s).into(),
@@ -153,14 +160,32 @@ pub fn note(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Name and order of the family that a scene's defect makes.
-pub fn family(scene: &Scene) -> Option<(&'static str, f64)> {
-    let k = Kinematics::new(&scene.bearing, 60.0);
-    scene.faults().first().map(|on| match on {
-        RollingSurface::Outer => ("BPFO", k.bpfo_hz),
-        RollingSurface::Inner => ("BPFI", k.bpfi_hz),
-        RollingSurface::Roller(_) => ("2·BSF", 2.0 * k.bsf_hz),
-    })
+/// Shocks of the first defect of a scene in one turn of the shaft against the outer ring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShockOrder {
+    /// The damaged part.
+    pub defect: Defect,
+    /// Shocks a turn: twice the order of BSF for a rolling element.
+    pub order: f64,
+}
+
+impl ShockOrder {
+    /// Without slip; `None` for a scene without a defect.
+    pub fn of(scene: &Scene) -> Option<Self> {
+        // At one turn a second hertz are orders.
+        let shocks = Shocks::of(*scene.faults().first()?, &Kinematics::new(&scene.bearing, 60.0));
+        Some(Self { defect: shocks.defect, order: shocks.hz })
+    }
+
+    /// Name of the order.
+    pub fn name(self) -> &'static str {
+        order_name(self.defect)
+    }
+}
+
+/// Name of the order of a family's shocks in files and tables.
+fn order_name(defect: Defect) -> &'static str {
+    if defect == Defect::Bsf { "2·BSF" } else { defect.name() }
 }
 
 /// Turns of the shaft against the outer ring at each sample, rising where it turns its main way; `None` when they were not recorded.
@@ -173,12 +198,12 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
 
 /// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them round, less what they
 /// pass the other.
-pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
+pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
     let outer = motion.bpfo_hz? / motion.relative_hz;
-    let order = match name {
-        "BPFI" => motion.pockets() - outer,
-        "2·BSF" => 2.0 * motion.roller_spin_hz? / motion.relative_hz,
-        _ => outer,
+    let order = match defect {
+        Defect::Bpfi => motion.pockets() - outer,
+        Defect::Bsf => 2.0 * motion.roller_spin_hz? / motion.relative_hz,
+        Defect::Bpfo | Defect::Ftf => outer,
     };
     Some(order).filter(|order| order.is_finite())
 }
@@ -192,12 +217,13 @@ pub fn over_angle(
     signal_g: &[f64],
     sample_rate_hz: f64,
     turns: &[f64],
-    (name, order): (&str, f64),
+    family: ShockOrder,
     moved: Option<f64>,
 ) -> Result<Result<(Spectrum, OrderEnvelope), String>, Error> {
     if turns.windows(2).any(|pair| pair[1] < pair[0]) {
         return Ok(Err("no order spectrum: the angle turns back on the way".into()));
     }
+    let (name, order) = (family.name(), family.order);
     let made = turns.last().zip(turns.first()).map_or(0.0, |(last, first)| last - first);
     let Ok(count) = PeriodCount::new(made, order) else {
         return Ok(Err("no order spectrum: the rings stand still against each other".into()));
@@ -273,10 +299,12 @@ mod tests {
         (signal, turns)
     }
 
+    const BPFO: ShockOrder = ShockOrder { defect: Defect::Bpfo, order: 10.81 };
+
     #[test]
     fn example_knocks_of_a_shaft_that_speeds_up_stand_at_their_order() {
         let (signal, turns) = knocks();
-        let (_, finding) = over_angle(&signal, 1e5, &turns, ("BPFO", 10.81), None).unwrap().unwrap();
+        let (_, finding) = over_angle(&signal, 1e5, &turns, BPFO, None).unwrap().unwrap();
         assert!((finding.periods - 12.5 * 10.81).abs() < 0.1 && (finding.resolution - 0.08).abs() < 1e-3);
         for line in &finding.lines {
             assert!((line.measured.unwrap() - line.predicted).abs() < finding.resolution, "{line:?}");
@@ -290,13 +318,12 @@ mod tests {
     #[test]
     fn refuses_few_turns_and_turns_back_and_says_why() {
         let (signal, turns) = knocks();
-        let why =
-            over_angle(&signal[..5000], 1e5, &turns[..5000], ("BPFO", 10.81), None).unwrap().unwrap_err();
+        let why = over_angle(&signal[..5000], 1e5, &turns[..5000], BPFO, None).unwrap().unwrap_err();
         assert!(why.contains("2.9 periods of BPFO"), "{why}");
         let there_and_back: Vec<f64> = turns.iter().map(|t| t * (10.0 - t)).collect();
-        let why = over_angle(&signal, 1e5, &there_and_back, ("BPFO", 10.81), None).unwrap().unwrap_err();
+        let why = over_angle(&signal, 1e5, &there_and_back, BPFO, None).unwrap().unwrap_err();
         assert!(why.contains("turns back"), "{why}");
         let still = vec![0.0; signal.len()];
-        assert!(over_angle(&signal, 1e5, &still, ("BPFO", 10.81), None).unwrap().is_err());
+        assert!(over_angle(&signal, 1e5, &still, BPFO, None).unwrap().is_err());
     }
 }

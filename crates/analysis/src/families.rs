@@ -29,7 +29,7 @@ mod trial;
 
 use serde::{Deserialize, Serialize};
 
-use self::comb::Comb;
+use self::comb::BasebandComb;
 use self::trial::{Channels, Trial};
 use crate::Error;
 
@@ -197,7 +197,7 @@ pub fn identify(
 struct Case<'a> {
     name: &'a str,
     /// `None` when nothing of it can be heard.
-    comb: Option<Comb>,
+    comb: Option<BasebandComb>,
     /// The last trial and how far it leads.
     trial: Option<(Trial, f64)>,
     verdict: Verdict,
@@ -213,7 +213,7 @@ enum Verdict {
 
 impl<'a> Case<'a> {
     fn of(motion: &Motion, candidate: &'a Candidate, listened: &[usize]) -> Self {
-        let comb = Comb::of(motion, candidate.source, listened);
+        let comb = BasebandComb::of(motion, candidate.source, listened);
         Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
     }
 
@@ -228,7 +228,7 @@ fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
     // The case that was accepted last, and those that explained as much before it was.
     let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
     loop {
-        let in_fit: Vec<(&Comb, f64)> = cases
+        let in_fit: Vec<(&BasebandComb, f64)> = cases
             .iter()
             .filter(|c| c.verdict != Verdict::Open)
             .filter_map(|c| Some((c.comb.as_ref()?, c.trial.as_ref()?.0.offset_hz)))

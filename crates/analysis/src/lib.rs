@@ -59,6 +59,7 @@ pub mod summary;
 pub mod prediction;
 pub mod record;
 
+pub mod defect;
 pub mod duty;
 pub mod enveloping;
 pub mod events;

@@ -33,7 +33,6 @@
 pub mod alarm;
 mod angular;
 mod course;
-mod defect;
 mod enhanced;
 mod length;
 mod passage;
@@ -41,6 +40,7 @@ pub mod ridge;
 mod screening;
 mod second;
 pub mod tacho;
+mod unit;
 mod unrelated;
 mod velocity;
 mod verdict;
@@ -51,12 +51,14 @@ use stribeck_formats::Channel;
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 
 use crate::Error;
+pub use crate::defect::Defect;
 pub use angular::over_angle;
 pub use course::Course;
-pub use defect::Defect;
 pub use enhanced::Enhanced;
 pub use screening::Health;
 use screening::Screening;
+pub use unit::AccelerationUnit;
+use velocity::VelocityLevel;
 pub(crate) use verdict::sidebands_seen;
 pub use verdict::{Family, Reason};
 
@@ -117,6 +119,13 @@ pub struct MeasuredFindings {
     pub notes: Vec<String>,
 }
 
+impl MeasuredFindings {
+    /// The unit of the channel; `None` where it is not known, or no acceleration.
+    pub fn acceleration_unit(&self) -> Option<AccelerationUnit> {
+        self.unit.as_deref().and_then(AccelerationUnit::parse)
+    }
+}
+
 /// A value with its interval of 90 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Interval {
@@ -128,7 +137,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// MeasuredFindings and the curves that a report draws.
+/// The numbers and the curves that a report draws.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// The numbers.
@@ -192,7 +201,8 @@ impl Analysis {
             BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz).map_err(Error::Signal)?;
         let mut density = Density::new(rate_hz, segment)?;
         let mut tracing = course::Tracing::new(rate_hz, len)?;
-        let mut velocity = velocity::Level::new(rate_hz, segment, channel.unit.as_deref())?;
+        let unit = channel.unit.as_deref().and_then(AccelerationUnit::parse);
+        let mut velocity = VelocityLevel::new(rate_hz, segment, unit)?;
         let mut screening = Screening::default();
         let mut buffer: Vec<f64> = Vec::with_capacity(segment);
         let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
@@ -292,7 +302,7 @@ impl Analysis {
                 resolution_hz,
                 segments,
                 health,
-                velocity_mm_s: velocity.as_ref().and_then(velocity::Level::finish),
+                velocity_mm_s: velocity.as_ref().and_then(VelocityLevel::finish),
                 families: judged.families,
                 verdict: judged.verdict,
                 spall_mm,

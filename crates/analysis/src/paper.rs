@@ -48,8 +48,8 @@ pub fn is_scene_of(scene: &Scene) -> bool {
             == [paper.operation.load_n, paper.operation.speed_rpm]
 }
 
-/// What the rows are made of.
-struct Source<'a> {
+/// The run behind the rows.
+struct RowInputs<'a> {
     scene: &'a Scene,
     mesh: &'a MeshInfo,
     prediction: &'a Prediction,
@@ -58,7 +58,7 @@ struct Source<'a> {
 
 /// All rows, in the order of the paper. None is blank: what this run cannot yield says so.
 pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<PaperRow> {
-    let source = Source { scene, mesh, prediction, summary };
+    let source = RowInputs { scene, mesh, prediction, summary };
     let mut rows = model::rows(&source);
     rows.extend(signal::rows(&source));
     rows

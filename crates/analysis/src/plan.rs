@@ -14,9 +14,10 @@ use stribeck_scene::scene::{
 use stribeck_scene::static_load;
 
 use crate::Error;
+use crate::defect::Shocks;
 use crate::kinematics::KinematicsFinding;
 use crate::lumped::Lumped;
-use crate::prediction::{Prediction, family};
+use crate::prediction::Prediction;
 use crate::rolling;
 
 /// What a plan must know of the mesh that a scene makes.
@@ -102,9 +103,9 @@ impl Plan {
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let facets = counts.roller_facets as f64;
-        let families = scene.faults().into_iter().map(|on| family(on, kinematics));
-        let slowest = families.min_by(|a, b| a.1.total_cmp(&b.1));
-        let slowest = slowest.unwrap_or_else(|| family(RollingSurface::Outer, kinematics));
+        let families = scene.faults().into_iter().map(|on| Shocks::of(on, kinematics));
+        let slowest = families.min_by(|a, b| a.hz.total_cmp(&b.hz));
+        let slowest = slowest.unwrap_or_else(|| Shocks::of(RollingSurface::Outer, kinematics));
         let mut plan = Self {
             lines: prediction.facet_lines.clone(),
             lumped,
@@ -124,8 +125,8 @@ impl Plan {
             resolution_hz: 1.0 / duration_s,
             separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
             envelope: Some(slowest)
-                .filter(|(_, hz)| *hz > 0.0)
-                .map(|(name, hz)| (name, PeriodCount::ENOUGH / hz)),
+                .filter(|shocks| shocks.hz > 0.0)
+                .map(|shocks| (shocks.name(), PeriodCount::ENOUGH / shocks.hz)),
             advice: Vec::new(),
         };
         plan.advise(scene, &geometry);

@@ -1,7 +1,6 @@
 //! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
 //! defect when, and who carries how much.
 
-use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::run_info::MeshInfo;
@@ -9,6 +8,7 @@ use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies, Scene};
 use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
 
 use crate::Error;
+use crate::defect::{Defect, Shocks};
 use crate::families::{Candidate, Source};
 
 /// Steps of the cage over one roller spacing in the static distribution.
@@ -26,8 +26,8 @@ pub struct Prediction {
     pub facet_lines: Vec<(String, f64)>,
     /// Spalls of raceways, in the order of [`Scene::spalls`].
     pub spalls: Vec<SpallCourse>,
-    /// What a defect strikes: the name and the frequency [Hz] of its family; `None` where the speed changes and it has none.
-    pub family: Option<(&'static str, f64)>,
+    /// Shocks of the first defect; `None` where the speed changes, so that they have no frequency.
+    pub shocks: Option<Shocks>,
 }
 
 /// A spall of a raceway, and who should cross it when.
@@ -123,11 +123,11 @@ impl Prediction {
         Self {
             facet_lines,
             spalls: scene.spalls().into_iter().map(course).collect(),
-            family: scene
+            shocks: scene
                 .faults()
                 .first()
                 .filter(|_| !scene.operation.speed_varies())
-                .map(|on| family(*on, &kinematics)),
+                .map(|on| Shocks::of(*on, &kinematics)),
             kinematics,
         }
     }
@@ -153,12 +153,12 @@ impl Prediction {
     /// raceway as often as the shaft takes them round, less what they pass the other.
     pub fn moved(&self, bpfo_hz: Option<f64>) -> Option<f64> {
         let k = &self.kinematics;
-        let (name, _) = self.family?;
-        bpfo_hz.map(|hz| match name {
-            "BPFI" => k.bpfo_hz + k.bpfi_hz - hz,
+        let shocks = self.shocks?;
+        bpfo_hz.map(|hz| match shocks.defect {
+            Defect::Bpfi => k.bpfo_hz + k.bpfi_hz - hz,
             // A rolling element turns in proportion to its way along the outer raceway.
-            "2×BSF" => 2.0 * k.bsf_hz * hz / k.bpfo_hz,
-            _ => hz,
+            Defect::Bsf => 2.0 * k.bsf_hz * hz / k.bpfo_hz,
+            Defect::Bpfo | Defect::Ftf => hz,
         })
     }
 
@@ -236,15 +236,6 @@ impl Prediction {
     }
 }
 
-/// Name and frequency [Hz] of the family of a defect on a surface.
-pub(crate) fn family(on: RollingSurface, kinematics: &Kinematics) -> (&'static str, f64) {
-    match on {
-        RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
-        RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
-        RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
-    }
-}
-
 /// Points (angle [°], force) in the order of their angles, those of one place as their mean: where a roller is missing, others carry
 /// there more or less by how near to the gap they are.
 fn by_place(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
@@ -282,7 +273,7 @@ fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
 
 #[cfg(test)]
 mod tests {
-    use stribeck_scene::deviation::{DeviationScene, FormScene};
+    use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface};
 
     use super::*;
 

@@ -7,7 +7,7 @@ use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::imbalance;
 use stribeck_scene::scene::DefectRing;
 
-use stribeck_analysis::artefacts::{Artefact, Family};
+use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::FamilyFinding;
 use stribeck_analysis::rolling;
@@ -237,7 +237,7 @@ fn physics(run: &Run, summary: &Summary) -> String {
             orders(duty)
         );
     }
-    let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Family::Defect).collect();
+    let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Origin::Defect).collect();
     let seen: Vec<String> =
         of_defect.iter().filter(|a| a.measured_hz.is_some()).map(|a| format!("×{}", a.harmonic)).collect();
     let lines = of_defect.iter().find(|a| a.harmonic == 1).map(|first| {

@@ -20,7 +20,7 @@ const INDEPENDENT: f64 = 1e-6;
 const CARRIER_STEPS: f64 = 20.0;
 
 /// A family at baseband, turned back by the mean rate of its facets.
-pub(super) struct Comb {
+pub(super) struct BasebandComb {
     /// Mean rate of the facets at loaded contacts [Hz].
     pub(super) rate_hz: f64,
     /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the mean rate.
@@ -40,7 +40,7 @@ pub(super) struct Columns {
     pub(super) own: Vec<Vec<Complex>>,
 }
 
-impl Comb {
+impl BasebandComb {
     /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below half the
     /// sampling rate. `listened` are the rollers whose forces are looked at.
     pub(super) fn of(motion: &Motion, source: Source, listened: &[usize]) -> Option<Self> {

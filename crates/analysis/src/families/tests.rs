@@ -1,5 +1,7 @@
 use std::f64::consts::TAU;
 
+use stribeck_testing::Noise;
+
 use super::*;
 
 /// The paper's bearing with 24 rollers, cage and spin relative to it [Hz].
@@ -16,16 +18,6 @@ const CANDIDATES: [(&str, Source); 3] = [
     ("outer_race_nodes", Source::OuterNodes(1255.0)),
     ("inner_race_nodes", Source::InnerNodes(1030.0)),
 ];
-
-/// Numbers between −1 and 1 that are the same on every machine.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * ((self.0 >> 40) as f64 / (1u64 << 24) as f64) - 1.0
-    }
-}
 
 /// What is to be heard of a family.
 #[derive(Clone, Copy)]
@@ -71,7 +63,7 @@ fn silent(samples: usize, slip: f64) -> Motion {
 /// roller, and a thousandth of the load for each g on the force of every roller.
 fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (Motion, Vec<Channel>) {
     let samples = motion.samples();
-    let mut noise = Noise(seed);
+    let mut noise = Noise::new(seed);
     let heard = |roller: &RollerTrack, n: usize, of_place: &dyn Fn(f64) -> (f64, f64)| -> f64 {
         let (gain, lag) = of_place(roller.orbit[n].rem_euclid(TAU));
         let one = |s: &Sound| {
@@ -84,7 +76,7 @@ fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (M
     for number in 0..4 {
         let at = |place: f64| ((number as f64 * 1.1 + 1.7 * place).cos(), number as f64 + 0.8 * place);
         let value = |n: usize| {
-            motion.rollers.iter().map(|roller| heard(roller, n, &at)).sum::<f64>() + noise_g * noise.next()
+            motion.rollers.iter().map(|roller| heard(roller, n, &at)).sum::<f64>() + noise_g * noise.uniform()
         };
         accelerations.push(Channel {
             sensor: format!("s{}", number / 2),
@@ -98,7 +90,7 @@ fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (M
         .map(|roller| {
             let at = |place: f64| (1.0, 0.8 * place);
             (0..samples)
-                .map(|n| heard(roller, n, &at) + noise_g * noise.next() * roller.load_n[n] / 12e3)
+                .map(|n| heard(roller, n, &at) + noise_g * noise.uniform() * roller.load_n[n] / 12e3)
                 .collect()
         })
         .collect();
@@ -188,7 +180,7 @@ fn example_the_carrier_is_a_line_of_the_comb() {
     // not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a facet out of step.
     let motion = silent(SAMPLES, 0.0);
     let bpfo_hz = motion.bpfo_hz;
-    let line_hz = |source: Source| Comb::of(&motion, source, &[]).unwrap().line_hz;
+    let line_hz = |source: Source| BasebandComb::of(&motion, source, &[]).unwrap().line_hz;
     let resolution_hz = motion.resolution_hz();
     for (source, expected_hz) in [
         (Source::RotatedVertices(112.0), 112.0 * SPIN_HZ),

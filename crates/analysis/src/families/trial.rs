@@ -1,6 +1,6 @@
 //! How well a comb explains the channels of a record, where it belongs and elsewhere.
 
-use super::comb::{Columns, Comb, extend_basis, power, smoothed};
+use super::comb::{BasebandComb, Columns, extend_basis, power, smoothed};
 use super::kernels::{Complex, dot};
 use super::{Channel, LEAST_LEAD, Motion};
 
@@ -112,7 +112,12 @@ impl Channels {
     }
 
     /// Tries a comb beside those that are in the fit with their offsets [Hz].
-    pub(super) fn try_comb(&self, motion: &Motion, comb: &Comb, in_fit: &[(&Comb, f64)]) -> Trial {
+    pub(super) fn try_comb(
+        &self,
+        motion: &Motion,
+        comb: &BasebandComb,
+        in_fit: &[(&BasebandComb, f64)],
+    ) -> Trial {
         let resolution_hz = motion.resolution_hz();
         let base = self.at_baseband(comb);
         let fit = |centre_hz: f64| {
@@ -168,7 +173,7 @@ impl Channels {
     }
 
     /// At the baseband of a comb.
-    fn at_baseband(&self, comb: &Comb) -> Base {
+    fn at_baseband(&self, comb: &BasebandComb) -> Base {
         let of = |values: &Vec<f64>| comb.baseband.of_signal(values);
         Base {
             accelerations: self.accelerations.iter().map(of).collect(),
@@ -185,7 +190,7 @@ struct Base {
 
 impl Base {
     /// In the band `offset_hz` off the comb's own.
-    fn in_band(&self, comb: &Comb, offset_hz: f64) -> Signals {
+    fn in_band(&self, comb: &BasebandComb, offset_hz: f64) -> Signals {
         let length = self.accelerations.iter().chain(&self.forces).map(Vec::len).max().unwrap_or(0);
         let mut shift = comb.baseband.shift(-offset_hz, length);
         let mut band = |values: &Vec<Complex>| shift.apply(values);

@@ -7,7 +7,7 @@ use stribeck_scene::scene::ContactSurface;
 use super::{GRID_HZ, SHORTEST_SPECTRUM, SensorSignal};
 use crate::Error;
 use crate::artefacts;
-use crate::duty::{self, DutyFinding};
+use crate::duty::{self, DutyFinding, ShockOrder};
 use crate::enveloping;
 use crate::families::FamilyFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
@@ -147,10 +147,10 @@ pub(super) fn order_spectrum(
     duty: Option<&mut DutyFinding>,
     notes: &mut Vec<String>,
 ) -> Result<Option<Spectrum>, Error> {
-    let Some(family) = duty::family(&run.scene) else { return Ok(None) };
+    let Some(family) = ShockOrder::of(&run.scene) else { return Ok(None) };
     let leading = sensors.first().filter(|s| s.raw_g.len() >= SHORTEST_SPECTRUM);
     let (Some(leading), Some(turns)) = (leading, duty::turns(record)) else { return Ok(None) };
-    let moved = duty::moved(family.0, motion);
+    let moved = duty::moved(family.defect, motion);
     match duty::over_angle(&leading.raw_g, record.sample_rate_hz(), &turns, family, moved)? {
         Ok((spectrum, finding)) => {
             if let Some(duty) = duty {

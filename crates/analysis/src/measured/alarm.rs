@@ -6,7 +6,6 @@
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::velocity::is_acceleration;
 use super::{Defect, MeasuredFindings};
 
 /// What a limit is set on.
@@ -120,7 +119,7 @@ impl Quantity {
     /// Why a record does not have it, and what to give.
     pub fn missing(self, findings: &MeasuredFindings) -> &'static str {
         match self {
-            Self::VelocityMmS if !is_acceleration(findings.unit.as_deref()) => {
+            Self::VelocityMmS if findings.acceleration_unit().is_none() => {
                 "the samples have no unit of an acceleration; give `--unit g` or `--unit m/s²`"
             }
             Self::VelocityMmS => "10 to 1000 Hz take a record of 1 s, sampled at 2000 Hz or faster",

@@ -89,7 +89,7 @@ impl From<String> for Reason {
 }
 
 /// Families and conclusion.
-pub(super) struct Judged {
+pub(super) struct Verdicts {
     pub(super) families: Vec<Family>,
     pub(super) verdict: String,
     pub(super) notes: Vec<String>,
@@ -120,12 +120,12 @@ pub(super) const KNOCK: f64 = 0.5;
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
 
-/// The families, of which one at most is claimed; [`Judged::conclude`] says the rest.
-pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Judged {
+/// The families, of which one at most is claimed; [`Verdicts::conclude`] says the rest.
+pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Verdicts {
     let mut notes = Vec::new();
     let nothing = |notes: Vec<String>| {
         let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
-        Judged { families: Vec::new(), verdict, notes, first: None }
+        Verdicts { families: Vec::new(), verdict, notes, first: None }
     };
     let Some(bearing) = &machine.bearing else {
         notes.push("no bearing was given: `--bearing \"6205\"`, or its numbers".to_owned());
@@ -181,10 +181,10 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         cage_hz,
         resolution_hz: 1.0 / segment_s,
     });
-    Judged { families, verdict: String::new(), notes, first }
+    Verdicts { families, verdict: String::new(), notes, first }
 }
 
-impl Judged {
+impl Verdicts {
     /// What all families together say; `bands` are those that were judged.
     pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
         if !self.families.is_empty() {
