@@ -1,7 +1,7 @@
 //! How far the reduced model of a scene is from the full one: the same starts by both, quantity by quantity.
 //!
 //! Each quantity has a limit, which is what a user of the reduced model may count on, and a verdict. Pairs of runs have the
-//! same start, so what differs is the model, and what chance makes of a small difference: the waveform of one impact is
+//! same start, so they differ by the model and by chance, because small differences grow: the waveform of one impact is
 //! chaotic, which is why accelerations are compared by the power of third octaves over all starts.
 
 mod octaves;
@@ -63,7 +63,7 @@ pub struct Agreement {
     /// Largest accelerations of every sensor.
     #[serde(default)]
     pub peaks: Vec<Peak>,
-    /// What could not be compared, and why.
+    /// Quantities that could not be compared, with the reason.
     pub notes: Vec<String>,
 }
 
@@ -121,8 +121,8 @@ impl Agreement {
         })
     }
 
-    /// What a simulated millisecond costs, in words: by the full model, by the reduced one, and how many times less that is. Less than a
-    /// tick of the clock is not told from nothing.
+    /// Processor time of a simulated millisecond in words: by the full model, by the reduced one, and their ratio. A time below one tick
+    /// of the clock is given as a bound.
     pub fn cost(&self) -> [String; 3] {
         let tick_s = TICK_S / self.simulated_ms;
         let [full, reduced] = self.cpu_s_per_ms;
@@ -143,7 +143,7 @@ impl Agreement {
         self.rows.iter().filter(|row| row.told && !row.within)
     }
 
-    /// Rows of which the starts do not tell whether they keep it.
+    /// Rows for which the starts do not suffice for a verdict.
     pub fn open(&self) -> impl Iterator<Item = &Row> {
         self.rows.iter().filter(|row| !row.told)
     }

@@ -1,4 +1,4 @@
-//! The ledger of lines: which of them are the bearing, which are its mesh, and what the spectrum shows of each.
+//! The ledger of lines: which belong to the bearing, which to its mesh, and how each stands in the spectrum.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, PeriodCount, Spectrum};
@@ -30,7 +30,7 @@ pub enum Origin {
 pub struct Artefact {
     /// Where it comes from.
     pub family: Origin,
-    /// What it is, in words.
+    /// Name in words.
     pub name: String,
     /// Multiple of the fundamental, from 1.
     pub harmonic: usize,
@@ -42,7 +42,7 @@ pub struct Artefact {
     pub measured_hz: Option<f64>,
     /// Peak amplitude [g].
     pub level_g: Option<f64>,
-    /// What to make of it, in words.
+    /// Interpretation in words.
     pub verdict: String,
 }
 
@@ -53,7 +53,7 @@ pub const LAST_MODE: u32 = 6;
 /// A mounted ring's frequency may differ from the free thin ring's by this much.
 const MODE_REACH: f64 = 0.12;
 
-/// What a run shows of its lines.
+/// Measured lines and spectra of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     /// Facet lines measured one by one.
@@ -99,8 +99,8 @@ pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<
     lines
 }
 
-/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples are not told from
-/// whatever else is there.
+/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples cannot be distinguished
+/// from other lines.
 pub fn shows_family(density: &Spectrum, fundamental_hz: f64) -> bool {
     density.resolution().segment_s * fundamental_hz >= PeriodCount::ENOUGH
 }
@@ -184,7 +184,7 @@ fn defect(
 struct ShockComb {
     name: &'static str,
     spacing_hz: f64,
-    /// A line closer to a tooth than this is not told from it [Hz].
+    /// A line closer to a multiple than this cannot be distinguished from it [Hz].
     reach_hz: f64,
 }
 

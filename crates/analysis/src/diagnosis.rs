@@ -1,4 +1,4 @@
-//! What the leading sensor would tell somebody who does not know the scene: the verdict of [`measured`](crate::measured) on the
+//! Blind diagnosis from the leading sensor, without the scene: the verdict of [`measured`](crate::measured) on the
 //! record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use crate::record::Record;
 pub struct DiagnosisFinding {
     /// The sensor and component, as the trace names it.
     pub channel: String,
-    /// What the record shows, in one sentence.
+    /// The conclusion in one sentence.
     pub verdict: String,
     /// One over the length of the segments behind the envelope spectra [Hz].
     pub resolution_hz: f64,
@@ -60,11 +60,11 @@ pub struct Sidebands {
     pub of: String,
     /// The same [Hz].
     pub spacing_hz: f64,
-    /// How many of them noise would not make, of six.
+    /// Number of them above the noise, of six.
     pub seen: usize,
 }
 
-/// What channel `name` of the record says by itself; `None` where it is too short or not recorded. The longest transforms of a run:
+/// Diagnosis of channel `name` without the scene; `None` where it is too short or not recorded. The longest transforms of a run:
 /// nothing else need be in memory.
 ///
 /// # Errors

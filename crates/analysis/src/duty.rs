@@ -1,6 +1,6 @@
 //! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.11).
 //!
-//! Where the speed changes, a family has no frequency: it has an order, so many to a turn of the shaft. The squared envelope of
+//! Where the speed changes, a family has no frequency: it has an order, its number of periods in a turn of the shaft. The squared envelope of
 //! the leading sensor, whose resonances stay where they are in time, is averaged over equal steps of the shaft's angle, which
 //! the run records as a tachometer would; its spectrum then has the family's lines at their orders.
 //!
@@ -31,16 +31,16 @@ use crate::tones;
 const STEPS_PER_TURN: usize = 1024;
 /// Harmonics of the family that are looked for.
 const HARMONICS: usize = 6;
-/// The grid of the spectrum is at least so much finer than its resolution: a run has few turns, and a line must have room beside
+/// The grid of the spectrum is finer than its resolution by at least this factor: a run has few turns, and a line must have room beside
 /// its prediction.
 const FINER: usize = 4;
-/// Fewest steps of which a spectrum is made.
+/// Fewest steps for a spectrum.
 const LEAST_STEPS: usize = 256;
 
 /// Load on the housing along its direction, recorded where it changes.
 pub const LOAD: &str = "adapter.load_n";
 
-/// What a run whose speed or load changes says of it.
+/// Speed, load and orders of a run whose speed or load changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DutyFinding {
     /// Least and largest speed on record, clockwise positive [1/min].
@@ -61,7 +61,7 @@ pub struct DutyFinding {
     pub envelope: Option<OrderEnvelope>,
 }
 
-/// What the envelope shows at the defect's orders.
+/// Lines of the envelope spectrum at the defect's orders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OrderEnvelope {
     /// Name of the family.
@@ -70,7 +70,7 @@ pub struct OrderEnvelope {
     pub band_hz: (f64, f64),
     /// Periods of the defect in the record.
     pub periods: f64,
-    /// What the spectrum resolves: one over the turns on record.
+    /// Resolution of the spectrum: one over the turns on record.
     pub resolution: f64,
     /// Each line of the family.
     pub lines: Vec<OrderLine>,
@@ -134,13 +134,13 @@ impl DutyFinding {
         self.outer_speed_rpm != (0.0, 0.0)
     }
 
-    /// What orders count turns of, in words.
+    /// The rotation whose turns orders count, in words.
     pub fn over(&self) -> &'static str {
         if self.outer_turns() { "shaft against the outer ring" } else { "shaft" }
     }
 }
 
-/// What the rollers must carry along the load in the mean over the record [N]: what the run says, with a load that changes as it was while
+/// Mean force of all rollers along the load over the record [N]: the run's own number, with a changing load averaged over the part
 /// the record lasts.
 pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
@@ -249,7 +249,7 @@ pub fn over_angle(
         nfft: (FINER * means.len()).next_power_of_two(),
         ..WelchOptions::new(means.len())
     };
-    // A step is a sample, a turn a second: what the spectrum calls hertz are orders.
+    // A step is a sample and a turn a second, so the spectrum's hertz are orders.
     let spectrum = Welch::new(STEPS_PER_TURN as f64, means.len(), &options)
         .and_then(|mut welch| welch.estimate(&means))
         .map_err(Error::Signal)?;

@@ -11,14 +11,14 @@ const BAND_FROM_HZ: f64 = 6_000.0;
 /// Upper end as a part of half the sample rate.
 const BAND_TO: f64 = 0.9;
 
-/// What the envelope shows at the defect's lines.
+/// Lines of the envelope spectrum at the defect's frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnvelopeFinding {
     /// Band whose envelope was taken [Hz].
     pub band_hz: (f64, f64),
     /// Periods of the defect in the record.
     pub periods: f64,
-    /// What the spectrum resolves [Hz].
+    /// Resolution of the spectrum [Hz].
     pub resolution_hz: f64,
     /// Each line of the family.
     pub lines: Vec<EnvelopeLine>,

@@ -6,8 +6,8 @@
 //! before the expected entry, less its last tenth. The record around the passage is split where the roller is in
 //! the middle of the defect. *Entry* is the start of the longest stretch below half that level in the first part
 //! (from half a traverse before the expected entry), *exit* the end of the longest such stretch in the second part
-//! (up to half a traverse after the expected exit). Splitting makes the rule blind to what happens on the floor of
-//! the defect, where a roller may strike and rebound. A stretch counts from an eighth of a traverse on.
+//! (up to half a traverse after the expected exit). Splitting keeps impacts and rebounds on the floor of the defect
+//! from being picked. A stretch counts from an eighth of a traverse on.
 
 use std::ops::Range;
 
@@ -29,12 +29,12 @@ pub struct Passage {
     pub smoothing_s: f64,
 }
 
-/// What the force showed.
+/// Events read from the force.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Picked {
-    /// Unloading [s]; `None` with a note when it cannot be told.
+    /// Unloading [s]; `None` with a note when it cannot be determined.
     pub entry_s: Option<f64>,
-    /// Re-stressing [s]; `None` with a note when it cannot be told.
+    /// Re-stressing [s]; `None` with a note when it cannot be determined.
     pub exit_s: Option<f64>,
     /// Level before the defect [N].
     pub level_n: Option<f64>,

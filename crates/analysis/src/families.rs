@@ -1,7 +1,7 @@
 //! Combs of lines, fitted to the recorded motion of the rollers: which polygon makes the tone.
 //!
-//! Facets that pass the loaded contacts make no single line. What roller j does to a sensor goes with its load Q_j and its
-//! place θ_j, and its phase Ψ_j is that of its own facets: N_v times its spin seen from the contact, N_o times its way along
+//! Facets that pass the loaded contacts make no single line. The contribution of roller j to a sensor is proportional to its load Q_j, depends on
+//! its place θ_j, and its phase Ψ_j is that of its own facets: N_v times its spin seen from the contact, N_o times its way along
 //! the outer raceway, or N_i times that along the inner one. The sum over the rollers,
 //!
 //! ```text
@@ -11,7 +11,7 @@
 //! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and Ψ are
 //! recorded, so only the seven complex weights are fitted: to each acceleration by itself, and to the forces on the fullest
 //! rollers all at once. A roller's force has its own term of the sum alone, and all rollers have one set of weights, because
-//! what facets do at a place does not depend on the roller that is there.
+//! the effect of facets at a place does not depend on the roller that is there.
 //!
 //! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is the mean of
 //! −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within half a resolution (one over the length
@@ -36,7 +36,7 @@ use crate::Error;
 /// The least lead of a score that counts: what a comb leaves of the channels is then 26 % less than what any rival leaves. On
 /// records that were not used to choose it, one false comb in some hundreds leads by it (docs/results/families.md).
 pub const LEAST_LEAD: f64 = 0.3;
-/// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
+/// Periods of BPFO that a record must hold: with fewer, a comb cannot be distinguished from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
 /// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that grows with the square of
 /// them.
@@ -44,7 +44,7 @@ pub const MOST_PERIODS: f64 = 32.0;
 /// Sidebands that are listed on either side of the carrier.
 pub const SIDEBANDS: i32 = 3;
 
-/// What passes the contacts.
+/// Facets that pass the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
     /// Vertices of rollers with this many facets whose copies are turned with their place on the pitch circle.
@@ -70,7 +70,7 @@ pub struct RollerTrack {
     pub load_n: Vec<f64>,
 }
 
-/// What all families need of a record.
+/// Recorded motion, as all families need it.
 #[derive(Debug, Clone)]
 pub struct Motion {
     /// Sampling interval [s].
@@ -101,11 +101,11 @@ pub struct Channel {
 pub struct Candidate {
     /// Stable name.
     pub name: String,
-    /// What makes it.
+    /// The facets that make it.
     pub source: Source,
 }
 
-/// One family beside what the record shows of it.
+/// One family, predicted and measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FamilyFinding {
     /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
@@ -180,15 +180,15 @@ pub fn identify(
         let accelerations: Vec<Channel> = accelerations.iter().map(late).collect();
         return identify(&motion.from(from), candidates, &accelerations);
     }
-    let listened = trial::listened(motion);
-    let case = |candidate| Case::of(motion, candidate, &listened);
+    let observed = trial::observed(motion);
+    let case = |candidate| Case::of(motion, candidate, &observed);
     let mut cases: Vec<Case> = candidates.iter().map(case).collect();
     let slowest_hz = cases.iter().filter_map(|c| Some(c.comb.as_ref()?.rate_hz)).reduce(f64::min);
     if let Some(slowest_hz) = slowest_hz
         && !accelerations.is_empty()
         && motion.periods() >= LEAST_PERIODS
     {
-        judge(motion, &Channels::of(motion, accelerations, &listened, slowest_hz), &mut cases);
+        judge(motion, &Channels::of(motion, accelerations, &observed, slowest_hz), &mut cases);
     }
     (0..cases.len()).map(|n| finding(motion, accelerations, &cases, n)).collect()
 }
@@ -196,7 +196,7 @@ pub fn identify(
 /// A candidate on trial.
 struct Case<'a> {
     name: &'a str,
-    /// `None` when nothing of it can be heard.
+    /// `None` where the record cannot contain it.
     comb: Option<BasebandComb>,
     /// The last trial and how far it leads.
     trial: Option<(Trial, f64)>,
@@ -212,8 +212,8 @@ enum Verdict {
 }
 
 impl<'a> Case<'a> {
-    fn of(motion: &Motion, candidate: &'a Candidate, listened: &[usize]) -> Self {
-        let comb = BasebandComb::of(motion, candidate.source, listened);
+    fn of(motion: &Motion, candidate: &'a Candidate, observed: &[usize]) -> Self {
+        let comb = BasebandComb::of(motion, candidate.source, observed);
         Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
     }
 
@@ -239,7 +239,7 @@ fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
         }
         if let Some((accepted, ties)) = last.take() {
             for (n, alone) in ties {
-                // What adds nothing to the accepted comb, and explains as much without it, may be the one that is there.
+                // A case that adds nothing to the accepted comb and explains as much alone may be the true one.
                 if trials.iter().any(|(other, trial)| *other == n && !trial.stands()) {
                     trials.retain(|(other, _)| *other != n);
                     confuse(cases, accepted, n, alone);
@@ -272,7 +272,7 @@ fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
     }
 }
 
-/// What is said of case `n`.
+/// The finding of case `n`.
 fn finding(
     motion: &Motion,
     accelerations: &[Channel],

@@ -1,4 +1,4 @@
-//! Oil between rollers and raceways: how thick it is, what it carries, what it takes.
+//! Oil between rollers and raceways: thickness, load and friction.
 
 use serde::{Deserialize, Serialize};
 use stribeck_scene::{lubrication, run_dir::Run};

@@ -26,17 +26,17 @@ use crate::tones;
 const GRID_HZ: f64 = 3.0;
 /// Harmonics of each facet line that are looked for; the paper sees the fifth.
 const HARMONICS: usize = 6;
-/// Shortest record of which a spectrum is made [samples].
+/// Shortest record for a spectrum [samples].
 const SHORTEST_SPECTRUM: usize = 64;
 
-/// What a run shows: the numbers and the signals behind them.
+/// Results of a run: the numbers and the signals behind them.
 #[derive(Debug)]
 pub struct Findings {
     /// The numbers.
     pub summary: Summary,
     /// True for a scene of the paper's dimensions.
     pub of_paper: bool,
-    /// What geometry predicts.
+    /// Prediction from geometry and speed.
     pub prediction: Prediction,
     /// Predicted facet lines with harmonics.
     pub lines: Vec<tones::PredictedLine>,

@@ -35,7 +35,7 @@ pub struct KinematicsFinding {
     /// Ball pass frequency of the outer raceway, no slip.
     pub expected_bpfo_hz: f64,
     /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by the force of the
-    /// outer raceway. What turns freely, in the defect or outside the load zone, has no vote.
+    /// outer raceway. Rollers without load, in the defect or outside the load zone, have no weight.
     pub roller_spin_hz: Option<f64>,
     /// Spin of a roller relative to the cage, no slip.
     pub expected_roller_spin_hz: f64,
@@ -138,7 +138,7 @@ impl<'a> Turning<'a> {
         }
     }
 
-    /// What all of them show, beside what is `expected` without slip in a cage of so many `pockets`.
+    /// The recorded motion beside the one `expected` without slip; the cage has `pockets` pockets.
     pub fn finding(self, expected: &Kinematics, pockets: usize) -> KinematicsFinding {
         let rollers = &self.rollers;
         let cage = self.guided.or_else(|| mean(rollers.iter().filter_map(|r| r.orbit)));

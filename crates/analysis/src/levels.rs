@@ -5,7 +5,7 @@
 //! that has been running does. *Entry* reaches from [`BEFORE_ENTRY_S`] before a roller's centre passes the leading edge or
 //! the roller unloads, whichever comes first, to [`AFTER_UNLOADING_S`] after it has unloaded; *exit* from
 //! [`IMPULSE_HALF_WIDTH_S`] before it is loaded again to [`AFTER_EXIT_S`] after that or after its centre has passed the
-//! trailing edge, whichever comes last; what lies between the two is *in the defect*, and all else is *gap*. Where windows
+//! trailing edge, whichever comes last; the time between the two is *in the defect*, and all else is *gap*. Where windows
 //! of two rollers overlap, an exit counts before an entry, and an entry before the time in the defect.
 
 use std::ops::Range;
@@ -28,7 +28,7 @@ pub const AFTER_UNLOADING_S: f64 = 1e-3;
 /// Longest start-up [s]: as long as an exit may ring.
 pub const START_UP_S: f64 = 2e-3;
 
-/// What the bearing is doing at a sample.
+/// Phase of a passage that a sample belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// The first moments of a record.

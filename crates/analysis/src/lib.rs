@@ -19,15 +19,15 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | What does a run hold, what lets geometry expect? | [`record`], [`prediction`], [`plan`] |
-//! | How did speed and load go, what comes how often a turn? | [`duty`] |
+//! | What does a run hold, and what does geometry predict? | [`record`], [`prediction`], [`plan`] |
+//! | How do speed and load change, and at which orders does a defect stand? | [`duty`] |
 //! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
-//! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
+//! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What does a measured record show, and may one call it a defect? | [`measured`] |
-//! | What does all of it come to? | [`findings`], [`summary`], [`paper`] |
+//! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //!
 //! # A measured gearbox
 //!

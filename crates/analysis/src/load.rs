@@ -1,4 +1,4 @@
-//! What the rollers carry: their sum against the load, the largest of them, and the distribution around the bearing.
+//! Load of the rollers: their sum against the load, the largest of them, and the distribution around the bearing.
 
 use serde::{Deserialize, Serialize};
 
@@ -47,7 +47,7 @@ pub struct Distribution {
     pub mean_n: Vec<f64>,
 }
 
-/// What rollers carry, one after the other.
+/// Loads of rollers, read one after the other.
 #[derive(Debug)]
 pub struct Carried {
     /// Direction of the load.

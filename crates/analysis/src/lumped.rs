@@ -15,7 +15,7 @@
 //! y = |Σ sin θ_j g(u_j) (1 + e^{iπN_v}) e^{iN_vθ_j}| h₁ / Σ sin² θ_j          a = (2π f_v)² y
 //! ```
 //!
-//! Neither the ring's bending nor its mass is in this: it says how levels compare, not what a sensor hears (own).
+//! Neither the ring's bending nor its mass is in this: it compares levels of scenes and does not predict those of a sensor (own).
 
 use std::f64::consts::{PI, TAU};
 
@@ -30,16 +30,16 @@ use crate::levels::STANDARD_GRAVITY;
 /// Strips of the average over the contact.
 const STRIPS: usize = 400;
 
-/// What the model says of one scene.
+/// Result for one scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lumped {
     /// Frequency of the roller vertices [Hz].
     pub frequency_hz: f64,
     /// First harmonic of the gap under one facet [m].
     pub height_m: f64,
-    /// What the width of the most loaded contact leaves of it, 0 to 1; negative past the first zero.
+    /// Reduction by the width of the most loaded contact, 0 to 1; negative past the first zero.
     pub smoothing: f64,
-    /// What the phases of all loaded rollers leave, 0 to 1.
+    /// Reduction by the phases of all loaded rollers, 0 to 1.
     pub phases: f64,
     /// 2 for an even count of facets, 0 for an odd one.
     pub both_contacts: f64,

@@ -1,7 +1,7 @@
 //! A measured signal: is it sound, which defect families does it hold, and what may be concluded?
 //!
 //! [`Analysis::of`] goes once through the samples, block by block, so that a record of hours takes no more memory than one of
-//! seconds. THEORY §7.9 says what is computed.
+//! seconds. Source: THEORY §7.9.
 //!
 //! ```
 //! use stribeck_analysis::measured::{Analysis, Defect, Machine};
@@ -63,7 +63,7 @@ use velocity::VelocityLevel;
 pub(crate) use verdict::sidebands_seen;
 pub use verdict::{Family, Reason};
 
-/// What is known of the machine.
+/// Speed and bearing of the machine, as far as they are known.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Machine {
     /// Speed of the shaft, against the outer ring where that turns [1/min].
@@ -85,7 +85,7 @@ impl Machine {
     }
 }
 
-/// What `findings.json` says. What a record cannot yield is `null`, with the reason in `notes`.
+/// Contents of `findings.json`. A number that the record cannot yield is `null`, with the reason in `notes`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredFindings {
     /// The channel.
@@ -102,7 +102,7 @@ pub struct MeasuredFindings {
     pub speed_rpm: Option<f64>,
     /// The bearing, in words.
     pub bearing: Option<String>,
-    /// What the envelope spectra resolve: one over the length of a segment [Hz].
+    /// Resolution of the envelope spectra: one over the length of a segment [Hz].
     pub resolution_hz: f64,
     /// Segments averaged.
     pub segments: usize,
@@ -112,11 +112,11 @@ pub struct MeasuredFindings {
     pub velocity_mm_s: Option<f64>,
     /// The defect families; none without speed and bearing.
     pub families: Vec<Family>,
-    /// What to conclude, in one sentence.
+    /// The conclusion in one sentence.
     pub verdict: String,
     /// Length of a spall [mm].
     pub spall_mm: Option<Interval>,
-    /// What limits the conclusion.
+    /// Limits of the conclusion.
     pub notes: Vec<String>,
 }
 
@@ -203,7 +203,7 @@ impl Analysis {
             )));
         };
         let (bands, segments) = (envelopes.bands(), envelopes.segments());
-        // What follows has transforms of its own.
+        // The steps below need memory for their own transforms.
         drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
         let (record_s, segment_s) = (screening.count() as f64 / rate_hz, segment as f64 / rate_hz);

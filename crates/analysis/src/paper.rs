@@ -56,7 +56,7 @@ struct RowInputs<'a> {
     summary: &'a Summary,
 }
 
-/// All rows, in the order of the paper. None is blank: what this run cannot yield says so.
+/// All rows, in the order of the paper. None is blank: a number that this run cannot yield is stated as such.
 pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<PaperRow> {
     let source = RowInputs { scene, mesh, prediction, summary };
     let mut rows = model::rows(&source);

@@ -20,7 +20,7 @@ use crate::lumped::Lumped;
 use crate::prediction::Prediction;
 use crate::rolling;
 
-/// What a plan must know of the mesh that a scene makes.
+/// Facts of the mesh that a plan needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFacts {
     /// Its counts.
@@ -29,7 +29,7 @@ pub struct MeshFacts {
     pub element_time_step_s: f64,
 }
 
-/// What to expect of a scene.
+/// Expected tones, resolution and cost of a scene.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// Predicted lines: name and frequency [Hz].
@@ -62,7 +62,7 @@ pub struct Plan {
     /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of the defect, of several the
     /// slowest, without one BPFO; `None` where the rings do not turn against each other.
     pub envelope: Option<(&'static str, f64)>,
-    /// What to change, each with its reason.
+    /// Recommended changes, each with its reason.
     pub advice: Vec<String>,
 }
 
@@ -77,7 +77,7 @@ const HANN_WIDTHS: f64 = 2.0;
 const ONSET_STEPS: f64 = 1.9;
 
 impl Plan {
-    /// What to expect of a scene whose mesh is `mesh`.
+    /// The plan of a scene whose mesh is `mesh`.
     ///
     /// # Errors
     /// [`Error::Run`] when the scene has no static load distribution.
@@ -148,78 +148,103 @@ impl Plan {
         (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
     }
 
-    /// What the study of contact noise has shown to help (docs/results/noise.md).
+    /// Recommendations from the study of contact noise (docs/results/noise.md).
     fn advise(&mut self, scene: &Scene, geometry: &Geometry) {
+        let mut advice = self.on_contact(scene, geometry);
+        advice.extend(self.on_oil(scene));
+        if scene.contact.surface == ContactSurface::Facet {
+            advice.extend(self.on_facets(scene, geometry));
+        }
+        advice.extend(self.on_spectra(geometry));
+        self.advice = advice;
+    }
+
+    /// Surface, interpolation, method and onset of the contacts.
+    fn on_contact(&self, scene: &Scene, geometry: &Geometry) -> Vec<String> {
         let c = &scene.contact;
-        let wanted = ONSET_STEPS * self.point_step_m(geometry, c.points_per_facet);
-        let mut say = |text: String| self.advice.push(text);
+        let mut advice = Vec::new();
         if c.surface == ContactSurface::Facet {
-            say("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
+            advice.push("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
         }
         if c.interpolation == ContactInterpolation::Linear && c.penalty_scale > 0.2 {
-            say(format!(
+            advice.push(format!(
                 "`contact.interpolation=spline`: with a contact as stiff as elements (penalty_scale {}) a load between \
                  two nodes sinks in less than one at a node, and arcs alone leave a third of the tone",
                 c.penalty_scale
             ));
         }
         if c.method == ContactMethod::Collocated {
-            say("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
+            advice.push("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
         }
+        let onset_m = ONSET_STEPS * self.point_step_m(geometry, c.points_per_facet);
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
         let audible = points_hz < 0.5 / geometry.interval;
-        // The reduced model integrates what overlaps exactly, without points.
+        // The reduced model integrates the penetration exactly, without points.
         let in_points = scene.model == ModelScene::Full && c.method == ContactMethod::Integrated;
-        if in_points && c.surface != ContactSurface::Facet && audible && geometry.contact_onset < wanted {
-            say(format!(
+        if in_points && c.surface != ContactSurface::Facet && audible && geometry.contact_onset < onset_m {
+            advice.push(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz unless their pressure \
                  sets in over several of them",
-                1e6 * wanted,
+                1e6 * onset_m,
                 1e-3 * points_hz
             ));
         }
-        if let Some(films) = &self.films {
-            if scene.solver.mass_damping_per_s > 0.0 && scene.solver.damping_frame == DampingFrame::Rolling {
-                say("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
-            }
-            if films.iter().any(|film| film.lambda < 1.0) {
-                say("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
-            }
+        advice
+    }
+
+    /// Damping beside oil films, and thin ones.
+    fn on_oil(&self, scene: &Scene) -> Vec<String> {
+        let Some(films) = &self.films else { return Vec::new() };
+        let mut advice = Vec::new();
+        if scene.solver.mass_damping_per_s > 0.0 && scene.solver.damping_frame == DampingFrame::Rolling {
+            advice.push("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
         }
+        if films.iter().any(|film| film.lambda < 1.0) {
+            advice.push("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
+        }
+        advice
+    }
+
+    /// Number, phase and length of facets that are in contact themselves.
+    fn on_facets(&self, scene: &Scene, geometry: &Geometry) -> Vec<String> {
         let facets = scene.mesh.roller_facets;
-        if c.surface == ContactSurface::Facet {
-            if facets.is_multiple_of(2) {
-                say(format!(
-                    "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
-                    facets + 1
-                ));
-            }
-            if scene.mesh.roller_copies == RollerCopies::Rotated
-                || facets.is_multiple_of(scene.bearing.rollers)
-            {
-                say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
-            }
-            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / geometry.roller_radius {
-                say(format!(
-                    "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
-                    1e3 * self.facet_m,
-                    2e3 * self.half_width_m
-                ));
-            }
+        let mut advice = Vec::new();
+        if facets.is_multiple_of(2) {
+            advice.push(format!(
+                "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
+                facets + 1
+            ));
         }
+        if scene.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.bearing.rollers) {
+            advice.push("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
+        }
+        if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / geometry.roller_radius {
+            advice.push(format!(
+                "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
+                1e3 * self.facet_m,
+                2e3 * self.half_width_m
+            ));
+        }
+        advice
+    }
+
+    /// The resolution of the spectra in frequency and of their top in space.
+    fn on_spectra(&self, geometry: &Geometry) -> Vec<String> {
+        let mut advice = Vec::new();
         if self.elements_per_wavelength < 8.0 {
-            say(format!(
+            advice.push(format!(
                 "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not read the top of the spectrum",
                 self.elements_per_wavelength
             ));
         }
         if let Some(needed) = self.separating_s.filter(|s| *s > geometry.duration) {
-            say(format!(
+            advice.push(format!(
                 "the closest lines merge in {:.0} ms; {:.0} ms separate them",
                 1e3 * geometry.duration,
                 1e3 * needed
             ));
         }
+        advice
     }
 }
 

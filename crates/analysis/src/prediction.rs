@@ -1,5 +1,5 @@
-//! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
-//! defect when, and who carries how much.
+//! Prediction for a scene from rolling without slip and rigid rings: frequencies, facet lines, passages of rollers over the
+//! defect, and the load distribution.
 
 use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
@@ -104,7 +104,7 @@ impl Prediction {
             }
             // On the inner raceway the contact is as fast: rollers do not slip.
             let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
-            // A cage that slips meets a ring that turns earlier. Whoever enters in time leaves at most one traverse later.
+            // A cage that slips meets a ring that turns earlier. A roller that enters before the end leaves at most one traverse later.
             let early = if turns(defect) { EARLY } else { 0.0 };
             let until_s = (1.0 + early) * Geometry::of(scene).duration + traverse_s;
             kinematics.crossings(defect, &roller_angles_deg(scene), until_s)

@@ -17,7 +17,7 @@ const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;
 /// Samples that are looked at, at most: of a longer record the last ones, so that memory does not grow with it.
 const LONGEST: usize = 1 << 21;
 
-/// What is read of a roller.
+/// Channels of a roller that are read.
 const OF_ROLLER: [&str; 7] =
     ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"];
 
@@ -88,7 +88,7 @@ impl<'a> Record<'a> {
     pub fn between(run: &'a Run, time_s: Range<f64>) -> Result<Self, Error> {
         let start_s = run.trace.read(0..1, |name| name == "time_s")?;
         let start_s = start_s.get("time_s").and_then(|time| time.first().copied()).unwrap_or(0.0);
-        // The sample at or behind a time; what is infinite or beyond the record is its end.
+        // The sample at or behind a time; an infinite time, or one beyond the record, is its end.
         let row = |at_s: f64| ((at_s - start_s) / run.info.interval_s - 1e-6).ceil().max(0.0) as usize;
         let end = row(time_s.end).min(run.trace.len());
         let first = row(time_s.start).max(end.saturating_sub(LONGEST));

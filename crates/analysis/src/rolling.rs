@@ -43,7 +43,7 @@ pub fn friction_over_edge(geometry: &Geometry, spall: &SpallScene, force_n: f64)
     0.5 * (2.0 * lifted / radius).sqrt().min(half_angle)
 }
 
-/// What to say of spalls on rollers that the friction of a scene may not turn over their edges, when the fullest roller carries `force_n`.
+/// Notes on spalls on rollers that the friction of a scene may not turn over their edges, when the fullest roller carries `force_n`.
 pub fn flats(scene: &Scene, force_n: f64) -> Vec<String> {
     let geometry = Geometry::of(scene);
     let spalls = scene.defects.iter().filter_map(|defect| match (defect.on, &defect.form) {
@@ -64,7 +64,7 @@ pub fn flats(scene: &Scene, force_n: f64) -> Vec<String> {
         .collect()
 }
 
-/// What to say of a load that does not keep rollers rolling, or of rollers that were seen to slide.
+/// Warnings of a load too small to keep rollers rolling, and of rollers that slid.
 pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding) -> Vec<String> {
     let mut said = Vec::new();
     if let Some(least_n) = least_n.filter(|least_n| support_n < *least_n) {
@@ -106,7 +106,7 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
 /// How far a cage may stray, in clearances of its pockets: pockets with corners let it go four or five times as far.
 const STRAYS: f64 = 10.0;
 
-/// What to say of a cage that nothing holds across: `x` and `y` are where its centre was [m].
+/// A note on a cage without radial guidance: `x` and `y` are the positions of its centre [m].
 pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
     let room_um = scene.cage.as_ref()?.pocket_clearance_um;
     let (first_x, first_y) = (x.first()?, y.first()?);
@@ -125,7 +125,7 @@ pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
     })
 }
 
-/// What lets a cage stray, and what holds it.
+/// Clearances and guidance of a cage.
 fn why_it_strays(scene: &Scene) -> String {
     let g = Geometry::of(scene);
     let corners = g.cage.as_ref().filter(|cage| cage.pocket == PocketWalls::Corners);

@@ -1,4 +1,4 @@
-//! One line, or one part, of any signal.
+//! One line, or one band, of any signal.
 
 use stribeck_dsp::{Spectrum, Welch, WelchOptions, Window};
 
@@ -69,7 +69,7 @@ pub fn band_rms(signal: &[f64], sample_rate_hz: f64, low_hz: f64, high_hz: f64) 
     welch.ok()?.estimate(signal).ok()?.band_rms(low_hz, high_hz).ok()
 }
 
-/// Largest magnitude of the running mean over `width_s`: what is left of a peak when everything faster is taken out.
+/// Largest magnitude of the running mean over `width_s`: the height of a peak behind that low pass.
 pub fn smoothed_peak(signal: &[f64], interval_s: f64, width_s: f64) -> Option<f64> {
     let width = samples(width_s, interval_s);
     running_mean(signal, width).map(f64::abs).max_by(f64::total_cmp)

@@ -26,7 +26,7 @@ use stribeck_scene::static_load::RigidRings;
 /// Halvings of the bracket: beyond rounding.
 const HALVINGS: usize = 60;
 
-/// What the estimate needs of a bearing.
+/// Geometry and stiffness that the estimate needs.
 #[derive(Debug, Clone, Copy)]
 pub struct Edge {
     rings: RigidRings,

@@ -1,9 +1,9 @@
-//! What a number comes to over many starts: mean and how well it is known, scatter, quantiles.
+//! Statistics of a number over many starts: mean with its interval, scatter, quantiles.
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Probability with which an interval holds what it stands for.
+/// Probability with which an interval covers the true value.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// Nobody will run more.
@@ -12,7 +12,7 @@ pub const MOST_STARTS: usize = 2000;
 /// One number over many starts.
 ///
 /// The interval is that of the mean, at 95 % and by Student's t: it says how well the mean is known, and narrows with more
-/// starts. What a single start does is told by the quantiles.
+/// starts. The quantiles describe single starts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
     /// Mean of the starts that have the number.
@@ -105,7 +105,7 @@ impl Share {
     }
 }
 
-/// Value that Student's t with so many degrees of freedom, 1 or more, stays within with a probability of [`CONFIDENCE`].
+/// Two-sided quantile of Student's t at [`CONFIDENCE`] for a number of degrees of freedom of 1 or more.
 fn students_t(freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom as f64).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }

@@ -1,4 +1,4 @@
-//! `summary.json`: every figure that the report states, under stable names. What a run cannot yield is `null`, with
+//! `summary.json`: every figure that the report states, under stable names. A number that a run cannot yield is `null`, with
 //! the reason in `notes`.
 
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ use crate::load::LoadFinding;
 use crate::reading::CursorReading;
 use crate::tones::Tone;
 
-/// Everything a run says, in numbers.
+/// All numbers of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Name of the scene.
@@ -52,20 +52,20 @@ pub struct Summary {
     pub levels: LevelsFinding,
     /// The notch at the facet tone.
     pub notch: Option<NotchFinding>,
-    /// What the spectra can tell apart.
+    /// Resolution of the spectra.
     pub spectrum: Option<SpectrumFinding>,
     /// Every line of the leading sensor's spectrum: mesh, beats, defect, ring.
     pub artefacts: Vec<Artefact>,
     /// The defect's family in the envelope; `None` when the record is too short.
     pub envelope: Option<EnvelopeFinding>,
-    /// What the leading sensor would tell somebody who does not know the scene; `None` when the record is too short.
+    /// Blind diagnosis from the leading sensor; `None` when the record is too short.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<DiagnosisFinding>,
-    /// What the paper's 4545 Hz can be at this sample rate.
+    /// Possible readings behind the paper's 4545 Hz at this sample rate.
     pub cursor: Option<CursorReading>,
     /// Every number of the paper beside ours.
     pub paper: Vec<PaperRow>,
-    /// Why something is missing, and what to be careful with.
+    /// Reasons for missing numbers, and cautions.
     pub notes: Vec<String>,
 }
 
@@ -74,7 +74,7 @@ pub struct Summary {
 pub struct PaperRow {
     /// Part of the paper.
     pub part: String,
-    /// What is counted or measured.
+    /// The quantity.
     pub quantity: String,
     /// As the paper prints it.
     pub paper: String,
@@ -88,11 +88,11 @@ pub struct PaperRow {
     pub unit: String,
     /// Ours against the paper's.
     pub difference: String,
-    /// Why, or what to make of it.
+    /// Reason or comment.
     pub why: String,
 }
 
-/// What the run cost.
+/// Cost of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunCost {
     /// Steps taken.
@@ -124,7 +124,7 @@ pub struct EnergyFinding {
     pub max_relative_error: f64,
     /// Peak strain energy [J].
     pub peak_strain_j: f64,
-    /// What friction, films and damping have turned into heat [J].
+    /// Energy dissipated by friction, films and damping [J].
     #[serde(default)]
     pub heat_j: f64,
     /// Largest |imbalance| over the heat [-], where that is more than the peak strain energy.
@@ -280,7 +280,7 @@ pub struct SensorLevels {
     pub between_filtered_rms_g: Option<f64>,
 }
 
-/// What the spectra can tell apart.
+/// Resolution of the spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpectrumFinding {
     /// Length of the record [s].

@@ -28,7 +28,7 @@ pub struct Row {
     pub name: String,
     /// In words.
     pub quantity: String,
-    /// What is compared; in files its unit.
+    /// Scale of the difference; in files its unit.
     #[serde(rename = "unit")]
     pub scale: Scale,
     /// The difference, reduced less full; over the starts, or for third octaves over the bands.

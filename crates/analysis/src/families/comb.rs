@@ -1,4 +1,4 @@
-//! The comb of one family at baseband: what it is made of, and where its carrier stands.
+//! The comb of one family at baseband: its columns, and the frequency of its carrier.
 
 use std::f64::consts::{PI, TAU};
 
@@ -27,9 +27,9 @@ pub(super) struct BasebandComb {
     pub(super) line_hz: f64,
     /// The baseband itself.
     pub(super) baseband: Baseband,
-    /// Sums over all rollers, one a column: what accelerations are made of.
+    /// Sums over all rollers, one a column: the terms of accelerations.
     sums: Vec<Vec<Complex>>,
-    /// The share of every roller that is listened to, one a column and roller: what the force on it is made of.
+    /// Contribution of each observed roller, one a column and roller: the terms of the force on it.
     own: Vec<Vec<Vec<Complex>>>,
 }
 
@@ -42,8 +42,8 @@ pub(super) struct Columns {
 
 impl BasebandComb {
     /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below half the
-    /// sampling rate. `listened` are the rollers whose forces are looked at.
-    pub(super) fn of(motion: &Motion, source: Source, listened: &[usize]) -> Option<Self> {
+    /// sampling rate. `observed` are the rollers whose forces are fitted.
+    pub(super) fn of(motion: &Motion, source: Source, observed: &[usize]) -> Option<Self> {
         let samples = motion.samples();
         let dt = motion.interval_s;
         let phases: Vec<Vec<f64>> = motion
@@ -64,7 +64,7 @@ impl BasebandComb {
         }
         let length = baseband.length(samples);
         let mut sums = vec![vec![(0.0, 0.0); length]; COLUMNS];
-        let mut own = vec![vec![Vec::new(); listened.len()]; COLUMNS];
+        let mut own = vec![vec![Vec::new(); observed.len()]; COLUMNS];
         for (number, ((roller, phase), load)) in motion.rollers.iter().zip(&phases).zip(&loads).enumerate() {
             let sound = |n: usize| {
                 let weight = load[n] / largest;
@@ -82,7 +82,7 @@ impl BasebandComb {
                     })
                     .collect();
                 add(&mut sums[column], &part);
-                if let Some(at) = listened.iter().position(|&heard| heard == number) {
+                if let Some(at) = observed.iter().position(|&heard| heard == number) {
                     own[column][at] = part;
                 }
             }

@@ -54,7 +54,7 @@ pub(super) struct Shift<'a> {
 }
 
 impl<'a> Shift<'a> {
-    /// By `hz`, of so many values that are `interval_s` apart, and averages weighted by `taps`, one every `step` values.
+    /// Shifts `values` samples, `interval_s` apart, by `hz`, and averages them with the weights `taps`, one average every `step` samples.
     pub(super) fn new(hz: f64, interval_s: f64, values: usize, taps: &'a [f64], step: usize) -> Self {
         let turns = turned(&vec![(1.0, 0.0); values], hz, interval_s);
         Self { turns, taps, step, shifted: vec![(0.0, 0.0); TOGETHER * step + taps.len()] }

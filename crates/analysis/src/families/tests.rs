@@ -19,7 +19,7 @@ const CANDIDATES: [(&str, Source); 3] = [
     ("inner_race_nodes", Source::InnerNodes(1030.0)),
 ];
 
-/// What is to be heard of a family.
+/// Strength and frequency of a family in a synthetic record.
 #[derive(Clone, Copy)]
 struct Sound {
     source: Source,

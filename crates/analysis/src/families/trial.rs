@@ -21,10 +21,10 @@ const BESIDE: f64 = 5.0;
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
-/// Rollers that carry at least this part of the fullest one's mean load are listened to, the fullest of them.
+/// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of them.
 const LOADED: f64 = 0.25;
-const LISTENED: usize = 8;
-/// A contact sounds while it carries at least this part of the largest load.
+const OBSERVED: usize = 8;
+/// A contact counts while it carries at least this part of the largest load.
 const PRESSED: f64 = 0.1;
 
 /// Every signal in which combs are sought.
@@ -74,24 +74,24 @@ impl Trial {
 }
 
 /// Numbers of the rollers whose forces are looked at, from 0, ascending.
-pub(super) fn listened(motion: &Motion) -> Vec<usize> {
+pub(super) fn observed(motion: &Motion) -> Vec<usize> {
     let mean = |n: usize| mean(&motion.rollers[n].load_n);
     let mut rollers: Vec<usize> = (0..motion.rollers.len()).collect();
     rollers.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)));
     let fullest = rollers.first().map_or(0.0, |&n| mean(n));
     rollers.retain(|&n| fullest > 0.0 && mean(n) >= LOADED * fullest);
-    rollers.truncate(LISTENED);
+    rollers.truncate(OBSERVED);
     rollers.sort_unstable();
     rollers
 }
 
 impl Channels {
-    /// The accelerations less their mean, and what the forces on the rollers `listened` do besides their running mean over
-    /// two periods of `slowest_hz`.
+    /// The accelerations less their mean, and the forces on the rollers `observed` less their running mean over two periods of
+    /// `slowest_hz`.
     pub(super) fn of(
         motion: &Motion,
         accelerations: &[Channel],
-        listened: &[usize],
+        observed: &[usize],
         slowest_hz: f64,
     ) -> Self {
         let centred = |channel: &Channel| {
@@ -107,7 +107,7 @@ impl Channels {
         };
         Self {
             accelerations: accelerations.iter().map(centred).collect(),
-            forces: listened.iter().map(ripple).collect(),
+            forces: observed.iter().map(ripple).collect(),
         }
     }
 

@@ -34,7 +34,7 @@ pub(super) struct Passages<'a> {
     scene: &'a Scene,
     time_s: &'a [f64],
     prediction: &'a Prediction,
-    /// By spall: events and what was noted of each, by their place among the spall's passages.
+    /// By spall: events with their notes, by their place among the spall's passages.
     seen: Vec<BTreeMap<usize, (Event, Vec<String>)>>,
 }
 
@@ -171,7 +171,7 @@ fn passages_of(
         let traverse = passage.exit_s - passage.entry_s;
         let found = path.next(passage);
         [event.path_entry_ms, event.path_exit_ms] = found.map(|t| t.map(|t| 1e3 * t));
-        // The path says better than rolling without slip when to look.
+        // The recorded path predicts the time better than rolling without slip.
         let late = path.late_s;
         let beyond = found == [None; 2] && (late != 0.0 || passage.exit_s < begin);
         if beyond || passage.entry_s + late >= last {
@@ -233,7 +233,7 @@ fn events_of(
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     for (event, picked) in events {
         for note in picked {
-            // What differs between passages are numbers.
+            // Notes of passages differ in their numbers only.
             let kind: String = note.chars().filter(|c| !c.is_ascii_digit()).collect();
             let said = kinds.entry(kind).or_default();
             *said += 1;
@@ -280,7 +280,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let time = &time[seen];
             let force = events::running_median(time, &roller.outer_normal(), smoothing);
             let during = events::span(time, from, to);
-            // A roller that is itself over the defect, or only just behind it, tells nothing.
+            // A roller over the defect, or just behind it, shows its own re-loading instead.
             let free = |n: &usize| time[*n] < own_from - smoothing || time[*n] > own_until + 4.0 * smoothing;
             let Some(at) = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b])) else {
                 continue;
@@ -408,7 +408,7 @@ pub(super) fn crossing_forces(
     for event in events.iter().take(most) {
         let part = record.with_rollers(&[event.roller], 0..record.len())?;
         let Some(roller) = part.roller(event.roller) else { continue };
-        // The paper's figure has the vertical force; only over a spall that stands still is it the one that tells.
+        // The paper's figure has the vertical force; only over a spall that stands still does it show the passage.
         let standing = prediction.spalls.get(event.spall - 1).is_some_and(|course| !course.turns);
         let vertical = event.ring == DefectRing::Outer && standing;
         let raw_n: Vec<f64> =
@@ -420,7 +420,7 @@ pub(super) fn crossing_forces(
 }
 
 impl Event {
-    /// An event of which only the expected times are known.
+    /// An event with its expected times only.
     fn expected(passage: &Crossing, ring: DefectRing) -> Self {
         Self {
             roller: passage.roller,

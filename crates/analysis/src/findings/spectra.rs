@@ -1,4 +1,4 @@
-//! Spectra of a record and what is taken from them: lines of facets and the notch at them, the defect's family and its envelope.
+//! Spectra of a record and their evaluation: lines of facets and the notch at them, the defect's family and its envelope.
 
 use stribeck_dsp::{PeriodCount, Spectrum, Welch, WelchOptions};
 use stribeck_scene::run_dir::Run;
@@ -165,7 +165,7 @@ pub(super) fn order_spectrum(
     }
 }
 
-/// The envelope spectrum of a channel and what it shows; why there is none when the record is not long enough, instead of a
+/// The envelope spectrum of a channel and its lines; the reason why there is none when the record is not long enough, instead of a
 /// spectrum that means nothing.
 pub(super) type Enveloped = Result<(Spectrum, enveloping::EnvelopeFinding), String>;
 
@@ -202,7 +202,7 @@ mod tests {
         for tone in tones::measure("side", &lines, &fine).unwrap() {
             assert!((tone.measured_hz.expect("a line") - tone.predicted_hz).abs() < 0.1, "{tone:?}");
         }
-        // Of what is fast enough the segments tell, and of what is too slow nothing does.
+        // Segments suffice for a fast family, and the whole record is too short for a slow one.
         assert!(fine_density(&signal, &density, 40.0).unwrap().is_none());
         assert!(fine_density(&signal, &density, 1.0).unwrap().is_none());
     }

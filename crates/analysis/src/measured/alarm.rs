@@ -1,4 +1,4 @@
-//! Alarm bands: which level calls for a look, and which for a stop.
+//! Alarm bands: the levels of warning and alarm.
 //!
 //! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from records of the
 //! machine in its sound state.
@@ -8,7 +8,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use super::{Defect, MeasuredFindings};
 
-/// What a limit is set on.
+/// Quantity that a limit is set on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -34,10 +34,10 @@ pub enum Quantity {
     Ftf,
 }
 
-/// From which value on to look, and from which to stop.
+/// Levels of warning and alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limit {
-    /// What it is set on.
+    /// Its quantity.
     pub quantity: Quantity,
     /// Warning from here.
     pub warning: f64,
@@ -116,7 +116,7 @@ impl Quantity {
         }
     }
 
-    /// Why a record does not have it, and what to give.
+    /// Why a record does not have it, and which option would help.
     pub fn missing(self, findings: &MeasuredFindings) -> &'static str {
         match self {
             Self::VelocityMmS if findings.acceleration_unit().is_none() => {
@@ -138,7 +138,7 @@ impl Limit {
     /// From `rms=0.5..1.2`: warning from 0.5 on, alarm from 1.2 on.
     ///
     /// # Errors
-    /// What is wrong with the text, and what would be right.
+    /// A sentence on the fault of the text and its right form.
     pub fn parse(text: &str) -> Result<Self, String> {
         let names = || Quantity::ALL.map(Quantity::name).join(", ");
         let form = || {

@@ -5,7 +5,7 @@ use stribeck_formats::Channel;
 
 use crate::Error;
 
-/// Turns of the slowest shaft in a segment: a line is told from its neighbour at a sixteenth of the speed.
+/// Turns of the slowest shaft in a segment: neighbouring lines are resolved at a sixteenth of the speed.
 const TURNS: f64 = 16.0;
 /// Segments in which the speed may cross the whole range.
 const CROSSING: f64 = 4.0;

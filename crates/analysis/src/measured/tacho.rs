@@ -4,7 +4,7 @@ use stribeck_formats::Channel;
 
 use crate::Error;
 
-/// What a tachometer says.
+/// Speed from a tachometer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turns {
     /// Mean speed [1/min].

@@ -9,7 +9,7 @@
 //! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
 //!    of the band must swing by half of its mean.
 //!
-//! The highest that passes is claimed, and what knocks beside it is told by `second.rs`.
+//! The highest that passes is claimed; `second.rs` looks for a second defect beside it.
 
 use std::fmt;
 
@@ -46,7 +46,7 @@ pub struct Family {
     /// The family that stands higher, over whose period everything that is said of this one is taken
     /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
     pub over: Option<Defect>,
-    /// The family whose lines stand at the same places, so that the record does not tell which of both it is.
+    /// The family whose lines stand at the same places, so that the record cannot distinguish them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub not_told_apart_from: Option<Defect>,
     /// Whether this is called a defect.
@@ -97,7 +97,7 @@ pub(super) struct Verdicts {
     pub(super) first: Option<First>,
 }
 
-/// What is known where something is sought that knocks beside a defect.
+/// The first defect, as the search for a second one needs it.
 pub(super) struct First {
     /// Its place among the families.
     pub(super) at: usize,
@@ -150,7 +150,7 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         .iter()
         .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
         .collect();
-    // Load and sensor stand still: what they hear of the cage are its turns in space.
+    // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
     let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
     let looked: Vec<(Family, Option<Standing>)> = Defect::ALL
         .into_iter()
@@ -185,7 +185,7 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
 }
 
 impl Verdicts {
-    /// What all families together say; `bands` are those that were judged.
+    /// The verdict over all families; `bands` are those that were judged.
     pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
         if !self.families.is_empty() {
             tell_the_element(&mut self.families, bands);
@@ -261,7 +261,7 @@ fn look(
     (family, Some(Standing { band: n, comb, comb_hz, times }))
 }
 
-/// Why no band holds a comb, and what rate would do.
+/// Why no band holds a comb, and which sample rate would suffice.
 fn too_narrow(comb_hz: f64, any: bool) -> String {
     let harmonics = CombTest::FOUR_OF_FIVE.needed;
     let highest_hz = harmonics as f64 * (1.0 + SLIP) * comb_hz;
@@ -298,14 +298,14 @@ pub(super) fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Opt
 const HARMONICS: usize = 3;
 pub(super) const MODULATED: usize = 3;
 
-/// How many of the six sidebands of the first three harmonics of a family noise would not make.
+/// Number of sidebands above the noise, of the six beside the first three harmonics of a family.
 pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_hz: f64) -> usize {
     let beside =
         (1..=HARMONICS).flat_map(|n| [-1.0, 1.0].map(|side| n as f64 * fundamental_hz + side * spacing_hz));
     beside.filter(|hz| spectrum.line_p_value(spectrum.at(*hz)) < ALPHA).count()
 }
 
-/// Whether what may be a spot on a rolling element comes under the load once a turn of the cage, as one must.
+/// Whether the shocks at twice BSF are modulated at the cage's frequency, as those of a spot on a rolling element must be.
 fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whitened)]) -> bool {
     let of = |name: Defect| families.iter().find(|family| family.name == name);
     let (Some(element), Some(cage)) = (of(Defect::Bsf), of(Defect::Ftf)) else { return false };
@@ -315,8 +315,8 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
     band.is_some_and(|(_, spectrum)| sidebands_seen(spectrum, 2.0 * hz, spacing_hz) >= MODULATED)
 }
 
-/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage is
-/// heard in them: `modulated`. Where both have their places within a resolution, neither is told from the other.
+/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage
+/// modulates them (`modulated`). Where both have their places within a resolution, neither is told from the other.
 fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     let cannot_be = |family: &Family| family.name == Defect::Bsf && !modulated;
     let comb = |family: &Family| {
@@ -439,7 +439,7 @@ fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
 }
 
 fn conclude(families: &[Family]) -> String {
-    // Of two that are not told apart the first speaks for both.
+    // Two families that cannot be distinguished are reported under the name of the first.
     let spoken_for = |at: usize, family: &Family| {
         families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))
     };
@@ -499,7 +499,7 @@ impl Family {
         self.p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
     }
 
-    /// The probability of a false alarm in words. What lies far beyond any test of the noise is a bound, not a number.
+    /// The probability of a false alarm in words. Far beyond any test of the noise only a bound is given.
     pub fn false_alarm(&self) -> String {
         if self.p_value < 1e-9 { "< 1e-9".to_owned() } else { format!("{:.1e}", self.p_value) }
     }

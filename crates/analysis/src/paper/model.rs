@@ -1,4 +1,4 @@
-//! What the paper puts in: dimensions, material, mesh, load (its section 2).
+//! Input of the paper: dimensions, material, mesh, load (its section 2).
 
 use super::{RowInputs, number, words};
 use stribeck_scene::scene::SolverScene;

@@ -1,4 +1,4 @@
-//! What the paper gets out: frequencies, levels, the notch, the events (its sections 3 to 5).
+//! Results of the paper: frequencies, levels, the notch, the events (its sections 3 to 5).
 
 use stribeck_scene::geometry::Geometry;
 
