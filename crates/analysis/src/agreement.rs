@@ -1,8 +1,9 @@
 //! How far the reduced model of a scene is from the full one: the same starts by both, quantity by quantity.
 //!
-//! Each quantity has a limit, which is what a user of the reduced model may count on, and a verdict. Pairs of runs have the
-//! same start, so they differ by the model and by chance, because small differences grow: the waveform of one impact is
-//! chaotic, which is why accelerations are compared by the power of third octaves over all starts.
+//! Each quantity has a limit, which is what a user of the reduced model may count on, and a verdict. Pairs of
+//! runs have the same start, so they differ by the model and by chance, because small differences grow: the
+//! waveform of one impact is chaotic, which is why accelerations are compared by the power of third octaves
+//! over all starts.
 
 mod octaves;
 mod row;
@@ -30,8 +31,9 @@ pub const MEAN_S: f64 = 0.25e-3;
 const LEAST_MEANS: usize = 4;
 /// Shortest record [s].
 pub const LEAST_S: f64 = FROM_S + LEAST_MEANS as f64 * MEAN_S;
-/// Samples of the full model that are no farther apart than this leave its third octaves as they are [s]. Nodes of the seat ring above
-/// 50 kHz, and the mean over an interval of 10 µs folds a part of that down (THEORY §9.1).
+/// Samples of the full model that are no farther apart than this leave its third octaves as they are [s].
+/// Nodes of the seat ring above 50 kHz, and the mean over an interval of 10 µs folds a part of that down
+/// (THEORY §9.1).
 pub const FINE_S: f64 = 2e-6;
 /// Largest difference of a third octave that is agreement [dB].
 pub const BAND_LIMIT_DB: f64 = 1.5;
@@ -121,8 +123,8 @@ impl Agreement {
         })
     }
 
-    /// Processor time of a simulated millisecond in words: by the full model, by the reduced one, and their ratio. A time below one tick
-    /// of the clock is given as a bound.
+    /// Processor time of a simulated millisecond in words: by the full model, by the reduced one, and their
+    /// ratio. A time below one tick of the clock is given as a bound.
     pub fn cost(&self) -> [String; 3] {
         let tick_s = TICK_S / self.simulated_ms;
         let [full, reduced] = self.cpu_s_per_ms;
@@ -252,7 +254,8 @@ fn line(number: usize, sides: &[[Side; 2]]) -> Option<Row> {
 mod tests {
     use super::*;
 
-    /// A short run of the reduced model took no tick of the clock, and its page said that it takes "inf times less".
+    /// A short run of the reduced model took no tick of the clock, and its page said that it takes "inf times
+    /// less".
     #[test]
     fn issue_less_than_a_tick_of_the_clock_is_no_division_by_zero() {
         let of = |cpu_s_per_ms| {

@@ -99,8 +99,8 @@ pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<
     lines
 }
 
-/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples cannot be distinguished
-/// from other lines.
+/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples cannot be
+/// distinguished from other lines.
 pub fn shows_family(density: &Spectrum, fundamental_hz: f64) -> bool {
     density.resolution().segment_s * fundamental_hz >= PeriodCount::ENOUGH
 }
@@ -180,7 +180,8 @@ fn defect(
     Ok(lines.iter().map(entry).collect())
 }
 
-/// All multiples of the defect's frequency, where a spectrum shows them: knocks make a comb over the whole spectrum.
+/// All multiples of the defect's frequency, where a spectrum shows them: knocks make a comb over the whole
+/// spectrum.
 struct ShockComb {
     name: &'static str,
     spacing_hz: f64,
@@ -203,8 +204,9 @@ impl ShockComb {
     }
 }
 
-/// A natural frequency with the highest peak near it. It is never booked as measured: a mounted ring's frequencies differ
-/// from the free ring's by more than a peak nearby can prove, and most peaks have another cause.
+/// A natural frequency with the highest peak near it. It is never booked as measured: a mounted ring's
+/// frequencies differ from the free ring's by more than a peak nearby can prove, and most peaks have another
+/// cause.
 fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Option<&ShockComb>) -> Artefact {
     let density = seen.density;
     let width = density.resolution().width_6db_hz;
@@ -245,7 +247,8 @@ fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Opti
 }
 
 impl Artefact {
-    /// A facet line. Only a family that was found by its whole comb claims a peak; one at the predicted place proves nothing.
+    /// A facet line. Only a family that was found by its whole comb claims a peak; one at the predicted place
+    /// proves nothing.
     fn of_mesh(tone: &Tone, comb: Option<&ShockComb>, seen: &Seen<'_>) -> Self {
         let family = seen.families.iter().find(|f| f.name == tone.name);
         let found = family.is_some_and(|f| f.found);

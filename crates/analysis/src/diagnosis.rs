@@ -1,5 +1,5 @@
-//! Blind diagnosis from the leading sensor, without the scene: the verdict of [`measured`](crate::measured) on the
-//! record, beside the defects that the scene has.
+//! Blind diagnosis from the leading sensor, without the scene: the verdict of [`measured`](crate::measured)
+//! on the record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
@@ -40,7 +40,8 @@ pub struct DiagnosedFamily {
     pub measured_hz: Option<f64>,
     /// Height of its first harmonic above the background [dB].
     pub level_db: Option<f64>,
-    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines.
+    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+    /// lines.
     #[serde(default)]
     pub in_passages: bool,
     /// Whether the record is said to show such a defect.
@@ -64,8 +65,8 @@ pub struct Sidebands {
     pub seen: usize,
 }
 
-/// Diagnosis of channel `name` without the scene; `None` where it is too short or not recorded. The longest transforms of a run:
-/// nothing else need be in memory.
+/// Diagnosis of channel `name` without the scene; `None` where it is too short or not recorded. The longest
+/// transforms of a run: nothing else need be in memory.
 ///
 /// # Errors
 /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite signal is refused.
@@ -79,8 +80,8 @@ pub fn analysis(
     judged(scene, record, expected, name, samples)
 }
 
-/// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always has some. Its seed is
-/// fixed.
+/// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always
+/// has some. Its seed is fixed.
 ///
 /// # Errors
 /// As [`analysis`].
@@ -167,15 +168,17 @@ fn from_motion(
         Defect::Bpfo => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
         Defect::Bpfi => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
-        // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of the cage to the next its phase goes
-        // on by all that its roller has turned, outside the load zone as well: lines stand at the mean spin.
+        // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of
+        // the cage to the next its phase goes on by all that its roller has turned, outside the load zone as
+        // well: lines stand at the mean spin.
         Defect::Bsf if in_passages => motion.roller_spin_hz,
         Defect::Bsf => {
             let damaged = |roller: &&RollerMotion| present.contains(&RollingSurface::Roller(roller.roller));
             let own = mean(motion.rollers.iter().filter(damaged).map(|roller| roller.spin_hz));
             own.or(motion.roller_spin_hz)
         }
-        // Turns in space, but for speeds that change: orders are those beside an outer ring that stands still.
+        // Turns in space, but for speeds that change: orders are those beside an outer ring that stands
+        // still.
         Defect::Ftf if steady => motion.cage_hz,
         Defect::Ftf => motion.cage_on_outer_hz[0].or(motion.cage_hz),
     }

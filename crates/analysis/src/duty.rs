@@ -1,11 +1,13 @@
 //! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.11).
 //!
-//! Where the speed changes, a family has no frequency: it has an order, its number of periods in a turn of the shaft. The squared envelope of
-//! the leading sensor, whose resonances stay where they are in time, is averaged over equal steps of the shaft's angle, which
-//! the run records as a tachometer would; its spectrum then has the family's lines at their orders.
+//! Where the speed changes, a family has no frequency: it has an order, its number of periods in a turn of
+//! the shaft. The squared envelope of the leading sensor, whose resonances stay where they are in time, is
+//! averaged over equal steps of the shaft's angle, which the run records as a tachometer would; its spectrum
+//! then has the family's lines at their orders.
 //!
-//! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the outer ring turns, too, their
-//! orders count turns of the shaft against it, and the angle is that between the rings.
+//! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the
+//! outer ring turns, too, their orders count turns of the shaft against it, and the angle is that between the
+//! rings.
 
 use std::f64::consts::TAU;
 
@@ -26,13 +28,13 @@ use crate::kinematics::{KinematicsFinding, mean};
 use crate::record::Record;
 use crate::tones;
 
-/// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is looked for loses less
-/// than 2 %.
+/// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is
+/// looked for loses less than 2 %.
 const STEPS_PER_TURN: usize = 1024;
 /// Harmonics of the family that are looked for.
 const HARMONICS: usize = 6;
-/// The grid of the spectrum is finer than its resolution by at least this factor: a run has few turns, and a line must have room beside
-/// its prediction.
+/// The grid of the spectrum is finer than its resolution by at least this factor: a run has few turns, and a
+/// line must have room beside its prediction.
 const FINER: usize = 4;
 /// Fewest steps for a spectrum.
 const LEAST_STEPS: usize = 256;
@@ -55,7 +57,8 @@ pub struct DutyFinding {
     pub load_n: (f64, f64),
     /// Turns of the shaft against the outer ring on record, both ways counted.
     pub turns: f64,
-    /// Name and order of each family: how often it comes in a turn of the shaft against the outer ring, without slip.
+    /// Name and order of each family: how often it comes in a turn of the shaft against the outer ring,
+    /// without slip.
     pub orders: Vec<(String, f64)>,
     /// The defect's family over the angle; `None` with the reason in `notes`.
     pub envelope: Option<OrderEnvelope>,
@@ -101,7 +104,8 @@ impl DutyFinding {
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], n| [least.min(*n), most.max(*n)])
         });
         let k = Kinematics::new(&scene.bearing, 60.0);
-        // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference of speeds.
+        // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference
+        // of speeds.
         let cage = match scene.operation.outer_turns() {
             true => "FTF against the outer ring",
             false => order_name(Defect::Ftf),
@@ -140,8 +144,8 @@ impl DutyFinding {
     }
 }
 
-/// Mean force of all rollers along the load over the record [N]: the run's own number, with a changing load averaged over the part
-/// the record lasts.
+/// Mean force of all rollers along the load over the record [N]: the run's own number, with a changing load
+/// averaged over the part the record lasts.
 pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
     let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
@@ -188,7 +192,8 @@ fn order_name(defect: Defect) -> &'static str {
     if defect == Defect::Bsf { "2·BSF" } else { defect.name() }
 }
 
-/// Turns of the shaft against the outer ring at each sample, rising where it turns its main way; `None` when they were not recorded.
+/// Turns of the shaft against the outer ring at each sample, rising where it turns its main way; `None` when
+/// they were not recorded.
 pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
     let angle = record.relative_angle()?;
     let back = angle.last()? < angle.first()?;
@@ -196,8 +201,8 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
     Some(angle.iter().map(|rad| turn * rad).collect())
 }
 
-/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them round, less what they
-/// pass the other.
+/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them
+/// round, less what they pass the other.
 pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
     let outer = motion.bpfo_hz? / motion.relative_hz;
     let order = match defect {
@@ -208,8 +213,9 @@ pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
     Some(order).filter(|order| order.is_finite())
 }
 
-/// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the orders of `family`;
-/// the reason when there is none. `turns` is the angle of the shaft against the outer ring at each sample.
+/// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the
+/// orders of `family`; the reason when there is none. `turns` is the angle of the shaft against the outer
+/// ring at each sample.
 ///
 /// # Errors
 /// [`Error::Signal`] when a finite signal is refused.

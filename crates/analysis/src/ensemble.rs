@@ -40,8 +40,9 @@ pub struct EnsembleSummary {
     pub seed: u64,
     /// Every start that was asked for.
     pub starts: Vec<StartSummary>,
-    /// The summaries of all complete starts as one: in place of each number its statistic over the starts, in place of yes and no
-    /// the share of yes. Items of lists are matched by name; a text is kept where all starts have the same.
+    /// The summaries of all complete starts as one: in place of each number its statistic over the starts, in
+    /// place of yes and no the share of yes. Items of lists are matched by name; a text is kept where all
+    /// starts have the same.
     pub ensemble: Merged,
     /// Cautions.
     pub notes: Vec<String>,
@@ -136,7 +137,8 @@ impl EnsembleSummary {
         self.starts.iter().filter(|start| start.ended == ended).count()
     }
 
-    /// Statistic of the number at `path`, as in `levels.exit_g` or `events[0].floor_n`; `None` where no start has one.
+    /// Statistic of the number at `path`, as in `levels.exit_g` or `events[0].floor_n`; `None` where no start
+    /// has one.
     pub fn number(&self, path: &str) -> Option<&Statistic> {
         self.ensemble.number(path)
     }
@@ -182,7 +184,8 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
     }
 }
 
-/// How the scene of a run differs from that of its ensemble in more than the draws and a shorter duration; `None` where it does not.
+/// How the scene of a run differs from that of its ensemble in more than the draws and a shorter duration;
+/// `None` where it does not.
 fn another_scene(of_run: &Scene, scene: &Scene, longer_ms: f64) -> Option<&'static str> {
     if longer_ms > 0.0 {
         return Some("is longer than");

@@ -29,8 +29,8 @@ pub struct NotchFinding {
     pub time_constant_s: f64,
     /// Time until the ringing has fallen by 60 dB [s]: earlier samples are partly the filter's own.
     pub transient_s: f64,
-    /// Drop of the density at the centre [dB]: Hann window, whole record, transient included. The number to set
-    /// beside the paper's 25 dB.
+    /// Drop of the density at the centre [dB]: Hann window, whole record, transient included. The number to
+    /// set beside the paper's 25 dB.
     pub attenuation_db: Option<f64>,
     /// The same with the transient left out.
     pub attenuation_settled_db: Option<f64>,
@@ -80,7 +80,8 @@ impl Filter {
         self.notch.filter(signal).map_err(Error::Signal)
     }
 
-    /// A force behind the notch, which starts as if the first value had always been there: a preloaded contact has.
+    /// A force behind the notch, which starts as if the first value had always been there: a preloaded
+    /// contact has.
     ///
     /// # Errors
     /// [`Error::Signal`] for a record that is empty or not finite.
@@ -88,7 +89,8 @@ impl Filter {
         self.notch.filter_from_first(signal).map_err(Error::Signal)
     }
 
-    /// Effect of the notch on `raw`, whose filtered form is `filtered`; whether it is a record of the paper's scene.
+    /// Effect of the notch on `raw`, whose filtered form is `filtered`; whether it is a record of the paper's
+    /// scene.
     pub fn finding(&self, raw: &[f64], filtered: &[f64], of_paper: bool) -> NotchFinding {
         let rate = self.notch.sample_rate_hz();
         let drop = |window, from: usize| {

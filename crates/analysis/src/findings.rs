@@ -53,17 +53,18 @@ pub struct Findings {
     /// Vertical outer-raceway forces of the rollers that cross the defect, in order of entry; empty before
     /// [`Findings::with_crossings`].
     pub crossings: Vec<CrossingForce>,
-    /// Force of all rollers on the outer ring against the load at every sample [N]; empty where no roller was recorded.
+    /// Force of all rollers on the outer ring against the load at every sample [N]; empty where no roller was
+    /// recorded.
     pub support_n: Vec<f64>,
     /// Mean roller force by angle.
     pub distribution: Distribution,
-    /// Density of the leading sensor over the whole record [g²/Hz], where the segments of its other spectrum hold too few periods of the
-    /// defect's family and the record enough.
+    /// Density of the leading sensor over the whole record [g²/Hz], where the segments of its other spectrum
+    /// hold too few periods of the defect's family and the record enough.
     pub fine: Option<Spectrum>,
     /// Squared envelope spectrum of the leading sensor [g⁴]; `None` when the record is too short.
     pub envelope: Option<Spectrum>,
-    /// Squared envelope spectrum of the leading sensor over the angle of the shaft [g⁴], its frequencies orders; `None` for a
-    /// speed that does not change, or a record too short.
+    /// Squared envelope spectrum of the leading sensor over the angle of the shaft [g⁴], its frequencies
+    /// orders; `None` for a speed that does not change, or a record too short.
     pub orders: Option<Spectrum>,
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
@@ -98,7 +99,8 @@ pub struct CrossingForce {
     pub spall: usize,
     /// Roller, from 1.
     pub roller: usize,
-    /// Whether it is the vertical force of the outer raceway, as in the paper, or that along the normal of the spall's raceway.
+    /// Whether it is the vertical force of the outer raceway, as in the paper, or that along the normal of
+    /// the spall's raceway.
     pub vertical: bool,
     /// As recorded, mean over each interval.
     pub raw_n: Vec<f64>,

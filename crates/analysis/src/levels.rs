@@ -1,4 +1,5 @@
-//! How strong a signal is, phase by phase: start-up, entry into the defect, in it, exit, and the gaps between.
+//! How strong a signal is, phase by phase: start-up, entry into the defect, in it, exit, and the gaps
+//! between.
 //!
 //! Every sample of a record belongs to one [`Phase`]. *Start-up* reaches from the first sample to the window of the first
 //! entry, [`START_UP_S`] at the most: the preload is released and rollers find their places in the cage, which no bearing
@@ -149,7 +150,8 @@ mod tests {
         assert_eq!(level(&sine, &[outside]), None);
     }
 
-    /// The paper's three passages: unloading 0.1 ms behind the leading edge, loaded again 0.2 ms before the trailing one.
+    /// The paper's three passages: unloading 0.1 ms behind the leading edge, loaded again 0.2 ms before the
+    /// trailing one.
     fn visits() -> Vec<Visit> {
         [(0.84e-3, 5.08e-3), (11.94e-3, 16.18e-3), (23.04e-3, 27.28e-3)]
             .map(|(from_s, until_s)| Visit {

@@ -31,8 +31,8 @@
 //!
 //! # A measured gearbox
 //!
-//! A pinion with 37 teeth turns at 24.9 Hz, so its teeth mesh at 921.3 Hz. Is that line in an accelerometer's record, how
-//! strong is it, and is it told apart from the 50 Hz mains?
+//! A pinion with 37 teeth turns at 24.9 Hz, so its teeth mesh at 921.3 Hz. Is that line in an accelerometer's
+//! record, how strong is it, and is it told apart from the 50 Hz mains?
 //!
 //! ```
 //! use std::f64::consts::TAU;

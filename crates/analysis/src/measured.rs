@@ -75,7 +75,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Speed of the outer ring of a scene as [`Machine`] has it; none where speeds change, and nothing has one frequency.
+    /// Speed of the outer ring of a scene as [`Machine`] has it; none where speeds change, and nothing has
+    /// one frequency.
     pub fn outer_speed_rpm(scene: &Scene) -> f64 {
         let operation = &scene.operation;
         if operation.speed_varies() {

@@ -1,5 +1,5 @@
-//! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is, what it costs,
-//! and how long a record must be. Nothing is simulated.
+//! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is,
+//! what it costs, and how long a record must be. Nothing is simulated.
 
 use std::f64::consts::PI;
 
@@ -46,8 +46,8 @@ pub struct Plan {
     pub films: Option<[LoadedFilm; 2]>,
     /// Length of a roller's facets [m].
     pub facet_m: f64,
-    /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may differ by a
-    /// fifth either way.
+    /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may
+    /// differ by a fifth either way.
     pub elements: usize,
     /// See `elements`.
     pub time_step_s: f64,
@@ -59,8 +59,9 @@ pub struct Plan {
     pub resolution_hz: f64,
     /// Record that separates the closest two of the lines, Hann window [s]; `None` when they coincide.
     pub separating_s: Option<f64>,
-    /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of the defect, of several the
-    /// slowest, without one BPFO; `None` where the rings do not turn against each other.
+    /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of
+    /// the defect, of several the slowest, without one BPFO; `None` where the rings do not turn against each
+    /// other.
     pub envelope: Option<(&'static str, f64)>,
     /// Recommended changes, each with its reason.
     pub advice: Vec<String>,
@@ -139,8 +140,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a roller with
-    /// the outer raceway [m] (THEORY §4.2).
+    /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a
+    /// roller with the outer raceway [m] (THEORY §4.2).
     fn point_step_m(&self, geometry: &Geometry, points_per_facet: usize) -> f64 {
         let radius = geometry.outer_contact_radius();
         let load = self.load_n / geometry.thickness;
@@ -311,7 +312,8 @@ mod tests {
         scene.contact.interpolation = ContactInterpolation::Spline;
         let smooth = of(&scene);
         assert!(smooth.advice.iter().all(|a| !a.contains("contact.")), "{:?}", smooth.advice);
-        // Eight points a facet sound at 37.4 kHz, which 100 kHz can show; with the onset asked for they do not.
+        // Eight points a facet sound at 37.4 kHz, which 100 kHz can show; with the onset asked for they do
+        // not.
         scene.contact.points_per_facet = 8;
         let sounding = of(&scene);
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));

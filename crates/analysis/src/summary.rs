@@ -1,5 +1,5 @@
-//! `summary.json`: every figure that the report states, under stable names. A number that a run cannot yield is `null`, with
-//! the reason in `notes`.
+//! `summary.json`: every figure that the report states, under stable names. A number that a run cannot yield
+//! is `null`, with the reason in `notes`.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::Resolution;
@@ -170,10 +170,11 @@ pub struct Event {
     pub path_exit_ms: Option<f64>,
     /// Force before the defect [N].
     pub level_n: Option<f64>,
-    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or of the recorded centre over the
-    /// trailing edge where the roller never came free.
+    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or of the
+    /// recorded centre over the trailing edge where the roller never came free.
     pub impulse_g: Option<f64>,
-    /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch it.
+    /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch
+    /// it.
     pub floor_ms: Option<f64>,
     /// Its force then [N].
     pub floor_n: Option<f64>,
@@ -192,8 +193,8 @@ fn first() -> usize {
     1
 }
 
-/// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None` where the
-/// record has no such phase.
+/// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None`
+/// where the record has no such phase.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PhaseLevels {
     /// Largest magnitude in the start-up.
@@ -303,7 +304,8 @@ pub struct SpectrumFinding {
     pub grid_hz: f64,
     /// True when the grid is finer than the resolution.
     pub zero_padded: bool,
-    /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz], where that is another one.
+    /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz], where
+    /// that is another one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_resolution_hz: Option<f64>,
 }

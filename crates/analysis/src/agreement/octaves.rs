@@ -1,4 +1,5 @@
-//! Power of the accelerations in third octaves: the waveform of one impact is chaotic, its spectrum over many starts is not.
+//! Power of the accelerations in third octaves: the waveform of one impact is chaotic, its spectrum over many
+//! starts is not.
 
 use std::f64::consts::PI;
 
@@ -71,8 +72,8 @@ fn middle_hz(step: i32) -> f64 {
     1000.0 * (f64::from(step) / 3.0).exp2()
 }
 
-/// Mean square [unit²] in third octaves of a signal whose `values` are means over the sampling interval: the low pass of that mean is
-/// divided out.
+/// Mean square [unit²] in third octaves of a signal whose `values` are means over the sampling interval: the
+/// low pass of that mean is divided out.
 pub(super) fn powers(values: &[f64], rate_hz: f64, centres_hz: &[f64]) -> Result<Vec<f64>, Error> {
     let options = WelchOptions::new(values.len());
     let mut welch = Welch::new(rate_hz, values.len(), &options).map_err(Error::Signal)?;

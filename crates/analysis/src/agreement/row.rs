@@ -37,7 +37,8 @@ pub struct Row {
     pub limit: f64,
     /// Whether it is kept: by the mean of the starts, or by every band.
     pub within: bool,
-    /// Whether the starts suffice for a verdict: their interval, or the error of each band, leaves no other answer.
+    /// Whether the starts suffice for a verdict: their interval, or the error of each band, leaves no other
+    /// answer.
     #[serde(default)]
     pub told: bool,
 }
@@ -81,8 +82,8 @@ impl Row {
         }
     }
 
-    /// Where the difference lies: the 95 % interval of the mean of the starts, or from the least to the most of the bands; `None`
-    /// of a single value.
+    /// Where the difference lies: the 95 % interval of the mean of the starts, or from the least to the most
+    /// of the bands; `None` of a single value.
     pub fn range(&self) -> Option<[f64; 2]> {
         let d = &self.difference;
         let interval = if self.over_bands() { None } else { d.low.zip(d.high) };

@@ -13,8 +13,8 @@ use crate::summary::Summary;
 /// Lines of BPFO that are compared, and the periods of it that a record must hold for them.
 pub(super) const LINES: usize = 5;
 pub(super) const PERIODS: f64 = 10.0;
-/// How much finer than its resolution the grid of the spectrum is from which lines are read: half a grid step beside its place, Hann's
-/// window lowers a line by less than 0.02 %.
+/// How much finer than its resolution the grid of the spectrum is from which lines are read: half a grid step
+/// beside its place, Hann's window lowers a line by less than 0.02 %.
 const FINER: usize = 32;
 
 /// Quantities of one run.
@@ -142,7 +142,8 @@ impl Side {
     }
 }
 
-/// Amplitudes at the first multiples of a frequency [unit of the signal], through a Hann window over the whole signal.
+/// Amplitudes at the first multiples of a frequency [unit of the signal], through a Hann window over the
+/// whole signal.
 fn harmonics(signal: &[f64], rate_hz: f64, fundamental_hz: f64) -> Result<Vec<f64>, Error> {
     let options = WelchOptions {
         detrend: Detrend::None,
@@ -163,10 +164,12 @@ fn harmonics(signal: &[f64], rate_hz: f64, fundamental_hz: f64) -> Result<Vec<f6
 mod tests {
     use super::*;
 
-    /// Five lines of known amplitudes at frequencies between those of the record's own grid, on a mean that is not zero.
+    /// Five lines of known amplitudes at frequencies between those of the record's own grid, on a mean that
+    /// is not zero.
     #[test]
     fn example_lines_between_grid_points_have_their_amplitudes() {
-        // Half a grid step beside its place, as FINER says; sidelobes of the neighbours are a hundred times smaller.
+        // Half a grid step beside its place, as FINER says; sidelobes of the neighbours are a hundred times
+        // smaller.
         const CLOSE: f64 = 2e-4;
         let wanted = [1.0, 0.5, 2.0, 0.25, 0.8];
         let line = |n: u32, order: usize| {

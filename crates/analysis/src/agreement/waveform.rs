@@ -1,4 +1,5 @@
-//! Waveforms of the accelerations: how alike they are at low frequencies, and their largest values as a recorder shows them.
+//! Waveforms of the accelerations: how alike they are at low frequencies, and their largest values as a
+//! recorder shows them.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Detrend, Sensor, Welch, WelchOptions};
@@ -11,7 +12,8 @@ use crate::words::significant;
 pub(super) const BELOW_HZ: [f64; 2] = [500.0, 2000.0];
 /// Most samples of which a correlation is taken.
 const WAVEFORM: usize = 50_000;
-/// Largest accelerations are compared as a recorder of this rate shows them [Hz], which passes four tenths of it.
+/// Largest accelerations are compared as a recorder of this rate shows them [Hz], which passes four tenths of
+/// it.
 const RECORDER_HZ: f64 = 25_000.0;
 
 /// How alike the vertical accelerations of both models are below a frequency, from equal starts.
@@ -25,8 +27,8 @@ pub struct Correlation {
     pub value: Statistic,
 }
 
-/// The largest acceleration of a record below a frequency, by both models. No limit is set to it: it is that of one impact, whose
-/// waveform is chaotic, so that means over many starts are all that can be compared.
+/// The largest acceleration of a record below a frequency, by both models. No limit is set to it: it is that
+/// of one impact, whose waveform is chaotic, so that means over many starts are all that can be compared.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
     /// Sensor.
@@ -40,7 +42,8 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// How far the mean of the reduced model is from that of the full one, and the standard error of that [%]; no error of a single start.
+    /// How far the mean of the reduced model is from that of the full one, and the standard error of that
+    /// [%]; no error of a single start.
     pub fn difference_percent(&self) -> (f64, Option<f64>) {
         let ratio = self.reduced_g.mean / self.full_g.mean;
         let error = |s: &Statistic| Some(s.deviation? / s.mean / (s.count as f64).sqrt());
@@ -78,7 +81,8 @@ pub(super) fn correlated(below_hz: f64, sides: &[[Side; 2]]) -> Option<Correlati
     Some(Correlation { sensor: sensor.clone(), below_hz, value })
 }
 
-/// Correlation of two equally long signals in the band from their first line to `below_hz`, through a Hann window.
+/// Correlation of two equally long signals in the band from their first line to `below_hz`, through a Hann
+/// window.
 ///
 /// The cross power of a and b is half of what the power of a + b exceeds the powers of both by.
 fn correlation(a: &[f64], b: &[f64], below_hz: f64, rate_hz: f64) -> Option<f64> {
@@ -148,7 +152,8 @@ mod tests {
         assert!(same.low > Some(0.999) && same.high <= Some(1.0), "{same:?}");
     }
 
-    /// Two sines of 100 Hz, sixty degrees apart, beside tones of 3 kHz that differ: below 500 Hz the correlation is cos 60°.
+    /// Two sines of 100 Hz, sixty degrees apart, beside tones of 3 kHz that differ: below 500 Hz the
+    /// correlation is cos 60°.
     #[test]
     fn example_only_what_lies_below_the_frequency_is_correlated() {
         use std::f64::consts::{FRAC_PI_3, TAU};

@@ -14,7 +14,8 @@ const HALF_BAND: f64 = 8.0;
 /// Samples of the band signal in the length of the low-pass filter, and of the baseband that it is made from.
 const OVERLAP: usize = 4;
 const FINE: usize = 8 * OVERLAP;
-/// Columns shorter than this part of the longest, after what they share with the others is taken off, carry nothing new.
+/// Columns shorter than this part of the longest, after what they share with the others is taken off, carry
+/// nothing new.
 const INDEPENDENT: f64 = 1e-6;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
@@ -23,7 +24,8 @@ const CARRIER_STEPS: f64 = 20.0;
 pub(super) struct BasebandComb {
     /// Mean rate of the facets at loaded contacts [Hz].
     pub(super) rate_hz: f64,
-    /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the mean rate.
+    /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the
+    /// mean rate.
     pub(super) line_hz: f64,
     /// The baseband itself.
     pub(super) baseband: Baseband,
@@ -33,7 +35,8 @@ pub(super) struct BasebandComb {
     own: Vec<Vec<Vec<Complex>>>,
 }
 
-/// Columns of one or more combs in a band: for accelerations, and for the forces on all rollers, one behind the other.
+/// Columns of one or more combs in a band: for accelerations, and for the forces on all rollers, one behind
+/// the other.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Columns {
     pub(super) sums: Vec<Vec<Complex>>,
@@ -41,8 +44,8 @@ pub(super) struct Columns {
 }
 
 impl BasebandComb {
-    /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below half the
-    /// sampling rate. `observed` are the rollers whose forces are fitted.
+    /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below
+    /// half the sampling rate. `observed` are the rollers whose forces are fitted.
     pub(super) fn of(motion: &Motion, source: Source, observed: &[usize]) -> Option<Self> {
         let samples = motion.samples();
         let dt = motion.interval_s;
@@ -112,7 +115,8 @@ impl BasebandComb {
         let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
             .map(|m| self.baseband.shift(f64::from(m) * motion.bpfo_hz, steady.len()).apply(&steady))
             .collect();
-        // Lines that are shifted together keep their angles: one basis serves all places, and columns are shifted back.
+        // Lines that are shifted together keep their angles: one basis serves all places, and columns are
+        // shifted back.
         let mut basis = Vec::new();
         extend_basis(&mut basis, &lines);
         let interval_s = self.baseband.filter.step as f64 * self.baseband.interval_s;
@@ -136,8 +140,8 @@ fn of_place(column: usize, place: f64) -> f64 {
     }
 }
 
-/// Signals turned back by a frequency and thinned out, and the low-pass filter that takes a band of [`HALF_BAND`] BPFO on
-/// either side out of them.
+/// Signals turned back by a frequency and thinned out, and the low-pass filter that takes a band of
+/// [`HALF_BAND`] BPFO on either side out of them.
 pub(super) struct Baseband {
     centre_hz: f64,
     half_hz: f64,
@@ -157,8 +161,8 @@ impl Baseband {
         Self { centre_hz, half_hz, thin, interval_s, filter }
     }
 
-    /// Whether the band about `centre_hz` lies between zero and half the sampling rate, and the record outlasts the filter
-    /// by more than a comb's columns.
+    /// Whether the band about `centre_hz` lies between zero and half the sampling rate, and the record
+    /// outlasts the filter by more than a comb's columns.
     pub(super) fn fits(&self, motion: &Motion, centre_hz: f64) -> bool {
         centre_hz > self.half_hz
             && centre_hz + self.half_hz < 0.5 / motion.interval_s

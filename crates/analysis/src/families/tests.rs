@@ -35,8 +35,8 @@ impl Sound {
     }
 }
 
-/// Rollers that share a load by the cosine, without a defect. Loaded rollers turn `slip` slower than rolling, each by a
-/// little of its own.
+/// Rollers that share a load by the cosine, without a defect. Loaded rollers turn `slip` slower than rolling,
+/// each by a little of its own.
 fn silent(samples: usize, slip: f64) -> Motion {
     let rollers = (0..ROLLERS).map(|number| {
         let start = 94f64.to_radians() - TAU * number as f64 / ROLLERS as f64;
@@ -59,8 +59,8 @@ fn silent(samples: usize, slip: f64) -> Motion {
     }
 }
 
-/// Puts sounds and `noise_g` on four accelerations, each with a transfer of its own that depends on the place of the
-/// roller, and a thousandth of the load for each g on the force of every roller.
+/// Puts sounds and `noise_g` on four accelerations, each with a transfer of its own that depends on the place
+/// of the roller, and a thousandth of the load for each g on the force of every roller.
 fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (Motion, Vec<Channel>) {
     let samples = motion.samples();
     let mut noise = Noise::new(seed);
@@ -120,8 +120,8 @@ fn example_of_a_long_record_the_last_part_is_judged() {
     let record = sounding(silent(samples, 0.0), &[Sound::of(CANDIDATES[0].1)], 8.0, 5);
     let families = judged(&CANDIDATES, &record);
     assert_eq!(found(&families), [CANDIDATES[0].0], "{families:#?}");
-    // Copies that are turned with the pattern have a line at the rate itself, whatever the place of each roller was when the
-    // part began.
+    // Copies that are turned with the pattern have a line at the rate itself, whatever the place of each
+    // roller was when the part began.
     let from = record.0.too_early().unwrap();
     assert!((periods(samples - from) - MOST_PERIODS).abs() < 0.1);
     let late = (record.0.from(from), record.1.clone());
@@ -143,7 +143,8 @@ fn example_each_family_is_told_from_its_neighbours() {
 
 #[test]
 fn example_two_combs_of_one_motion_are_not_told_apart() {
-    // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the other.
+    // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the
+    // other.
     let twins = [CANDIDATES[1], ("other_race_nodes", Source::OuterNodes(1255.02)), CANDIDATES[0]];
     let families = judged(&twins, &sounding(silent(SAMPLES, 0.0), &[Sound::of(CANDIDATES[1].1)], 8.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");
@@ -165,7 +166,8 @@ fn example_two_families_are_both_found() {
 
 #[test]
 fn example_slip_moves_the_prediction_with_the_line() {
-    // Two per cent of slip are 93 Hz, three resolutions: without the recorded motion nothing would stand where it should.
+    // Two per cent of slip are 93 Hz, three resolutions: without the recorded motion nothing would stand
+    // where it should.
     let families =
         judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.02), &[Sound::of(CANDIDATES[0].1)], 8.0, 5));
     assert_eq!(found(&families), ["roller_vertices"], "{families:#?}");
@@ -176,8 +178,9 @@ fn example_slip_moves_the_prediction_with_the_line() {
 
 #[test]
 fn example_the_carrier_is_a_line_of_the_comb() {
-    // 1255 nodes over 24 rollers are 52.29 a roller spacing: the outer raceway sounds at whole multiples of BPFO, here 52,
-    // not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a facet out of step.
+    // 1255 nodes over 24 rollers are 52.29 a roller spacing: the outer raceway sounds at whole multiples of
+    // BPFO, here 52, not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a
+    // facet out of step.
     let motion = silent(SAMPLES, 0.0);
     let bpfo_hz = motion.bpfo_hz;
     let line_hz = |source: Source| BasebandComb::of(&motion, source, &[]).unwrap().line_hz;
@@ -188,7 +191,8 @@ fn example_the_carrier_is_a_line_of_the_comb() {
         (Source::OuterNodes(1255.0), 52.0 * bpfo_hz),
         (Source::InnerNodes(1030.0), 1030.0 * SHAFT_HZ - 43.0 * bpfo_hz),
     ] {
-        // Three periods of BPFO leave neighbouring lines to lean on each other by some tenths of a resolution.
+        // Three periods of BPFO leave neighbouring lines to lean on each other by some tenths of a
+        // resolution.
         assert!(
             (line_hz(source) - expected_hz).abs() < 0.3 * resolution_hz,
             "{source:?} {} {expected_hz}",
@@ -209,8 +213,8 @@ fn example_ten_records_of_noise_hold_no_family() {
 
 #[test]
 fn example_a_comb_in_the_wrong_place_has_no_name() {
-    // Laid over each other, the three combs have lines at −14, 0 and 24 Hz from a multiple of BPFO. These are at 50 Hz, 26 Hz
-    // or 0.8 resolutions from the nearest.
+    // Laid over each other, the three combs have lines at −14, 0 and 24 Hz from a multiple of BPFO. These are
+    // at 50 Hz, 26 Hz or 0.8 resolutions from the nearest.
     let sound = Sound { detuned_hz: 64.0, ..Sound::of(CANDIDATES[0].1) };
     let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[sound], 1.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");

@@ -4,24 +4,28 @@ use super::comb::{BasebandComb, Columns, extend_basis, power, smoothed};
 use super::kernels::{Complex, dot};
 use super::{Channel, LEAST_LEAD, Motion};
 
-/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
-/// the channel's noise.
+/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99
+/// %, which follows the channel's noise.
 const LEAST_REST: f64 = 0.02;
-/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths, and the lines of
-/// three families lie less than a resolution apart when their combs are laid over each other.
+/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths,
+/// and the lines of three families lie less than a resolution apart when their combs are laid over each
+/// other.
 const AT_HOME: f64 = 0.5;
 /// Half width of the part of the scan that is taken in small steps, and the steps of it, in resolutions.
 const CLOSE: f64 = 1.0;
 const CLOSE_STEP: f64 = 0.05;
-/// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines but the outermost.
+/// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines
+/// but the outermost.
 const SCAN: f64 = 1.5;
-/// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies there.
+/// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies
+/// there.
 const BESIDE: f64 = 5.0;
 /// Detuned combs, in BPFO on either side of the carrier: beyond the band that a comb shares with its copy.
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
-/// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of them.
+/// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of
+/// them.
 const LOADED: f64 = 0.25;
 const OBSERVED: usize = 8;
 /// A contact counts while it carries at least this part of the largest load.
@@ -30,7 +34,8 @@ const PRESSED: f64 = 0.1;
 /// Every signal in which combs are sought.
 pub(super) struct Channels {
     accelerations: Vec<Vec<f64>>,
-    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the roller.
+    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the
+    /// roller.
     forces: Vec<Vec<f64>>,
 }
 
@@ -86,8 +91,8 @@ pub(super) fn observed(motion: &Motion) -> Vec<usize> {
 }
 
 impl Channels {
-    /// The accelerations less their mean, and the forces on the rollers `observed` less their running mean over two periods of
-    /// `slowest_hz`.
+    /// The accelerations less their mean, and the forces on the rollers `observed` less their running mean
+    /// over two periods of `slowest_hz`.
     pub(super) fn of(
         motion: &Motion,
         accelerations: &[Channel],
@@ -202,7 +207,8 @@ impl Base {
 }
 
 impl Signals {
-    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit` leaves, 0 to 1.
+    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit`
+    /// leaves, 0 to 1.
     fn shares(&self, fit: &Columns, columns: &Columns) -> Vec<f64> {
         let mut basis = fit.clone();
         extend(&mut basis, columns);

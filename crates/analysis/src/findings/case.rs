@@ -1,4 +1,5 @@
-//! The questions that are put to a record, one function each. [`Findings::of`](super::Findings::of) asks them in turn.
+//! The questions that are put to a record, one function each. [`Findings::of`](super::Findings::of) asks them
+//! in turn.
 
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::geometry::Geometry;
@@ -85,8 +86,8 @@ impl<'a> Case<'a> {
         notes
     }
 
-    /// What does the leading sensor show by itself, without the scene? `None` for a record of fewer than ten periods, or of a speed that
-    /// changes.
+    /// What does the leading sensor show by itself, without the scene? `None` for a record of fewer than ten
+    /// periods, or of a speed that changes.
     pub(super) fn judged_by_itself(&self) -> Result<Option<Analysis>, Error> {
         let [begin_s, end_s] = self.record.stretch_s();
         let long = (end_s - begin_s) * self.prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
@@ -98,7 +99,8 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// How do rollers turn, what do they carry, and when do they pass the defect? They are read one after the other.
+    /// How do rollers turn, what do they carry, and when do they pass the defect? They are read one after the
+    /// other.
     pub(super) fn rollers(&self) -> Result<Rollers<'_>, Error> {
         let (scene, record, prediction) = (&self.run.scene, self.record, &self.prediction);
         let mut turning = Turning::new(record, &prediction.kinematics);
@@ -114,7 +116,8 @@ impl<'a> Case<'a> {
         Ok(Rollers { motion, carried, passages })
     }
 
-    /// Do the defect's shocks stand in the envelope spectrum of the leading sensor? `None` for a speed that changes, or no sensor.
+    /// Do the defect's shocks stand in the envelope spectrum of the leading sensor? `None` for a speed that
+    /// changes, or no sensor.
     pub(super) fn envelope(&self, motion: &KinematicsFinding) -> Result<Option<Enveloped>, Error> {
         match leading_channel(self.run).filter(|_| self.steady) {
             Some(name) => envelope(self.record, &self.prediction, motion, &name),

@@ -1,4 +1,5 @@
-//! Signals of a record: accelerations of the sensors with their densities, and the motion and accelerations that facet lines are fitted to.
+//! Signals of a record: accelerations of the sensors with their densities, and the motion and accelerations
+//! that facet lines are fitted to.
 
 use stribeck_dsp::Welch;
 use stribeck_scene::run_dir::Run;
@@ -61,7 +62,8 @@ pub(super) fn sensor_signals(
     Ok(signals)
 }
 
-/// Motion and accelerations of the part of a record in which families of facet lines are sought; a note where that is not all of it.
+/// Motion and accelerations of the part of a record in which families of facet lines are sought; a note where
+/// that is not all of it.
 pub(super) fn tracks_and_channels(
     record: &Record<'_>,
     prediction: &Prediction,

@@ -1,4 +1,5 @@
-//! Spectra of a record and their evaluation: lines of facets and the notch at them, the defect's family and its envelope.
+//! Spectra of a record and their evaluation: lines of facets and the notch at them, the defect's family and
+//! its envelope.
 
 use stribeck_dsp::{PeriodCount, Spectrum, Welch, WelchOptions};
 use stribeck_scene::run_dir::Run;
@@ -17,8 +18,8 @@ use crate::prediction::Prediction;
 use crate::record::Record;
 use crate::tones::{self, Tone};
 
-/// The spectrum of all of a signal, in which a family of `fundamental_hz` is looked for where the segments of its `density` do not show it
-/// and the whole does.
+/// The spectrum of all of a signal, in which a family of `fundamental_hz` is looked for where the segments of
+/// its `density` do not show it and the whole does.
 pub(super) fn fine_density(
     signal: &[f64],
     density: &Spectrum,
@@ -57,9 +58,10 @@ pub(super) fn measured_tones(
     Ok(all)
 }
 
-/// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or at the
-/// predicted one. Where contact is with the round surface that facets stand for, none is predicted, and a tone there counts only
-/// where the rollers' motion makes it, too: a peak that stands at its place may be anything.
+/// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or
+/// at the predicted one. Where contact is with the round surface that facets stand for, none is predicted,
+/// and a tone there counts only where the rollers' motion makes it, too: a peak that stands at its place may
+/// be anything.
 pub(super) fn filter(
     run: &Run,
     record: &Record<'_>,
@@ -138,7 +140,8 @@ pub(super) fn filter_sensors(
     Ok(())
 }
 
-/// The defect's family over the angle of the shaft against the outer ring, put into `duty`, and the spectrum behind it; a note where there is none.
+/// The defect's family over the angle of the shaft against the outer ring, put into `duty`, and the spectrum
+/// behind it; a note where there is none.
 pub(super) fn order_spectrum(
     run: &Run,
     record: &Record<'_>,
@@ -165,8 +168,8 @@ pub(super) fn order_spectrum(
     }
 }
 
-/// The envelope spectrum of a channel and its lines; the reason why there is none when the record is not long enough, instead of a
-/// spectrum that means nothing.
+/// The envelope spectrum of a channel and its lines; the reason why there is none when the record is not long
+/// enough, instead of a spectrum that means nothing.
 pub(super) type Enveloped = Result<(Spectrum, enveloping::EnvelopeFinding), String>;
 
 /// Of channel `name`; `None` for an empty record.

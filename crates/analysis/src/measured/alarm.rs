@@ -1,7 +1,7 @@
 //! Alarm bands: the levels of warning and alarm.
 //!
-//! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from records of the
-//! machine in its sound state.
+//! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from
+//! records of the machine in its sound state.
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -158,9 +158,9 @@ impl Limit {
         Ok(Self { quantity, warning, alarm })
     }
 
-    /// Limits that one in a hundred, and one in a thousand, further records of a machine in the state of `reference` pass:
-    /// the prediction interval of Student's distribution, `m + t s √(1 + 1/n)`, of the logarithms of all but decibels.
-    /// `None` for fewer than three values.
+    /// Limits that one in a hundred, and one in a thousand, further records of a machine in the state of
+    /// `reference` pass: the prediction interval of Student's distribution, `m + t s √(1 + 1/n)`, of the
+    /// logarithms of all but decibels. `None` for fewer than three values.
     ///
     /// Source: G. J. Hahn and W. Q. Meeker, Statistical Intervals, Wiley 1991, section 4.8.
     pub fn from_reference(quantity: Quantity, reference: &[f64]) -> Option<Self> {
@@ -194,7 +194,8 @@ impl Limit {
     }
 }
 
-/// Level of a family [dB]. Sound records have one, too: that of the noise at the family's lines, by whose scatter a limit is set.
+/// Level of a family [dB]. Sound records have one, too: that of the noise at the family's lines, by whose
+/// scatter a limit is set.
 fn level_db(findings: &MeasuredFindings, defect: Defect) -> Option<f64> {
     let family = findings.families.iter().find(|f| f.name == defect)?;
     family.level_db.filter(|db| db.is_finite())

@@ -1,5 +1,5 @@
-//! The enhanced envelope spectrum: lines at the rates at which any part of the spectrum comes and goes, each part weighed by
-//! how surely it does and not by its power.
+//! The enhanced envelope spectrum: lines at the rates at which any part of the spectrum comes and goes, each
+//! part weighed by how surely it does and not by its power.
 
 use stribeck_dsp::{Cyclic, spectral_correlation};
 

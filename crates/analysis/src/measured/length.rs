@@ -10,7 +10,8 @@ use crate::Error;
 
 /// Events closer than this cannot be distinguished from the ringing of one [s].
 const SHORTEST_S: f64 = 0.4e-3;
-/// Longest spall over the distance of two rolling elements: with a longer one the next element enters before one leaves.
+/// Longest spall over the distance of two rolling elements: with a longer one the next element enters before
+/// one leaves.
 const LONGEST: f64 = 0.45;
 /// Ends of the interval over v Δt.
 const RANGE: (f64, f64) = (0.95, 2.0);

@@ -1,4 +1,5 @@
-//! One pass over the samples of a channel, segment by segment: a record of hours takes no more memory than one of seconds.
+//! One pass over the samples of a channel, segment by segment: a record of hours takes no more memory than
+//! one of seconds.
 
 use stribeck_dsp::{BandEnvelopes, Welch, WelchOptions};
 use stribeck_formats::Channel;

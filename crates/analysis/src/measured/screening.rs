@@ -1,4 +1,5 @@
-//! Is a record sound? Values that are not numbers, clipping, and the numbers that describe it as a whole, in one pass.
+//! Is a record sound? Values that are not numbers, clipping, and the numbers that describe it as a whole, in
+//! one pass.
 
 use serde::Serialize;
 
@@ -19,7 +20,8 @@ pub struct Health {
     pub skewness: f64,
     /// Largest magnitude over the mean of magnitudes, both about zero.
     pub impulse_factor: f64,
-    /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one line.
+    /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one
+    /// line.
     pub spectral_entropy: f64,
 }
 
@@ -51,8 +53,9 @@ struct Extreme {
 
 /// How many times as far from the mean as all others a sample is that stands for itself.
 const FAR: f64 = 10.0;
-/// Samples on either side of an extreme that may belong to it. A resonance with a Q of 2.8 or more has a tenth of its height left beyond them, at any
-/// frequency that the record holds: `exp(−π f n/(Q f_s))` with n = 4 and f below half the sample rate.
+/// Samples on either side of an extreme that may belong to it. A resonance with a Q of 2.8 or more has a
+/// tenth of its height left beyond them, at any frequency that the record holds: `exp(−π f n/(Q f_s))` with n
+/// = 4 and f below half the sample rate.
 const NEAR: u64 = 3;
 /// Most such samples: more belong to the machine's signal.
 const MOST: usize = 8;

@@ -20,8 +20,8 @@ pub struct Turns {
 /// Part of the range that a pulse must fall by before the next one counts.
 const HYSTERESIS: f64 = 0.2;
 
-/// Counts the pulses of a channel sampled `rate_hz` times a second: rising edges through the middle of its range, their
-/// times interpolated between samples.
+/// Counts the pulses of a channel sampled `rate_hz` times a second: rising edges through the middle of its
+/// range, their times interpolated between samples.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when it holds fewer than three pulses.
@@ -75,10 +75,12 @@ pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
     })
 }
 
-/// Pulses a turn that are made of a recorded angle: within a sixtieth of a turn the speed is as good as constant.
+/// Pulses a turn that are made of a recorded angle: within a sixtieth of a turn the speed is as good as
+/// constant.
 const PULSES: f64 = 60.0;
 
-/// The same from the angle of a shaft [rad], either sense, as a run records it where its speed changes: sixty pulses a turn.
+/// The same from the angle of a shaft [rad], either sense, as a run records it where its speed changes: sixty
+/// pulses a turn.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when the shaft turns back, or less than a twentieth of a turn.

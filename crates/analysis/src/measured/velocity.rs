@@ -18,8 +18,8 @@ pub(super) struct VelocityLevel {
 }
 
 impl VelocityLevel {
-    /// For segments of `segment` samples in `unit`; `None` where that is no acceleration, or the record too short or
-    /// sampled too slowly for the band.
+    /// For segments of `segment` samples in `unit`; `None` where that is no acceleration, or the record too
+    /// short or sampled too slowly for the band.
     pub(super) fn new(
         rate_hz: f64,
         segment: usize,

@@ -40,8 +40,8 @@ pub struct Family {
     pub depth: Option<f64>,
     /// Band in which it stands highest [Hz].
     pub band_hz: Option<(f64, f64)>,
-    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines
-    /// ([`BandEnvelope::autocorrelation`]).
+    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+    /// lines ([`BandEnvelope::autocorrelation`]).
     pub in_passages: bool,
     /// The family that stands higher, over whose period everything that is said of this one is taken
     /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
@@ -278,8 +278,8 @@ fn too_narrow(comb_hz: f64, any: bool) -> String {
     format!("no band is wide enough for {harmonics} harmonics of {comb_hz:.1} Hz: {advice}")
 }
 
-/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried. The comb of
-/// the `first` family [Hz] is none of them.
+/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be
+/// tried. The comb of the `first` family [Hz] is none of them.
 pub(super) fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -> Option<f64> {
     let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| is_the_same(hz, first_hz));
     let heights: Vec<f64> = unrelated_hz(comb_hz)
@@ -305,7 +305,8 @@ pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_h
     beside.filter(|hz| spectrum.line_p_value(spectrum.at(*hz)) < ALPHA).count()
 }
 
-/// Whether the shocks at twice BSF are modulated at the cage's frequency, as those of a spot on a rolling element must be.
+/// Whether the shocks at twice BSF are modulated at the cage's frequency, as those of a spot on a rolling
+/// element must be.
 fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whitened)]) -> bool {
     let of = |name: Defect| families.iter().find(|family| family.name == name);
     let (Some(element), Some(cage)) = (of(Defect::Bsf), of(Defect::Ftf)) else { return false };
@@ -315,8 +316,9 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
     band.is_some_and(|(_, spectrum)| sidebands_seen(spectrum, 2.0 * hz, spacing_hz) >= MODULATED)
 }
 
-/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage
-/// modulates them (`modulated`). Where both have their places within a resolution, neither is told from the other.
+/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling
+/// element, unless the cage modulates them (`modulated`). Where both have their places within a resolution,
+/// neither is told from the other.
 fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     let cannot_be = |family: &Family| family.name == Defect::Bsf && !modulated;
     let comb = |family: &Family| {
@@ -376,8 +378,8 @@ fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
 
 /// Which of the families that are there are defects.
 fn decide(families: &mut [Family]) {
-    // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that stands lower
-    // than another is not the first, even if the other one is not believed.
+    // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that
+    // stands lower than another is not the first, even if the other one is not believed.
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
     for family in families.iter_mut().filter(|f| f.reason == Reason::Undecided) {
         let (p, depth, rank) = (family.p_value, family.depth.unwrap_or(0.0), family.rank.unwrap_or(1.0));
@@ -405,8 +407,9 @@ fn decide(families: &mut [Family]) {
     }
 }
 
-/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a rolling element that knocks
-/// twice a spin, by the whole range or by the band in which the cage stands highest.
+/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a
+/// rolling element that knocks twice a spin, by the whole range or by the band in which the cage stands
+/// highest.
 fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
     let place = |name: Defect| families.iter().position(|family| family.name == name);
     let (Some(element), Some(cage)) = (place(Defect::Bsf), place(Defect::Ftf)) else { return };
@@ -544,7 +547,8 @@ mod tests {
         }
     }
 
-    /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move either.
+    /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move
+    /// either.
     #[test]
     fn example_one_line_is_claimed_for_one_family() {
         let mut families = [found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
