@@ -7,7 +7,7 @@ use stribeck_formats::Channel;
 
 use crate::Error;
 
-/// What a tachometer says.
+/// Speed from a tachometer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Turns {
     /// Mean speed [1/min].
@@ -200,10 +200,12 @@ fn mended(edges: &[f64], name: &str, rate_hz: f64) -> Result<(Vec<f64>, Vec<Stri
     Ok((mended, notes))
 }
 
-/// Pulses a turn that are made of a recorded angle: within a sixtieth of a turn the speed is as good as constant.
+/// Pulses a turn that are made of a recorded angle: within a sixtieth of a turn the speed is as good as
+/// constant.
 const PULSES: f64 = 60.0;
 
-/// The same from the angle of a shaft [rad], either sense, as a run records it where its speed changes: sixty pulses a turn.
+/// The same from the angle of a shaft [rad], either sense, as a run records it where its speed changes: sixty
+/// pulses a turn.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when the shaft turns back, or less than a twentieth of a turn.
