@@ -8,6 +8,7 @@
 mod octaves;
 mod row;
 mod side;
+mod thirds;
 mod waveform;
 
 use serde::{Deserialize, Serialize};
@@ -166,7 +167,7 @@ fn fold_down_note(sampled_s: f64) -> Option<String> {
 
 /// Which records hold third octaves.
 fn octaves_note() -> String {
-    let [first_ms, all_ms] = octaves::shortest_records_ms();
+    let [first_ms, all_ms] = thirds::shortest_records_ms();
     format!(
         "third octaves are compared on records of {first_ms:.1} ms at least, all of them of {all_ms:.0} ms"
     )

@@ -168,7 +168,7 @@ impl Findings {
             film,
             notes,
         };
-        Ok(answers.findings(case))
+        Ok(case.findings(answers))
     }
 
     /// The same with the forces of the first `most` passages, for pictures.

@@ -1,9 +1,9 @@
 //! One run, reduced to the quantities that are compared.
 
-use stribeck_dsp::{Detrend, Scaling, Welch, WelchOptions};
+use stribeck_dsp::{Detrend, Scaling, Sensor, Welch, WelchOptions};
 use stribeck_scene::run_dir::Run;
 
-use super::{FROM_S, LEAST_MEANS, MEAN_S, octaves, waveform};
+use super::{FROM_S, LEAST_MEANS, MEAN_S, thirds};
 use crate::Error;
 use crate::findings::Findings;
 use crate::load::{running_mean, support};
@@ -16,6 +16,10 @@ pub(super) const PERIODS: f64 = 10.0;
 /// How much finer than its resolution the grid of the spectrum is from which lines are read: half a grid step
 /// beside its place, Hann's window lowers a line by less than 0.02 %.
 const FINER: usize = 32;
+
+/// Largest accelerations are compared as a recorder of this rate shows them [Hz], which passes four tenths of
+/// it.
+pub(super) const RECORDER_HZ: f64 = 25_000.0;
 
 /// Quantities of one run.
 pub(super) struct Side {
@@ -99,10 +103,7 @@ impl Side {
             largest_n: sizes.fold(0.0, f64::max),
             support_n: support_n.iter().sum::<f64>() / support_n.len() as f64,
             cpu_s_per_ms: run.info.loop_cpu_s / summary.run.simulated_ms,
-            centres_hz: octaves::centres(
-                (record.len() - compared.from) / compared.together,
-                1.0 / interval_s,
-            ),
+            centres_hz: thirds::centres((record.len() - compared.from) / compared.together, 1.0 / interval_s),
             forces,
             lines_g: None,
             waveform: None,
@@ -134,12 +135,19 @@ impl Side {
         if self.lines_g.is_none() && y.len() as f64 / rate_hz * bpfo_hz >= PERIODS {
             self.lines_g = Some(harmonics(y, rate_hz, bpfo_hz)?);
         }
-        self.peaks_g.push(waveform::largest(x, y, rate_hz));
+        self.peaks_g.push(largest(x, y, rate_hz));
         self.waveform.get_or_insert_with(|| (name.to_owned(), compared.means(y), 1.0 / interval_s));
-        let [x, y] = [x, y].map(|signal| octaves::powers(signal, rate_hz, &self.centres_hz));
+        let [x, y] = [x, y].map(|signal| thirds::powers(signal, rate_hz, &self.centres_hz));
         self.powers.push((name.to_owned(), x?.iter().zip(y?).map(|(x, y)| x + y).collect()));
         Ok(())
     }
+}
+
+/// Largest magnitude of an acceleration as a recorder shows it; `None` for one that is sampled more slowly.
+fn largest(x: &[f64], y: &[f64], rate_hz: f64) -> Option<f64> {
+    let recorder = Sensor::ideal(RECORDER_HZ);
+    let [x, y] = [recorder.record(x, rate_hz).ok()?, recorder.record(y, rate_hz).ok()?];
+    x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).reduce(f64::max)
 }
 
 /// Amplitudes at the first multiples of a frequency [unit of the signal], through a Hann window over the

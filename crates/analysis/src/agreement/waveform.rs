@@ -2,9 +2,10 @@
 //! recorder shows them.
 
 use serde::{Deserialize, Serialize};
-use stribeck_dsp::{Detrend, Sensor, Welch, WelchOptions};
+use stribeck_dsp::{Detrend, Welch, WelchOptions};
 
-use super::{Side, over_starts};
+use super::over_starts;
+use super::side::{RECORDER_HZ, Side};
 use crate::statistic::Statistic;
 use crate::words::significant;
 
@@ -12,10 +13,6 @@ use crate::words::significant;
 pub(super) const BELOW_HZ: [f64; 2] = [500.0, 2000.0];
 /// Most samples of which a correlation is taken.
 const WAVEFORM: usize = 50_000;
-/// Largest accelerations are compared as a recorder of this rate shows them [Hz], which passes four tenths of
-/// it.
-const RECORDER_HZ: f64 = 25_000.0;
-
 /// How alike the vertical accelerations of both models are below a frequency, from equal starts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Correlation {
@@ -107,13 +104,6 @@ fn of_correlations(values: &[f64], of: usize) -> Option<Statistic> {
     let z: Vec<f64> = values.iter().map(|r| r.clamp(-MOST, MOST).atanh()).collect();
     let (plain, z) = (Statistic::of(values, of)?, Statistic::of(&z, of)?);
     Some(Statistic { low: z.low.map(f64::tanh), high: z.high.map(f64::tanh), ..plain })
-}
-
-/// Largest magnitude of an acceleration as a recorder shows it; `None` for one that is sampled more slowly.
-pub(super) fn largest(x: &[f64], y: &[f64], rate_hz: f64) -> Option<f64> {
-    let recorder = Sensor::ideal(RECORDER_HZ);
-    let [x, y] = [recorder.record(x, rate_hz).ok()?, recorder.record(y, rate_hz).ok()?];
-    x.iter().zip(&y).map(|(x, y)| x.hypot(*y)).reduce(f64::max)
 }
 
 /// Largest acceleration of every sensor, by both models.

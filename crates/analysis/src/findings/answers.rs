@@ -1,12 +1,11 @@
-//! The answers to the questions of [`Case`](super::case::Case), and what they come to together.
+//! The answers to the questions that are put to a record, one type each.
 
 use stribeck_dsp::Spectrum;
 
-use super::case::Case;
-use super::passages::{Passages, start_up_end_s};
+use super::SensorSignal;
+use super::passages::Passages;
 use super::spectra::Enveloped;
-use super::{Findings, SensorSignal};
-use crate::artefacts::{self, Artefact};
+use crate::artefacts::Artefact;
 use crate::diagnosis::DiagnosisFinding;
 use crate::duty::DutyFinding;
 use crate::enveloping::EnvelopeFinding;
@@ -15,10 +14,8 @@ use crate::film::FilmFinding;
 use crate::filtering::Filter;
 use crate::kinematics::KinematicsFinding;
 use crate::load::{Carried, LoadFinding};
-use crate::paper;
 use crate::prediction::StaticCurve;
-use crate::ring;
-use crate::summary::{EnergyFinding, Event, LevelsFinding, RunCost, SpectrumFinding, Summary};
+use crate::summary::{Event, LevelsFinding, SpectrumFinding};
 use crate::tones::{PredictedLine, Tone};
 
 /// What one pass over all rollers yields.
@@ -64,8 +61,8 @@ pub(super) struct LeadingSpectrum {
 /// The envelope spectrum of the leading sensor [g⁴] and what stands in it.
 #[derive(Default)]
 pub(super) struct EnvelopeAnswer {
-    spectrum: Option<Spectrum>,
-    finding: Option<EnvelopeFinding>,
+    pub(super) spectrum: Option<Spectrum>,
+    pub(super) finding: Option<EnvelopeFinding>,
 }
 
 impl EnvelopeAnswer {
@@ -106,63 +103,4 @@ pub(super) struct Answers {
     pub(super) orders: Orders,
     pub(super) film: Option<FilmFinding>,
     pub(super) notes: Vec<String>,
-}
-
-impl Answers {
-    /// Numbers and signals of the case.
-    pub(super) fn findings(self, case: Case<'_>) -> Findings {
-        let record = case.record;
-        let (start_s, interval_s) = (record.time_s().first().copied().unwrap_or(0.0), record.interval_s());
-        let start_up_end_s = start_up_end_s(record.time_s(), &self.crossings.events);
-        let notch = self.filter.as_ref().zip(self.sensors.first());
-        let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, case.of_paper));
-        let [begin_s, end_s] = record.stretch_s();
-        let (run, cursor) = (case.run, case.cursor());
-        let mut summary = Summary {
-            scene: run.scene.name.clone(),
-            status: run.info.status,
-            mesh: run.info.mesh.clone(),
-            run: RunCost::of(&run.info, record.len(), end_s - begin_s),
-            energy: EnergyFinding::of(&run.info.energy),
-            kinematics: self.motion,
-            duty: self.orders.duty,
-            events: self.crossings.events,
-            load: self.load,
-            families: self.mesh.families,
-            film: self.film,
-            tones: self.mesh.tones,
-            levels: self.crossings.levels,
-            notch,
-            spectrum: self.spectrum.finding,
-            artefacts: self.artefacts,
-            envelope: self.envelope.finding,
-            diagnosis: self.diagnosis,
-            cursor,
-            paper: Vec::new(),
-            notes: self.notes,
-        };
-        if case.of_paper {
-            summary.paper = paper::rows(&run.scene, &run.info.mesh, &case.prediction, &summary);
-        }
-        Findings {
-            summary,
-            of_paper: case.of_paper,
-            start_up_end_s,
-            lines: self.mesh.lines,
-            modes: ring::outer_ring_modes(&run.scene, artefacts::LAST_MODE),
-            start_s,
-            interval_s,
-            sensors: self.sensors,
-            crossings: Vec::new(),
-            distribution: self.carried.distribution(),
-            support_n: self.carried.into_support(),
-            fine: self.spectrum.fine,
-            envelope: self.envelope.spectrum,
-            orders: self.orders.spectrum,
-            static_curve: self.at_rest.curve,
-            family_signals: self.mesh.signals,
-            filter: self.filter,
-            prediction: case.prediction,
-        }
-    }
 }

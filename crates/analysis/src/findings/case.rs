@@ -1,18 +1,17 @@
-//! The questions that are put to a record, one function each. [`Findings::of`](super::Findings::of) asks them
-//! in turn.
+//! The questions that are put to a record, one function each. [`Findings::of`] asks them in turn.
 
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
-use super::answers::{AtRest, Crossings, LeadingSpectrum, MeshLines, Orders, Rollers};
-use super::passages::{Passages, level_finding};
+use super::answers::{Answers, AtRest, Crossings, LeadingSpectrum, MeshLines, Orders, Rollers};
+use super::passages::{Passages, level_finding, start_up_end_s};
 use super::sensors::{leading_channel, sensor_signals, tracks_and_channels};
 use super::spectra::{
     Enveloped, envelope, filter, filter_sensors, fine_density, measured_tones, order_spectrum,
 };
-use super::{HARMONICS, SensorSignal};
+use super::{Findings, HARMONICS, SensorSignal};
 use crate::Error;
 use crate::artefacts::{self, Artefact};
 use crate::diagnosis;
@@ -26,8 +25,9 @@ use crate::paper;
 use crate::prediction::Prediction;
 use crate::reading::CursorReading;
 use crate::record::Record;
+use crate::ring;
 use crate::rolling;
-use crate::summary::SpectrumFinding;
+use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones;
 
 /// A record, and what geometry and speed predict of it.
@@ -283,5 +283,62 @@ impl<'a> Case<'a> {
         let element_size = Geometry::of(&self.run.scene).element_size;
         let pair = self.prediction.kinematics.paper_noise_hz(element_size);
         CursorReading::of(paper::CURSOR_HZ, self.record.sample_rate_hz(), paper::TONE_HZ, pair)
+    }
+
+    /// All answers together: the numbers and the signals behind them.
+    pub(super) fn findings(self, answers: Answers) -> Findings {
+        let record = self.record;
+        let (start_s, interval_s) = (record.time_s().first().copied().unwrap_or(0.0), record.interval_s());
+        let start_up_end_s = start_up_end_s(record.time_s(), &answers.crossings.events);
+        let notch = answers.filter.as_ref().zip(answers.sensors.first());
+        let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, self.of_paper));
+        let [begin_s, end_s] = record.stretch_s();
+        let (run, cursor) = (self.run, self.cursor());
+        let mut summary = Summary {
+            scene: run.scene.name.clone(),
+            status: run.info.status,
+            mesh: run.info.mesh.clone(),
+            run: RunCost::of(&run.info, record.len(), end_s - begin_s),
+            energy: EnergyFinding::of(&run.info.energy),
+            kinematics: answers.motion,
+            duty: answers.orders.duty,
+            events: answers.crossings.events,
+            load: answers.load,
+            families: answers.mesh.families,
+            film: answers.film,
+            tones: answers.mesh.tones,
+            levels: answers.crossings.levels,
+            notch,
+            spectrum: answers.spectrum.finding,
+            artefacts: answers.artefacts,
+            envelope: answers.envelope.finding,
+            diagnosis: answers.diagnosis,
+            cursor,
+            paper: Vec::new(),
+            notes: answers.notes,
+        };
+        if self.of_paper {
+            summary.paper = paper::rows(&run.scene, &run.info.mesh, &self.prediction, &summary);
+        }
+        Findings {
+            summary,
+            of_paper: self.of_paper,
+            start_up_end_s,
+            lines: answers.mesh.lines,
+            modes: ring::outer_ring_modes(&run.scene, artefacts::LAST_MODE),
+            start_s,
+            interval_s,
+            sensors: answers.sensors,
+            crossings: Vec::new(),
+            distribution: answers.carried.distribution(),
+            support_n: answers.carried.into_support(),
+            fine: answers.spectrum.fine,
+            envelope: answers.envelope.spectrum,
+            orders: answers.orders.spectrum,
+            static_curve: answers.at_rest.curve,
+            family_signals: answers.mesh.signals,
+            filter: answers.filter,
+            prediction: self.prediction,
+        }
     }
 }
