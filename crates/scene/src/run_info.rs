@@ -60,7 +60,7 @@ pub struct RunInfo {
     /// Vertical force that the rollers must carry: load plus the weight of adapter and outer ring [N].
     pub expected_support_n: f64,
     /// What the run does not take of its scene: what of the mesh files of housing and rings was passed over.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub notes: Vec<String>,
     /// Warnings, in the order in which they arose.
     pub warnings: Vec<String>,

@@ -91,7 +91,9 @@ impl File<'_> {
             "4.1" => Version::FourOne,
             _ => return Err(fault(line, format!("format {version} is not read: {SAVE_AS}"))),
         };
-        if !["0", "1"].contains(&kind) || !["4", "8"].contains(&size) {
+        // Some programs write the size as a decimal number.
+        let size = size.parse::<f64>().ok().filter(|bytes| [4.0, 8.0].contains(bytes));
+        if !["0", "1"].contains(&kind) || size.is_none() {
             return Err(fault(
                 line,
                 format!("`{text}` is no head of a Gmsh file: version, 0 or 1, and 8 belong here"),
