@@ -228,6 +228,11 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
 }
 
 impl Column {
+    /// Its place in the table, from 1.
+    pub(crate) fn number(&self) -> usize {
+        self.at + 1
+    }
+
     pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let mut lines = Lines::open(&self.path, self.coding)?;
         let mut block = Vec::with_capacity(BLOCK);
