@@ -363,6 +363,14 @@ fn plain(of: &Datatype) -> Option<Number> {
             };
             (kind, byte_order)
         }
+        // IEEE 754-2008, binary16: the library has no name for it.
+        Datatype::FloatingPoint { size: 2, byte_order, layout }
+            if (layout.bit_offset, layout.bit_precision) == (0, 16)
+                && (layout.exponent_location, layout.exponent_size) == (10, 5)
+                && (layout.mantissa_location, layout.mantissa_size, layout.exponent_bias) == (0, 10, 15) =>
+        {
+            (Kind::F16, byte_order)
+        }
         Datatype::FloatingPoint { size: 4, byte_order, layout }
             if *layout == FloatingPointLayout::IEEE754_BINARY32 =>
         {

@@ -220,6 +220,10 @@ impl Found {
         if cycles == 0 {
             return Ok(());
         }
+        if width == 0 {
+            self.notes.push("a group whose records hold no bytes is left out".to_owned());
+            return Ok(());
+        }
         let mut described: Vec<Described> = Vec::new();
         let (mut at, mut seen) = (of.link(1), 0);
         while at != 0 {
@@ -239,8 +243,7 @@ impl Found {
         }
         let data = Arc::new(source.data(group.link(2))?);
         let bytes = data.iter().fold(0_u64, |sum, s| sum.saturating_add(s.full));
-        // Records of virtual channels alone take no bytes.
-        let there = bytes.checked_div(width as u64).map_or(cycles, |records| records.min(cycles));
+        let there = (bytes / width as u64).min(cycles);
         if there < cycles {
             self.notes.push(format!("a group promises {cycles} samples, and {there} are there"));
         }

@@ -2,6 +2,7 @@
 
 use std::borrow::Borrow;
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -193,7 +194,7 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
 pub fn open(path: &Path) -> Result<Recording> {
     let file = File::open(path).map_err(|e| Error::read(path, e))?;
     let damaged = |e: ParquetError| Error::damaged(path, FORMAT, e.to_string());
-    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    let reader = guarded(|| SerializedFileReader::new(file)).map_err(damaged)?;
     let columns = reader.metadata().file_metadata().schema_descr().columns().to_vec();
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let given = reader.metadata().file_metadata().key_value_metadata();
@@ -315,7 +316,7 @@ impl Stored {
     pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let file = File::open(&self.path).map_err(|e| Error::read(&self.path, e))?;
         let damaged = |e: ParquetError| Error::damaged(&self.path, FORMAT, e.to_string());
-        let reader = SerializedFileReader::new(file).map_err(damaged)?;
+        let reader = guarded(|| SerializedFileReader::new(file)).map_err(damaged)?;
         let mut left = len;
         let mut give = |block: &[f64]| {
             let count = left.min(block.len() as u64);
@@ -324,7 +325,14 @@ impl Stored {
         };
         for group in 0..reader.num_row_groups() {
             let group = reader.get_row_group(group).map_err(damaged)?;
-            let going = match group.get_column_reader(self.number).map_err(damaged)? {
+            let places = group.metadata().columns().get(self.number).map(|of| {
+                [of.data_page_offset(), of.dictionary_page_offset().unwrap_or(0), of.compressed_size()]
+            });
+            if places.is_none_or(|all| all.iter().any(|place| *place < 0)) {
+                return Err(Error::damaged(&self.path, FORMAT, "a column begins or ends before the file"));
+            }
+            let column = guarded(|| group.get_column_reader(self.number)).map_err(damaged)?;
+            let going = match column {
                 ColumnReader::DoubleColumnReader(mut r) => each(&mut r, self.defined, |v| v, &mut give),
                 ColumnReader::FloatColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
                 ColumnReader::Int64ColumnReader(mut r) => {
@@ -353,6 +361,14 @@ impl Stored {
     }
 }
 
+/// What the library reads. A damaged file must not take the program along, whatever the library thinks of it.
+fn guarded<T>(
+    read: impl FnOnce() -> std::result::Result<T, ParquetError>,
+) -> std::result::Result<T, ParquetError> {
+    catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(ParquetError::General("its structure contradicts itself".to_owned())))
+}
+
 /// Gives all values of a column of one group of rows; false when no more are wanted.
 fn each<T: parquet::data_type::DataType>(
     reader: &mut parquet::column::reader::ColumnReaderImpl<T>,
@@ -363,7 +379,7 @@ fn each<T: parquet::data_type::DataType>(
     loop {
         let (mut batch, mut levels) = (Vec::new(), Vec::new());
         let with_levels = (defined > 0).then_some(&mut levels);
-        let (rows, _, _) = reader.read_records(BATCH, with_levels, None, &mut batch)?;
+        let (rows, _, _) = guarded(|| reader.read_records(BATCH, with_levels, None, &mut batch))?;
         if rows == 0 {
             return Ok(true);
         }

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use crate::curve::Curve;
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, equal_lengths};
 use crate::{Channel, Error, Recording, Result};
@@ -88,9 +89,8 @@ pub fn open(path: &Path) -> Result<Recording> {
                         "its header promises {promised} bytes of samples, and {held} are there"
                     ));
                 }
-                if kind == Kind::U8 {
-                    notes.push("samples of 8 bits count from 0: their mean is not zero".to_owned());
-                }
+                // Eight bits have no sign: 128 is silence.
+                let curve = (kind == Kind::U8).then(|| Curve::linear(-1.0, 1.0));
                 let stride = usize::from(channels) * kind.bytes();
                 let all = (0..usize::from(channels)).map(|n| {
                     let start = at + 8 + (n * kind.bytes()) as u64;
@@ -103,6 +103,7 @@ pub fn open(path: &Path) -> Result<Recording> {
                     };
                     Channel::strided((n + 1).to_string(), held / stride as u64, strided)
                         .at_rate(Some(f64::from(rate)))
+                        .along(curve.clone())
                 });
                 return Ok(Recording {
                     path: path.to_owned(),
