@@ -359,6 +359,19 @@ fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
 }
 
 #[test]
+fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
+    let desk = Scratch::create("measured-force");
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{t:.7}"));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    // Twice the rate is twice the speed.
+    let words = ["analyse", "a.csv", "--bearing=6205", "--speed-rpm=2400", "--rate-hz=25600"];
+    let output = stribeck(desk.path(), &words);
+    assert!(!output.status.success() && said(&output).contains("`--force-rate`"), "{}", said(&output));
+    let output = stribeck(desk.path(), &[&words[..], &["--force-rate"]].concat());
+    says(&output, &["a defect of the outer raceway (BPFO at 143", "the file says 12800 Hz"]);
+}
+
+#[test]
 fn issue_a_gap_in_the_times_is_noted() {
     let desk = Scratch::create("measured-gap");
     let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { t + 0.5 }));
