@@ -28,13 +28,11 @@ mod error;
 mod hdf5_chunks;
 mod hdf5_links;
 mod literal;
-mod mdf4_channel;
 mod mdf4_records;
 mod number;
 mod open;
 mod recording;
 mod shape;
-mod tdms_scale;
 mod time;
 mod units;
 

@@ -3,12 +3,15 @@
 //! Each channel is called by its name; the rate is that of its group's master, stored or virtual. A sample whose invalidation
 //! bit is set is no number. Channels of bits, of texts and with conversions to texts are left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
 
+mod channel;
+
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::mdf4_channel::{Described, describe};
+use channel::{Described, describe};
+
 use crate::mdf4_records::{Packing, Stretch};
 use crate::recording::left_out;
 use crate::{Channel, Error, Recording, Result};

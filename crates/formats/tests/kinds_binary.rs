@@ -233,8 +233,11 @@ struct MdfChannel<'a> {
     invalid: Option<u32>,
 }
 
-/// An MDF file with a group for each of `groups`: its channels, bytes of data and of invalidation bits in a record, and records.
-fn mdf(groups: &[(&[MdfChannel<'_>], u32, u32, Vec<Vec<u8>>)]) -> Vec<u8> {
+/// One group of an MDF file: its channels, bytes of data and of invalidation bits in a record, and its records.
+type MdfGroup<'a> = (&'a [MdfChannel<'a>], u32, u32, Vec<Vec<u8>>);
+
+/// An MDF file of such groups.
+fn mdf(groups: &[MdfGroup<'_>]) -> Vec<u8> {
     let mut bytes = b"MDF     4.10    tests   \0\0\0\0\x9a\x01".to_vec();
     bytes.resize(64, 0);
     /// Puts a block at the end, and says where it is.
