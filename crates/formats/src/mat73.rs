@@ -1,8 +1,8 @@
 //! MATLAB `.mat`, version 7.3: HDF5 behind 512 bytes of text. Plain HDF5 files are read in the same way.
 //!
-//! Arrays of numbers and of logicals are channels, members of structs are called `struct.member`; a matrix gives
-//! channels along its longer side. Cells, texts and objects are left out. Samples stay in the file, in one piece or in chunks;
-//! those in chunks packed otherwise than MATLAB does are held in memory.
+//! Arrays of numbers and of logicals are channels, members of structs are called `struct.member`; a matrix
+//! gives channels along its longer side. Cells, texts and objects are left out. Samples stay in the file, in
+//! one piece or in chunks; those in chunks packed otherwise than MATLAB does are held in memory.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     if !found.too_long.is_empty() {
         notes.push(format!(
-            "left out, as chunks that are packed otherwise than by gzip are read as a whole, of at most {MOST} numbers a file: {}. \
+            "left out, as chunks that are packed otherwise than by gzip are read as a whole, of at most \
+             {MOST} numbers a file: {}. \
              Pack them anew with `h5repack -f GZIP=1`",
             found.too_long.join(", ")
         ));
@@ -91,7 +92,8 @@ impl Found {
         let names = match (group.datasets(), group.groups()) {
             (Ok(sets), Ok(groups)) => (sets, groups),
             (Err(why), _) | (_, Err(why)) => {
-                // A link to another object spoils the library's list of an old group; each name by itself can be opened.
+                // A link to another object spoils the library's list of an old group; each name by itself can
+                // be opened.
                 let Some(links) = links else {
                     self.notes.push(left_out(&format!("{prefix}*"), &why.to_string()));
                     return;
@@ -314,8 +316,9 @@ struct Axes {
 }
 
 impl Axes {
-    /// The longer side is the time. Of two equal ones it is MATLAB's column, the last extent of its files, and the first
-    /// extent in those of other programs. `None` for arrays of more extents, or of too many channels.
+    /// The longer side is the time. Of two equal ones it is MATLAB's column, the last extent of its files,
+    /// and the first extent in those of other programs. `None` for arrays of more extents, or of too many
+    /// channels.
     fn of(shape: &[u64], matlab: bool) -> Option<Self> {
         let wide: Vec<usize> = (0..shape.len()).filter(|axis| shape[*axis] > 1).collect();
         match wide[..] {

@@ -77,7 +77,8 @@ impl Column {
     }
 }
 
-/// A table that is written group of rows by group of rows, so that it need not fit into memory. Equal tables are equal bytes.
+/// A table that is written group of rows by group of rows, so that it need not fit into memory. Equal tables
+/// are equal bytes.
 pub struct Writer {
     path: std::path::PathBuf,
     schema: Vec<Column>,
@@ -85,8 +86,8 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Begins a file with columns of these names and kinds; their values do not matter. `notes` are written beside it, each
-    /// under its name.
+    /// Begins a file with columns of these names and kinds; their values do not matter. `notes` are written
+    /// beside it, each under its name.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::DoesNotFit`].
@@ -119,8 +120,8 @@ impl Writer {
         Ok(Self { path: path.to_owned(), schema: columns.iter().map(blank).collect(), file })
     }
 
-    /// Adds a group of rows: the columns of the file, equally long. Each is asked for when the one before is written, so that they
-    /// need not be in memory together.
+    /// Adds a group of rows: the columns of the file, equally long. Each is asked for when the one before is
+    /// written, so that they need not be in memory together.
     ///
     /// # Errors
     /// [`Error::DoesNotFit`] for other columns, [`Error::Io`]. The file is then of no use.
@@ -186,8 +187,8 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     write_table(path, &columns?, &texts)
 }
 
-/// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is missing is not a
-/// number. Values stay in the file.
+/// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is
+/// missing is not a number. Values stay in the file.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].

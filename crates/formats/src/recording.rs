@@ -16,8 +16,8 @@ pub struct Recording {
     pub path: PathBuf,
     /// Its format, in words.
     pub format: &'static str,
-    /// Its channels, in the order of the file. Numbers that stand alone (a speed, a sensitivity) are channels of one
-    /// sample.
+    /// Its channels, in the order of the file. Numbers that stand alone (a speed, a sensitivity) are channels
+    /// of one sample.
     pub channels: Vec<Channel>,
     /// What was odd about the file.
     pub notes: Vec<String>,
@@ -78,8 +78,8 @@ pub(crate) struct Strided {
 const PIECE: usize = 1 << 18;
 
 impl Recording {
-    /// The channel called `name`, that of the n-th column of a text for `column n`, or the only one whose name contains
-    /// it.
+    /// The channel called `name`, that of the n-th column of a text for `column n`, or the only one whose
+    /// name contains it.
     ///
     /// # Errors
     /// [`Error::NoChannel`] with the names that there are.

@@ -136,7 +136,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value by value.
+/// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value
+/// by value.
 fn place(
     path: &Path,
     (start, held): (u64, u64),

@@ -1,5 +1,5 @@
-//! Kinds of binary files whose units, scales, shapes or rates were once lost, each as a tiny input of our own: TDMS, MDF,
-//! MATLAB 4 and 5, NumPy, Parquet and HDF5.
+//! Kinds of binary files whose units, scales, shapes or rates were once lost, each as a tiny input of our
+//! own: TDMS, MDF, MATLAB 4 and 5, NumPy, Parquet and HDF5.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -233,7 +233,8 @@ struct MdfChannel<'a> {
     invalid: Option<u32>,
 }
 
-/// One group of an MDF file: its channels, bytes of data and of invalidation bits in a record, and its records.
+/// One group of an MDF file: its channels, bytes of data and of invalidation bits in a record, and its
+/// records.
 type MdfGroup<'a> = (&'a [MdfChannel<'a>], u32, u32, Vec<Vec<u8>>);
 
 /// An MDF file of such groups.
@@ -637,7 +638,8 @@ fn good_files(desk: &Scratch) -> Vec<(&'static str, Vec<u8>)> {
     let mut mat4 = [0_u32, 60, 1, 0, 4].map(u32::to_le_bytes).concat();
     mat4.extend(b"acc\0");
     mat4.extend((0..60).flat_map(|n| signal(n).to_le_bytes()));
-    let header = "{'descr': [('t (s)', '<f8'), ('', '|V6'), (\"it's\", '<i2')], 'fortran_order': False, 'shape': (40,), }\n";
+    let header = "{'descr': [('t (s)', '<f8'), ('', '|V6'), (\"it's\", '<i2')], 'fortran_order': False, \
+        'shape': (40,), }\n";
     let mut npy = b"\x93NUMPY\x01\x00".to_vec();
     npy.extend((header.len() as u16).to_le_bytes());
     npy.extend(header.bytes());

@@ -1,4 +1,5 @@
-//! Files of other programs, read by those programs and by us: equal samples, rates and rms, or a refusal with its reason.
+//! Files of other programs, read by those programs and by us: equal samples, rates and rms, or a refusal with
+//! its reason.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -20,8 +21,8 @@ struct Tally {
     different: Vec<String>,
 }
 
-/// numpy 2.4.6, scipy 1.17.1, h5py 3.16.0, npTDMS 1.13.0, asammdf 8.8.28, pyarrow 26.0.1, pandas 3.1.1, soundfile 0.14.0 and
-/// pyuff 2.5.8, where the interpreter in `STRIBECK_PYTHON` (or python3) has them.
+/// numpy 2.4.6, scipy 1.17.1, h5py 3.16.0, npTDMS 1.13.0, asammdf 8.8.28, pyarrow 26.0.1, pandas 3.1.1,
+/// soundfile 0.14.0 and pyuff 2.5.8, where the interpreter in `STRIBECK_PYTHON` (or python3) has them.
 #[test]
 fn peer_readers_of_each_format_read_the_same() {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/signals_by_format.py");
@@ -109,7 +110,8 @@ fn compare(desk: &Scratch, line: &str, tally: &mut Tally) {
     } else {
         let rate_hz = channel.rate_hz;
         tally.different.push(format!(
-            "{file} {name}: {count} samples, {rate} Hz, rms {theirs}; ours {} samples, {rate_hz:?} Hz, rms {ours}",
+            "{file} {name}: {count} samples, {rate} Hz, rms {theirs}; ours {} samples, {rate_hz:?} Hz, rms \
+             {ours}",
             samples.len()
         ));
     }
