@@ -92,14 +92,18 @@ impl File<'_> {
             _ => return Err(fault(line, format!("format {version} is not read: {SAVE_AS}"))),
         };
         // Some programs write the size as a decimal number.
-        let size = size.parse::<f64>().ok().filter(|bytes| [4.0, 8.0].contains(bytes));
-        if !["0", "1"].contains(&kind) || size.is_none() {
+        let size = match size.parse::<f64>() {
+            Ok(4.0) => Some(4),
+            Ok(8.0) => Some(8),
+            _ => None,
+        };
+        let Some(size) = size.filter(|_| ["0", "1"].contains(&kind)) else {
             return Err(fault(
                 line,
                 format!("`{text}` is no head of a Gmsh file: version, 0 or 1, and 8 belong here"),
             ));
-        }
-        self.source.size = if size == "4" { 4 } else { 8 };
+        };
+        self.source.size = size;
         if kind == "1" {
             self.source.binary = true;
             if self.source.int()? != 1 {
