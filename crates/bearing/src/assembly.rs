@@ -34,7 +34,8 @@ use stribeck_scene::{
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
 pub const CAGE_ELEMENT_MM: f64 = 2.0;
 
-/// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line contact.
+/// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line
+/// contact.
 const SEAT_POINTS: usize = 2;
 
 /// Names of the contact surfaces that every scene has.
@@ -51,8 +52,8 @@ pub(crate) const LOADED: &str = "loaded surface";
 /// Name of the part of a load that turns with the shaft which acts across the other.
 pub(crate) const ACROSS: &str = "load across";
 
-/// Rings and a roller as they are meshed, which takes time: grooves are in them, deviations from round are not yet, and the roller
-/// lies in the centre, not turned.
+/// Rings and a roller as they are meshed, which takes time: grooves are in them, deviations from round are
+/// not yet, and the roller lies in the centre, not turned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshedParts {
     outer: Part,
@@ -97,8 +98,8 @@ pub struct Machine {
     pub outer: usize,
     /// The inner ring.
     pub inner: usize,
-    /// The body that holds the outer ring, if there is one: the adapter or another housing. A ring that does not deform needs
-    /// none.
+    /// The body that holds the outer ring, if there is one: the adapter or another housing. A ring that does
+    /// not deform needs none.
     pub housing: Option<usize>,
     /// Each roller that is not missing.
     pub rollers: Vec<Roller>,
@@ -161,7 +162,8 @@ impl Pairs {
 }
 
 impl Machine {
-    /// The nodes on the outer surface of the outer ring that are nearest to these angles [rad]: where sensors sit.
+    /// The nodes on the outer surface of the outer ring that are nearest to these angles [rad]: where sensors
+    /// sit.
     pub fn nodes_on_back(&self, angles: &[f64]) -> Vec<u32> {
         let off = |node: u32, wanted: f64| {
             let [x, y] = self.system.position(node);
@@ -263,7 +265,8 @@ impl Assembly {
         });
 
         let disc = &parts.disc;
-        // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
+        // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle
+        // ones.
         let path = g.outer_race_radius - g.roller_radius;
         let rollers: Result<Vec<(usize, Placed)>, Error> = scene
             .rollers_in_place()
@@ -338,7 +341,8 @@ impl Assembly {
         Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
 
-    /// Nodes of the housing that take the load and are guided up and down; none where the load may come from anywhere.
+    /// Nodes of the housing that take the load and are guided up and down; none where the load may come from
+    /// anywhere.
     pub fn guided(&self) -> Vec<u32> {
         self.that_move(|motion| *motion == Motion::HeldX)
     }
@@ -388,8 +392,8 @@ impl Assembly {
         &self.model.materials[self.inner.body]
     }
 
-    /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if every body had
-    /// them: an estimate before anything is laid out.
+    /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if
+    /// every body had them: an estimate before anything is laid out.
     pub fn element_time_step_s(&self, scene: &Scene) -> f64 {
         let mesh = &self.model.mesh;
         let nu = scene.material.poissons_ratio;
@@ -417,7 +421,8 @@ impl Assembly {
         let mut plan = Plan::from(self.model.clone());
         plan.stiffness_damping = Geometry::of(scene).stiffness_damping;
         plan.structural_damping = self.structural_damping(scene)?;
-        // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
+        // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its
+        // corners.
         let spline = scene.contact.interpolation == ContactInterpolation::Spline;
         plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
         let g = Geometry::of(scene);
@@ -522,7 +527,8 @@ impl Assembly {
         if let Some(housing) = self.housing.as_ref().filter(|_| seats > 0) {
             plan.contact(Pair {
                 name: format!("the {} and the outer ring", housing.name),
-                // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
+                // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always
+                // integrated.
                 method: Method::Integrated { points: SEAT_POINTS },
                 ..Pair::new(BACK, SEAT, seat)
             })?;
@@ -554,12 +560,7 @@ impl Assembly {
 ///
 /// # Errors
 /// When there is no load of a name.
-pub fn load(
-    system: &mut System,
-    duty: &Duty,
-    load_n: f64,
-    at_s: f64,
-) -> Result<(), stribeck_system::Error> {
+pub fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<(), stribeck_system::Error> {
     system.scale_load(LOADED, duty.load_n(at_s) / load_n)?;
     if let Some(across) = duty.load_across_n(at_s) {
         system.scale_load(ACROSS, across / load_n)?;
@@ -642,8 +643,8 @@ fn grooves_in(g: &Geometry, ring: DefectRing) -> Vec<Groove> {
     g.grooves_of(ring).map(cut).collect()
 }
 
-/// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the rollers: piece i
-/// lies between roller i and the next one counter-clockwise.
+/// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the
+/// rollers: piece i lies between roller i and the next one counter-clockwise.
 fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: f64) -> Result<Part, Error> {
     let reach = g.roller_radius + cage.pocket_clearance;
     let half_width = pocket_half_width(inner, outer, path, reach);

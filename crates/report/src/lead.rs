@@ -74,7 +74,8 @@ fn load(scene: &Scene, duty: Option<&DutyFinding>) -> String {
     }
 }
 
-/// The speed in words, with its range on record where it changes, and the sense where it is not the usual one.
+/// The speed in words, with its range on record where it changes, and the sense where it is not the usual
+/// one.
 fn speed(scene: &Scene, duty: Option<&DutyFinding>) -> String {
     let o = &scene.operation;
     let [inner, outer] = match duty {

@@ -1,8 +1,9 @@
-//! A scene in SI units: the one place where what a user writes in millimetres, degrees and gigapascals becomes what the
-//! program computes with.
+//! A scene in SI units: the one place where what a user writes in millimetres, degrees and gigapascals
+//! becomes what the program computes with.
 //!
-//! Where a bit of a result may hang on the rounding of a quotient, it is taken of the numbers as written instead: the
-//! ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are written.
+//! Where a bit of a result may hang on the rounding of a quotient, it is taken of the numbers as written
+//! instead: the ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are
+//! written.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,7 +15,8 @@ use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
 
-/// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise from the x axis.
+/// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise
+/// from the x axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Geometry {
     /// Radius of the outer raceway [m].
@@ -37,7 +39,8 @@ pub struct Geometry {
     pub clearance: f64,
     /// Angle of the middle of the pocket of roller 1 [rad].
     pub first_roller_angle: f64,
-    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise [m]; empty: not at all.
+    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise [m]; empty:
+    /// not at all.
     pub roller_offsets: Vec<f64>,
     /// Angle by which the meshes of all rollers are turned about their own centres [rad].
     pub roller_phase: f64,
@@ -87,8 +90,8 @@ pub struct Geometry {
     pub frame_half_width: Option<f64>,
 }
 
-/// How far straight walls of pockets reach beyond the path of the rollers' centres, in radii of a roller: several facets,
-/// and farther than a roller that floats across its clearance or stands in a defect.
+/// How far straight walls of pockets reach beyond the path of the rollers' centres, in radii of a roller:
+/// several facets, and farther than a roller that floats across its clearance or stands in a defect.
 const BEYOND_PITCH_CIRCLE: f64 = 0.2;
 
 /// The rigid cage.
@@ -145,8 +148,9 @@ impl Geometry {
         self.grooves.iter().filter(move |groove| groove.ring == ring)
     }
 
-    /// Facets that a whole turn of the raceway of `ring` would have at the mean spacing outside its grooves, of
-    /// all its `facets`: floors are meshed as finely as the raceway, in two facets at least, and upright walls take no angle.
+    /// Facets that a whole turn of the raceway of `ring` would have at the mean spacing outside its grooves,
+    /// of all its `facets`: floors are meshed as finely as the raceway, in two facets at least, and upright
+    /// walls take no angle.
     pub fn facets_around(&self, ring: DefectRing, facets: usize) -> f64 {
         let radius = match ring {
             DefectRing::Outer => self.outer_race_radius,
@@ -259,8 +263,8 @@ impl CageGeometry {
         [self.outer_radius - self.thickness, self.outer_radius]
     }
 
-    /// Radii between which the walls of pockets reach [m], for rollers of the radius `roller` whose centres run on the radius
-    /// `path`.
+    /// Radii between which the walls of pockets reach [m], for rollers of the radius `roller` whose centres
+    /// run on the radius `path`.
     pub fn walls(&self, path: f64, roller: f64) -> [f64; 2] {
         let [inner, outer] = self.radii();
         match self.pocket {
@@ -278,7 +282,8 @@ pub fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
     if (inner..=outer).contains(&path) {
         return reach;
     }
-    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on `edge`.
+    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on
+    // `edge`.
     let edge = if path < inner { inner } else { outer };
     let height = (edge * edge + path * path - reach * reach) / (2.0 * path);
     (edge * edge - height * height).max(0.0).sqrt().min(PI * edge)

@@ -264,11 +264,7 @@ fn issue_no_header_is_longer_than_numpy_reads() {
             "archive"
         } else {
             assert!(bytes.starts_with(&header) && header.len() <= 10_012, "{rollers}: {}", header.len());
-            if header.windows(5).any(|window| window == b"names") {
-                "short form"
-            } else {
-                "pairs"
-            }
+            if header.windows(5).any(|window| window == b"names") { "short form" } else { "pairs" }
         };
         let expected = match rollers {
             0..=34 => "pairs",
@@ -313,7 +309,8 @@ fn invariant_an_archive_is_read_in_parts_as_rows_are() {
     assert_eq!(finite.columns, [&column[..2500]]);
 }
 
-/// A run that ended may go on, whatever form its trace has: an archive, or a header that an earlier version wrote.
+/// A run that ended may go on, whatever form its trace has: an archive, or a header that an earlier version
+/// wrote.
 #[test]
 fn roundtrip_every_form_can_be_continued() {
     let file = File::new();

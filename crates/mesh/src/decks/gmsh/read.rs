@@ -1,8 +1,8 @@
 //! Gmsh files, read: formats 2.2, 4.0 and 4.1, as text and binary.
 //!
-//! Formats 4 list the points, curves and surfaces of the geometry with the groups that they are in, and elements by these; format 2.2
-//! has the group beside each element, and an element in two groups twice. A group's number is negative where the mesh goes through a
-//! curve backwards.
+//! Formats 4 list the points, curves and surfaces of the geometry with the groups that they are in, and
+//! elements by these; format 2.2 has the group beside each element, and an element in two groups twice. A
+//! group's number is negative where the mesh goes through a curve backwards.
 
 use std::collections::BTreeMap;
 
@@ -336,12 +336,14 @@ impl File<'_> {
             Some((0 | 1, nodes)) => Ok(nodes),
             Some((2, nodes)) if kind == TRIANGLE || kind == QUADRILATERAL => Ok(nodes),
             Some((2, nodes)) => Err(self.source.fault(format!(
-                "elements of type {kind} are not read, as they have {nodes} nodes: mesh with elements of first order; triangles (2) and \
+                "elements of type {kind} are not read, as they have {nodes} nodes: mesh with elements of \
+                 first order; triangles (2) and \
                  quadrilaterals (3) are read"
             ))),
-            _ => Err(self
-                .source
-                .fault(format!("elements of type {kind} are not read; triangles (2) and quadrilaterals (3) are"))),
+            _ => Err(self.source.fault(format!(
+                "elements of type {kind} are not read; triangles (2) and quadrilaterals (3) \
+                    are"
+            ))),
         }
     }
 
