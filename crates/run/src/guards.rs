@@ -2,7 +2,7 @@
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
-//! | penetration over what a bearing gives way by itself | above 1 ([`softness`]) | |
+//! | penetration over what a bearing gives way by itself | above 1 | |
 //! | time without a roller that carries anything | `unsupported_warning_ms` | |
 //! | rollers out of the space between the raceways | | [`OUT_OF_PLACE`] |
 //! | the cage's offset over its room between the raceways | above 1 | a cage's thickness beyond |
