@@ -358,7 +358,7 @@ impl Side {
         if record.len() - from < LEAST_MEANS * width {
             return Err(Error::NoSignal(format!(
                 "the record of `{}` ends {:.2} ms after the start; models are compared from {:.0} ms on",
-                run.scene.name,
+                run.scene.written.name,
                 1e3 * record.interval_s() * record.len() as f64,
                 1e3 * FROM_S
             )));
@@ -370,12 +370,12 @@ impl Side {
         let forces: Vec<[Vec<f64>; 2]> =
             record.rollers().iter().map(|r| [mean(r.outer_fx), mean(r.outer_fy)]).collect();
         let sizes = forces.iter().flat_map(|[x, y]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)));
-        let support: Vec<f64> = crate::load::support(&record, run.scene.load_direction())[from..].to_vec();
+        let support: Vec<f64> = crate::load::support(&record, run.scene.written.load_direction())[from..].to_vec();
         let mut powers = Vec::new();
         let mut lines_g = None;
         let mut waveform = None;
         let mut peaks_g = Vec::new();
-        for sensor in &run.scene.output.sensors {
+        for sensor in &run.scene.written.output.sensors {
             let component =
                 |name: &str| record.acceleration_g(&sensor.name, name).map(|a| a[from..].to_vec());
             let (Some(x), Some(y)) = (component("ax"), component("ay")) else { continue };

@@ -15,7 +15,7 @@ use stribeck_dsp::{
     means_over_angle,
 };
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::geometry::Geometry;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
@@ -93,16 +93,16 @@ pub struct OrderLine {
 
 impl DutyFinding {
     /// Of a scene and its record; `None` where nothing changes.
-    pub fn of(scene: &Scene, record: &Record<'_>) -> Option<Self> {
+    pub fn of(scene: &ResolvedScene, record: &Record<'_>) -> Option<Self> {
         let duty = scene.varying_duty()?;
         let [from_s, until_s] = record.stretch_s();
         let recorded = record.channel(LOAD).filter(|load| !load.is_empty()).map(|load| {
             load.iter()
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], n| [least.min(*n), most.max(*n)])
         });
-        let k = Kinematics::new(&scene.bearing, 60.0);
+        let k = Kinematics::new(&scene.written.bearing, 60.0);
         // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference of speeds.
-        let cage = if scene.operation.outer_turns() { "FTF against the outer ring" } else { "FTF" };
+        let cage = if scene.written.operation.outer_turns() { "FTF against the outer ring" } else { "FTF" };
         let families =
             [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), (cage, k.cage_hz)];
         Some(Self {
@@ -139,7 +139,7 @@ pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
     let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
     recorded.map_or(of_run, |load_n| {
-        of_run - run.scene.duty().mean_load_n(Geometry::of(&run.scene).duration) + load_n
+        of_run - run.scene.duty.mean_load_n(run.scene.duration) + load_n
     })
 }
 
@@ -154,9 +154,9 @@ pub fn note(scene: &Scene) -> Option<String> {
 }
 
 /// Name and order of the family that a scene's defect makes.
-pub fn family(scene: &Scene) -> Option<(&'static str, f64)> {
-    let k = Kinematics::new(&scene.bearing, 60.0);
-    scene.faults().first().map(|on| match on {
+pub fn family(scene: &ResolvedScene) -> Option<(&'static str, f64)> {
+    let k = Kinematics::new(&scene.written.bearing, 60.0);
+    scene.written.faults().first().map(|on| match on {
         RollingSurface::Outer => ("BPFO", k.bpfo_hz),
         RollingSurface::Inner => ("BPFI", k.bpfi_hz),
         RollingSurface::Roller(_) => ("2·BSF", 2.0 * k.bsf_hz),

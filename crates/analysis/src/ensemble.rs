@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::ensemble::{Ensemble, folder_name, is_start_of};
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::Status;
@@ -22,7 +23,7 @@ pub use merge::Merged;
 #[derive(Debug)]
 pub struct EnsembleFindings {
     /// What all starts have in common.
-    pub scene: Scene,
+    pub scene: ResolvedScene,
     /// What was asked for.
     pub ensemble: Ensemble,
     /// The numbers.
@@ -115,7 +116,7 @@ impl EnsembleFindings {
             ensemble: merged,
             notes,
         };
-        Ok(Self { scene, ensemble, summary, complete })
+        Ok(Self { scene: scene.resolve(), ensemble, summary, complete })
     }
 }
 
@@ -178,16 +179,16 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
             return (start, None);
         }
     };
-    let mut as_long = run.scene.clone();
+    let mut as_long = run.scene.written.clone();
     as_long.solver.duration_ms = scene.solver.duration_ms;
-    let longer_ms = run.scene.solver.duration_ms - scene.solver.duration_ms;
+    let longer_ms = run.scene.written.solver.duration_ms - scene.solver.duration_ms;
     if !is_start_of(&as_long, scene) || longer_ms > 0.0 {
         let what = if longer_ms > 0.0 { "is longer than" } else { "differs in more than what is drawn from" };
         (start.ended, start.why) = (Ended::Failed, Some(format!("its scene {what} that of the ensemble")));
         return (start, None);
     }
-    start.first_roller_deg = Some(run.scene.bearing.first_roller_deg);
-    start.roller_phase_deg = Some(run.scene.mesh.roller_phase_deg);
+    start.first_roller_deg = Some(run.scene.written.bearing.first_roller_deg);
+    start.roller_phase_deg = Some(run.scene.written.mesh.roller_phase_deg);
     start.simulated_ms = Some(1e3 * run.info.interval_s * run.info.samples as f64);
     start.wall_s = Some(run.info.wall_s + run.info.setup_s);
     start.energy_error = Some(run.info.energy.max_relative_error);

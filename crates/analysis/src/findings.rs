@@ -4,7 +4,6 @@ mod passages;
 mod spectra;
 
 use stribeck_dsp::{PeriodCount, Spectrum, Welch};
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
@@ -144,7 +143,7 @@ impl Findings {
         let mut notes = notes_on(run, record);
 
         // Where the speed changes no line of the mesh or of the defect has a frequency.
-        let steady = !run.scene.operation.speed_varies();
+        let steady = !run.scene.written.operation.speed_varies();
         let [begin_s, end_s] = record.stretch_s();
         let span = end_s - begin_s;
         // Ten periods, or nothing could be said of a record.
@@ -156,7 +155,7 @@ impl Findings {
             None => None,
         };
 
-        let along = run.scene.load_direction();
+        let along = run.scene.written.load_direction();
         let mut turning = Turning::new(record, &prediction.kinematics);
         let mut carried = Carried::new(record, along, prediction.facet_period_s());
         let mut passages = Passages::new(&run.scene, time, &prediction);
@@ -201,7 +200,7 @@ impl Findings {
         if !sensors.is_empty() && levels.impulse_g.is_none() && !prediction.spalls.is_empty() {
             notes.push("no impulse level: no roller leaves a spall under load within the record".into());
         }
-        let of_paper = paper::is_scene_of(&run.scene) && !run.scene.operation.varies();
+        let of_paper = paper::is_scene_of(&run.scene.written) && !run.scene.written.operation.varies();
         let notch = filter.as_ref().zip(sensors.first());
         let notch = notch.map(|(f, s)| f.finding(&s.raw_g, &s.filtered_g, of_paper));
         let spectrum = sensors.first().and_then(|s| s.raw_density.as_ref());
@@ -237,13 +236,13 @@ impl Findings {
                  the notch among them, are left out. Other frequencies are those at the mean speed"
                     .into(),
             );
-            notes.extend(duty::note(&run.scene));
+            notes.extend(duty::note(&run.scene.written));
             orders = order_spectrum(run, record, &motion, &sensors, duty.as_mut(), &mut notes)?;
         }
         let cursor = of_paper.then(|| cursor(record, &prediction)).flatten();
 
         let mut summary = Summary {
-            scene: run.scene.name.clone(),
+            scene: run.scene.written.name.clone(),
             status: run.info.status,
             mesh: run.info.mesh.clone(),
             run: RunCost::of(&run.info, record.len(), span),
@@ -311,7 +310,7 @@ impl Findings {
 
 /// Which channel is the vertical acceleration of the first sensor that was recorded?
 fn leading_channel(run: &Run) -> Option<String> {
-    let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
+    let mut vertical = run.scene.written.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
     vertical.find(|name| run.trace.names().contains(name))
 }
 
@@ -349,7 +348,7 @@ fn load_finding(
 
 /// What can the paper's cursor read at this sample rate?
 fn cursor(record: &Record<'_>, prediction: &Prediction) -> Option<CursorReading> {
-    let pair = prediction.kinematics.paper_noise_hz(Geometry::of(&record.run().scene).element_size);
+    let pair = prediction.kinematics.paper_noise_hz(record.run().scene.element_size);
     CursorReading::of(paper::CURSOR_HZ, record.sample_rate_hz(), paper::TONE_HZ, pair)
 }
 
@@ -380,7 +379,7 @@ fn notes_on(run: &Run, record: &Record<'_>) -> Vec<String> {
         ));
     }
     notes.extend(run.info.notes.iter().cloned());
-    notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.bearing));
+    notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.written.bearing));
     notes
 }
 
@@ -409,7 +408,7 @@ fn sensor_signals(
         Some(values)
     };
     let mut signals = Vec::new();
-    for sensor in &run.scene.output.sensors {
+    for sensor in &run.scene.written.output.sensors {
         let Some(raw_g) = acceleration_g(&sensor.name, "ay") else {
             notes.push(format!("sensor `{}` is in the scene but not in the trace", sensor.name));
             continue;

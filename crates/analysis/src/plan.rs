@@ -5,12 +5,11 @@ use std::f64::consts::PI;
 
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::geometry::Geometry;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
-    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies, Scene,
-};
+    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies, };
 use stribeck_scene::static_load;
 
 use crate::Error;
@@ -80,29 +79,28 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::Run`] when the scene has no static load distribution.
-    pub fn of(scene: &Scene, mesh: &MeshFacts) -> Result<Self, Error> {
+    pub fn of(scene: &ResolvedScene, mesh: &MeshFacts) -> Result<Self, Error> {
         let counts = &mesh.counts;
         let prediction = Prediction::of(scene, counts);
         let lumped = Lumped::of(scene)?;
         let kinematics = &prediction.kinematics;
-        let geometry = Geometry::of(scene);
-        let material = &geometry.material;
+        let material = &scene.material;
         let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());
-        let radius = geometry.roller_radius;
+        let radius = scene.roller_radius;
         let load_n = static_load::at_start(scene)?.max_roller_n();
-        let effective = geometry.outer_contact_radius();
+        let effective = scene.outer_contact_radius();
         let half_width_m =
-            (4.0 * load_n / geometry.thickness * effective / (PI * material.contact_modulus())).sqrt();
+            (4.0 * load_n / scene.thickness * effective / (PI * material.contact_modulus())).sqrt();
 
-        let (duration_s, interval_s) = (geometry.duration, geometry.interval);
-        let time_step_s = scene.solver.time_step_factor * mesh.element_time_step_s;
+        let (duration_s, interval_s) = (scene.duration, scene.interval);
+        let time_step_s = scene.written.solver.time_step_factor * mesh.element_time_step_s;
         let per_sample = (interval_s / time_step_s).ceil().max(1.0);
         let shear = (material.shear_modulus() / material.density).sqrt();
         let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let facets = counts.roller_facets as f64;
-        let families = scene.faults().into_iter().map(|on| family(on, kinematics));
+        let families = scene.written.faults().into_iter().map(|on| family(on, kinematics));
         let slowest = families.min_by(|a, b| a.1.total_cmp(&b.1));
         let slowest = slowest.unwrap_or_else(|| family(RollingSurface::Outer, kinematics));
         let mut plan = Self {
@@ -110,8 +108,8 @@ impl Plan {
             lumped,
             sag_m: [
                 sag(radius, facets),
-                sag(geometry.outer_race_radius, counts.outer_facets as f64),
-                sag(geometry.inner_race_radius, counts.inner_facets as f64),
+                sag(scene.outer_race_radius, counts.outer_facets as f64),
+                sag(scene.inner_race_radius, counts.inner_facets as f64),
             ],
             load_n,
             half_width_m,
@@ -120,7 +118,7 @@ impl Plan {
             elements: counts.quads + counts.triangles,
             time_step_s: interval_s / per_sample,
             steps: per_sample * (duration_s / interval_s).round(),
-            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / geometry.element_size,
+            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / scene.element_size,
             resolution_hz: 1.0 / duration_s,
             separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
             envelope: Some(slowest)
@@ -128,8 +126,8 @@ impl Plan {
                 .map(|(name, hz)| (name, PeriodCount::ENOUGH / hz)),
             advice: Vec::new(),
         };
-        plan.advise(scene, &geometry);
-        let support_n = geometry.load;
+        plan.advise(scene);
+        let support_n = scene.load;
         if let Ok(curve) = prediction.static_curve(scene, support_n) {
             let least_n = rolling::least_support_n(scene, &curve, support_n);
             plan.advice.extend(rolling::warnings(support_n, least_n, &KinematicsFinding::default()));
@@ -140,17 +138,17 @@ impl Plan {
 
     /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a roller with
     /// the outer raceway [m] (THEORY §4.2).
-    fn point_step_m(&self, geometry: &Geometry, points_per_facet: usize) -> f64 {
-        let radius = geometry.outer_contact_radius();
-        let load = self.load_n / geometry.thickness;
-        let depth = (0.75 * load / (geometry.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+    fn point_step_m(&self, scene: &ResolvedScene, points_per_facet: usize) -> f64 {
+        let radius = scene.outer_contact_radius();
+        let load = self.load_n / scene.thickness;
+        let depth = (0.75 * load / (scene.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
         (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
     }
 
     /// What the study of contact noise has shown to help (docs/results/noise.md).
-    fn advise(&mut self, scene: &Scene, geometry: &Geometry) {
-        let c = &scene.contact;
-        let wanted = ONSET_STEPS * self.point_step_m(geometry, c.points_per_facet);
+    fn advise(&mut self, scene: &ResolvedScene) {
+        let c = &scene.written.contact;
+        let wanted = ONSET_STEPS * self.point_step_m(scene, c.points_per_facet);
         let mut say = |text: String| self.advice.push(text);
         if c.surface == ContactSurface::Facet {
             say("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
@@ -166,10 +164,10 @@ impl Plan {
             say("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
         }
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
-        let audible = points_hz < 0.5 / geometry.interval;
+        let audible = points_hz < 0.5 / scene.interval;
         // The reduced model integrates what overlaps exactly, without points.
-        let in_points = scene.model == ModelScene::Full && c.method == ContactMethod::Integrated;
-        if in_points && c.surface != ContactSurface::Facet && audible && geometry.contact_onset < wanted {
+        let in_points = scene.written.model == ModelScene::Full && c.method == ContactMethod::Integrated;
+        if in_points && c.surface != ContactSurface::Facet && audible && scene.contact_onset < wanted {
             say(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz unless their pressure \
                  sets in over several of them",
@@ -178,14 +176,14 @@ impl Plan {
             ));
         }
         if let Some(films) = &self.films {
-            if scene.solver.mass_damping_per_s > 0.0 && scene.solver.damping_frame == DampingFrame::Rolling {
+            if scene.written.solver.mass_damping_per_s > 0.0 && scene.written.solver.damping_frame == DampingFrame::Rolling {
                 say("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
             }
             if films.iter().any(|film| film.lambda < 1.0) {
                 say("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
             }
         }
-        let facets = scene.mesh.roller_facets;
+        let facets = scene.written.mesh.roller_facets;
         if c.surface == ContactSurface::Facet {
             if facets.is_multiple_of(2) {
                 say(format!(
@@ -193,12 +191,12 @@ impl Plan {
                     facets + 1
                 ));
             }
-            if scene.mesh.roller_copies == RollerCopies::Rotated
-                || facets.is_multiple_of(scene.bearing.rollers)
+            if scene.written.mesh.roller_copies == RollerCopies::Rotated
+                || facets.is_multiple_of(scene.written.bearing.rollers)
             {
                 say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
             }
-            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / geometry.roller_radius {
+            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
                 say(format!(
                     "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
                     1e3 * self.facet_m,
@@ -212,10 +210,10 @@ impl Plan {
                 self.elements_per_wavelength
             ));
         }
-        if let Some(needed) = self.separating_s.filter(|s| *s > geometry.duration) {
+        if let Some(needed) = self.separating_s.filter(|s| *s > scene.duration) {
             say(format!(
                 "the closest lines merge in {:.0} ms; {:.0} ms separate them",
-                1e3 * geometry.duration,
+                1e3 * scene.duration,
                 1e3 * needed
             ));
         }
@@ -225,6 +223,7 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_scene::scene::Scene;
     use stribeck_scene::scene::FilmScene;
 
     /// The paper's bearing in elements of 2 mm.
@@ -243,7 +242,7 @@ mod tests {
     /// Ten periods were those of BPFO whatever the defect, and "inf ms" of a bearing at rest.
     #[test]
     fn issue_ten_periods_are_those_of_the_scenes_own_defect() {
-        let envelope = |scene: &Scene| Plan::of(scene, &facts()).expect("a load distribution").envelope;
+        let envelope = |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a load distribution").envelope;
         let mut scene = Scene::default();
         let of = |scene: &Scene| {
             let k = stribeck_scene::kinematics::Kinematics::of(scene);
@@ -272,7 +271,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.size_mm = 2.0;
         scene.mesh.roller_facets = 112;
-        let of = |scene: &Scene| Plan::of(scene, &facts()).expect("a scene with a load distribution");
+        let of = |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a scene with a load distribution");
         let plan = of(&scene);
         // 3.54 µm of sag and 4671.5 Hz at 112 facets, whatever the rest of the mesh.
         assert!((plan.sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");
@@ -291,7 +290,7 @@ mod tests {
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));
         let reduced = Scene { model: ModelScene::Reduced(Default::default()), ..scene.clone() };
         assert!(of(&reduced).advice.iter().all(|a| !a.contains("onset_um")), "there are no points");
-        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&Geometry::of(&scene), 8);
+        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&scene.resolve(), 8);
         let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
         scene.film = Some(FilmScene { roughness_um: 1.0, ..FilmScene::default() });
@@ -307,7 +306,7 @@ mod tests {
         }
         // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
         scene.mesh.size_mm = 0.5;
-        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&Geometry::of(&scene), 8);
+        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&scene.resolve(), 8);
         assert!((step - 4.1e-6).abs() < 0.1e-6, "{step}");
     }
 }

@@ -38,7 +38,7 @@ fn count(number: usize, noun: &str) -> String {
 }
 
 fn defect(run: &Run, summary: &Summary) -> String {
-    let faults = run.scene.faults();
+    let faults = run.scene.written.faults();
     if faults.is_empty() {
         let level = summary.levels.phases.gap_g.map_or(String::new(), |g| {
             let along = across_the_load(run).then(|| radial(summary)?.gap_g).flatten();
@@ -50,14 +50,14 @@ fn defect(run: &Run, summary: &Summary) -> String {
                 gravities(g)
             )
         });
-        let deviations: Vec<String> = run.scene.defects.iter().map(DeviationScene::spoken).collect();
+        let deviations: Vec<String> = run.scene.written.defects.iter().map(DeviationScene::spoken).collect();
         return match deviations.len() {
             0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
             _ => format!("There is no spall or dent to see, but {}.{level}", deviations.join(", ")),
         };
     }
     let events = &summary.events;
-    let spalls = run.scene.spalls();
+    let spalls = run.scene.written.spalls();
     let families: Vec<String> = faults
         .iter()
         .map(|on| match on {
@@ -99,7 +99,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
     let floors: Vec<String> =
         events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
-    let rollers = run.scene.rollers_in_place().count();
+    let rollers = run.scene.written.rollers_in_place().count();
     let crossed = match events.len() {
         1 => format!("1 roller crosses {it}"),
         times if times > rollers || spalls.len() > 1 => format!("Rollers cross {it} {times} times"),
@@ -140,7 +140,7 @@ fn reads(levels: &PhaseLevels) -> Option<String> {
 
 /// Whether the load acts more along x than along y, so that a_y has little of it.
 fn across_the_load(run: &Run) -> bool {
-    let [x, y] = run.scene.load_direction();
+    let [x, y] = run.scene.written.load_direction();
     x.abs() > y.abs()
 }
 
@@ -263,7 +263,7 @@ fn physics(run: &Run, summary: &Summary) -> String {
     format!(
         "{bursts} forces of the rollers follow from load and geometry.{} {}",
         lines.unwrap_or_default(),
-        if run.scene.housing.is_rigid() {
+        if run.scene.written.housing.is_rigid() {
             "The outer ring is rigid and has no natural frequency of its own."
         } else {
             "No line is booked as a natural frequency of the ring, because a place near one proves nothing."

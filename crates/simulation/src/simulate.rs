@@ -11,6 +11,7 @@ use stribeck_run::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    resolved::ResolvedScene,
     run_dir::{RunDir, write_atomic},
     run_info::RunInfo,
     scene::{ModelScene, Scene},
@@ -33,8 +34,8 @@ trait Task {
 }
 
 /// Does it with the model that the scene names.
-fn dispatch<T: Task>(scene: &Scene, task: T) -> T::Output {
-    match scene.model {
+fn dispatch<T: Task>(scene: &ResolvedScene, task: T) -> T::Output {
+    match scene.written.model {
         ModelScene::Full => task.with::<Full>(),
         ModelScene::Reduced(_) => task.with::<Reduced>(),
     }
@@ -50,6 +51,7 @@ fn dispatch<T: Task>(scene: &Scene, task: T) -> T::Output {
 /// When the scene cannot be meshed, preloaded or reduced, or the traces cannot be written. A run that diverges is not an error:
 /// its status and reason are in the returned [`RunInfo`]. A checkpoint that cannot be written is a warning there.
 pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let scene = &scene.resolve();
     dispatch(scene, Begin { scene, dir, host, watch })
 }
 
@@ -61,8 +63,8 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
 /// # Errors
 /// [`RunError::Resume`] when there is nothing to continue or nothing to continue from; otherwise as [`simulate`].
 pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
-    let scene = Scene::read(dir.scene())?;
-    dispatch(&scene, Continue { scene: &scene, dir, host, watch })
+    let scene = &Scene::read(dir.scene())?.resolve();
+    dispatch(scene, Continue { scene, dir, host, watch })
 }
 
 /// Continues the run in `dir` to another duration, also when it is complete. Its files become those of an unbroken run
@@ -76,7 +78,8 @@ pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>)
     let mut scene = Scene::read(dir.scene())?;
     scene.solver.duration_ms = duration_ms;
     scene.validate()?;
-    dispatch(&scene, Continue { scene: &scene, dir, host, watch })
+    let scene = &scene.resolve();
+    dispatch(scene, Continue { scene, dir, host, watch })
 }
 
 /// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked without
@@ -85,8 +88,8 @@ pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>)
 /// # Errors
 /// As [`resume`].
 pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
-    let scene = Scene::read(dir.scene())?;
-    dispatch(&scene, SavedUntil { scene: &scene, dir })
+    let scene = &Scene::read(dir.scene())?.resolve();
+    dispatch(scene, SavedUntil { scene, dir })
 }
 
 /// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing. For all ranks
@@ -98,11 +101,12 @@ pub fn follow(host: &Host<'_>) -> Result<(), Error> {
     let Some(ranks) = &host.ranks else { return Ok(()) };
     // The full model alone is shared out.
     let (scene, checkpoint) = called_to::<<Full as Model>::Saved>(&**ranks)?;
-    let mut with = Preparation { scene: &scene, host, dir: None, progress: Progress::begin() };
+    let scene = &scene.resolve();
+    let mut with = Preparation { scene, host, dir: None, progress: Progress::begin() };
     Ok(match checkpoint {
         None => {
             let (full, setup) = Full::prepare(&mut with, &mut |_| ControlFlow::Continue(()))?;
-            Run::follow(full.start(&with), setup.info(&scene, host), host)?;
+            Run::follow(full.start(&with), setup.info(scene, host), host)?;
         }
         Some(Checkpoint { info, motion }) => {
             let full = Full::prepare_again(&mut with, &info)?;
@@ -113,7 +117,7 @@ pub fn follow(host: &Host<'_>) -> Result<(), Error> {
 }
 
 struct Begin<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     dir: &'a RunDir,
     host: &'a Host<'a>,
     watch: Watch<'a>,
@@ -128,11 +132,11 @@ impl Task for Begin<'_> {
         let working = if M::SHARED { host } else { &alone };
         let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
         with.enter("mesh", watch);
-        lead::<M::Saved>(working, scene, None)?;
+        lead::<M::Saved>(working, &scene.written, None)?;
         let (model, setup) = M::prepare(&mut with, watch)?;
         let mut info = setup.info(scene, host);
         info.warnings.extend(model.warnings(scene, &info));
-        dir.start(scene, &info)?;
+        dir.start(&scene.written, &info)?;
         write_atomic(&dir.mesh(), &model.mesh_file(scene)?)?;
         let motion = model.start(&with);
         Ok(Run::start(scene, motion, info, dir)?.finish(dir, working, with.progress, watch)?)
@@ -140,7 +144,7 @@ impl Task for Begin<'_> {
 }
 
 struct Continue<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     dir: &'a RunDir,
     host: &'a Host<'a>,
     watch: Watch<'a>,
@@ -157,7 +161,7 @@ impl Task for Continue<'_> {
         let checkpoint = read_saved::<M::Saved>(dir, scene)?;
         let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
         with.enter("mesh", watch);
-        lead(working, scene, Some(&checkpoint))?;
+        lead(working, &scene.written, Some(&checkpoint))?;
         let Checkpoint { mut info, motion: saved } = checkpoint;
         let model = M::prepare_again(&mut with, &info)?;
         take_over(&mut info, scene, host);
@@ -167,13 +171,13 @@ impl Task for Continue<'_> {
         })?;
         let mut run = Run::resume(scene, motion, info, dir)?;
         run.info.setup_s += (host.wall_s)() - started;
-        dir.go_on(scene, &run.info)?;
+        dir.go_on(&scene.written, &run.info)?;
         Ok(run.finish(dir, working, with.progress, watch)?)
     }
 }
 
 struct SavedUntil<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     dir: &'a RunDir,
 }
 

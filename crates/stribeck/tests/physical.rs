@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use stribeck_analysis::stress::{Lame, von_mises};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_bearing::start::preload;
-use stribeck_scene::geometry::Geometry;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
 use stribeck_testing::ledger;
 
@@ -27,7 +27,7 @@ struct Hertz {
 }
 
 impl Hertz {
-    fn new(g: &Geometry, line_load: f64, effective_radius: f64) -> Self {
+    fn new(g: &ResolvedScene, line_load: f64, effective_radius: f64) -> Self {
         let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
         let half_width = (8.0 * line_load * effective_radius / (PI * modulus)).sqrt();
         let approach = line_load / (PI * modulus) * (2.0 * (4.0 * g.roller_radius / half_width).ln() - 1.0);
@@ -61,7 +61,7 @@ fn analytic_contacts_of_the_physical_scene_are_hertzian() {
     let mut machine = assembly.machine(&scene, 2).expect("a machine");
     preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");
 
-    let g = Geometry::of(&scene);
+    let g = scene.resolve();
     let mesh = &assembly.model.mesh;
     let reference = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
     let system = &mut machine.system;

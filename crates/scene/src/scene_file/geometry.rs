@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
-use crate::geometry::CageGeometry;
+use crate::resolved::CageGeometry;
 use crate::housing::HousingScene;
 use crate::scene::{CageScene, DefectRing, PocketWalls, Scene};
 
