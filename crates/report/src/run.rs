@@ -85,7 +85,7 @@ fn page(
                     (sections::artefacts(summary))
                     (tables::notch(summary))
                 }
-                (agreement::of_run(&run.scene, run_dir))
+                (agreement::of_run(&run.scene.written, run_dir))
                 @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
             }

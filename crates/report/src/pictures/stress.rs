@@ -77,10 +77,11 @@ pub(super) fn pictures(
     window: &Window,
     frames: &[Frame],
 ) -> Result<Vec<Picture>, Error> {
+    let scene = &record.run().scene;
     let lame = Lame::of(&scene.material);
     let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
     let mut pictures = Vec::new();
-    let moments = moments(record, scene, findings, window, &all)?;
+    let moments = moments(record, findings, window, &all)?;
     if moments.iter().any(|moment| moment.cells.iter().any(|cell| is_near(moment, cell, window))) {
         pictures.push(still(&moments, window));
     }
@@ -94,11 +95,11 @@ pub(super) fn pictures(
 /// trailing edge while the roller climbs out.
 fn moments(
     record: &Record<'_>,
-    scene: &ResolvedScene,
     findings: &Findings,
     window: &Window,
     all: &[(f64, Vec<Cell>)],
 ) -> Result<Vec<Moment>, Error> {
+    let scene = &record.run().scene;
     let radius = scene.outer_race_radius;
     let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
     let mut moments = Vec::new();
