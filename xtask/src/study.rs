@@ -10,9 +10,9 @@ use stribeck::interrupt::Interrupt;
 use stribeck::place::shown;
 use stribeck::progress::Meter;
 use stribeck_run::host::Progress;
-use stribeck_simulation as simulation;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::RunInfo;
+use stribeck_simulation as simulation;
 use stribeck_studies::{Host, Job, Study};
 
 use crate::workspace;

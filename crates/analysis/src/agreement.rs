@@ -370,7 +370,8 @@ impl Side {
         let forces: Vec<[Vec<f64>; 2]> =
             record.rollers().iter().map(|r| [mean(r.outer_fx), mean(r.outer_fy)]).collect();
         let sizes = forces.iter().flat_map(|[x, y]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)));
-        let support: Vec<f64> = crate::load::support(&record, run.scene.written.load_direction())[from..].to_vec();
+        let support: Vec<f64> =
+            crate::load::support(&record, run.scene.written.load_direction())[from..].to_vec();
         let mut powers = Vec::new();
         let mut lines_g = None;
         let mut waveform = None;

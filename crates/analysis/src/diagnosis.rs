@@ -4,10 +4,10 @@
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
 use stribeck_formats::Channel;
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};

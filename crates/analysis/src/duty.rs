@@ -15,8 +15,8 @@ use stribeck_dsp::{
     means_over_angle,
 };
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
@@ -138,9 +138,7 @@ impl DutyFinding {
 pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
     let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
-    recorded.map_or(of_run, |load_n| {
-        of_run - run.scene.duty.mean_load_n(run.scene.duration) + load_n
-    })
+    recorded.map_or(of_run, |load_n| of_run - run.scene.duty.mean_load_n(run.scene.duration) + load_n)
 }
 
 /// Why orders are not those of the shaft; `None` where they are.

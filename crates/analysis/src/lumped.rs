@@ -20,9 +20,9 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_scene::Error;
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::kinematics::{Kinematics, roller_angles_deg};
-use stribeck_scene::scene::{RollerCopies, };
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::RollerCopies;
 use stribeck_scene::static_load;
 
 use crate::levels::STANDARD_GRAVITY;
@@ -177,7 +177,8 @@ mod tests {
     fn example_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
         // Rollers at 41.7 Hz against a cage of 3.75 Hz, BPFO 90 Hz. 112 facets are 4 2/3 a roller: a third of BPFO is missing
         // to five. 120 are five, and copies that turn with the pattern have no phase at all.
-        let at = |facets, copies| pattern_hz(&scene(facets, copies).resolve(), 41.7, 3.75) - facets as f64 * 41.7;
+        let at =
+            |facets, copies| pattern_hz(&scene(facets, copies).resolve(), 41.7, 3.75) - facets as f64 * 41.7;
         assert!((at(112, RollerCopies::Translated) - 30.0).abs() < 1e-9);
         assert!((at(56, RollerCopies::Translated) + 30.0).abs() < 1e-9);
         assert!(at(120, RollerCopies::Translated).abs() < 1e-9);

@@ -58,7 +58,12 @@ struct Source<'a> {
 }
 
 /// All rows, in the order of the paper. None is blank: what this run cannot yield says so.
-pub fn rows(scene: &ResolvedScene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<PaperRow> {
+pub fn rows(
+    scene: &ResolvedScene,
+    mesh: &MeshInfo,
+    prediction: &Prediction,
+    summary: &Summary,
+) -> Vec<PaperRow> {
     let source = Source { scene, mesh, prediction, summary };
     let mut rows = model::rows(&source);
     rows.extend(signal::rows(&source));

@@ -5,11 +5,12 @@ use std::f64::consts::PI;
 
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::lubrication::{self, LoadedFilm};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
-    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies, };
+    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies,
+};
 use stribeck_scene::static_load;
 
 use crate::Error;
@@ -176,7 +177,9 @@ impl Plan {
             ));
         }
         if let Some(films) = &self.films {
-            if scene.written.solver.mass_damping_per_s > 0.0 && scene.written.solver.damping_frame == DampingFrame::Rolling {
+            if scene.written.solver.mass_damping_per_s > 0.0
+                && scene.written.solver.damping_frame == DampingFrame::Rolling
+            {
                 say("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
             }
             if films.iter().any(|film| film.lambda < 1.0) {
@@ -223,8 +226,8 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stribeck_scene::scene::Scene;
     use stribeck_scene::scene::FilmScene;
+    use stribeck_scene::scene::Scene;
 
     /// The paper's bearing in elements of 2 mm.
     fn facts() -> MeshFacts {
@@ -242,7 +245,8 @@ mod tests {
     /// Ten periods were those of BPFO whatever the defect, and "inf ms" of a bearing at rest.
     #[test]
     fn issue_ten_periods_are_those_of_the_scenes_own_defect() {
-        let envelope = |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a load distribution").envelope;
+        let envelope =
+            |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a load distribution").envelope;
         let mut scene = Scene::default();
         let of = |scene: &Scene| {
             let k = stribeck_scene::kinematics::Kinematics::of(scene);
@@ -271,7 +275,8 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.size_mm = 2.0;
         scene.mesh.roller_facets = 112;
-        let of = |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a scene with a load distribution");
+        let of =
+            |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a scene with a load distribution");
         let plan = of(&scene);
         // 3.54 µm of sag and 4671.5 Hz at 112 facets, whatever the rest of the mesh.
         assert!((plan.sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");

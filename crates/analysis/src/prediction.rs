@@ -2,10 +2,10 @@
 //! defect when, and who carries how much.
 
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
+use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies, };
+use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies};
 use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
 
 use crate::Error;
@@ -111,7 +111,8 @@ impl Prediction {
         };
         let in_place = |defect: &DefectScene| {
             let mut passages = passages(defect);
-            passages.retain(|passage| scene.written.rollers_in_place().any(|number| number == passage.roller));
+            passages
+                .retain(|passage| scene.written.rollers_in_place().any(|number| number == passage.roller));
             passages
         };
         let course = |spall: DefectScene| SpallCourse {
@@ -124,7 +125,8 @@ impl Prediction {
             facet_lines,
             spalls: scene.written.spalls().into_iter().map(course).collect(),
             family: scene
-                .written.faults()
+                .written
+                .faults()
                 .first()
                 .filter(|_| !scene.written.operation.speed_varies())
                 .map(|on| family(*on, &kinematics)),
@@ -269,8 +271,11 @@ fn over_turns(scene: &ResolvedScene, defect: &DefectScene) -> Vec<Crossing> {
     let all = duty.relative_turns(until_s);
     // At a turn a second times are turns.
     let (rpm, all) = (60.0_f64.copysign(all), all.abs());
-    let mut crossings =
-        Kinematics::new(&scene.written.bearing, rpm).crossings(defect, &roller_angles_deg(&scene.written), all);
+    let mut crossings = Kinematics::new(&scene.written.bearing, rpm).crossings(
+        defect,
+        &roller_angles_deg(&scene.written),
+        all,
+    );
     crossings.retain_mut(|c| {
         let times = [c.entry_s, c.centre_s, c.exit_s].map(|turns| duty.time_of_turns(turns, until_s));
         let [Some(entry), Some(centre), Some(exit)] = times else { return false };
@@ -338,8 +343,11 @@ mod tests {
             form: FormScene::Missing,
             ..DeviationScene::default()
         };
-        let curve =
-            |scene: &Scene| Prediction::of(&scene.resolve(), &mesh(1257, 1030)).static_curve(&scene.resolve(), 50_000.0).unwrap();
+        let curve = |scene: &Scene| {
+            Prediction::of(&scene.resolve(), &mesh(1257, 1030))
+                .static_curve(&scene.resolve(), 50_000.0)
+                .unwrap()
+        };
         let steepest = |curve: &StaticCurve| {
             curve.force_n.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
         };

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use stribeck_scene::deviation::{FormScene, RollingSurface, SpallScene};
-use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::scene::{PocketWalls, };
+use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
+use stribeck_scene::scene::PocketWalls;
 use stribeck_scene::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
@@ -27,7 +27,8 @@ pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f6
     let over_angle: f64 = pairs.map(|(a, q)| 0.5 * (q[0] + q[1]) * (a[1] - a[0]).to_radians()).sum();
     let impulse = over_angle / motion.cage_rad_s.abs();
     // Both contacts push a roller without spin the same way round.
-    let share = 2.0 * scene.written.contact.friction * radius * impulse / (inertia * motion.roller_rad_s.abs());
+    let share =
+        2.0 * scene.written.contact.friction * radius * impulse / (inertia * motion.roller_rad_s.abs());
     (share.is_finite() && over_angle > 0.0).then(|| support_n / share)
 }
 
@@ -154,12 +155,12 @@ fn why_it_strays(scene: &ResolvedScene) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stribeck_scene::scene::Scene;
     use crate::kinematics::RollerMotion;
     use crate::prediction::Prediction;
     use stribeck_scene::deviation::DeviationScene;
     use stribeck_scene::run_info::MeshInfo;
     use stribeck_scene::scene::CageScene;
+    use stribeck_scene::scene::Scene;
 
     /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 · 16/6000) = 0.037 to turn over the
     /// edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and no more than a quarter of 0.3 mm over 6 mm, 0.0125, over a
@@ -218,7 +219,8 @@ mod tests {
     fn example_a_cage_that_strays_is_named() {
         // Pockets of 100 µm.
         let scene = Scene::default();
-        let path = |far: f64| straying(&scene.resolve(), &[1e-3, 1e-3 + 0.6 * far, 1e-3], &[0.0, 0.8 * far, 0.0]);
+        let path =
+            |far: f64| straying(&scene.resolve(), &[1e-3, 1e-3 + 0.6 * far, 1e-3], &[0.0, 0.8 * far, 0.0]);
         assert!(path(0.9e-3).is_none());
         assert!(
             path(1.2e-3)
@@ -233,13 +235,16 @@ mod tests {
                 thickness_mm: 4.0,
                 ..CageScene::default()
             };
-            let said = straying(&Scene { cage: Some(cage), ..scene.clone() }.resolve(), &[0.0, 0.9], &[0.0, 0.0]);
+            let said =
+                straying(&Scene { cage: Some(cage), ..scene.clone() }.resolve(), &[0.0, 0.9], &[0.0, 0.0]);
             assert!(
                 said.as_ref().is_some_and(|said| said.contains(words) && said.contains("900 mm")),
                 "{said:?}"
             );
         }
-        assert!(straying(&Scene { cage: None, ..scene.clone() }.resolve(), &[0.0, 1.0], &[0.0, 0.0]).is_none());
+        assert!(
+            straying(&Scene { cage: None, ..scene.clone() }.resolve(), &[0.0, 1.0], &[0.0, 0.0]).is_none()
+        );
     }
 
     /// The paper's bearing by hand: 0.3 N m s² … I = ½ m r² with m = 7850 · π · 9² · 30 mm³ = 59.9 g.

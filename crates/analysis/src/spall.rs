@@ -20,7 +20,7 @@
 //! The corner of the edge is taken as stiff as the raceway, which it is not quite (own).
 
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::scene::{DefectRing, };
+use stribeck_scene::scene::DefectRing;
 use stribeck_scene::static_load::RigidRings;
 
 /// Halvings of the bracket: beyond rounding.

@@ -20,14 +20,15 @@ use crate::{error::Error, grading, housing::housing, own_mesh, suspension::suspe
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
-    resolved::{CageGeometry, DefectGeometry, ResolvedScene, pocket_half_width},
     housing::HousingScene,
     kinematics::{FacetCounts, Kinematics},
     lubrication,
+    resolved::{CageGeometry, DefectGeometry, ResolvedScene, pocket_half_width},
     run_info::MeshInfo,
     scene::{
         ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, DampedBody, DefectRing,
-        RollerCopies, },
+        RollerCopies,
+    },
 };
 
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
@@ -259,7 +260,8 @@ impl Assembly {
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
         let path = scene.outer_race_radius - scene.roller_radius;
         let rollers: Result<Vec<(usize, Placed)>, Error> = scene
-            .written.rollers_in_place()
+            .written
+            .rollers_in_place()
             .map(|number| {
                 let i = number - 1;
                 let angle = scene.roller_angle(i);
@@ -284,7 +286,11 @@ impl Assembly {
         });
         let cage_mesh = cage_mesh.transpose()?;
 
-        let steel = Elastic::new(scene.material.youngs_modulus, scene.material.poissons_ratio, scene.material.density)?;
+        let steel = Elastic::new(
+            scene.material.youngs_modulus,
+            scene.material.poissons_ratio,
+            scene.material.density,
+        )?;
         let mut model = Model::new(mesh, steel, scene.thickness)?;
         model.hourglass_scale = scene.written.solver.hourglass_scale;
         model.gravity = [0.0, -scene.written.operation.gravity_m_s2];
@@ -322,7 +328,8 @@ impl Assembly {
         let around = |ring: DefectRing, own: bool, raceway: &Surface| {
             if own { raceway.facets() as f64 } else { scene.facets_around(ring, facets_around(scene, ring)) }
         };
-        let [own_outer, own_inner] = [&scene.written.outer_ring_mesh, &scene.written.inner_ring_mesh].map(Option::is_some);
+        let [own_outer, own_inner] =
+            [&scene.written.outer_ring_mesh, &scene.written.inner_ring_mesh].map(Option::is_some);
         let facets = FacetCounts {
             roller: scene.written.mesh.roller_facets,
             outer: around(DefectRing::Outer, own_outer, surface(&outer, "inner")),
@@ -360,8 +367,7 @@ impl Assembly {
 
     /// Structural damping of the scene's bodies, if there is some.
     fn structural_damping(&self, scene: &ResolvedScene) -> Result<Option<StructuralDamping>, Error> {
-        let (Some(chosen), Some(band)) =
-            (&scene.written.solver.structural_damping, scene.structural_damping)
+        let (Some(chosen), Some(band)) = (&scene.written.solver.structural_damping, scene.structural_damping)
         else {
             return Ok(None);
         };
@@ -546,12 +552,7 @@ impl Assembly {
 ///
 /// # Errors
 /// When there is no load of a name.
-pub fn load(
-    system: &mut System,
-    duty: &Duty,
-    load_n: f64,
-    at_s: f64,
-) -> Result<(), stribeck_system::Error> {
+pub fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<(), stribeck_system::Error> {
     system.scale_load(LOADED, duty.load_n(at_s) / load_n)?;
     if let Some(across) = duty.load_across_n(at_s) {
         system.scale_load(ACROSS, across / load_n)?;
@@ -635,7 +636,12 @@ fn grooves_in(scene: &ResolvedScene, ring: DefectRing) -> Vec<Groove> {
 
 /// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the rollers: piece i
 /// lies between roller i and the next one counter-clockwise.
-fn cage_part(scene: &ResolvedScene, cage: &CageGeometry, [inner, outer]: [f64; 2], path: f64) -> Result<Part, Error> {
+fn cage_part(
+    scene: &ResolvedScene,
+    cage: &CageGeometry,
+    [inner, outer]: [f64; 2],
+    path: f64,
+) -> Result<Part, Error> {
     let reach = scene.roller_radius + cage.pocket_clearance;
     let half_width = pocket_half_width(inner, outer, path, reach);
     let pieces = scene.rollers;

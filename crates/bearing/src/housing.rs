@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use stribeck_mesh::{Annulus, BoredBlock, Mesh, Part, SeatedBlock, Surface};
 use stribeck_scene::{
+    housing::{HousingScene, PedestalScene, SpringHousingScene},
     resolved::ResolvedScene,
-    housing::{HousingScene, PedestalScene, SpringHousingScene}, 
 };
 
 use crate::{error::Error, grading, own_mesh};
@@ -36,11 +36,7 @@ pub(crate) struct Housing {
 ///
 /// # Errors
 /// When it cannot be meshed, or its file says something else.
-pub(crate) fn housing(
-    scene: &ResolvedScene,
-    mesh: &Mesh,
-    back: &Surface,
-) -> Result<Option<Housing>, Error> {
+pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Result<Option<Housing>, Error> {
     let back = &polygon(scene, mesh, back);
     let made = match &scene.written.housing {
         HousingScene::Adapter => Housing {

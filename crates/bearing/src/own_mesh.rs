@@ -7,9 +7,9 @@ use stribeck_mesh::{
     decks::{Deck, ReadDeck},
 };
 use stribeck_scene::{
-    resolved::ResolvedScene,
     housing::{HousingScene, MeshHousingScene},
     mesh_text,
+    resolved::ResolvedScene,
     ring_mesh::RingMeshScene,
     scene::{DefectRing, Scene},
 };
@@ -165,9 +165,10 @@ pub fn check(scene: &ResolvedScene) -> Result<(), Error> {
     if let HousingScene::Mesh(mesh) = &scene.written.housing {
         housing(mesh, scene)?;
     }
-    for (mesh, of) in
-        [(&scene.written.outer_ring_mesh, DefectRing::Outer), (&scene.written.inner_ring_mesh, DefectRing::Inner)]
-    {
+    for (mesh, of) in [
+        (&scene.written.outer_ring_mesh, DefectRing::Outer),
+        (&scene.written.inner_ring_mesh, DefectRing::Inner),
+    ] {
         if let Some(mesh) = mesh {
             ring(mesh, of, scene)?;
         }

@@ -3,15 +3,8 @@
 use stribeck_solver::damping::{Frame, MassDamping};
 use stribeck_system::{Preload, UndecidedMotion};
 
-use crate::{
-    assembly::Machine,
-    error::Error,
-};
-use stribeck_scene::{
-    resolved::ResolvedScene,
-    kinematics::Kinematics,
-    scene::{DampingFrame, },
-};
+use crate::{assembly::Machine, error::Error};
+use stribeck_scene::{kinematics::Kinematics, resolved::ResolvedScene, scene::DampingFrame};
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;
@@ -44,7 +37,11 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
 ///
 /// # Errors
 /// When there is no equilibrium to be found.
-pub fn preload(machine: &mut Machine, scene: &ResolvedScene, k: &Kinematics) -> Result<Option<String>, Error> {
+pub fn preload(
+    machine: &mut Machine,
+    scene: &ResolvedScene,
+    k: &Kinematics,
+) -> Result<Option<String>, Error> {
     let mut undecided = Vec::new();
     // A ring that sits without friction may turn.
     if machine.pairs.seat().is_some() {

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use stribeck_modal::{OVERLOAD, compliance::Compliance};
 use stribeck_scene::{
-    resolved::{DefectGeometry, ResolvedScene}, 
+    resolved::{DefectGeometry, ResolvedScene},
     static_load,
 };
 use stribeck_solver::{Dynamics, statics::Modes, statics::SmallMotions};
@@ -90,11 +90,16 @@ impl Compliances {
 /// Angle of a place beside a groove, or between two, that is far from all of them; without grooves that of
 /// the load [rad].
 fn beside_grooves(scene: &ResolvedScene) -> f64 {
-    let beside_of =
-        |d: &DefectGeometry| d.angle + (0.5 * d.length + 2.0 * scene.outer_ring_thickness) / scene.outer_race_radius;
+    let beside_of = |d: &DefectGeometry| {
+        d.angle + (0.5 * d.length + 2.0 * scene.outer_ring_thickness) / scene.outer_race_radius
+    };
     let room = |at: f64| {
         let apart = |d: &DefectGeometry| (at - d.angle + PI).rem_euclid(TAU) - PI;
-        scene.grooves.iter().map(|d| apart(d).abs() - 0.5 * d.length / scene.outer_race_radius).fold(PI, f64::min)
+        scene
+            .grooves
+            .iter()
+            .map(|d| apart(d).abs() - 0.5 * d.length / scene.outer_race_radius)
+            .fold(PI, f64::min)
     };
     let between = scene.grooves.windows(2).map(|d| 0.5 * (d[0].angle + d[1].angle));
     let places = scene.grooves.iter().map(beside_of).chain(between);

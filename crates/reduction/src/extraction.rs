@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use stribeck_bearing::assembly::Machine;
 use stribeck_mesh::Mesh;
-use stribeck_scene::{resolved::ResolvedScene, housing::HousingScene, };
+use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_solver::{
     Dynamics, Force,
     state::{Moment, NodeForces},
@@ -82,7 +82,11 @@ pub(crate) struct Preload {
 
 impl Extraction {
     /// Reads a preloaded machine and takes it apart.
-    pub(crate) fn of(scene: &ResolvedScene, mut machine: Machine, mesh: &Mesh) -> Result<(Self, Parts), Error> {
+    pub(crate) fn of(
+        scene: &ResolvedScene,
+        mut machine: Machine,
+        mesh: &Mesh,
+    ) -> Result<(Self, Parts), Error> {
         let contact_forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
         let nodes = Nodes::of(&machine, scene)?;

@@ -11,10 +11,10 @@ use stribeck_modal::{
 };
 use stribeck_scene::{
     deviation::Relief,
-    resolved::{ResolvedScene, pocket_half_width},
     kinematics::Kinematics,
     lubrication::loaded_films,
-    scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies, },
+    resolved::{ResolvedScene, pocket_half_width},
+    scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies},
 };
 use stribeck_solver::structural_damping::StructuralDamping;
 use stribeck_surface::Law;
@@ -79,12 +79,20 @@ fn parameters(scene: &ResolvedScene, reduction: &Reduction) -> Result<Parameters
         .and_then(|law| law.with_damping(scene.written.contact.damping_ratio, scene.contact_layer_mass))?;
     let numbers: Vec<usize> = scene.written.rollers_in_place().map(|number| number - 1).collect();
     let rollers = rollers(scene, &numbers);
-        Ok(Parameters {
+    Ok(Parameters {
         outlines: outlines(scene, reduction, &numbers, &rollers),
-        radii: Radii { outer: scene.outer_race_radius, inner: scene.inner_race_radius, roller: scene.roller_radius },
+        radii: Radii {
+            outer: scene.outer_race_radius,
+            inner: scene.inner_race_radius,
+            roller: scene.roller_radius,
+        },
         thickness: scene.thickness,
         rollers,
-        contact: Contact { stiffness: law.stiffness, damping: law.damping, friction: scene.written.contact.friction },
+        contact: Contact {
+            stiffness: law.stiffness,
+            damping: law.damping,
+            friction: scene.written.contact.friction,
+        },
         damping: damping(scene)?,
         gravity: scene.gravity,
         speeds: speeds(&Kinematics::of(&scene.written)),

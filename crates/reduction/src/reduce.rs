@@ -9,7 +9,7 @@ use stribeck_bearing::{
 };
 use stribeck_mesh::Mesh;
 use stribeck_modal::{GROUP, Reduction, Seat};
-use stribeck_scene::{resolved::ResolvedScene, };
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_system::Parts;
 
 use crate::{
@@ -55,7 +55,12 @@ impl ReducedMesh {
 }
 
 /// Reduces a machine that has been taken apart at its preload.
-fn reduce(scene: &ResolvedScene, mesh: &Mesh, from: &Extraction, parts: &mut Parts) -> Result<Reduction, Error> {
+fn reduce(
+    scene: &ResolvedScene,
+    mesh: &Mesh,
+    from: &Extraction,
+    parts: &mut Parts,
+) -> Result<Reduction, Error> {
     let count = parts.dynamics.state.x.len();
     let preload = Preload::of(from, parts, mesh);
     let mut structure = Structure::of(scene, from, &preload, &parts.dynamics)?;

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::words::{kilonewtons, significant};
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::ring_mesh::RingMeshScene;
-use stribeck_scene::scene::{DefectRing, };
+use stribeck_scene::scene::DefectRing;
 
 /// The sentence under the title.
 pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_ms: f64) -> String {

@@ -5,7 +5,7 @@
 
 use std::fmt::Arguments;
 
-use stribeck_scene::{resolved::ResolvedScene, duty::Duty, };
+use stribeck_scene::{duty::Duty, resolved::ResolvedScene};
 
 /// The state of a bearing at the end of a sampling interval. Forces are means over the interval.
 #[derive(Debug, Clone, PartialEq, Default)]

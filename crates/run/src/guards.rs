@@ -15,7 +15,7 @@ mod softness;
 
 use std::fmt::{self, Display, Formatter};
 
-use stribeck_scene::{advice, resolved::ResolvedScene, run_info::RunInfo, };
+use stribeck_scene::{advice, resolved::ResolvedScene, run_info::RunInfo};
 
 use softness::Softness;
 
@@ -90,7 +90,10 @@ impl Guards {
             unsupported: 1e-3 * scene.written.guards.unsupported_warning_ms,
             element_size: scene.element_size,
             soft: Softness::of(scene),
-            annulus: [scene.inner_race_radius + radius - slack, scene.outer_race_radius - radius + depth + slack],
+            annulus: [
+                scene.inner_race_radius + radius - slack,
+                scene.outer_race_radius - radius + depth + slack,
+            ],
             cage: CageRoom::of(scene),
             holds_cage: advice::holds_cage(&scene.written),
             step_field,

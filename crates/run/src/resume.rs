@@ -4,7 +4,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::{
     resolved::ResolvedScene,
     run_dir::RunDir,
-    run_info::{RunInfo, Status}, 
+    run_info::{RunInfo, Status},
 };
 
 use crate::{

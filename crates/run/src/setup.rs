@@ -2,7 +2,7 @@
 
 use stribeck_scene::{
     resolved::ResolvedScene,
-    run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status}, 
+    run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status},
 };
 
 use crate::host::Host;

@@ -14,7 +14,7 @@ use crate::{
 use stribeck_scene::{
     resolved::ResolvedScene,
     run_dir::{RunDir, write_atomic},
-    run_info::{RunInfo, Status}, 
+    run_info::{RunInfo, Status},
     trace::TraceWriter,
 };
 

@@ -2,11 +2,7 @@
 //! keeps (THEORY §4.6). No pressure is computed.
 
 use crate::{
-    duty::LONGEST_RUN_S,
-    error::Error,
-    kinematics::Kinematics,
-    resolved::ResolvedScene,
-    static_load,
+    duty::LONGEST_RUN_S, error::Error, kinematics::Kinematics, resolved::ResolvedScene, static_load,
 };
 
 /// The film of the most loaded roller on one raceway.
@@ -98,10 +94,12 @@ mod tests {
     #[test]
     fn example_rough_surfaces_are_held_apart_by_their_tips() {
         let film = Some(FilmScene { roughness_um: 0.1, ..FilmScene::default() });
-        let [smooth, _] = loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
+        let [smooth, _] =
+            loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
         assert_eq!(smooth.least, smooth.thickness);
         let film = Some(FilmScene { roughness_um: 2.0, ..FilmScene::default() });
-        let [rough, _] = loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
+        let [rough, _] =
+            loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
         assert!(rough.lambda < 1.0 && (rough.least / 2e-6 - 1.0).abs() < 1e-12, "{rough:?}");
         let still = OperationScene { speed_rpm: 0.0, ..Scene::default().operation };
         let film = Some(FilmScene::default());

@@ -305,8 +305,7 @@ mod tests {
                     let scene = Scene::default();
                     let bearing = BearingScene { inner_race_diameter_mm, ..scene.bearing };
                     let housing = if turned % 2 == 0 { scene.housing.clone() } else { rigid.housing.clone() };
-                    let rings =
-                        RigidRings::new(&Scene { bearing, housing, ..Scene::default() }.resolve());
+                    let rings = RigidRings::new(&Scene { bearing, housing, ..Scene::default() }.resolve());
                     for load_n in (-6..12).map(|power| 10.0_f64.powf(0.5 * f64::from(power))) {
                         let load = rings
                             .distribute(load_n, &angles)

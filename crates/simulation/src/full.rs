@@ -15,12 +15,7 @@ use stribeck_bearing::{
 use stribeck_run::{
     channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
-use stribeck_scene::{
-    duty::Duty,
-    resolved::ResolvedScene,
-    run_info::RunInfo,
-    scene::{Start},
-};
+use stribeck_scene::{duty::Duty, resolved::ResolvedScene, run_info::RunInfo, scene::Start};
 use stribeck_system::{Ledger, Snapshot};
 
 use crate::{

@@ -8,7 +8,7 @@ use stribeck_run::{
     setup::Setup,
     time_loop::Motion,
 };
-use stribeck_scene::{resolved::ResolvedScene, run_dir::RunDir, run_info::RunInfo, };
+use stribeck_scene::{resolved::ResolvedScene, run_dir::RunDir, run_info::RunInfo};
 
 use crate::error::Error;
 

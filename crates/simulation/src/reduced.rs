@@ -14,7 +14,7 @@ use stribeck_run::{host::Progress, setup::Setup};
 use stribeck_scene::{
     resolved::ResolvedScene,
     run_info::{ReducedInfo, RunInfo},
-    scene::{ModelScene, ReducedScene, },
+    scene::{ModelScene, ReducedScene},
 };
 
 use crate::{
@@ -154,7 +154,11 @@ pub fn steps_in_a_sample(scene: &ResolvedScene, runs: Option<&Path>) -> Result<u
 }
 
 /// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there are in a sample.
-fn in_steps(scene: &ResolvedScene, wanted: &ReducedScene, modal: ModalBearing) -> Result<(Bearing, usize), Error> {
+fn in_steps(
+    scene: &ResolvedScene,
+    wanted: &ReducedScene,
+    modal: ModalBearing,
+) -> Result<(Bearing, usize), Error> {
     let interval = scene.interval;
     let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
     let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;

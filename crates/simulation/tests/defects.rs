@@ -35,7 +35,10 @@ const ALL: &str = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 5.3, dept
 
 /// Radii and angles of the nodes of a body's surface about its centre.
 fn polar(scene: &Scene, surface: &str, centre: [f64; 2]) -> Vec<[f64; 2]> {
-    let machine = Assembly::new(&scene.resolve()).expect("it meshes").machine(&scene.resolve(), 1).expect("it is laid out");
+    let machine = Assembly::new(&scene.resolve())
+        .expect("it meshes")
+        .machine(&scene.resolve(), 1)
+        .expect("it is laid out");
     let nodes = machine.system.nodes(surface).expect("a surface of every scene");
     let polar = |n: u32| {
         let [x, y] = machine.system.position(n);
@@ -88,7 +91,10 @@ fn analytic_nodes_lie_as_deep_as_the_scene_says() {
 #[test]
 fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
     let step = |scene: &Scene| {
-        let machine = Assembly::new(&scene.resolve()).expect("it meshes").machine(&scene.resolve(), 1).expect("it is laid out");
+        let machine = Assembly::new(&scene.resolve())
+            .expect("it meshes")
+            .machine(&scene.resolve(), 1)
+            .expect("it is laid out");
         machine.system.critical_time_step()
     };
     let sound = step(&scene("", 1.0));

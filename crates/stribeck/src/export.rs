@@ -101,7 +101,10 @@ fn provenance(run: &Run) -> Vec<String> {
     let info = &run.info;
     let duration_s = info.interval_s * info.samples as f64;
     vec![
-        format!("{}: Stribeck {} ({}), scene {}", run.scene.written.name, info.version, info.commit, info.scene_hash),
+        format!(
+            "{}: Stribeck {} ({}), scene {}",
+            run.scene.written.name, info.version, info.commit, info.scene_hash
+        ),
         format!(
             "run {:?}, {} samples at {} Hz, {:.6} s resolve {:.3} Hz",
             info.status,

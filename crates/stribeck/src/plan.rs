@@ -69,7 +69,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         plan.lumped.frequency_hz,
         plan.lumped.smoothing.abs(),
         plan.lumped.phases,
-        if paper::is_scene_of(&scene.written) { "; docs/results/noise.md has two to five times as much" } else { "" }
+        if paper::is_scene_of(&scene.written) {
+            "; docs/results/noise.md has two to five times as much"
+        } else {
+            ""
+        }
     );
     if let Some([outer, inner]) = plan.films {
         say!(
@@ -105,11 +109,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             let runs = Some(place.runs()).filter(|runs| runs.is_dir());
             eprintln!("modes …");
             let per_sample = steps_in_a_sample(&scene, runs.as_deref())?;
-            let steps =
-                (per_sample as f64 * 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us).round();
+            let steps = (per_sample as f64 * 1e3 * scene.written.solver.duration_ms
+                / scene.written.output.interval_us)
+                .round();
             let oil = if scene.written.film.is_some() { OIL } else { 1.0 };
-            let cost =
-                1e-9 * options.ns_per_roller_step * oil * steps * scene.written.rollers_in_place().count() as f64;
+            let cost = 1e-9
+                * options.ns_per_roller_step
+                * oil
+                * steps
+                * scene.written.rollers_in_place().count() as f64;
             let step_us = scene.written.output.interval_us / per_sample as f64;
             say!(
                 "  reduced model: {steps:.0} steps of {step_us:.3} µs: about {} of processor time at {} ns per roller-step{}, beside the modes of {} elements",

@@ -65,7 +65,7 @@ fn over_angle(folder: &Path, family: (&str, f64)) -> OverAngle {
         resolution: finding.resolution,
         orders: spectrum.frequencies_hz().to_vec(),
         power: spectrum.values().to_vec(),
-        moved: run.scene.bearing.rollers as f64 * cage / swept(&turns),
+        moved: run.scene.written.bearing.rollers as f64 * cage / swept(&turns),
     }
 }
 

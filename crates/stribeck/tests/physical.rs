@@ -57,11 +57,11 @@ fn analytic_contacts_of_the_physical_scene_are_hertzian() {
     // One roller stands in the middle of the load.
     (scene.defect, scene.output.frames) = (None, None);
     scene.bearing.first_roller_deg = 90.0;
-    let assembly = Assembly::new(&scene).expect("a mesh");
-    let mut machine = assembly.machine(&scene, 2).expect("a machine");
-    preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");
-
     let g = scene.resolve();
+    let assembly = Assembly::new(&g).expect("a mesh");
+    let mut machine = assembly.machine(&g, 2).expect("a machine");
+    preload(&mut machine, &g, &assembly.kinematics).expect("an equilibrium");
+
     let mesh = &assembly.model.mesh;
     let reference = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
     let system = &mut machine.system;

@@ -5,13 +5,13 @@ use std::path::Path;
 
 use stribeck_analysis::plan::{MeshFacts, Plan};
 use stribeck_bearing::assembly::Assembly;
-use stribeck_run::host::Host;
-use stribeck_simulation::simulate;
 use stribeck_report as report;
+use stribeck_run::host::Host;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 
 /// Events may be this far from the centre over the edge: contacts have a width.
@@ -23,6 +23,7 @@ const LENGTH: f64 = 0.05;
 const PLANNED_STEP: f64 = 0.2;
 
 fn its_plan_holds(scene: &Scene, info: &RunInfo) {
+    let scene = &scene.resolve();
     let assembly = Assembly::new(scene).expect("a sound scene");
     let element_time_step_s = assembly.element_time_step_s(scene);
     let mesh = MeshFacts { counts: assembly.mesh_info(), element_time_step_s };
@@ -35,7 +36,7 @@ fn its_plan_holds(scene: &Scene, info: &RunInfo) {
 /// Bit for bit the mesh that the scene makes: displacements of frames count from it.
 fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
     let read = RunMesh::read(folder.join("mesh.vtu")).expect("a mesh");
-    let made = Assembly::new(scene).expect("a sound scene").model.mesh;
+    let made = Assembly::new(&scene.resolve()).expect("a sound scene").model.mesh;
     let places = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(&x, &y)| [x, y]).collect::<Vec<_>>();
     assert!(read.reference == places(&made.x, &made.y));
     assert!(read.quads == made.quads && read.triangles == made.triangles);

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::kinematics::Crossing;
-use stribeck_scene::scene::{DefectRing, };
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::DefectRing;
 
 use super::{CrossingForce, SensorSignal};
 use crate::Error;

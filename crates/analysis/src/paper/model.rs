@@ -57,7 +57,8 @@ fn discretisation(source: &Source<'_>) -> Vec<PaperRow> {
     } else {
         GIVEN
     };
-    let facet_mm = std::f64::consts::PI * scene.written.bearing.roller_diameter_mm / mesh.roller_facets as f64;
+    let facet_mm =
+        std::f64::consts::PI * scene.written.bearing.roller_diameter_mm / mesh.roller_facets as f64;
     vec![
         number(PART, "Element size", 0.5, Some(scene.written.mesh.size_mm), "mm", graded),
         number(
@@ -109,7 +110,12 @@ fn operation(source: &Source<'_>) -> Vec<PaperRow> {
     };
     let samples_khz = 1e3 / scene.written.output.interval_us;
     vec![
-        given("Offset of the roller left of the defect", 4.0, scene.written.bearing.first_roller_deg - top, "°"),
+        given(
+            "Offset of the roller left of the defect",
+            4.0,
+            scene.written.bearing.first_roller_deg - top,
+            "°",
+        ),
         given("Distance of neighbouring rollers", 15.0, 360.0 / scene.written.bearing.rollers as f64, "°"),
         number(
             PART,

@@ -1,6 +1,5 @@
 //! What the paper gets out: frequencies, levels, the notch, the events (its sections 3 to 5).
 
-
 use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words};
 use crate::summary::PaperRow;
 

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::scene::{ModelScene, };
+use stribeck_scene::scene::ModelScene;
 
 use super::tables::{decimals, mean, shown};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};

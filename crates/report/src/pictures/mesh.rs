@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::mesh_file::{Body, RunMesh};
-use stribeck_scene::scene::{DefectRing, };
+use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
+use stribeck_scene::scene::DefectRing;
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
@@ -139,7 +139,8 @@ pub(super) fn defect(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
             sheet.path(&ring, true, "fill:none;stroke:#b3202c;stroke-width:2");
         }
     });
-    let offset = (scene.written.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
+    let offset =
+        (scene.written.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
     let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
     sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
     let middle = if spall.is_some() {

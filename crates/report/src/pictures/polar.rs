@@ -1,7 +1,7 @@
 //! The load zone as a polar plot: what each place of the outer raceway carries, at rest and in motion.
 
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::housing::HousingScene;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::plot::{Anchor, Colour, Picture, Sheet};
 use stribeck_analysis::findings::Findings;

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use stribeck_scene::frames::{Frame, Window};
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::mesh_file::RunMesh;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::Error;
 use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};

@@ -1,7 +1,7 @@
 //! Contact that is softer than the bearing itself.
 
 use stribeck_scene::{
-    resolved::ResolvedScene, 
+    resolved::ResolvedScene,
     static_load::{RigidRings, angles_to_load_deg},
 };
 

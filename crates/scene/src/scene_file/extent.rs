@@ -408,9 +408,13 @@ fn rotating_load(scene: &Scene) -> Option<Finding> {
         );
         let less = Remedy::new(FORCE, format!("less than {} N", number(load)));
         let more = Remedy::new("operation.load_n", format!("more than {} N", number(rotating.force_n)));
-        let housing = Remedy::new("housing", "`rigid()`, `springs()` or `pedestal()`, which surround the ring");
-        let remedies =
-            vec![less.number(round_down(0.2 * load, 2), "a fifth"), more.number(5.0 * rotating.force_n, ""), housing];
+        let housing =
+            Remedy::new("housing", "`rigid()`, `springs()` or `pedestal()`, which surround the ring");
+        let remedies = vec![
+            less.number(round_down(0.2 * load, 2), "a fifth"),
+            more.number(5.0 * rotating.force_n, ""),
+            housing,
+        ];
         return Some(Finding::new(message, remedies));
     }
     let start = duty.load_n(0.0);

@@ -264,11 +264,7 @@ fn issue_no_header_is_longer_than_numpy_reads() {
             "archive"
         } else {
             assert!(bytes.starts_with(&header) && header.len() <= 10_012, "{rollers}: {}", header.len());
-            if header.windows(5).any(|window| window == b"names") {
-                "short form"
-            } else {
-                "pairs"
-            }
+            if header.windows(5).any(|window| window == b"names") { "short form" } else { "pairs" }
         };
         let expected = match rollers {
             0..=34 => "pairs",

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::frames::{COLUMNS, Window};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::trace::TraceWriter;
 
 use stribeck_bearing::assembly::{Assembly, Machine};

@@ -14,11 +14,7 @@
 
 use stribeck_bearing::assembly::{Assembly, Machine};
 use stribeck_run::guards::{self, OUT_OF_PLACE, Placed, When};
-use stribeck_scene::{
-    resolved::ResolvedScene,
-    run_info::RunInfo,
-    scene::{GuardsScene, },
-};
+use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_solver::Elastic;
 use stribeck_system::{Limits, Scale, System, Words};
 
@@ -63,7 +59,8 @@ impl Guards {
                 step / critical
             ));
         }
-        let facet = std::f64::consts::PI * scene.written.bearing.roller_diameter_mm / scene.written.mesh.roller_facets as f64;
+        let facet = std::f64::consts::PI * scene.written.bearing.roller_diameter_mm
+            / scene.written.mesh.roller_facets as f64;
         let size = 1e-3 * scene.written.mesh.size_mm.min(facet);
         // A regular mesh of squares of side a has ω = (2/a) √((λ + 2µ)/ρ) at most for plane waves along a row.
         let square = size / steel.dilatational_speed();

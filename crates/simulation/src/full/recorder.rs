@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::assembly::Machine;
 use stribeck_run::channels::{CageSample, RollerSample, Sample, SensorSample};
-use stribeck_scene::{resolved::ResolvedScene, };
+use stribeck_scene::resolved::ResolvedScene;
 
 /// Sums between samples, and the sample made of them.
 #[derive(Debug)]

@@ -2,11 +2,7 @@
 
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
 use stribeck_run::guards::{self, Placed, When};
-use stribeck_scene::{
-    resolved::ResolvedScene,
-    run_info::RunInfo,
-    scene::{GuardsScene, },
-};
+use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_system::Ledger;
 
 /// Imbalance of a run's ledger, and what it is compared with.

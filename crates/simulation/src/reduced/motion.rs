@@ -9,7 +9,7 @@ use stribeck_run::{
     error::Error,
     time_loop::Motion,
 };
-use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, };
+use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo};
 use stribeck_system::{Balance, Ledger, Scale};
 
 use super::guards::{Guards, LedgerError};

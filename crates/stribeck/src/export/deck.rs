@@ -6,11 +6,11 @@ use anyhow::{Result, bail};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::mesh_file::{self, RunMesh};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
-use stribeck_scene::scene::{MaterialScene, };
+use stribeck_scene::scene::MaterialScene;
 
 use super::provenance;
 
@@ -154,7 +154,10 @@ fn left_out(scene: &ResolvedScene) -> Vec<String> {
             matches!(scene.written.housing, HousingScene::Springs(_)),
             "the springs and dampers of the housing, which hold the ring",
         ),
-        (matches!(scene.written.housing, HousingScene::Rigid(_)), "the mass of the housing beyond that of the ring"),
+        (
+            matches!(scene.written.housing, HousingScene::Rigid(_)),
+            "the mass of the housing beyond that of the ring",
+        ),
     ];
     all.into_iter().filter(|(there, _)| *there).map(|(_, what)| what.to_owned()).collect()
 }
