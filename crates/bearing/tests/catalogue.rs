@@ -79,14 +79,14 @@ fn off_from_rigid_rings(bearing: &str, defects: &str) -> (f64, f64) {
           defects: [{defects}],
           mesh: (roller_facets: 160, grading: ()), contact: (surface: arc, penalty_scale: 10))"
     );
-    let scene = Scene::parse(&text, "here").expect("valid");
-    let assembly = Assembly::new(&scene.resolve()).expect("a mesh");
-    let mut machine = assembly.machine(&scene.resolve(), 1).expect("a machine");
-    let warning = preload(&mut machine, &scene.resolve(), &assembly.kinematics).expect("an equilibrium");
+    let scene = Scene::parse(&text, "here").expect("valid").resolve();
+    let assembly = Assembly::new(&scene).expect("a mesh");
+    let mut machine = assembly.machine(&scene, 1).expect("a machine");
+    let warning = preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");
     assert_eq!(warning, None, "{bearing} {defects}");
     let _ = machine.system.contact_forces();
     let force: Vec<f64> = machine.system.resultants().map(|r| r.force[0].hypot(r.force[1])).collect();
-    let theory = static_load::at_start(&scene.resolve()).expect("an equilibrium");
+    let theory = static_load::at_start(&scene).expect("an equilibrium");
     let largest = theory.max_roller_n();
     let off = theory
         .roller_n

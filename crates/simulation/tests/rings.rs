@@ -31,13 +31,14 @@ fn notched(more: &str) -> String {
 
 /// Forces on the rollers by outer and inner raceway at the preload [N].
 fn forces(scene: &Scene) -> Vec<[f64; 2]> {
-    let assembly = Assembly::new(&scene.resolve()).expect("a mesh");
-    let mut machine = assembly.machine(&scene.resolve(), 1).expect("a machine");
-    assert_eq!(preload(&mut machine, &scene.resolve(), &assembly.kinematics).expect("an equilibrium"), None);
+    let scene = &scene.resolve();
+    let assembly = Assembly::new(scene).expect("a mesh");
+    let mut machine = assembly.machine(scene, 1).expect("a machine");
+    assert_eq!(preload(&mut machine, scene, &assembly.kinematics).expect("an equilibrium"), None);
     let _ = machine.system.contact_forces();
     let all: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
     let pairs = machine.pairs;
-    (0..scene.bearing.rollers).flat_map(|i| [all[pairs.outer(i)], all[pairs.inner(i)]]).collect()
+    (0..scene.rollers).flat_map(|i| [all[pairs.outer(i)], all[pairs.inner(i)]]).collect()
 }
 
 /// A body of a mesh as an Abaqus file, with sets of its nodes between two radii [m].

@@ -11,9 +11,10 @@ const FACTOR: f64 = 0.9;
 
 /// The scene in motion.
 pub(crate) fn machine(scene: &Scene, threads: usize) -> (Machine, usize) {
-    let assembly = Assembly::new(&scene.resolve()).expect("a scene that can be meshed");
+    let scene = &scene.resolve();
+    let assembly = Assembly::new(scene).expect("a scene that can be meshed");
     let elements = assembly.model.mesh.elements();
-    let mut machine = assembly.machine(&scene.resolve(), threads).expect("a scene that can be laid out");
+    let mut machine = assembly.machine(scene, threads).expect("a scene that can be laid out");
     machine.system.set_time_step_factor(FACTOR).expect("a positive time step");
 
     let k = &assembly.kinematics;
