@@ -1,4 +1,4 @@
-//! The ledger of lines: which of them are the bearing, which are its mesh, and what the spectrum shows of each.
+//! The ledger of lines: which belong to the bearing, which to its mesh, and how each stands in the spectrum.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, PeriodCount, Spectrum};
@@ -14,7 +14,7 @@ use crate::tones::{self, PredictedLine, Tone};
 /// Where a line comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Family {
+pub enum Origin {
     /// Facets that pass a contact: an artefact of the mesh.
     Mesh,
     /// Difference of two facet lines: how often they come in and out of step.
@@ -29,8 +29,8 @@ pub enum Family {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Artefact {
     /// Where it comes from.
-    pub family: Family,
-    /// What it is, in words.
+    pub family: Origin,
+    /// Name in words.
     pub name: String,
     /// Multiple of the fundamental, from 1.
     pub harmonic: usize,
@@ -42,7 +42,7 @@ pub struct Artefact {
     pub measured_hz: Option<f64>,
     /// Peak amplitude [g].
     pub level_g: Option<f64>,
-    /// What to make of it, in words.
+    /// Interpretation in words.
     pub verdict: String,
 }
 
@@ -53,7 +53,7 @@ pub const LAST_MODE: u32 = 6;
 /// A mounted ring's frequency may differ from the free thin ring's by this much.
 const MODE_REACH: f64 = 0.12;
 
-/// What a run shows of its lines.
+/// Measured lines and spectra of a run.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     /// Facet lines measured one by one.
@@ -78,7 +78,7 @@ pub fn ledger(
     motion: &KinematicsFinding,
     seen: &Seen<'_>,
 ) -> Result<Vec<Artefact>, Error> {
-    let comb = Comb::of(prediction, motion, seen.density);
+    let comb = ShockComb::of(prediction, motion, seen.density);
     let here = seen.tones.iter().filter(|t| t.sensor == seen.sensor);
     let mut all: Vec<Artefact> = here.map(|tone| Artefact::of_mesh(tone, comb.as_ref(), seen)).collect();
     all.extend(beats(prediction, motion, seen.density));
@@ -90,16 +90,17 @@ pub fn ledger(
 
 /// Predicted lines of the defect: BPFO or BPFI and its multiples.
 pub fn defect_lines(prediction: &Prediction, motion: &KinematicsFinding) -> Vec<PredictedLine> {
-    let Some((name, hz)) = prediction.family else { return Vec::new() };
-    let mut lines = tones::harmonics(&[(name.to_owned(), hz)], DEFECT_HARMONICS, f64::INFINITY);
+    let Some(shocks) = prediction.shocks else { return Vec::new() };
+    let mut lines =
+        tones::harmonics(&[(shocks.name().to_owned(), shocks.hz)], DEFECT_HARMONICS, f64::INFINITY);
     for line in &mut lines {
         line.from_motion_hz = prediction.moved(motion.bpfo_hz).map(|hz| hz * line.harmonic as f64);
     }
     lines
 }
 
-/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples are not told from
-/// whatever else is there.
+/// Whether a segment of the record holds ten periods of `fundamental_hz`: below that, its multiples cannot be
+/// distinguished from other lines.
 pub fn shows_family(density: &Spectrum, fundamental_hz: f64) -> bool {
     density.resolution().segment_s * fundamental_hz >= PeriodCount::ENOUGH
 }
@@ -127,7 +128,7 @@ fn beats(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum
                 "the two lines are split, so the beat is not a line of its own".to_owned()
             };
             all.push(Artefact {
-                family: Family::Beat,
+                family: Origin::Beat,
                 name: format!("{first} with {second}"),
                 harmonic: 1,
                 predicted_hz,
@@ -149,7 +150,7 @@ fn defect(
 ) -> Result<Vec<Artefact>, Error> {
     let lines = defect_lines(prediction, motion);
     let resolution = density.resolution();
-    let fundamental = prediction.family.map_or(0.0, |(_, hz)| hz);
+    let fundamental = prediction.shocks.map_or(0.0, |shocks| shocks.hz);
     let split = shows_family(density, fundamental);
     let tones = if split { tones::measure(sensor, &lines, density)? } else { Vec::new() };
     let entry = |line: &PredictedLine| {
@@ -166,7 +167,7 @@ fn defect(
             }
         };
         Artefact {
-            family: Family::Defect,
+            family: Origin::Defect,
             name: line.name.clone(),
             harmonic: line.harmonic,
             predicted_hz: line.predicted_hz,
@@ -179,20 +180,21 @@ fn defect(
     Ok(lines.iter().map(entry).collect())
 }
 
-/// All multiples of the defect's frequency, where a spectrum shows them: knocks make a comb over the whole spectrum.
-struct Comb {
+/// All multiples of the defect's frequency, where a spectrum shows them: knocks make a comb over the whole
+/// spectrum.
+struct ShockComb {
     name: &'static str,
     spacing_hz: f64,
-    /// A line closer to a tooth than this is not told from it [Hz].
+    /// A line closer to a multiple than this cannot be distinguished from it [Hz].
     reach_hz: f64,
 }
 
-impl Comb {
+impl ShockComb {
     fn of(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum) -> Option<Self> {
-        let (name, hz) = prediction.family?;
-        let spacing_hz = prediction.moved(motion.bpfo_hz).unwrap_or(hz);
+        let shocks = prediction.shocks?;
+        let spacing_hz = prediction.moved(motion.bpfo_hz).unwrap_or(shocks.hz);
         let reach_hz = 0.5 * density.resolution().width_6db_hz;
-        shows_family(density, spacing_hz).then_some(Self { name, spacing_hz, reach_hz })
+        shows_family(density, spacing_hz).then_some(Self { name: shocks.name(), spacing_hz, reach_hz })
     }
 
     /// The multiple that stands at `hz`, if any.
@@ -202,9 +204,10 @@ impl Comb {
     }
 }
 
-/// A natural frequency with the highest peak near it. It is never booked as measured: a mounted ring's frequencies differ
-/// from the free ring's by more than a peak nearby can prove, and most peaks have another cause.
-fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Option<&Comb>) -> Artefact {
+/// A natural frequency with the highest peak near it. It is never booked as measured: a mounted ring's
+/// frequencies differ from the free ring's by more than a peak nearby can prove, and most peaks have another
+/// cause.
+fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Option<&ShockComb>) -> Artefact {
     let density = seen.density;
     let width = density.resolution().width_6db_hz;
     let near =
@@ -232,7 +235,7 @@ fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Opti
         }
     };
     Artefact {
-        family: Family::Ring,
+        family: Origin::Ring,
         name: format!("outer ring, n = {n}"),
         harmonic: 1,
         predicted_hz: hz,
@@ -244,8 +247,9 @@ fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Opti
 }
 
 impl Artefact {
-    /// A facet line. Only a family that was found by its whole comb claims a peak; one at the predicted place proves nothing.
-    fn of_mesh(tone: &Tone, comb: Option<&Comb>, seen: &Seen<'_>) -> Self {
+    /// A facet line. Only a family that was found by its whole comb claims a peak; one at the predicted place
+    /// proves nothing.
+    fn of_mesh(tone: &Tone, comb: Option<&ShockComb>, seen: &Seen<'_>) -> Self {
         let family = seen.families.iter().find(|f| f.name == tone.name);
         let found = family.is_some_and(|f| f.found);
         let carrier = family.filter(|_| tone.harmonic == 1);
@@ -271,7 +275,7 @@ impl Artefact {
             None => (None, None),
         };
         Self {
-            family: Family::Mesh,
+            family: Origin::Mesh,
             name: tone.name.clone(),
             harmonic: tone.harmonic,
             predicted_hz: tone.predicted_hz,
@@ -289,7 +293,7 @@ mod tests {
 
     #[test]
     fn example_multiples_of_bpfo_are_teeth_and_what_lies_between_is_not() {
-        let comb = Comb { name: "BPFO", spacing_hz: 89.8, reach_hz: 3.0 };
+        let comb = ShockComb { name: "BPFO", spacing_hz: 89.8, reach_hz: 3.0 };
         assert_eq!((comb.tooth(89.8), comb.tooth(628.7), comb.tooth(592.0)), (Some(1), Some(7), None));
         assert_eq!((comb.tooth(1.0), comb.tooth(45.0)), (None, None));
     }

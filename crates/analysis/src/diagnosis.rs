@@ -1,5 +1,5 @@
-//! What the leading sensor would tell somebody who does not know the scene: the verdict of [`measured`](crate::measured) on the
-//! record, beside the defects that the scene has.
+//! Blind diagnosis from the leading sensor, without the scene: the verdict of [`measured`](crate::measured)
+//! on the record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
@@ -11,7 +11,7 @@ use stribeck_scene::resolved::ResolvedScene;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
-use crate::measured::{Analysis, Defect, Family, Machine, sidebands_seen};
+use crate::measured::{AccelerationUnit, Analysis, Defect, Family, Machine, sidebands_seen};
 use crate::record::Record;
 
 /// Verdict on a record, beside the truth.
@@ -19,7 +19,7 @@ use crate::record::Record;
 pub struct DiagnosisFinding {
     /// The sensor and component, as the trace names it.
     pub channel: String,
-    /// What the record shows, in one sentence.
+    /// The conclusion in one sentence.
     pub verdict: String,
     /// One over the length of the segments behind the envelope spectra [Hz].
     pub resolution_hz: f64,
@@ -30,8 +30,8 @@ pub struct DiagnosisFinding {
 /// One family of lines in the envelope spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DiagnosedFamily {
-    /// `BPFO`, `BPFI`, `BSF` or `FTF`.
-    pub name: String,
+    /// Whose family it is.
+    pub name: Defect,
     /// Frequency of rolling without slip [Hz].
     pub expected_hz: f64,
     /// Frequency of the recorded motion [Hz].
@@ -40,7 +40,8 @@ pub struct DiagnosedFamily {
     pub measured_hz: Option<f64>,
     /// Height of its first harmonic above the background [dB].
     pub level_db: Option<f64>,
-    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines.
+    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+    /// lines.
     #[serde(default)]
     pub in_passages: bool,
     /// Whether the record is said to show such a defect.
@@ -60,12 +61,12 @@ pub struct Sidebands {
     pub of: String,
     /// The same [Hz].
     pub spacing_hz: f64,
-    /// How many of them noise would not make, of six.
+    /// Number of them above the noise, of six.
     pub seen: usize,
 }
 
-/// What channel `name` of the record says by itself; `None` where it is too short or not recorded. The longest transforms of a run:
-/// nothing else need be in memory.
+/// Diagnosis of channel `name` without the scene; `None` where it is too short or not recorded. The longest
+/// transforms of a run: nothing else need be in memory.
 ///
 /// # Errors
 /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite signal is refused.
@@ -79,8 +80,8 @@ pub fn analysis(
     judged(scene, record, expected, name, samples)
 }
 
-/// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always has some. Its seed is
-/// fixed.
+/// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always
+/// has some. Its seed is fixed.
 ///
 /// # Errors
 /// As [`analysis`].
@@ -112,7 +113,8 @@ fn judged(
         outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
         bearing: Some(bearing),
     };
-    let channel = Channel::held(name.to_owned(), samples).in_unit(Some("m/s²".to_owned()));
+    let channel = Channel::held(name.to_owned(), samples)
+        .in_unit(Some(AccelerationUnit::MetrePerSecondSquared.symbol().to_owned()));
     match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         // A record that is too short, or a sensor that stands still.
         Err(Error::NoSignal(_)) => Ok(None),
@@ -134,14 +136,14 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
         };
         let sidebands = sides.and_then(|(of, hz)| sidebands(family, analysis.band_of(family)?, of, hz));
         DiagnosedFamily {
-            name: family.name.to_string(),
+            name: family.name,
             expected_hz: family.expected_hz,
             from_motion_hz: from_motion(family.name, family.in_passages, motion, &present, steady),
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
             claimed: family.claimed,
-            present: present.iter().any(|on| family_of(*on) == family.name),
+            present: present.iter().any(|on| Defect::on(*on) == family.name),
             reason: family.reason.to_string(),
             sidebands,
         }
@@ -151,15 +153,6 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
         verdict: analysis.findings.verdict.clone(),
         resolution_hz: analysis.findings.resolution_hz,
         families: families.collect(),
-    }
-}
-
-/// The family of a defect on a surface.
-pub fn family_of(on: RollingSurface) -> Defect {
-    match on {
-        RollingSurface::Outer => Defect::Bpfo,
-        RollingSurface::Inner => Defect::Bpfi,
-        RollingSurface::Roller(_) => Defect::Bsf,
     }
 }
 
@@ -175,15 +168,17 @@ fn from_motion(
         Defect::Bpfo => motion.bpfo_hz,
         // They pass either raceway as often as the shaft takes them round, less what they pass the other.
         Defect::Bpfi => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
-        // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of the cage to the next its phase goes
-        // on by all that its roller has turned, outside the load zone as well: lines stand at the mean spin.
+        // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of
+        // the cage to the next its phase goes on by all that its roller has turned, outside the load zone as
+        // well: lines stand at the mean spin.
         Defect::Bsf if in_passages => motion.roller_spin_hz,
         Defect::Bsf => {
             let damaged = |roller: &&RollerMotion| present.contains(&RollingSurface::Roller(roller.roller));
             let own = mean(motion.rollers.iter().filter(damaged).map(|roller| roller.spin_hz));
             own.or(motion.roller_spin_hz)
         }
-        // Turns in space, but for speeds that change: orders are those beside an outer ring that stands still.
+        // Turns in space, but for speeds that change: orders are those beside an outer ring that stands
+        // still.
         Defect::Ftf if steady => motion.cage_hz,
         Defect::Ftf => motion.cage_on_outer_hz[0].or(motion.cage_hz),
     }

@@ -1,11 +1,13 @@
 //! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.11).
 //!
-//! Where the speed changes, a family has no frequency: it has an order, so many to a turn of the shaft. The squared envelope of
-//! the leading sensor, whose resonances stay where they are in time, is averaged over equal steps of the shaft's angle, which
-//! the run records as a tachometer would; its spectrum then has the family's lines at their orders.
+//! Where the speed changes, a family has no frequency: it has an order, its number of periods in a turn of
+//! the shaft. The squared envelope of the leading sensor, whose resonances stay where they are in time, is
+//! averaged over equal steps of the shaft's angle, which the run records as a tachometer would; its spectrum
+//! then has the family's lines at their orders.
 //!
-//! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the outer ring turns, too, their
-//! orders count turns of the shaft against it, and the angle is that between the rings.
+//! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the
+//! outer ring turns, too, their orders count turns of the shaft against it, and the angle is that between the
+//! rings.
 
 use std::f64::consts::TAU;
 
@@ -14,33 +16,33 @@ use stribeck_dsp::{
     Detrend, Envelope, PeriodCount, PeriodVerdict, Scaling, Spectrum, Welch, WelchOptions, Window,
     means_over_angle,
 };
-use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
 use crate::Error;
+use crate::defect::{Defect, Shocks};
 use crate::enveloping::band_hz;
 use crate::kinematics::{KinematicsFinding, mean};
 use crate::record::Record;
 use crate::tones;
 
-/// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is looked for loses less
-/// than 2 %.
+/// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is
+/// looked for loses less than 2 %.
 const STEPS_PER_TURN: usize = 1024;
 /// Harmonics of the family that are looked for.
 const HARMONICS: usize = 6;
-/// The grid of the spectrum is at least so much finer than its resolution: a run has few turns, and a line must have room beside
-/// its prediction.
+/// The grid of the spectrum is finer than its resolution by at least this factor: a run has few turns, and a
+/// line must have room beside its prediction.
 const FINER: usize = 4;
-/// Fewest steps of which a spectrum is made.
+/// Fewest steps for a spectrum.
 const LEAST_STEPS: usize = 256;
 
 /// Load on the housing along its direction, recorded where it changes.
 pub const LOAD: &str = "adapter.load_n";
 
-/// What a run whose speed or load changes says of it.
+/// Speed, load and orders of a run whose speed or load changes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DutyFinding {
     /// Least and largest speed on record, clockwise positive [1/min].
@@ -55,13 +57,14 @@ pub struct DutyFinding {
     pub load_n: (f64, f64),
     /// Turns of the shaft against the outer ring on record, both ways counted.
     pub turns: f64,
-    /// Name and order of each family: how often it comes in a turn of the shaft against the outer ring, without slip.
+    /// Name and order of each family: how often it comes in a turn of the shaft against the outer ring,
+    /// without slip.
     pub orders: Vec<(String, f64)>,
     /// The defect's family over the angle; `None` with the reason in `notes`.
     pub envelope: Option<OrderEnvelope>,
 }
 
-/// What the envelope shows at the defect's orders.
+/// Lines of the envelope spectrum at the defect's orders.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OrderEnvelope {
     /// Name of the family.
@@ -70,7 +73,7 @@ pub struct OrderEnvelope {
     pub band_hz: (f64, f64),
     /// Periods of the defect in the record.
     pub periods: f64,
-    /// What the spectrum resolves: one over the turns on record.
+    /// Resolution of the spectrum: one over the turns on record.
     pub resolution: f64,
     /// Each line of the family.
     pub lines: Vec<OrderLine>,
@@ -101,10 +104,18 @@ impl DutyFinding {
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], n| [least.min(*n), most.max(*n)])
         });
         let k = Kinematics::new(&scene.written.bearing, 60.0);
-        // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference of speeds.
-        let cage = if scene.written.operation.outer_turns() { "FTF against the outer ring" } else { "FTF" };
-        let families =
-            [("BPFO", k.bpfo_hz), ("BPFI", k.bpfi_hz), ("2·BSF", 2.0 * k.bsf_hz), (cage, k.cage_hz)];
+        // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference
+        // of speeds.
+        let cage = match scene.written.operation.outer_turns() {
+            true => "FTF against the outer ring",
+            false => order_name(Defect::Ftf),
+        };
+        let families = [
+            (order_name(Defect::Bpfo), k.bpfo_hz),
+            (order_name(Defect::Bpfi), k.bpfi_hz),
+            (order_name(Defect::Bsf), 2.0 * k.bsf_hz),
+            (cage, k.cage_hz),
+        ];
         Some(Self {
             speed_rpm: duty.speed_range_rpm(from_s, until_s).into(),
             outer_speed_rpm: duty.outer_speed_range_rpm(from_s, until_s).into(),
@@ -127,14 +138,14 @@ impl DutyFinding {
         self.outer_speed_rpm != (0.0, 0.0)
     }
 
-    /// What orders count turns of, in words.
+    /// The rotation whose turns orders count, in words.
     pub fn over(&self) -> &'static str {
         if self.outer_turns() { "shaft against the outer ring" } else { "shaft" }
     }
 }
 
-/// What the rollers must carry along the load in the mean over the record [N]: what the run says, with a load that changes as it was while
-/// the record lasts.
+/// Mean force of all rollers along the load over the record [N]: the run's own number, with a changing load
+/// averaged over the part the record lasts.
 pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
     let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
@@ -151,17 +162,37 @@ pub fn note(scene: &Scene) -> Option<String> {
     })
 }
 
-/// Name and order of the family that a scene's defect makes.
-pub fn family(scene: &ResolvedScene) -> Option<(&'static str, f64)> {
-    let k = Kinematics::new(&scene.written.bearing, 60.0);
-    scene.written.faults().first().map(|on| match on {
-        RollingSurface::Outer => ("BPFO", k.bpfo_hz),
-        RollingSurface::Inner => ("BPFI", k.bpfi_hz),
-        RollingSurface::Roller(_) => ("2·BSF", 2.0 * k.bsf_hz),
-    })
+/// Shocks of the first defect of a scene in one turn of the shaft against the outer ring.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShockOrder {
+    /// The damaged part.
+    pub defect: Defect,
+    /// Shocks a turn: twice the order of BSF for a rolling element.
+    pub order: f64,
 }
 
-/// Turns of the shaft against the outer ring at each sample, rising where it turns its main way; `None` when they were not recorded.
+impl ShockOrder {
+    /// Without slip; `None` for a scene without a defect.
+    pub fn of(scene: &ResolvedScene) -> Option<Self> {
+        // At one turn a second hertz are orders.
+        let shocks =
+            Shocks::of(*scene.written.faults().first()?, &Kinematics::new(&scene.written.bearing, 60.0));
+        Some(Self { defect: shocks.defect, order: shocks.hz })
+    }
+
+    /// Name of the order.
+    pub fn name(self) -> &'static str {
+        order_name(self.defect)
+    }
+}
+
+/// Name of the order of a family's shocks in files and tables.
+fn order_name(defect: Defect) -> &'static str {
+    if defect == Defect::Bsf { "2·BSF" } else { defect.name() }
+}
+
+/// Turns of the shaft against the outer ring at each sample, rising where it turns its main way; `None` when
+/// they were not recorded.
 pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
     let angle = record.relative_angle()?;
     let back = angle.last()? < angle.first()?;
@@ -169,20 +200,21 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
     Some(angle.iter().map(|rad| turn * rad).collect())
 }
 
-/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them round, less what they
-/// pass the other.
-pub fn moved(name: &str, motion: &KinematicsFinding) -> Option<f64> {
+/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them
+/// round, less what they pass the other.
+pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
     let outer = motion.bpfo_hz? / motion.relative_hz;
-    let order = match name {
-        "BPFI" => motion.pockets() - outer,
-        "2·BSF" => 2.0 * motion.roller_spin_hz? / motion.relative_hz,
-        _ => outer,
+    let order = match defect {
+        Defect::Bpfi => motion.pockets() - outer,
+        Defect::Bsf => 2.0 * motion.roller_spin_hz? / motion.relative_hz,
+        Defect::Bpfo | Defect::Ftf => outer,
     };
     Some(order).filter(|order| order.is_finite())
 }
 
-/// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the orders of `family`;
-/// the reason when there is none. `turns` is the angle of the shaft against the outer ring at each sample.
+/// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the
+/// orders of `family`; the reason when there is none. `turns` is the angle of the shaft against the outer
+/// ring at each sample.
 ///
 /// # Errors
 /// [`Error::Signal`] when a finite signal is refused.
@@ -190,12 +222,13 @@ pub fn over_angle(
     signal_g: &[f64],
     sample_rate_hz: f64,
     turns: &[f64],
-    (name, order): (&str, f64),
+    family: ShockOrder,
     moved: Option<f64>,
 ) -> Result<Result<(Spectrum, OrderEnvelope), String>, Error> {
     if turns.windows(2).any(|pair| pair[1] < pair[0]) {
         return Ok(Err("no order spectrum: the angle turns back on the way".into()));
     }
+    let (name, order) = (family.name(), family.order);
     let made = turns.last().zip(turns.first()).map_or(0.0, |(last, first)| last - first);
     let Ok(count) = PeriodCount::new(made, order) else {
         return Ok(Err("no order spectrum: the rings stand still against each other".into()));
@@ -221,7 +254,7 @@ pub fn over_angle(
         nfft: (FINER * means.len()).next_power_of_two(),
         ..WelchOptions::new(means.len())
     };
-    // A step is a sample, a turn a second: what the spectrum calls hertz are orders.
+    // A step is a sample and a turn a second, so the spectrum's hertz are orders.
     let spectrum = Welch::new(STEPS_PER_TURN as f64, means.len(), &options)
         .and_then(|mut welch| welch.estimate(&means))
         .map_err(Error::Signal)?;
@@ -271,10 +304,12 @@ mod tests {
         (signal, turns)
     }
 
+    const BPFO: ShockOrder = ShockOrder { defect: Defect::Bpfo, order: 10.81 };
+
     #[test]
     fn example_knocks_of_a_shaft_that_speeds_up_stand_at_their_order() {
         let (signal, turns) = knocks();
-        let (_, finding) = over_angle(&signal, 1e5, &turns, ("BPFO", 10.81), None).unwrap().unwrap();
+        let (_, finding) = over_angle(&signal, 1e5, &turns, BPFO, None).unwrap().unwrap();
         assert!((finding.periods - 12.5 * 10.81).abs() < 0.1 && (finding.resolution - 0.08).abs() < 1e-3);
         for line in &finding.lines {
             assert!((line.measured.unwrap() - line.predicted).abs() < finding.resolution, "{line:?}");
@@ -288,13 +323,12 @@ mod tests {
     #[test]
     fn refuses_few_turns_and_turns_back_and_says_why() {
         let (signal, turns) = knocks();
-        let why =
-            over_angle(&signal[..5000], 1e5, &turns[..5000], ("BPFO", 10.81), None).unwrap().unwrap_err();
+        let why = over_angle(&signal[..5000], 1e5, &turns[..5000], BPFO, None).unwrap().unwrap_err();
         assert!(why.contains("2.9 periods of BPFO"), "{why}");
         let there_and_back: Vec<f64> = turns.iter().map(|t| t * (10.0 - t)).collect();
-        let why = over_angle(&signal, 1e5, &there_and_back, ("BPFO", 10.81), None).unwrap().unwrap_err();
+        let why = over_angle(&signal, 1e5, &there_and_back, BPFO, None).unwrap().unwrap_err();
         assert!(why.contains("turns back"), "{why}");
         let still = vec![0.0; signal.len()];
-        assert!(over_angle(&signal, 1e5, &still, ("BPFO", 10.81), None).unwrap().is_err());
+        assert!(over_angle(&signal, 1e5, &still, BPFO, None).unwrap().is_err());
     }
 }

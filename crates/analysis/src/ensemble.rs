@@ -1,4 +1,4 @@
-//! What many starts of one scene say together: every number of their summaries with its mean, interval and quantiles.
+//! Many starts of one scene together: every number of their summaries with its mean, interval and quantiles.
 
 mod merge;
 
@@ -19,16 +19,16 @@ use crate::statistic::Statistic;
 use crate::summary::Event;
 pub use merge::Merged;
 
-/// An ensemble: the scene, the starts and what they come to.
+/// An ensemble: the scene, the starts and their results.
 #[derive(Debug)]
 pub struct EnsembleFindings {
-    /// What all starts have in common.
+    /// The scene of all starts.
     pub scene: ResolvedScene,
-    /// What was asked for.
+    /// The ensemble as it was requested.
     pub ensemble: Ensemble,
     /// The numbers.
     pub summary: EnsembleSummary,
-    /// What complete starts show, by number.
+    /// Findings of complete starts, by number.
     pub complete: Vec<(usize, Findings)>,
 }
 
@@ -37,14 +37,15 @@ pub struct EnsembleFindings {
 pub struct EnsembleSummary {
     /// Name of the scene.
     pub scene: String,
-    /// What the draws follow from.
+    /// Seed of the draws.
     pub seed: u64,
     /// Every start that was asked for.
     pub starts: Vec<StartSummary>,
-    /// The summaries of all complete starts as one: in place of each number what it comes to over the starts, in place of
-    /// yes and no the share of yes. Lists go by what their items are called; a text stands where all starts have the same.
+    /// The summaries of all complete starts as one: in place of each number its statistic over the starts, in
+    /// place of yes and no the share of yes. Items of lists are matched by name; a text is kept where all
+    /// starts have the same.
     pub ensemble: Merged,
-    /// What to be careful with.
+    /// Cautions.
     pub notes: Vec<String>,
 }
 
@@ -121,7 +122,7 @@ impl EnsembleFindings {
 }
 
 impl EnsembleFindings {
-    /// What `of` comes to over the first passages of a roller over the first spall, given by its number.
+    /// Statistic of `of` over the first passages of a roller over the first spall, given by its number.
     pub fn over_events(&self, roller: &str, of: fn(&Event) -> Option<f64>) -> Option<Statistic> {
         let first = |f: &Findings| {
             f.summary.first_passages().into_iter().find(|e| e.roller.to_string() == roller).and_then(of)
@@ -137,7 +138,8 @@ impl EnsembleSummary {
         self.starts.iter().filter(|start| start.ended == ended).count()
     }
 
-    /// What the number at `path` comes to, as in `levels.exit_g` or `events[0].floor_n`; `None` where no start has one.
+    /// Statistic of the number at `path`, as in `levels.exit_g` or `events[0].floor_n`; `None` where no start
+    /// has one.
     pub fn number(&self, path: &str) -> Option<&Statistic> {
         self.ensemble.number(path)
     }
@@ -146,26 +148,10 @@ impl EnsembleSummary {
 /// Passages whose forces are kept for pictures.
 const CROSSINGS: usize = 12;
 
-/// One start, and what it shows when it is complete.
+/// One start, and its findings when it is complete.
 fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (StartSummary, Option<Findings>) {
+    let mut start = StartSummary::before(number, ensemble.failed.get(&number).cloned());
     let folder = dir.start_folder(number);
-    let mut start = StartSummary {
-        number,
-        folder: folder_name(number),
-        ended: Ended::Missing,
-        why: ensemble.failed.get(&number).cloned(),
-        first_roller_deg: None,
-        roller_phase_deg: None,
-        simulated_ms: None,
-        wall_s: None,
-        exit_g: None,
-        gap_g: None,
-        energy_error: None,
-        warnings: Vec::new(),
-    };
-    if start.why.is_some() {
-        start.ended = Ended::Failed;
-    }
     // Nothing but an empty folder, before the first step.
     let Ok(there) = RunDir::open(&folder) else { return (start, None) };
     let read = Run::read(there.path()).map_err(Error::from).and_then(|run| {
@@ -174,52 +160,82 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
     });
     let run = match read {
         Ok(run) => run,
-        Err(why) => {
-            (start.ended, start.why) = (Ended::Failed, Some(why.to_string()));
-            return (start, None);
-        }
+        Err(why) => return (start.failed(why.to_string()), None),
     };
-    let mut as_long = run.scene.written.clone();
-    as_long.solver.duration_ms = scene.solver.duration_ms;
     let longer_ms = run.scene.written.solver.duration_ms - scene.solver.duration_ms;
-    if !is_start_of(&as_long, scene) || longer_ms > 0.0 {
-        let what = if longer_ms > 0.0 { "is longer than" } else { "differs in more than what is drawn from" };
-        (start.ended, start.why) = (Ended::Failed, Some(format!("its scene {what} that of the ensemble")));
-        return (start, None);
+    if let Some(differs) = another_scene(&run.scene.written, scene, longer_ms) {
+        return (start.failed(format!("its scene {differs} that of the ensemble")), None);
     }
-    start.first_roller_deg = Some(run.scene.written.bearing.first_roller_deg);
-    start.roller_phase_deg = Some(run.scene.written.mesh.roller_phase_deg);
-    start.simulated_ms = Some(1e3 * run.info.interval_s * run.info.samples as f64);
-    start.wall_s = Some(run.info.wall_s + run.info.setup_s);
-    start.energy_error = Some(run.info.energy.max_relative_error);
-    start.warnings.clone_from(&run.info.warnings);
-    start.ended = match run.info.status {
-        Status::Complete if longer_ms < 0.0 => Ended::Early,
-        Status::Complete => Ended::Complete,
-        Status::Diverged => Ended::Diverged,
-        Status::Interrupted | Status::Running if start.why.is_some() => Ended::Failed,
-        Status::Interrupted | Status::Running => Ended::Early,
-    };
+    start.take(&run, longer_ms < 0.0);
     if start.ended != Ended::Complete {
         start.why = run.info.stop_reason.clone().or(start.why);
         return (start, None);
     }
     let damage = run.damage();
-    let findings = if damage.is_empty() {
-        findings_of(&run).map_err(|why| why.to_string())
-    } else {
-        Err(damage.join("; "))
-    };
-    match findings {
+    if !damage.is_empty() {
+        return (start.failed(damage.join("; ")), None);
+    }
+    match findings_of(&run) {
         Ok(findings) => {
             let levels = &findings.summary.levels.phases;
             (start.exit_g, start.gap_g) = (levels.exit_g, levels.gap_g);
             (start, Some(findings))
         }
-        Err(why) => {
-            (start.ended, start.why) = (Ended::Failed, Some(why));
-            (start, None)
+        Err(why) => (start.failed(why.to_string()), None),
+    }
+}
+
+/// How the scene of a run differs from that of its ensemble in more than the draws and a shorter duration;
+/// `None` where it does not.
+fn another_scene(of_run: &Scene, scene: &Scene, longer_ms: f64) -> Option<&'static str> {
+    if longer_ms > 0.0 {
+        return Some("is longer than");
+    }
+    let mut as_long = of_run.clone();
+    as_long.solver.duration_ms = scene.solver.duration_ms;
+    (!is_start_of(&as_long, scene)).then_some("differs in more than what is drawn from")
+}
+
+impl StartSummary {
+    /// A start whose folder has not been read; `why` it failed, where it did.
+    fn before(number: usize, why: Option<String>) -> Self {
+        Self {
+            number,
+            folder: folder_name(number),
+            ended: if why.is_some() { Ended::Failed } else { Ended::Missing },
+            why,
+            first_roller_deg: None,
+            roller_phase_deg: None,
+            simulated_ms: None,
+            wall_s: None,
+            exit_g: None,
+            gap_g: None,
+            energy_error: None,
+            warnings: Vec::new(),
         }
+    }
+
+    /// The same as failed.
+    fn failed(mut self, why: String) -> Self {
+        (self.ended, self.why) = (Ended::Failed, Some(why));
+        self
+    }
+
+    /// Fills in the account of a run, which may be shorter than the ensemble asks for.
+    fn take(&mut self, run: &Run, shorter: bool) {
+        self.first_roller_deg = Some(run.scene.written.bearing.first_roller_deg);
+        self.roller_phase_deg = Some(run.scene.written.mesh.roller_phase_deg);
+        self.simulated_ms = Some(1e3 * run.info.interval_s * run.info.samples as f64);
+        self.wall_s = Some(run.info.wall_s + run.info.setup_s);
+        self.energy_error = Some(run.info.energy.max_relative_error);
+        self.warnings.clone_from(&run.info.warnings);
+        self.ended = match run.info.status {
+            Status::Complete if shorter => Ended::Early,
+            Status::Complete => Ended::Complete,
+            Status::Diverged => Ended::Diverged,
+            Status::Interrupted | Status::Running if self.why.is_some() => Ended::Failed,
+            Status::Interrupted | Status::Running => Ended::Early,
+        };
     }
 }
 
@@ -228,7 +244,7 @@ fn findings_of(run: &Run) -> Result<Findings, Error> {
     Findings::of(&record)?.with_crossings(&record, CROSSINGS)
 }
 
-/// What is missing of the ensemble, and what its runs warn of.
+/// Incomplete starts, and the warnings of the runs.
 fn notes(starts: &[StartSummary]) -> Vec<String> {
     let mut notes = Vec::new();
     for start in starts {

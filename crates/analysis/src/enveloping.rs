@@ -6,19 +6,20 @@ use stribeck_dsp::{EnvelopeSpectrum, PeriodCount, PeriodVerdict, Spectrum};
 use crate::Error;
 use crate::tones::{self, PredictedLine};
 
-/// Lower end of the band whose envelope is taken [Hz]: above the facet tone, so that its beats are not taken for knocks.
+/// Lower end of the band whose envelope is taken [Hz]: above the facet tone, so that its beats are not taken
+/// for knocks.
 const BAND_FROM_HZ: f64 = 6_000.0;
 /// Upper end as a part of half the sample rate.
 const BAND_TO: f64 = 0.9;
 
-/// What the envelope shows at the defect's lines.
+/// Lines of the envelope spectrum at the defect's frequencies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnvelopeFinding {
     /// Band whose envelope was taken [Hz].
     pub band_hz: (f64, f64),
     /// Periods of the defect in the record.
     pub periods: f64,
-    /// What the spectrum resolves [Hz].
+    /// Resolution of the spectrum [Hz].
     pub resolution_hz: f64,
     /// Each line of the family.
     pub lines: Vec<EnvelopeLine>,
@@ -37,8 +38,8 @@ pub struct EnvelopeLine {
     pub prominence_db: Option<f64>,
 }
 
-/// Envelope spectrum [g⁴] and finding; `None` with the reason when the record holds too few periods of `lines`, whose
-/// first is the fundamental.
+/// Envelope spectrum [g⁴] and finding; `None` with the reason when the record holds too few periods of
+/// `lines`, whose first is the fundamental.
 ///
 /// # Errors
 /// [`Error::Signal`] when a finite signal is refused.

@@ -1,4 +1,4 @@
-//! What can go wrong between samples and what they show.
+//! Errors of the analysis.
 
 /// Why an analysis cannot be made.
 #[derive(Debug, thiserror::Error)]

@@ -1,13 +1,14 @@
 //! When a roller unloads at the leading edge of a defect and when it is loaded again at the trailing edge.
 //!
-//! **The rule.** The normal force of the spall's raceway on the roller (compression positive) is passed through a
-//! running median as wide as one facet period, at most a tenth of the traverse: a median keeps steps where they are, and takes out both the facet
-//! tone and shocks shorter than half its width. The level before the defect is the median over half a traverse
-//! before the expected entry, less its last tenth. The record around the passage is split where the roller is in
-//! the middle of the defect. *Entry* is the start of the longest stretch below half that level in the first part
-//! (from half a traverse before the expected entry), *exit* the end of the longest such stretch in the second part
-//! (up to half a traverse after the expected exit). Splitting makes the rule blind to what happens on the floor of
-//! the defect, where a roller may strike and rebound. A stretch counts from an eighth of a traverse on.
+//! **The rule.** The normal force of the spall's raceway on the roller (compression positive) is passed
+//! through a running median as wide as one facet period, at most a tenth of the traverse: a median keeps
+//! steps where they are, and takes out both the facet tone and shocks shorter than half its width. The level
+//! before the defect is the median over half a traverse before the expected entry, less its last tenth. The
+//! record around the passage is split where the roller is in the middle of the defect. *Entry* is the start
+//! of the longest stretch below half that level in the first part (from half a traverse before the expected
+//! entry), *exit* the end of the longest such stretch in the second part (up to half a traverse after the
+//! expected exit). Splitting keeps impacts and rebounds on the floor of the defect from being picked. A
+//! stretch counts from an eighth of a traverse on.
 
 use std::ops::Range;
 
@@ -29,12 +30,12 @@ pub struct Passage {
     pub smoothing_s: f64,
 }
 
-/// What the force showed.
+/// Events read from the force.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Picked {
-    /// Unloading [s]; `None` with a note when it cannot be told.
+    /// Unloading [s]; `None` with a note when it cannot be determined.
     pub entry_s: Option<f64>,
-    /// Re-stressing [s]; `None` with a note when it cannot be told.
+    /// Re-stressing [s]; `None` with a note when it cannot be determined.
     pub exit_s: Option<f64>,
     /// Level before the defect [N].
     pub level_n: Option<f64>,
@@ -105,9 +106,9 @@ pub fn pick(time_s: &[f64], force_n: &[f64], passage: &Passage) -> Picked {
 const LEAST_IMPACT: f64 = 0.05;
 
 impl Picked {
-    /// When the roller strikes the floor [s] and how hard [N]: its largest force while its centre is at least `reach_s`
-    /// away from either edge, the time within which the edges keep a roller off the floor. `None` when it does not touch
-    /// the floor.
+    /// When the roller strikes the floor [s] and how hard [N]: its largest force while its centre is at least
+    /// `reach_s` away from either edge, the time within which the edges keep a roller off the floor. `None`
+    /// when it does not touch the floor.
     pub fn floor_impact(
         &self,
         time_s: &[f64],
@@ -122,7 +123,8 @@ impl Picked {
     }
 }
 
-/// Times [s] at which a body rotating from `angle` [rad] (unwrapped, one a sample) passes `edge` [rad], modulo a turn.
+/// Times [s] at which a body rotating from `angle` [rad] (unwrapped, one a sample) passes `edge` [rad],
+/// modulo a turn.
 pub fn crossings(time_s: &[f64], angle: &[f64], edge: f64) -> Vec<f64> {
     let turns = |a: f64| (a - edge) / std::f64::consts::TAU;
     let passed = |n: usize| turns(angle[n]).floor() != turns(angle[n - 1]).floor();
@@ -199,11 +201,12 @@ mod tests {
     const INTERVAL: f64 = 1e-5;
     const PASSAGE: Passage =
         Passage { entry_s: 0.84e-3, exit_s: 5.08e-3, middle_s: 2.96e-3, smoothing_s: 0.214e-3 };
-    /// A twentieth of a millisecond: the median moves a step under a strong tone by a fraction of the tone's period.
+    /// A twentieth of a millisecond: the median moves a step under a strong tone by a fraction of the tone's
+    /// period.
     const TOLERANCE_S: f64 = 0.05e-3;
 
-    /// 10 kN, unloaded from `entry` to `exit`, with a facet tone of 60 %, deterministic noise of 20 % and a shock
-    /// of 25 kN on the floor that lasts 0.06 ms.
+    /// 10 kN, unloaded from `entry` to `exit`, with a facet tone of 60 %, deterministic noise of 20 % and a
+    /// shock of 25 kN on the floor that lasts 0.06 ms.
     fn force(entry: f64, exit: f64, samples: usize) -> (Vec<f64>, Vec<f64>) {
         let mut seed = 1u64;
         (0..samples)

@@ -1,26 +1,29 @@
 //! Combs of lines, fitted to the recorded motion of the rollers: which polygon makes the tone.
 //!
-//! Facets that pass the loaded contacts make no single line. What roller j does to a sensor goes with its load Q_j and its
-//! place θ_j, and its phase Ψ_j is that of its own facets: N_v times its spin seen from the contact, N_o times its way along
-//! the outer raceway, or N_i times that along the inner one. The sum over the rollers,
+//! Facets that pass the loaded contacts make no single line. The contribution of roller j to a sensor is
+//! proportional to its load Q_j, depends on its place θ_j, and its phase Ψ_j is that of its own facets: N_v
+//! times its spin seen from the contact, N_o times its way along the outer raceway, or N_i times that along
+//! the inner one. The sum over the rollers,
 //!
 //! ```text
 //! Σ_j Q_j(t) [c₀ + Σ_q a_q cos 2qθ_j + b_q sin 2qθ_j] exp iΨ_j(t)          q = 1 … 3
 //! ```
 //!
-//! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and Ψ are
-//! recorded, so only the seven complex weights are fitted: to each acceleration by itself, and to the forces on the fullest
-//! rollers all at once. A roller's force has its own term of the sum alone, and all rollers have one set of weights, because
-//! what facets do at a place does not depend on the roller that is there.
+//! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and
+//! Ψ are recorded, so only the seven complex weights are fitted: to each acceleration by itself, and to the
+//! forces on the fullest rollers all at once. A roller's force has its own term of the sum alone, and all
+//! rollers have one set of weights, because the effect of facets at a place does not depend on the roller
+//! that is there.
 //!
-//! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is the mean of
-//! −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within half a resolution (one over the length
-//! of the record) of the recorded motion. Whatever else may explain the same channels is a *rival*: the same comb where it
-//! does not belong, 5 to 20 BPFO away, and the combs of the other families. A family is **found** when its score leads
-//! every rival by [`LEAST_LEAD`], and is highest where it belongs. Families that lead all detuned combs but not each other
-//! are **not told apart**. One that was found stays in the fit while the others are tried on what it leaves; there a comb
-//! must lead its own copies next to its place, too, because what a fit misses lies about the lines that it fits. Where the
-//! lead comes from, and how often noise reaches it: THEORY §7.7.
+//! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is
+//! the mean of −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within half a
+//! resolution (one over the length of the record) of the recorded motion. Whatever else may explain the same
+//! channels is a *rival*: the same comb where it does not belong, 5 to 20 BPFO away, and the combs of the
+//! other families. A family is **found** when its score leads every rival by [`LEAST_LEAD`], and is highest
+//! where it belongs. Families that lead all detuned combs but not each other are **not told apart**. One that
+//! was found stays in the fit while the others are tried on what it leaves; there a comb must lead its own
+//! copies next to its place, too, because what a fit misses lies about the lines that it fits. Where the lead
+//! comes from, and how often noise reaches it: THEORY §7.7.
 
 mod comb;
 mod kernels;
@@ -29,25 +32,27 @@ mod trial;
 
 use serde::{Deserialize, Serialize};
 
-use self::comb::Comb;
+use self::comb::BasebandComb;
 use self::trial::{Channels, Trial};
 use crate::Error;
 
-/// The least lead of a score that counts: what a comb leaves of the channels is then 26 % less than what any rival leaves. On
-/// records that were not used to choose it, one false comb in some hundreds leads by it (docs/results/families.md).
+/// The least lead of a score that counts: what a comb leaves of the channels is then 26 % less than what any
+/// rival leaves. On records that were not used to choose it, one false comb in some hundreds leads by it
+/// (docs/results/families.md).
 pub const LEAST_LEAD: f64 = 0.3;
-/// Periods of BPFO that a record must hold: fewer do not tell a comb from a single line.
+/// Periods of BPFO that a record must hold: with fewer, a comb cannot be distinguished from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
-/// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that grows with the square of
-/// them.
+/// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that
+/// grows with the square of them.
 pub const MOST_PERIODS: f64 = 32.0;
 /// Sidebands that are listed on either side of the carrier.
 pub const SIDEBANDS: i32 = 3;
 
-/// What passes the contacts.
+/// Facets that pass the contacts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Source {
-    /// Vertices of rollers with this many facets whose copies are turned with their place on the pitch circle.
+    /// Vertices of rollers with this many facets whose copies are turned with their place on the pitch
+    /// circle.
     RotatedVertices(f64),
     /// The same for copies in one orientation.
     TranslatedVertices(f64),
@@ -70,7 +75,7 @@ pub struct RollerTrack {
     pub load_n: Vec<f64>,
 }
 
-/// What all families need of a record.
+/// Recorded motion, as all families need it.
 #[derive(Debug, Clone)]
 pub struct Motion {
     /// Sampling interval [s].
@@ -101,34 +106,34 @@ pub struct Channel {
 pub struct Candidate {
     /// Stable name.
     pub name: String,
-    /// What makes it.
+    /// The facets that make it.
     pub source: Source,
 }
 
-/// One family beside what the record shows of it.
+/// One family, predicted and measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FamilyFinding {
     /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
     pub name: String,
     /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
     pub carrier_hz: Option<f64>,
-    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at loaded contacts; `None` when no
-    /// comb was made of it.
+    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at
+    /// loaded contacts; `None` when no comb was made of it.
     pub predicted_hz: Option<f64>,
-    /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is absent, that of the best
-    /// fit within 1.5 BPFO; `None` when it is not judged.
+    /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is absent,
+    /// that of the best fit within 1.5 BPFO; `None` when it is not judged.
     pub offset_resolutions: Option<f64>,
     /// How far the single channels scatter about that offset (standard deviation), in resolutions.
     pub offset_scatter_resolutions: Option<f64>,
     /// True when the record holds this family and no other explains its lines as well.
     pub found: bool,
-    /// Families that explain the same lines as well: at least one of them and this one is there, and the record does not
-    /// tell which.
+    /// Families that explain the same lines as well: at least one of them and this one is there, and the
+    /// record does not tell which.
     pub not_told_apart_from: Vec<String>,
     /// How far the score leads that of the best rival; negative when a rival explains more.
     pub lead: Option<f64>,
-    /// Share of the accelerations in the band that the comb explains, mean over sensors and components; of what is left of
-    /// them once families that were found earlier are in the fit.
+    /// Share of the accelerations in the band that the comb explains, mean over sensors and components; of
+    /// what is left of them once families that were found earlier are in the fit.
     pub explained: Option<f64>,
     /// The same of the forces on the loaded rollers.
     pub explained_forces: Option<f64>,
@@ -180,15 +185,15 @@ pub fn identify(
         let accelerations: Vec<Channel> = accelerations.iter().map(late).collect();
         return identify(&motion.from(from), candidates, &accelerations);
     }
-    let listened = trial::listened(motion);
-    let case = |candidate| Case::of(motion, candidate, &listened);
+    let observed = trial::observed(motion);
+    let case = |candidate| Case::of(motion, candidate, &observed);
     let mut cases: Vec<Case> = candidates.iter().map(case).collect();
     let slowest_hz = cases.iter().filter_map(|c| Some(c.comb.as_ref()?.rate_hz)).reduce(f64::min);
     if let Some(slowest_hz) = slowest_hz
         && !accelerations.is_empty()
         && motion.periods() >= LEAST_PERIODS
     {
-        judge(motion, &Channels::of(motion, accelerations, &listened, slowest_hz), &mut cases);
+        judge(motion, &Channels::of(motion, accelerations, &observed, slowest_hz), &mut cases);
     }
     (0..cases.len()).map(|n| finding(motion, accelerations, &cases, n)).collect()
 }
@@ -196,8 +201,8 @@ pub fn identify(
 /// A candidate on trial.
 struct Case<'a> {
     name: &'a str,
-    /// `None` when nothing of it can be heard.
-    comb: Option<Comb>,
+    /// `None` where the record cannot contain it.
+    comb: Option<BasebandComb>,
     /// The last trial and how far it leads.
     trial: Option<(Trial, f64)>,
     verdict: Verdict,
@@ -212,8 +217,8 @@ enum Verdict {
 }
 
 impl<'a> Case<'a> {
-    fn of(motion: &Motion, candidate: &'a Candidate, listened: &[usize]) -> Self {
-        let comb = Comb::of(motion, candidate.source, listened);
+    fn of(motion: &Motion, candidate: &'a Candidate, observed: &[usize]) -> Self {
+        let comb = BasebandComb::of(motion, candidate.source, observed);
         Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
     }
 
@@ -228,7 +233,7 @@ fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
     // The case that was accepted last, and those that explained as much before it was.
     let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
     loop {
-        let in_fit: Vec<(&Comb, f64)> = cases
+        let in_fit: Vec<(&BasebandComb, f64)> = cases
             .iter()
             .filter(|c| c.verdict != Verdict::Open)
             .filter_map(|c| Some((c.comb.as_ref()?, c.trial.as_ref()?.0.offset_hz)))
@@ -239,7 +244,8 @@ fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
         }
         if let Some((accepted, ties)) = last.take() {
             for (n, alone) in ties {
-                // What adds nothing to the accepted comb, and explains as much without it, may be the one that is there.
+                // A case that adds nothing to the accepted comb and explains as much alone may be the true
+                // one.
                 if trials.iter().any(|(other, trial)| *other == n && !trial.stands()) {
                     trials.retain(|(other, _)| *other != n);
                     confuse(cases, accepted, n, alone);
@@ -260,7 +266,8 @@ fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
     }
 }
 
-/// Takes down that case `n`, which as `alone` explains as much as the accepted one, is not told apart from it.
+/// Takes down that case `n`, which as `alone` explains as much as the accepted one, is not told apart from
+/// it.
 fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
     let lead = alone.score - cases[accepted].trial.as_ref().map_or(0.0, |(trial, _)| trial.score);
     cases[n].trial = Some((alone, lead));
@@ -272,7 +279,7 @@ fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
     }
 }
 
-/// What is said of case `n`.
+/// The finding of case `n`.
 fn finding(
     motion: &Motion,
     accelerations: &[Channel],
@@ -402,7 +409,8 @@ impl Source {
 }
 
 impl FamilyFinding {
-    /// Whether a family that is there has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz` included.
+    /// Whether a family that is there has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz`
+    /// included.
     pub fn claims(&self, hz: f64, bpfo_hz: Option<f64>, reach_hz: f64) -> bool {
         let Some(carrier_hz) = self.carrier_hz else { return false };
         let off = hz - carrier_hz;

@@ -1,4 +1,4 @@
-//! Oil between rollers and raceways: how thick it is, what it carries, what it takes.
+//! Oil between rollers and raceways: thickness, load and friction.
 
 use serde::{Deserialize, Serialize};
 use stribeck_scene::{lubrication, run_dir::Run};
@@ -23,7 +23,8 @@ pub struct FilmFinding {
     pub lambda: [f64; 2],
     /// Median thickness over all samples of all rollers that the raceway does not load [µm].
     pub floating_um: [Option<f64>; 2],
-    /// Largest force through the film of a roller, mean over a sampling interval at whose ends the raceway does not load it [N].
+    /// Largest force through the film of a roller, mean over a sampling interval at whose ends the raceway
+    /// does not load it [N].
     pub largest_n: [Option<f64>; 2],
     /// Heat of all films over the record [J].
     pub heat_j: Option<f64>,

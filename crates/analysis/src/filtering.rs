@@ -1,4 +1,4 @@
-//! The notch at the facet tone: what it takes away, and how long it rings before it can be believed.
+//! The notch at the facet tone: its attenuation, and the length of its transient.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Notch, Welch, WelchOptions, Window};
@@ -29,8 +29,8 @@ pub struct NotchFinding {
     pub time_constant_s: f64,
     /// Time until the ringing has fallen by 60 dB [s]: earlier samples are partly the filter's own.
     pub transient_s: f64,
-    /// Drop of the density at the centre [dB]: Hann window, whole record, transient included. The number to set
-    /// beside the paper's 25 dB.
+    /// Drop of the density at the centre [dB]: Hann window, whole record, transient included. The number to
+    /// set beside the paper's 25 dB.
     pub attenuation_db: Option<f64>,
     /// The same with the transient left out.
     pub attenuation_settled_db: Option<f64>,
@@ -38,7 +38,7 @@ pub struct NotchFinding {
     pub attenuation_boxcar_db: Option<f64>,
     /// The same with a boxcar window, transient left out.
     pub attenuation_boxcar_settled_db: Option<f64>,
-    /// What the filter takes from a steady 4545 Hz [dB], from its transfer function.
+    /// Attenuation of a steady 4545 Hz [dB], from the transfer function.
     pub attenuation_4545_db: Option<f64>,
     /// The same of the paper's own notch, centred at 4671 Hz: −20 log |H(4545 Hz)| from the coefficients.
     pub paper_4545_db: Option<f64>,
@@ -80,7 +80,8 @@ impl Filter {
         self.notch.filter(signal).map_err(Error::Signal)
     }
 
-    /// A force behind the notch, which starts as if the first value had always been there: a preloaded contact has.
+    /// A force behind the notch, which starts as if the first value had always been there: a preloaded
+    /// contact has.
     ///
     /// # Errors
     /// [`Error::Signal`] for a record that is empty or not finite.
@@ -88,7 +89,8 @@ impl Filter {
         self.notch.filter_from_first(signal).map_err(Error::Signal)
     }
 
-    /// What the notch did to `raw`, whose filtered form is `filtered`; whether it is a record of the paper's scene.
+    /// Effect of the notch on `raw`, whose filtered form is `filtered`; whether it is a record of the paper's
+    /// scene.
     pub fn finding(&self, raw: &[f64], filtered: &[f64], of_paper: bool) -> NotchFinding {
         let rate = self.notch.sample_rate_hz();
         let drop = |window, from: usize| {

@@ -34,8 +34,9 @@ pub struct KinematicsFinding {
     pub bpfo_hz: Option<f64>,
     /// Ball pass frequency of the outer raceway, no slip.
     pub expected_bpfo_hz: f64,
-    /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by the force of the
-    /// outer raceway. What turns freely, in the defect or outside the load zone, has no vote.
+    /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by the
+    /// force of the outer raceway. Rollers without load, in the defect or outside the load zone, have no
+    /// weight.
     pub roller_spin_hz: Option<f64>,
     /// Spin of a roller relative to the cage, no slip.
     pub expected_roller_spin_hz: f64,
@@ -59,7 +60,8 @@ pub struct RollerMotion {
 }
 
 impl KinematicsFinding {
-    /// Recorded over slip-free frequency of the facet line called `name`; `None` when that motion was not recorded.
+    /// Recorded over slip-free frequency of the facet line called `name`; `None` when that motion was not
+    /// recorded.
     pub fn ratio(&self, name: &str) -> Option<f64> {
         let [cage, expected] = self.cage_on_outer_hz;
         let (cage, expected) = (cage?, expected?);
@@ -77,7 +79,8 @@ impl KinematicsFinding {
 #[derive(Debug)]
 pub struct Turning<'a> {
     time_s: Cow<'a, [f64]>,
-    /// By how much the outer ring is ahead of its mean speed at each time [rad], where its angle was recorded.
+    /// By how much the outer ring is ahead of its mean speed at each time [rad], where its angle was
+    /// recorded.
     ahead: Option<Vec<f64>>,
     /// Cage, where its angle was recorded [rad/s].
     guided: Option<f64>,
@@ -111,7 +114,8 @@ impl<'a> Turning<'a> {
         turning
     }
 
-    /// An angle as it would be beside an outer ring that keeps its mean speed: what rollers and cage do, they do on it.
+    /// An angle as it would be beside an outer ring that keeps its mean speed: what rollers and cage do, they
+    /// do on it.
     fn steadied<'b>(&self, angle: &'b [f64]) -> Cow<'b, [f64]> {
         match &self.ahead {
             Some(ahead) => angle.iter().zip(ahead).map(|(angle, ahead)| angle - ahead).collect(),
@@ -119,7 +123,8 @@ impl<'a> Turning<'a> {
         }
     }
 
-    /// One roller more, with its orbital angle [rad] and the normal force of the outer raceway [N] at every sample.
+    /// One roller more, with its orbital angle [rad] and the normal force of the outer raceway [N] at every
+    /// sample.
     pub fn add(&mut self, roller: &Roller<'_>, orbit: &[f64], outer_normal: &[f64]) {
         let time = &self.time_s[..];
         let (orbit, spin) = (self.steadied(orbit), self.steadied(roller.spin));
@@ -138,7 +143,7 @@ impl<'a> Turning<'a> {
         }
     }
 
-    /// What all of them show, beside what is `expected` without slip in a cage of so many `pockets`.
+    /// The recorded motion beside the one `expected` without slip; the cage has `pockets` pockets.
     pub fn finding(self, expected: &Kinematics, pockets: usize) -> KinematicsFinding {
         let rollers = &self.rollers;
         let cage = self.guided.or_else(|| mean(rollers.iter().filter_map(|r| r.orbit)));
@@ -173,15 +178,16 @@ impl<'a> Turning<'a> {
 }
 
 impl KinematicsFinding {
-    /// Places for rollers in the cage, from which rollers pass a raceway; not a number for a bearing that rests.
+    /// Places for rollers in the cage, from which rollers pass a raceway; not a number for a bearing that
+    /// rests.
     pub(crate) fn pockets(&self) -> f64 {
         let [_, cage_hz] = self.cage_on_outer_hz;
         (self.expected_bpfo_hz / cage_hz.unwrap_or(f64::NAN)).round()
     }
 }
 
-/// Times [s], or where the angle of the shaft was recorded those at which rings of constant speed would have come so far against
-/// each other: rates are then those at that speed, whatever the true one did.
+/// Times [s], or where the angle of the shaft was recorded those at which rings of constant speed would have
+/// come so far against each other: rates are then those at that speed, whatever the true one did.
 fn clock<'a>(record: &'a Record<'_>, expected: &Kinematics) -> Cow<'a, [f64]> {
     let against = expected.shaft_rad_s - expected.outer_rad_s;
     match record.relative_angle() {

@@ -1,11 +1,12 @@
-//! How strong a signal is, phase by phase: start-up, entry into the defect, in it, exit, and the gaps between.
+//! How strong a signal is, phase by phase: start-up, entry into the defect, in it, exit, and the gaps
+//! between.
 //!
 //! Every sample of a record belongs to one [`Phase`]. *Start-up* reaches from the first sample to the window of the first
 //! entry, [`START_UP_S`] at the most: the preload is released and rollers find their places in the cage, which no bearing
 //! that has been running does. *Entry* reaches from [`BEFORE_ENTRY_S`] before a roller's centre passes the leading edge or
 //! the roller unloads, whichever comes first, to [`AFTER_UNLOADING_S`] after it has unloaded; *exit* from
 //! [`IMPULSE_HALF_WIDTH_S`] before it is loaded again to [`AFTER_EXIT_S`] after that or after its centre has passed the
-//! trailing edge, whichever comes last; what lies between the two is *in the defect*, and all else is *gap*. Where windows
+//! trailing edge, whichever comes last; the time between the two is *in the defect*, and all else is *gap*. Where windows
 //! of two rollers overlap, an exit counts before an entry, and an entry before the time in the defect.
 
 use std::ops::Range;
@@ -28,7 +29,7 @@ pub const AFTER_UNLOADING_S: f64 = 1e-3;
 /// Longest start-up [s]: as long as an exit may ring.
 pub const START_UP_S: f64 = 2e-3;
 
-/// What the bearing is doing at a sample.
+/// Phase of a passage that a sample belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Phase {
     /// The first moments of a record.
@@ -149,7 +150,8 @@ mod tests {
         assert_eq!(level(&sine, &[outside]), None);
     }
 
-    /// The paper's three passages: unloading 0.1 ms behind the leading edge, loaded again 0.2 ms before the trailing one.
+    /// The paper's three passages: unloading 0.1 ms behind the leading edge, loaded again 0.2 ms before the
+    /// trailing one.
     fn visits() -> Vec<Visit> {
         [(0.84e-3, 5.08e-3), (11.94e-3, 16.18e-3), (23.04e-3, 27.28e-3)]
             .map(|(from_s, until_s)| Visit {

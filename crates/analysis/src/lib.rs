@@ -19,20 +19,20 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | What does a run hold, what lets geometry expect? | [`record`], [`prediction`], [`plan`] |
-//! | How did speed and load go, what comes how often a turn? | [`duty`] |
+//! | What does a run hold, and what does geometry predict? | [`record`], [`prediction`], [`plan`] |
+//! | How do speed and load change, and at which orders does a defect stand? | [`duty`] |
 //! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
-//! | Who carries how much, how fast does what turn, does it roll? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
+//! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What does a measured record show, and may one call it a defect? | [`measured`] |
-//! | What does all of it come to? | [`findings`], [`summary`], [`paper`] |
+//! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //!
 //! # A measured gearbox
 //!
-//! A pinion with 37 teeth turns at 24.9 Hz, so its teeth mesh at 921.3 Hz. Is that line in an accelerometer's record, how
-//! strong is it, and is it told apart from the 50 Hz mains?
+//! A pinion with 37 teeth turns at 24.9 Hz, so its teeth mesh at 921.3 Hz. Is that line in an accelerometer's
+//! record, how strong is it, and is it told apart from the 50 Hz mains?
 //!
 //! ```
 //! use std::f64::consts::TAU;
@@ -59,6 +59,7 @@ pub mod summary;
 pub mod prediction;
 pub mod record;
 
+pub mod defect;
 pub mod duty;
 pub mod enveloping;
 pub mod events;

@@ -1,4 +1,5 @@
-//! What the rollers carry: their sum against the load, the largest of them, and the distribution around the bearing.
+//! Load of the rollers: their sum against the load, the largest of them, and the distribution around the
+//! bearing.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,11 +12,11 @@ const BIN_DEG: f64 = 1.0;
 /// Forces on the rollers.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct LoadFinding {
-    /// Mean over the record of the force between rollers and outer ring along the load [N], positive when it supports the
-    /// load.
+    /// Mean over the record of the force between rollers and outer ring along the load [N], positive when it
+    /// supports the load.
     pub mean_n: Option<f64>,
-    /// What it must be: the load, in the mean over the record where it changes, plus the weight of housing and outer ring along
-    /// it [N].
+    /// What it must be: the load, in the mean over the record where it changes, plus the weight of housing
+    /// and outer ring along it [N].
     pub expected_n: f64,
     /// `mean_n / expected_n − 1`.
     pub relative_error: Option<f64>,
@@ -23,8 +24,8 @@ pub struct LoadFinding {
     pub inner_mean_n: Option<f64>,
     /// Mean force of the housing on the outer ring along the load [N], where the ring sits in one.
     pub seat_mean_n: Option<f64>,
-    /// Largest outer-raceway force of any roller, averaged over one facet period [N], so that the facet tone does not
-    /// set it. Load compensation next to an unloaded roller and impacts at the exit are in it.
+    /// Largest outer-raceway force of any roller, averaged over one facet period [N], so that the facet tone
+    /// does not set it. Load compensation next to an unloaded roller and impacts at the exit are in it.
     pub max_roller_n: Option<f64>,
     /// Largest single sample of the same force [N].
     pub max_roller_peak_n: Option<f64>,
@@ -47,7 +48,7 @@ pub struct Distribution {
     pub mean_n: Vec<f64>,
 }
 
-/// What rollers carry, one after the other.
+/// Loads of rollers, read one after the other.
 #[derive(Debug)]
 pub struct Carried {
     /// Direction of the load.
@@ -138,15 +139,15 @@ impl Carried {
         }
     }
 
-    /// Force of all rollers on the outer ring against the load at every sample [N]: positive when it supports the load. Empty
-    /// where no roller was recorded.
+    /// Force of all rollers on the outer ring against the load at every sample [N]: positive when it supports
+    /// the load. Empty where no roller was recorded.
     pub fn into_support(self) -> Vec<f64> {
         if self.rollers > 0 { self.support_n } else { Vec::new() }
     }
 }
 
-/// Force of all rollers on the outer ring against the load, whose direction is `along`, at every sample [N]: positive when it
-/// supports the load.
+/// Force of all rollers on the outer ring against the load, whose direction is `along`, at every sample [N]:
+/// positive when it supports the load.
 pub fn support(record: &Record<'_>, along: [f64; 2]) -> Vec<f64> {
     let rollers = record.rollers();
     let at = |n: usize| rollers.iter().map(|r| dot([r.outer_fx[n], r.outer_fy[n]], along)).sum();

@@ -1,21 +1,24 @@
-//! How strong a facet tone must be by the simplest model: rigid rings on springs whose ends follow the polygons.
+//! How strong a facet tone must be by the simplest model: rigid rings on springs whose ends follow the
+//! polygons.
 //!
-//! A facet of length ℓ on a roller of radius r leaves a gap whose first harmonic is h₁ = ℓ²/(2π²r) high (THEORY §5.2). A
-//! contact of half-width b averages over it; a pressure like √(1 − x²/b²) leaves
+//! A facet of length ℓ on a roller of radius r leaves a gap whose first harmonic is h₁ = ℓ²/(2π²r) high
+//! (THEORY §5.2). A contact of half-width b averages over it; a pressure like √(1 − x²/b²) leaves
 //!
 //! ```text
 //! g(u) = (2/π) ∫ √(1 − x²) cos(u x) dx  = 2 J₁(u)/u          u = 2πb/ℓ
 //! ```
 //!
-//! Vertices meet the outer raceway with the phase N_v θ_j at the roller j and the inner one with N_v (θ_j + π): in step for
-//! an even count, against each other for an odd one. Copies in one orientation have the phase N_v θ_j; copies turned with the
-//! pattern all have the same. With equal springs under all loaded rollers the outer ring follows
+//! Vertices meet the outer raceway with the phase N_v θ_j at the roller j and the inner one with N_v (θ_j +
+//! π): in step for an even count, against each other for an odd one. Copies in one orientation have the phase
+//! N_v θ_j; copies turned with the pattern all have the same. With equal springs under all loaded rollers the
+//! outer ring follows
 //!
 //! ```text
 //! y = |Σ sin θ_j g(u_j) (1 + e^{iπN_v}) e^{iN_vθ_j}| h₁ / Σ sin² θ_j          a = (2π f_v)² y
 //! ```
 //!
-//! Neither the ring's bending nor its mass is in this: it says how levels compare, not what a sensor hears (own).
+//! Neither the ring's bending nor its mass is in this: it compares levels of scenes and does not predict
+//! those of a sensor (own).
 
 use std::f64::consts::{PI, TAU};
 
@@ -30,21 +33,21 @@ use crate::levels::STANDARD_GRAVITY;
 /// Strips of the average over the contact.
 const STRIPS: usize = 400;
 
-/// What the model says of one scene.
+/// Result for one scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lumped {
     /// Frequency of the roller vertices [Hz].
     pub frequency_hz: f64,
     /// First harmonic of the gap under one facet [m].
     pub height_m: f64,
-    /// What the width of the most loaded contact leaves of it, 0 to 1; negative past the first zero.
+    /// Reduction by the width of the most loaded contact, 0 to 1; negative past the first zero.
     pub smoothing: f64,
-    /// What the phases of all loaded rollers leave, 0 to 1.
+    /// Reduction by the phases of all loaded rollers, 0 to 1.
     pub phases: f64,
     /// 2 for an even count of facets, 0 for an odd one.
     pub both_contacts: f64,
-    /// Coefficient of friction with which the most loaded roller is turned over its vertices by traction alone
-    /// (THEORY §5.4).
+    /// Coefficient of friction with which the most loaded roller is turned over its vertices by traction
+    /// alone (THEORY §5.4).
     pub friction_to_roll: f64,
     /// Amplitude of the ring's acceleration [g].
     pub level_g: f64,
@@ -99,11 +102,13 @@ impl Lumped {
     }
 }
 
-/// Where the strongest line of the roller vertices stands [Hz] when rollers turn at `spin_hz` against a cage of `cage_hz`.
+/// Where the strongest line of the roller vertices stands [Hz] when rollers turn at `spin_hz` against a cage
+/// of `cage_hz`.
 ///
-/// Copies turned with the pattern all have the phase of N_v times the spin. Of copies in one orientation what sounds is a
-/// sum over places that repeats whenever a roller takes the place of the next one: lines at the vertices' rate seen from
-/// outside and multiples of BPFO on top, strongest where the rate along the load zone is lowest (THEORY §5.5).
+/// Copies turned with the pattern all have the phase of N_v times the spin. Of copies in one orientation what
+/// sounds is a sum over places that repeats whenever a roller takes the place of the next one: lines at the
+/// vertices' rate seen from outside and multiples of BPFO on top, strongest where the rate along the load
+/// zone is lowest (THEORY §5.5).
 pub fn pattern_hz(scene: &ResolvedScene, spin_hz: f64, cage_hz: f64) -> f64 {
     let (facets, rollers) = (scene.written.mesh.roller_facets as f64, scene.written.bearing.rollers as f64);
     match scene.written.mesh.roller_copies {
@@ -143,7 +148,8 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.roller_facets = facets;
         scene.mesh.roller_copies = copies;
-        // Narrow contacts: where they are wider than a facet, the factor g changes its sign from roller to roller.
+        // Narrow contacts: where they are wider than a facet, the factor g changes its sign from roller to
+        // roller.
         scene.operation.load_n = 2000.0;
         scene.contact.penalty_scale = 1.0;
         scene
@@ -159,7 +165,8 @@ mod tests {
 
     #[test]
     fn example_few_facets_need_more_friction_than_the_paper_has() {
-        // THEORY §5.4: two cosines of amplitude h₁ g under the load Q are climbed by a couple 2 N_v Q h₁ g, against 2µQr.
+        // THEORY §5.4: two cosines of amplitude h₁ g under the load Q are climbed by a couple 2 N_v Q h₁ g,
+        // against 2µQr.
         let of = |facets| {
             let mut scene = scene(facets, RollerCopies::Translated);
             scene.operation.load_n = 50_000.0;
@@ -175,8 +182,8 @@ mod tests {
 
     #[test]
     fn example_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
-        // Rollers at 41.7 Hz against a cage of 3.75 Hz, BPFO 90 Hz. 112 facets are 4 2/3 a roller: a third of BPFO is missing
-        // to five. 120 are five, and copies that turn with the pattern have no phase at all.
+        // Rollers at 41.7 Hz against a cage of 3.75 Hz, BPFO 90 Hz. 112 facets are 4 2/3 a roller: a third of
+        // BPFO is missing to five. 120 are five, and copies that turn with the pattern have no phase at all.
         let at =
             |facets, copies| pattern_hz(&scene(facets, copies).resolve(), 41.7, 3.75) - facets as f64 * 41.7;
         assert!((at(112, RollerCopies::Translated) - 30.0).abs() < 1e-9);
@@ -188,8 +195,8 @@ mod tests {
     #[test]
     fn example_phases_follow_copies_and_parity() {
         let of = |facets, copies| Lumped::of(&scene(facets, copies).resolve()).unwrap();
-        // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded rollers not all of
-        // it), 120 = 5·24 are all in step.
+        // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded
+        // rollers not all of it), 120 = 5·24 are all in step.
         let (three, all) = (of(112, RollerCopies::Translated), of(120, RollerCopies::Translated));
         assert!(three.phases < 0.5, "{three:?}");
         assert!((all.phases - 1.0).abs() < 1e-9, "{all:?}");

@@ -1,7 +1,7 @@
 //! A measured signal: is it sound, which defect families does it hold, and what may be concluded?
 //!
 //! [`Analysis::of`] goes once through the samples, block by block, so that a record of hours takes no more memory than one of
-//! seconds. THEORY §7.9 says what is computed.
+//! seconds. Source: THEORY §7.9.
 //!
 //! ```
 //! use stribeck_analysis::measured::{Analysis, Defect, Machine};
@@ -33,34 +33,37 @@
 pub mod alarm;
 mod angular;
 mod course;
-mod defect;
 mod enhanced;
 mod length;
+mod pass;
 mod passage;
 pub mod ridge;
 mod screening;
 mod second;
 pub mod tacho;
+mod unit;
 mod unrelated;
 mod velocity;
 mod verdict;
 
 use serde::Serialize;
-use stribeck_dsp::{BandEnvelope, BandEnvelopes, Welch};
+use stribeck_dsp::{BandEnvelope, BandEnvelopes};
 use stribeck_formats::Channel;
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 
 use crate::Error;
+pub use crate::defect::Defect;
 pub use angular::over_angle;
 pub use course::Course;
-pub use defect::Defect;
 pub use enhanced::Enhanced;
+use pass::Pass;
 pub use screening::Health;
-use screening::Screening;
+pub use unit::AccelerationUnit;
+use velocity::VelocityLevel;
 pub(crate) use verdict::sidebands_seen;
 pub use verdict::{Family, Reason};
 
-/// What is known of the machine.
+/// Speed and bearing of the machine, as far as they are known.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Machine {
     /// Speed of the shaft, against the outer ring where that turns [1/min].
@@ -72,7 +75,8 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Speed of the outer ring of a scene as [`Machine`] has it; none where speeds change, and nothing has one frequency.
+    /// Speed of the outer ring of a scene as [`Machine`] has it; none where speeds change, and nothing has
+    /// one frequency.
     pub fn outer_speed_rpm(scene: &Scene) -> f64 {
         let operation = &scene.operation;
         if operation.speed_varies() {
@@ -82,7 +86,7 @@ impl Machine {
     }
 }
 
-/// What `findings.json` says. What a record cannot yield is `null`, with the reason in `notes`.
+/// Contents of `findings.json`. A number that the record cannot yield is `null`, with the reason in `notes`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuredFindings {
     /// The channel.
@@ -99,7 +103,7 @@ pub struct MeasuredFindings {
     pub speed_rpm: Option<f64>,
     /// The bearing, in words.
     pub bearing: Option<String>,
-    /// What the envelope spectra resolve: one over the length of a segment [Hz].
+    /// Resolution of the envelope spectra: one over the length of a segment [Hz].
     pub resolution_hz: f64,
     /// Segments averaged.
     pub segments: usize,
@@ -109,12 +113,19 @@ pub struct MeasuredFindings {
     pub velocity_mm_s: Option<f64>,
     /// The defect families; none without speed and bearing.
     pub families: Vec<Family>,
-    /// What to conclude, in one sentence.
+    /// The conclusion in one sentence.
     pub verdict: String,
     /// Length of a spall [mm].
     pub spall_mm: Option<Interval>,
-    /// What limits the conclusion.
+    /// Limits of the conclusion.
     pub notes: Vec<String>,
+}
+
+impl MeasuredFindings {
+    /// The unit of the channel; `None` where it is not known, or no acceleration.
+    pub fn acceleration_unit(&self) -> Option<AccelerationUnit> {
+        self.unit.as_deref().and_then(AccelerationUnit::parse)
+    }
 }
 
 /// A value with its interval of 90 %.
@@ -128,7 +139,7 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// MeasuredFindings and the curves that a report draws.
+/// The numbers and the curves that a report draws.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// The numbers.
@@ -147,18 +158,12 @@ pub struct Analysis {
     pub enhanced: Option<Enhanced>,
 }
 
-/// Longest segment [samples]: its envelopes take some tens of megabytes.
-const LONGEST_SEGMENT: usize = 1 << 20;
-/// Segments of records that are longer.
-const SEGMENT: usize = 1 << 19;
 /// Levels of the dyadic tree of bands: halves, quarters, eighths.
 const LEVELS: u32 = 3;
 /// Lower end of the lowest bands as a part of half the sample rate: below lie the shaft and its multiples.
 const LOWEST: f64 = 0.02;
 /// Highest frequency of the envelope spectra [Hz]; bearings knock more slowly.
 const HIGHEST_HZ: f64 = 4_000.0;
-/// Segment of the density [samples].
-const DENSITY_SEGMENT: usize = 1 << 13;
 /// Samples kept for the picture.
 const SHOWN: usize = 1 << 16;
 /// Harmonics of the fastest family in the enhanced envelope spectrum.
@@ -185,70 +190,12 @@ impl Analysis {
                 channel.name
             )));
         }
-        let segment =
-            if len > LONGEST_SEGMENT { SEGMENT } else { BandEnvelopes::segment_of(len, LONGEST_SEGMENT) };
-        let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
-        let mut envelopes =
-            BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz).map_err(Error::Signal)?;
-        let mut density = Density::new(rate_hz, segment)?;
-        let mut tracing = course::Tracing::new(rate_hz, len)?;
-        let mut velocity = velocity::Level::new(rate_hz, segment, channel.unit.as_deref())?;
-        let mut screening = Screening::default();
-        let mut buffer: Vec<f64> = Vec::with_capacity(segment);
-        let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
-        let mut kept: Vec<f64> = Vec::with_capacity(longest_kept);
-        let mut refused = 0_usize;
-        let mut failed = None;
-        channel.for_each_block(|mut block| {
-            screening.add(block);
-            kept.extend(block.iter().take(longest_kept - kept.len()));
-            while !block.is_empty() {
-                let (now, later) = block.split_at((segment - buffer.len()).min(block.len()));
-                buffer.extend_from_slice(now);
-                block = later;
-                if buffer.len() < segment {
-                    continue;
-                }
-                if buffer.iter().all(|x| x.is_finite()) {
-                    let added = envelopes
-                        .add(&buffer)
-                        .and_then(|()| density.add(&buffer))
-                        .and_then(|()| tracing.add(&buffer))
-                        .and_then(|()| velocity.as_mut().map_or(Ok(()), |level| level.add(&buffer)));
-                    failed = added.err();
-                } else {
-                    tracing.skip(buffer.len());
-                    refused += 1;
-                }
-                buffer.clear();
-                if failed.is_some() {
-                    return false;
-                }
-            }
-            true
-        })?;
-        if let Some(why) = failed {
-            return Err(Error::Signal(why));
-        }
-        let mut notes = screening.notes(rate_hz);
-        if refused > 0 {
-            notes.push(format!(
-                "{refused} segments of {segment} samples hold values that are not numbers and are left out"
-            ));
-        }
-        if envelopes.segments() == 0 {
-            return Err(Error::NoSignal(format!(
-                "channel `{}` has no run of {segment} numbers: {}. Cut the record to its sound part",
-                channel.name,
-                notes.join("; ")
-            )));
-        }
-        if let Some(reach) = screening.out_of_range() {
-            return Err(Error::NoSignal(format!(
-                "channel `{}` moves by {reach:.1e}, whose powers lie beyond the range of numbers: bring it near 1 with `--scale`",
-                channel.name
-            )));
-        }
+        let pass = Pass::over(channel, rate_hz, len)?;
+        let segment = pass.segment;
+        let mut notes = pass.notes(rate_hz);
+        pass.refuse(channel, &notes)?;
+        notes.extend(pass.remainder_note(rate_hz, len));
+        let Pass { envelopes, density, tracing, velocity, screening, kept, .. } = pass;
         let density = density.finish();
         let Some(health) = screening.health(&density.1) else {
             return Err(Error::NoSignal(format!(
@@ -256,14 +203,8 @@ impl Analysis {
                 channel.name
             )));
         };
-        if !buffer.is_empty() && buffer.len() * 20 > len {
-            notes.push(format!(
-                "the last {:.2} s fill no segment and are left out of the spectra",
-                buffer.len() as f64 / rate_hz
-            ));
-        }
         let (bands, segments) = (envelopes.bands(), envelopes.segments());
-        // What follows has transforms of its own.
+        // The steps below need memory for their own transforms.
         drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
         let (record_s, segment_s) = (screening.count() as f64 / rate_hz, segment as f64 / rate_hz);
@@ -277,9 +218,7 @@ impl Analysis {
         notes.extend(judged.notes.iter().cloned());
         let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
         notes.extend(why);
-        let highest_hz = judged.families.iter().map(|f| f.expected_hz).fold(0.0, f64::max);
-        let highest_hz = if highest_hz > 0.0 { HARMONICS * highest_hz } else { UNKNOWN_HZ };
-        let enhanced = enhanced::of(&kept, rate_hz, highest_hz)?;
+        let enhanced = enhanced::of(&kept, rate_hz, enhanced_up_to_hz(&judged.families))?;
         Ok(Self {
             findings: MeasuredFindings {
                 channel: channel.name.clone(),
@@ -292,7 +231,7 @@ impl Analysis {
                 resolution_hz,
                 segments,
                 health,
-                velocity_mm_s: velocity.as_ref().and_then(velocity::Level::finish),
+                velocity_mm_s: velocity.as_ref().and_then(VelocityLevel::finish),
                 families: judged.families,
                 verdict: judged.verdict,
                 spall_mm,
@@ -313,6 +252,12 @@ impl Analysis {
         let bands = if family.over.is_some() { &self.over } else { &self.bands };
         bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
     }
+}
+
+/// Highest frequency of the enhanced envelope spectrum [Hz].
+fn enhanced_up_to_hz(families: &[Family]) -> f64 {
+    let fastest_hz = families.iter().map(|f| f.expected_hz).fold(0.0, f64::max);
+    if fastest_hz > 0.0 { HARMONICS * fastest_hz } else { UNKNOWN_HZ }
 }
 
 /// The bands of a channel over the period of a frequency [Hz]: the samples are gone through again.
@@ -354,33 +299,4 @@ fn bands(rate_hz: f64) -> Vec<(f64, f64)> {
         (0..count).map(move |n| (end(n), end(n + 1)))
     };
     (0..=LEVELS).flat_map(level).collect()
-}
-
-/// Density averaged over everything that was added.
-struct Density {
-    welch: Welch,
-    segment: usize,
-    sum: Vec<f64>,
-    count: usize,
-}
-
-impl Density {
-    fn new(rate_hz: f64, segment: usize) -> Result<Self, Error> {
-        let options = stribeck_dsp::WelchOptions::new(DENSITY_SEGMENT.min(segment));
-        let welch = Welch::new(rate_hz, segment, &options).map_err(Error::Signal)?;
-        Ok(Self { sum: vec![0.0; welch.blank().values().len()], welch, segment, count: 0 })
-    }
-
-    fn add(&mut self, samples: &[f64]) -> Result<(), stribeck_dsp::Error> {
-        debug_assert_eq!(samples.len(), self.segment);
-        let spectrum = self.welch.estimate(samples)?;
-        self.sum.iter_mut().zip(spectrum.values()).for_each(|(sum, v)| *sum += v);
-        self.count += 1;
-        Ok(())
-    }
-
-    fn finish(self) -> (Vec<f64>, Vec<f64>) {
-        let count = self.count.max(1) as f64;
-        (self.welch.blank().frequencies_hz().to_vec(), self.sum.iter().map(|s| s / count).collect())
-    }
 }

@@ -1,4 +1,5 @@
-//! How much of a record is contact noise: the line of the roller vertices and the level where no roller meets the defect.
+//! How much of a record is contact noise: the line of the roller vertices and the level where no roller meets
+//! the defect.
 
 use std::ops::Range;
 
@@ -6,13 +7,14 @@ use crate::levels::{STANDARD_GRAVITY, Visit, gap_spans, impulse_span, level, pha
 use crate::record::Record;
 use crate::signal::{amplitude, band_rms, smoothed_peak};
 
-/// Levels of one sensor, of the vector of both components. Quiet stretches are those without an event that are nearly as
-/// long as the longest; powers are averaged over them.
+/// Levels of one sensor, of the vector of both components. Quiet stretches are those without an event that
+/// are nearly as long as the longest; powers are averaged over them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {
     /// Amplitude of the facet line [g].
     pub line_g: f64,
-    /// The same measure at neighbouring frequencies, where no line of the mesh lies: root of the mean square [g].
+    /// The same measure at neighbouring frequencies, where no line of the mesh lies: root of the mean square
+    /// [g].
     pub background_g: f64,
     /// Smallest and largest of these [g].
     pub background_range_g: [f64; 2],
@@ -37,7 +39,8 @@ pub struct Impulse {
     pub mean_g: f64,
 }
 
-/// Neighbours of a line lie this many resolutions away: neither their windows nor the line's reach into another.
+/// Neighbours of a line lie this many resolutions away: neither their windows nor the line's reach into
+/// another.
 const NEIGHBOURS: [f64; 4] = [-6.0, -3.0, 3.0, 6.0];
 
 /// Frequencies that elements of 0.5 mm no longer carry well [Hz].
@@ -49,8 +52,8 @@ pub const IMPULSE_MEAN_S: f64 = 1.0 / 4671.0;
 /// A quiet stretch counts when it is at least this part of the longest.
 const LONG_ENOUGH: f64 = 0.9;
 
-/// Measures `sensor` where `passages` (entry, exit) [s] are over, about the line `facet_hz`. `None` when the record holds no
-/// such stretch.
+/// Measures `sensor` where `passages` (entry, exit) [s] are over, about the line `facet_hz`. `None` when the
+/// record holds no such stretch.
 pub fn measure(record: &Record<'_>, sensor: &str, passages: &[(f64, f64)], facet_hz: f64) -> Option<Noise> {
     let (time, rate) = (record.time_s(), record.sample_rate_hz());
     let components = [record.acceleration_g(sensor, "ax")?, record.acceleration_g(sensor, "ay")?];

@@ -1,7 +1,7 @@
 //! Every number in the paper's text beside ours: quantity, paper, ours, difference, why.
 //!
-//! The paper: "Numerical noise generation in modelled bearing vibration signals", Inter-Noise 2014. Its numbers are
-//! written here once, as it prints them.
+//! The paper: "Numerical noise generation in modelled bearing vibration signals", Inter-Noise 2014. Its
+//! numbers are written here once, as it prints them.
 
 mod model;
 mod signal;
@@ -26,7 +26,8 @@ pub const BETWEEN_G: f64 = 50.0;
 /// The same behind the notch, Fig. 6 [g].
 pub const FILTERED_G: f64 = 20.0;
 
-/// Whether a scene has the paper's bearing, housing, defect, load and speed, so that its numbers can be set beside the paper's at all.
+/// Whether a scene has the paper's bearing, housing, defect, load and speed, so that its numbers can be set
+/// beside the paper's at all.
 pub fn is_scene_of(scene: &Scene) -> bool {
     let (b, paper) = (&scene.bearing, Scene::default());
     let p = &paper.bearing;
@@ -49,22 +50,22 @@ pub fn is_scene_of(scene: &Scene) -> bool {
             == [paper.operation.load_n, paper.operation.speed_rpm]
 }
 
-/// What the rows are made of.
-struct Source<'a> {
+/// The run behind the rows.
+struct RowInputs<'a> {
     scene: &'a ResolvedScene,
     mesh: &'a MeshInfo,
     prediction: &'a Prediction,
     summary: &'a Summary,
 }
 
-/// All rows, in the order of the paper. None is blank: what this run cannot yield says so.
+/// All rows, in the order of the paper. None is blank: a number that this run cannot yield is stated as such.
 pub fn rows(
     scene: &ResolvedScene,
     mesh: &MeshInfo,
     prediction: &Prediction,
     summary: &Summary,
 ) -> Vec<PaperRow> {
-    let source = Source { scene, mesh, prediction, summary };
+    let source = RowInputs { scene, mesh, prediction, summary };
     let mut rows = model::rows(&source);
     rows.extend(signal::rows(&source));
     rows

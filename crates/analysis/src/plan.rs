@@ -1,5 +1,5 @@
-//! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is, what it costs,
-//! and how long a record must be. Nothing is simulated.
+//! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is,
+//! what it costs, and how long a record must be. Nothing is simulated.
 
 use std::f64::consts::PI;
 
@@ -14,12 +14,13 @@ use stribeck_scene::scene::{
 use stribeck_scene::static_load;
 
 use crate::Error;
+use crate::defect::Shocks;
 use crate::kinematics::KinematicsFinding;
 use crate::lumped::Lumped;
-use crate::prediction::{Prediction, family};
+use crate::prediction::Prediction;
 use crate::rolling;
 
-/// What a plan must know of the mesh that a scene makes.
+/// Facts of the mesh that a plan needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshFacts {
     /// Its counts.
@@ -28,7 +29,7 @@ pub struct MeshFacts {
     pub element_time_step_s: f64,
 }
 
-/// What to expect of a scene.
+/// Expected tones, resolution and cost of a scene.
 #[derive(Debug, Clone)]
 pub struct Plan {
     /// Predicted lines: name and frequency [Hz].
@@ -45,8 +46,8 @@ pub struct Plan {
     pub films: Option<[LoadedFilm; 2]>,
     /// Length of a roller's facets [m].
     pub facet_m: f64,
-    /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may differ by a
-    /// fifth either way.
+    /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may
+    /// differ by a fifth either way.
     pub elements: usize,
     /// See `elements`.
     pub time_step_s: f64,
@@ -58,10 +59,11 @@ pub struct Plan {
     pub resolution_hz: f64,
     /// Record that separates the closest two of the lines, Hann window [s]; `None` when they coincide.
     pub separating_s: Option<f64>,
-    /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of the defect, of several the
-    /// slowest, without one BPFO; `None` where the rings do not turn against each other.
+    /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of
+    /// the defect, of several the slowest, without one BPFO; `None` where the rings do not turn against each
+    /// other.
     pub envelope: Option<(&'static str, f64)>,
-    /// What to change, each with its reason.
+    /// Recommended changes, each with its reason.
     pub advice: Vec<String>,
 }
 
@@ -76,7 +78,7 @@ const HANN_WIDTHS: f64 = 2.0;
 const ONSET_STEPS: f64 = 1.9;
 
 impl Plan {
-    /// What to expect of a scene whose mesh is `mesh`.
+    /// The plan of a scene whose mesh is `mesh`.
     ///
     /// # Errors
     /// [`Error::Run`] when the scene has no static load distribution.
@@ -101,9 +103,9 @@ impl Plan {
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let facets = counts.roller_facets as f64;
-        let families = scene.written.faults().into_iter().map(|on| family(on, kinematics));
-        let slowest = families.min_by(|a, b| a.1.total_cmp(&b.1));
-        let slowest = slowest.unwrap_or_else(|| family(RollingSurface::Outer, kinematics));
+        let families = scene.written.faults().into_iter().map(|on| Shocks::of(on, kinematics));
+        let slowest = families.min_by(|a, b| a.hz.total_cmp(&b.hz));
+        let slowest = slowest.unwrap_or_else(|| Shocks::of(RollingSurface::Outer, kinematics));
         let mut plan = Self {
             lines: prediction.facet_lines.clone(),
             lumped,
@@ -123,8 +125,8 @@ impl Plan {
             resolution_hz: 1.0 / duration_s,
             separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
             envelope: Some(slowest)
-                .filter(|(_, hz)| *hz > 0.0)
-                .map(|(name, hz)| (name, PeriodCount::ENOUGH / hz)),
+                .filter(|shocks| shocks.hz > 0.0)
+                .map(|shocks| (shocks.name(), PeriodCount::ENOUGH / shocks.hz)),
             advice: Vec::new(),
         };
         plan.advise(scene);
@@ -137,8 +139,8 @@ impl Plan {
         Ok(plan)
     }
 
-    /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a roller with
-    /// the outer raceway [m] (THEORY §4.2).
+    /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a
+    /// roller with the outer raceway [m] (THEORY §4.2).
     fn point_step_m(&self, scene: &ResolvedScene, points_per_facet: usize) -> f64 {
         let radius = scene.outer_contact_radius();
         let load = self.load_n / scene.thickness;
@@ -146,80 +148,105 @@ impl Plan {
         (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
     }
 
-    /// What the study of contact noise has shown to help (docs/results/noise.md).
+    /// Recommendations from the study of contact noise (docs/results/noise.md).
     fn advise(&mut self, scene: &ResolvedScene) {
+        let mut advice = self.on_contact(scene);
+        advice.extend(self.on_oil(scene));
+        if scene.written.contact.surface == ContactSurface::Facet {
+            advice.extend(self.on_facets(scene));
+        }
+        advice.extend(self.on_spectra(scene));
+        self.advice = advice;
+    }
+
+    /// Surface, interpolation, method and onset of the contacts.
+    fn on_contact(&self, scene: &ResolvedScene) -> Vec<String> {
         let c = &scene.written.contact;
-        let wanted = ONSET_STEPS * self.point_step_m(scene, c.points_per_facet);
-        let mut say = |text: String| self.advice.push(text);
+        let mut advice = Vec::new();
         if c.surface == ContactSurface::Facet {
-            say("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
+            advice.push("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
         }
         if c.interpolation == ContactInterpolation::Linear && c.penalty_scale > 0.2 {
-            say(format!(
+            advice.push(format!(
                 "`contact.interpolation=spline`: with a contact as stiff as elements (penalty_scale {}) a load between \
                  two nodes sinks in less than one at a node, and arcs alone leave a third of the tone",
                 c.penalty_scale
             ));
         }
         if c.method == ContactMethod::Collocated {
-            say("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
+            advice.push("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
         }
+        let onset_m = ONSET_STEPS * self.point_step_m(scene, c.points_per_facet);
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
         let audible = points_hz < 0.5 / scene.interval;
-        // The reduced model integrates what overlaps exactly, without points.
+        // The reduced model integrates the penetration exactly, without points.
         let in_points = scene.written.model == ModelScene::Full && c.method == ContactMethod::Integrated;
-        if in_points && c.surface != ContactSurface::Facet && audible && scene.contact_onset < wanted {
-            say(format!(
+        if in_points && c.surface != ContactSurface::Facet && audible && scene.contact_onset < onset_m {
+            advice.push(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz unless their pressure \
                  sets in over several of them",
-                1e6 * wanted,
+                1e6 * onset_m,
                 1e-3 * points_hz
             ));
         }
-        if let Some(films) = &self.films {
-            if scene.written.solver.mass_damping_per_s > 0.0
-                && scene.written.solver.damping_frame == DampingFrame::Rolling
-            {
-                say("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
-            }
-            if films.iter().any(|film| film.lambda < 1.0) {
-                say("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
-            }
+        advice
+    }
+
+    /// Damping beside oil films, and thin ones.
+    fn on_oil(&self, scene: &ResolvedScene) -> Vec<String> {
+        let Some(films) = &self.films else { return Vec::new() };
+        let mut advice = Vec::new();
+        if scene.written.solver.mass_damping_per_s > 0.0
+            && scene.written.solver.damping_frame == DampingFrame::Rolling
+        {
+            advice.push("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
         }
+        if films.iter().any(|film| film.lambda < 1.0) {
+            advice.push("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
+        }
+        advice
+    }
+
+    /// Number, phase and length of facets that are in contact themselves.
+    fn on_facets(&self, scene: &ResolvedScene) -> Vec<String> {
         let facets = scene.written.mesh.roller_facets;
-        if c.surface == ContactSurface::Facet {
-            if facets.is_multiple_of(2) {
-                say(format!(
-                    "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
-                    facets + 1
-                ));
-            }
-            if scene.written.mesh.roller_copies == RollerCopies::Rotated
-                || facets.is_multiple_of(scene.written.bearing.rollers)
-            {
-                say("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
-            }
-            if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
-                say(format!(
-                    "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
-                    1e3 * self.facet_m,
-                    2e3 * self.half_width_m
-                ));
-            }
+        let mut advice = Vec::new();
+        if facets.is_multiple_of(2) {
+            advice.push(format!(
+                "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
+                facets + 1
+            ));
         }
+        if scene.written.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.rollers) {
+            advice.push("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
+        }
+        if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
+            advice.push(format!(
+                "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
+                1e3 * self.facet_m,
+                2e3 * self.half_width_m
+            ));
+        }
+        advice
+    }
+
+    /// The resolution of the spectra in frequency and of their top in space.
+    fn on_spectra(&self, scene: &ResolvedScene) -> Vec<String> {
+        let mut advice = Vec::new();
         if self.elements_per_wavelength < 8.0 {
-            say(format!(
+            advice.push(format!(
                 "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not read the top of the spectrum",
                 self.elements_per_wavelength
             ));
         }
         if let Some(needed) = self.separating_s.filter(|s| *s > scene.duration) {
-            say(format!(
+            advice.push(format!(
                 "the closest lines merge in {:.0} ms; {:.0} ms separate them",
                 1e3 * scene.duration,
                 1e3 * needed
             ));
         }
+        advice
     }
 }
 
@@ -289,7 +316,8 @@ mod tests {
         scene.contact.interpolation = ContactInterpolation::Spline;
         let smooth = of(&scene);
         assert!(smooth.advice.iter().all(|a| !a.contains("contact.")), "{:?}", smooth.advice);
-        // Eight points a facet sound at 37.4 kHz, which 100 kHz can show; with the onset asked for they do not.
+        // Eight points a facet sound at 37.4 kHz, which 100 kHz can show; with the onset asked for they do
+        // not.
         scene.contact.points_per_facet = 8;
         let sounding = of(&scene);
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));

@@ -1,7 +1,6 @@
-//! What rolling without slip and rigid rings let one expect of a scene: frequencies, facet lines, who crosses the
-//! defect when, and who carries how much.
+//! Prediction for a scene from rolling without slip and rigid rings: frequencies, facet lines, passages of
+//! rollers over the defect, and the load distribution.
 
-use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::run_info::MeshInfo;
@@ -9,6 +8,7 @@ use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies};
 use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
 
 use crate::Error;
+use crate::defect::{Defect, Shocks};
 use crate::families::{Candidate, Source};
 
 /// Steps of the cage over one roller spacing in the static distribution.
@@ -24,10 +24,10 @@ pub struct Prediction {
     pub kinematics: Kinematics,
     /// Names and frequencies [Hz] of the fundamental facet-passing lines, from the actual mesh counts.
     pub facet_lines: Vec<(String, f64)>,
-    /// Spalls of raceways, in the order of [`Scene::spalls`].
+    /// Spalls of raceways, in the order of [`Scene::spalls`](stribeck_scene::scene::Scene::spalls).
     pub spalls: Vec<SpallCourse>,
-    /// What a defect strikes: the name and the frequency [Hz] of its family; `None` where the speed changes and it has none.
-    pub family: Option<(&'static str, f64)>,
+    /// Shocks of the first defect; `None` where the speed changes, so that they have no frequency.
+    pub shocks: Option<Shocks>,
 }
 
 /// A spall of a raceway, and who should cross it when.
@@ -54,14 +54,14 @@ pub struct DefectEdges {
     pub trailing_deg: f64,
 }
 
-/// Roller force by angle between rigid rings, gathered over one roller spacing of cage positions, or over a turn of the cage where a
-/// roller is missing.
+/// Roller force by angle between rigid rings, gathered over one roller spacing of cage positions, or over a
+/// turn of the cage where a roller is missing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticCurve {
     /// Angles [°], 0 to 360, ascending.
     pub angle_deg: Vec<f64>,
-    /// Radial force on a roller that stands there [N], the mean over the positions of the cage that put one there; zero over the
-    /// defect.
+    /// Radial force on a roller that stands there [N], the mean over the positions of the cage that put one
+    /// there; zero over the defect.
     pub force_n: Vec<f64>,
     /// Largest force on a roller [N].
     pub largest_n: f64,
@@ -104,7 +104,8 @@ impl Prediction {
             }
             // On the inner raceway the contact is as fast: rollers do not slip.
             let traverse_s = DefectGeometry::of(defect).length / kinematics.contact_speed_m_s;
-            // A cage that slips meets a ring that turns earlier. Whoever enters in time leaves at most one traverse later.
+            // A cage that slips meets a ring that turns earlier. A roller that enters before the end leaves
+            // at most one traverse later.
             let early = if turns(defect) { EARLY } else { 0.0 };
             let until_s = (1.0 + early) * scene.duration + traverse_s;
             kinematics.crossings(defect, &roller_angles_deg(&scene.written), until_s)
@@ -124,12 +125,12 @@ impl Prediction {
         Self {
             facet_lines,
             spalls: scene.written.spalls().into_iter().map(course).collect(),
-            family: scene
+            shocks: scene
                 .written
                 .faults()
                 .first()
                 .filter(|_| !scene.written.operation.speed_varies())
-                .map(|on| family(*on, &kinematics)),
+                .map(|on| Shocks::of(*on, &kinematics)),
             kinematics,
         }
     }
@@ -151,16 +152,16 @@ impl Prediction {
         self.spalls.first().map_or(&[], |spall| &spall.passages)
     }
 
-    /// The defect's frequency in a bearing whose rollers were seen to pass the outer raceway at `bpfo_hz`: they pass either
-    /// raceway as often as the shaft takes them round, less what they pass the other.
+    /// The defect's frequency in a bearing whose rollers were seen to pass the outer raceway at `bpfo_hz`:
+    /// they pass either raceway as often as the shaft takes them round, less what they pass the other.
     pub fn moved(&self, bpfo_hz: Option<f64>) -> Option<f64> {
         let k = &self.kinematics;
-        let (name, _) = self.family?;
-        bpfo_hz.map(|hz| match name {
-            "BPFI" => k.bpfo_hz + k.bpfi_hz - hz,
+        let shocks = self.shocks?;
+        bpfo_hz.map(|hz| match shocks.defect {
+            Defect::Bpfi => k.bpfo_hz + k.bpfi_hz - hz,
             // A rolling element turns in proportion to its way along the outer raceway.
-            "2×BSF" => 2.0 * k.bsf_hz * hz / k.bpfo_hz,
-            _ => hz,
+            Defect::Bsf => 2.0 * k.bsf_hz * hz / k.bpfo_hz,
+            Defect::Bpfo | Defect::Ftf => hz,
         })
     }
 
@@ -179,13 +180,15 @@ impl Prediction {
         self.facet_lines.iter().zip(sources).map(named).collect()
     }
 
-    /// Longest of the facet periods [s]: a median over it removes every facet line. Zero without facets or motion.
+    /// Longest of the facet periods [s]: a median over it removes every facet line. Zero without facets or
+    /// motion.
     pub fn facet_period_s(&self) -> f64 {
         let slowest = self.facet_lines.iter().map(|l| l.1).filter(|&hz| hz > 0.0).reduce(f64::min);
         slowest.map_or(0.0, |hz| 1.0 / hz)
     }
 
-    /// Static distribution of `support_n`, the vertical force through the rollers [N], rollers over the defect left out.
+    /// Static distribution of `support_n`, the vertical force through the rollers [N], rollers over the
+    /// defect left out.
     ///
     /// # Errors
     /// [`Error::Run`] when the rings find no equilibrium.
@@ -224,8 +227,8 @@ impl Prediction {
         })
     }
 
-    /// Width of the running median [s] for a defect that takes `traverse_s` to cross: one facet period, but on a coarse
-    /// mesh not more than a tenth of the traverse.
+    /// Width of the running median [s] for a defect that takes `traverse_s` to cross: one facet period, but
+    /// on a coarse mesh not more than a tenth of the traverse.
     pub fn smoothing_s(&self, traverse_s: f64) -> f64 {
         self.facet_period_s().min(0.1 * traverse_s)
     }
@@ -238,17 +241,8 @@ impl Prediction {
     }
 }
 
-/// Name and frequency [Hz] of the family of a defect on a surface.
-pub(crate) fn family(on: RollingSurface, kinematics: &Kinematics) -> (&'static str, f64) {
-    match on {
-        RollingSurface::Outer => ("BPFO", kinematics.bpfo_hz),
-        RollingSurface::Inner => ("BPFI", kinematics.bpfi_hz),
-        RollingSurface::Roller(_) => ("2×BSF", 2.0 * kinematics.bsf_hz),
-    }
-}
-
-/// Points (angle [°], force) in the order of their angles, those of one place as their mean: where a roller is missing, others carry
-/// there more or less by how near to the gap they are.
+/// Points (angle [°], force) in the order of their angles, those of one place as their mean: where a roller
+/// is missing, others carry there more or less by how near to the gap they are.
 fn by_place(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     /// Angles of one place differ by their rounding [°].
     const ROUNDING_DEG: f64 = 1e-6;
@@ -261,8 +255,8 @@ fn by_place(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.chunk_by(same).map(mean).collect()
 }
 
-/// Passages over a defect where a speed changes: they follow the angle of the rings against each other. None where these turn back
-/// on the way.
+/// Passages over a defect where a speed changes: they follow the angle of the rings against each other. None
+/// where these turn back on the way.
 fn over_turns(scene: &ResolvedScene, defect: &DefectScene) -> Vec<Crossing> {
     let (duty, until_s) = (&scene.duty, scene.duration);
     if !duty.is_one_way(until_s) {
@@ -287,7 +281,7 @@ fn over_turns(scene: &ResolvedScene, defect: &DefectScene) -> Vec<Crossing> {
 
 #[cfg(test)]
 mod tests {
-    use stribeck_scene::deviation::{DeviationScene, FormScene};
+    use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface};
 
     use super::*;
     use stribeck_scene::scene::Scene;
@@ -334,7 +328,8 @@ mod tests {
         assert!(at(105.0) > 0.97 * curve.largest_sound_n, "{}", at(105.0));
     }
 
-    /// Every roller comes to every place, whoever is missing beside it: the curve is as smooth as that of a full bearing.
+    /// Every roller comes to every place, whoever is missing beside it: the curve is as smooth as that of a
+    /// full bearing.
     #[test]
     fn issue_a_missing_roller_makes_no_sawtooth_of_the_static_curve() {
         let full = Scene { defect: None, ..Scene::default() };

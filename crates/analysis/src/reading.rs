@@ -1,7 +1,7 @@
-//! What a cursor between two sampled peaks can read: whole numbers of samples only.
+//! Readings of a cursor between two sampled peaks: whole numbers of samples only.
 //!
-//! The paper reads 4545 Hz from the distance of two peaks. At 100 kHz that is 22 samples, and its neighbours are 4348 Hz
-//! (23) and 4762 Hz (21): nothing between them can be read.
+//! The paper reads 4545 Hz from the distance of two peaks. At 100 kHz that is 22 samples, and its neighbours
+//! are 4348 Hz (23) and 4762 Hz (21): nothing between them can be read.
 
 use std::f64::consts::TAU;
 
@@ -16,12 +16,12 @@ pub struct Gaps {
     pub mean_hz: f64,
 }
 
-/// What the paper's 4545 Hz can be.
+/// Possible readings behind the paper's 4545 Hz.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CursorReading {
     /// Distance of two samples that reads nearest to the paper's number.
     pub samples: usize,
-    /// What that distance reads [Hz].
+    /// Frequency of that distance [Hz].
     pub reads_hz: f64,
     /// The neighbouring readings [Hz]: one sample more, one sample less.
     pub neighbours_hz: (f64, f64),
@@ -31,8 +31,8 @@ pub struct CursorReading {
     pub share_in_equation_3: f64,
     /// The most common distance of its peaks [samples] and its share.
     pub equation_3_common: (usize, f64),
-    /// Its carrier, the mean of its tones [Hz]: what peaks within a swell follow. At each node of the beat one peak more
-    /// slips in, so that peaks are as many as periods of the higher tone.
+    /// Its carrier, the mean of its tones [Hz]: what peaks within a swell follow. At each node of the beat
+    /// one peak more slips in, so that peaks are as many as periods of the higher tone.
     pub equation_3_carrier_hz: f64,
 }
 

@@ -14,14 +14,16 @@ use crate::words::significant;
 /// Channels of rollers that are in memory at once, at most [bytes]; one roller always is.
 const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;
 
-/// Samples that are looked at, at most: of a longer record the last ones, so that memory does not grow with it.
+/// Samples that are looked at, at most: of a longer record the last ones, so that memory does not grow with
+/// it.
 const LONGEST: usize = 1 << 21;
 
-/// What is read of a roller.
+/// Channels of a roller that are read.
 const OF_ROLLER: [&str; 7] =
     ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"];
 
-/// A run's samples, up to the last one before any channel stops being finite. Some channels are in memory, the others on disk.
+/// A run's samples, up to the last one before any channel stops being finite. Some channels are in memory,
+/// the others on disk.
 #[derive(Debug)]
 pub struct Record<'a> {
     run: &'a Run,
@@ -72,8 +74,8 @@ fn of_rollers(numbers: &[usize]) -> impl Fn(&str) -> bool {
 }
 
 impl<'a> Record<'a> {
-    /// All samples up to the first that is not finite in any channel; of a record of more than two million the last ones. Channels of
-    /// rollers and sensors, which are most, stay on disk.
+    /// All samples up to the first that is not finite in any channel; of a record of more than two million
+    /// the last ones. Channels of rollers and sensors, which are most, stay on disk.
     ///
     /// # Errors
     /// [`Error::Run`] when the trace cannot be read.
@@ -88,7 +90,7 @@ impl<'a> Record<'a> {
     pub fn between(run: &'a Run, time_s: Range<f64>) -> Result<Self, Error> {
         let start_s = run.trace.read(0..1, |name| name == "time_s")?;
         let start_s = start_s.get("time_s").and_then(|time| time.first().copied()).unwrap_or(0.0);
-        // The sample at or behind a time; what is infinite or beyond the record is its end.
+        // The sample at or behind a time; an infinite time, or one beyond the record, is its end.
         let row = |at_s: f64| ((at_s - start_s) / run.info.interval_s - 1e-6).ceil().max(0.0) as usize;
         let end = row(time_s.end).min(run.trace.len());
         let first = row(time_s.start).max(end.saturating_sub(LONGEST));
@@ -149,7 +151,8 @@ impl<'a> Record<'a> {
         Self::with(self.run, 0..1, of_rollers(numbers))
     }
 
-    /// Hands every roller whose channels are there to `visit`, in the order of their numbers. A few are in memory at a time.
+    /// Hands every roller whose channels are there to `visit`, in the order of their numbers. A few are in
+    /// memory at a time.
     ///
     /// # Errors
     /// As [`Record::new`].
@@ -204,7 +207,8 @@ impl<'a> Record<'a> {
         }
     }
 
-    /// When it begins and ends [s]: with the run, or a sampling interval before its first sample, and with its last one.
+    /// When it begins and ends [s]: with the run, or a sampling interval before its first sample, and with
+    /// its last one.
     pub fn stretch_s(&self) -> [f64; 2] {
         let [first, last] = [self.time_s().first(), self.time_s().last()].map(|t| t.copied().unwrap_or(0.0));
         [if self.first == 0 { 0.0 } else { first - self.interval_s() }, last]

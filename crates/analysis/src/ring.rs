@@ -1,7 +1,8 @@
 //! Bending modes of a free thin ring: where structural resonances are to be expected.
 //!
-//! Source: A. E. H. Love, *A Treatise on the Mathematical Theory of Elasticity*, §293, in plane strain. The bearing's ring
-//! sits in its adapter and on its rollers, and is not thin: its own frequencies differ, so these are places to look at.
+//! Source: A. E. H. Love, *A Treatise on the Mathematical Theory of Elasticity*, §293, in plane strain. The
+//! bearing's ring sits in its adapter and on its rollers, and is not thin: its own frequencies differ, so
+//! these are places to look at.
 
 use std::f64::consts::PI;
 
@@ -17,7 +18,8 @@ pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisso
     n * (n * n - 1.0) / (2.0 * PI * radius * radius) * (stiffness / (density * (n * n + 1.0))).sqrt()
 }
 
-/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; none of one that does not deform.
+/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; none of one that does not
+/// deform.
 pub fn outer_ring_modes(scene: &ResolvedScene, last: u32) -> Vec<(u32, f64)> {
     if scene.outer_ring_rigid {
         return Vec::new();
@@ -28,8 +30,8 @@ pub fn outer_ring_modes(scene: &ResolvedScene, last: u32) -> Vec<(u32, f64)> {
     (2..=last).map(mode).collect()
 }
 
-/// Wavelength of bending waves in a bar as thick as the outer ring at `frequency_hz`, in elements: the paper's "elements
-/// per wavelength". c_B = √(1.8 c_L h f) with the plate speed c_L.
+/// Wavelength of bending waves in a bar as thick as the outer ring at `frequency_hz`, in elements: the
+/// paper's "elements per wavelength". c_B = √(1.8 c_L h f) with the plate speed c_L.
 pub fn elements_per_wavelength(scene: &ResolvedScene, frequency_hz: f64) -> f64 {
     let m = &scene.material;
     let plate = (m.youngs_modulus / (m.density * (1.0 - m.poissons_ratio.powi(2)))).sqrt();

@@ -12,13 +12,13 @@ use crate::kinematics::KinematicsFinding;
 use crate::prediction::StaticCurve;
 use crate::words::significant;
 
-/// Loaded rollers or a cage that are slower than rolling by more than this slide; at full load they lose some tenths of a
-/// per cent.
+/// Loaded rollers or a cage that are slower than rolling by more than this slide; at full load they lose some
+/// tenths of a per cent.
 const SLIDING: f64 = 0.02;
 
-/// The support [N] under which one passage of the load zone just spins a roller up from rest, when `support_n` gives the
-/// distribution `curve` (THEORY §5.4): under less, rollers that have lost their spin do not roll again. `None` when nothing
-/// turns or nothing is loaded, infinite without friction.
+/// The support [N] under which one passage of the load zone just spins a roller up from rest, when
+/// `support_n` gives the distribution `curve` (THEORY §5.4): under less, rollers that have lost their spin do
+/// not roll again. `None` when nothing turns or nothing is loaded, infinite without friction.
 pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
     let motion = Kinematics::at_mean_speed(&scene.written);
     let radius = scene.roller_radius;
@@ -35,8 +35,9 @@ pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f6
 /// A roller slower than this share of rolling has lost its spin.
 const STOPPED: f64 = 0.5;
 
-/// The friction that slowly turns a roller over the edge of a `spall` under `force_n` [-], contact as stiff as the bodies (THEORY §5.4). Where
-/// there is less, and its own spin does not carry it over, it slides on the spall.
+/// The friction that slowly turns a roller over the edge of a `spall` under `force_n` [-], contact as stiff
+/// as the bodies (THEORY §5.4). Where there is less, and its own spin does not carry it over, it slides on
+/// the spall.
 pub fn friction_over_edge(scene: &ResolvedScene, spall: &SpallScene, force_n: f64) -> f64 {
     let radius = scene.roller_radius;
     let lifted = RigidRings::new(scene).approach_m(force_n).min(1e-3 * spall.depth_mm);
@@ -44,7 +45,8 @@ pub fn friction_over_edge(scene: &ResolvedScene, spall: &SpallScene, force_n: f6
     0.5 * (2.0 * lifted / radius).sqrt().min(half_angle)
 }
 
-/// What to say of spalls on rollers that the friction of a scene may not turn over their edges, when the fullest roller carries `force_n`.
+/// Notes on spalls on rollers that the friction of a scene may not turn over their edges, when the fullest
+/// roller carries `force_n`.
 pub fn flats(scene: &ResolvedScene, force_n: f64) -> Vec<String> {
     let spalls = scene.written.defects.iter().filter_map(|defect| match (defect.on, &defect.form) {
         (RollingSurface::Roller(roller), FormScene::Spall(spall)) => Some((roller, spall)),
@@ -64,7 +66,7 @@ pub fn flats(scene: &ResolvedScene, force_n: f64) -> Vec<String> {
         .collect()
 }
 
-/// What to say of a load that does not keep rollers rolling, or of rollers that were seen to slide.
+/// Warnings of a load too small to keep rollers rolling, and of rollers that slid.
 pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding) -> Vec<String> {
     let mut said = Vec::new();
     if let Some(least_n) = least_n.filter(|least_n| support_n < *least_n) {
@@ -103,10 +105,11 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
     said
 }
 
-/// How far a cage may stray, in clearances of its pockets: pockets with corners let it go four or five times as far.
+/// How far a cage may stray, in clearances of its pockets: pockets with corners let it go four or five times
+/// as far.
 const STRAYS: f64 = 10.0;
 
-/// What to say of a cage that nothing holds across: `x` and `y` are where its centre was [m].
+/// A note on a cage without radial guidance: `x` and `y` are the positions of its centre [m].
 pub fn straying(scene: &ResolvedScene, x: &[f64], y: &[f64]) -> Option<String> {
     let room_um = scene.written.cage.as_ref()?.pocket_clearance_um;
     let (first_x, first_y) = (x.first()?, y.first()?);
@@ -125,7 +128,7 @@ pub fn straying(scene: &ResolvedScene, x: &[f64], y: &[f64]) -> Option<String> {
     })
 }
 
-/// What lets a cage stray, and what holds it.
+/// Clearances and guidance of a cage.
 fn why_it_strays(scene: &ResolvedScene) -> String {
     let corners = scene.cage.as_ref().filter(|cage| cage.pocket == PocketWalls::Corners);
     let Some(cage) = corners else {
@@ -162,9 +165,9 @@ mod tests {
     use stribeck_scene::scene::CageScene;
     use stribeck_scene::scene::Scene;
 
-    /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 · 16/6000) = 0.037 to turn over the
-    /// edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and no more than a quarter of 0.3 mm over 6 mm, 0.0125, over a
-    /// short one.
+    /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 ·
+    /// 16/6000) = 0.037 to turn over the edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and
+    /// no more than a quarter of 0.3 mm over 6 mm, 0.0125, over a short one.
     #[test]
     fn example_friction_that_turns_a_roller_over_an_edge() {
         let scene = Scene::default();
@@ -227,7 +230,8 @@ mod tests {
                 .expect("twelve clearances")
                 .contains("strays by 1200 µm, where its pockets leave 100 µm")
         );
-        // Rollers of 18 mm on a pitch circle of 182 mm: corners on a diameter of 184 mm are 18.2 mm apart, those on 188 mm 17.5 mm.
+        // Rollers of 18 mm on a pitch circle of 182 mm: corners on a diameter of 184 mm are 18.2 mm apart,
+        // those on 188 mm 17.5 mm.
         for (inner_mm, words) in [(184.0, "go through"), (188.0, "from one side only")] {
             let cage = CageScene {
                 pocket: PocketWalls::Corners,
@@ -261,9 +265,10 @@ mod tests {
         };
         let curve = Prediction::of(&scene.resolve(), &mesh).static_curve(&scene.resolve(), 50e3).unwrap();
         let least_n = least_support_n(&scene.resolve(), &curve, 50e3).unwrap();
-        // The spin in space is 2π · 37.96 Hz = 238.5 rad/s, so I ω = 5.79e-4 N m s. A roller's passage gives at most 2 · 0.005 ·
-        // 9 mm times its load over time. All rollers carry 50 kN along y; by the cosine the mean load of a place times the
-        // 24 rollers is 4/π · 50 kN or less, so a turn of 266 ms gives a roller 600 to 710 N s, and 53 to 64 mN m s.
+        // The spin in space is 2π · 37.96 Hz = 238.5 rad/s, so I ω = 5.79e-4 N m s. A roller's passage gives
+        // at most 2 · 0.005 · 9 mm times its load over time. All rollers carry 50 kN along y; by the cosine
+        // the mean load of a place times the 24 rollers is 4/π · 50 kN or less, so a turn of 266 ms gives a
+        // roller 600 to 710 N s, and 53 to 64 mN m s.
         assert!((430.0..560.0).contains(&least_n), "{least_n}");
         let rolling = KinematicsFinding {
             expected_roller_spin_hz: 41.7,

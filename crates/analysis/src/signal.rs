@@ -1,11 +1,11 @@
-//! One line, or one part, of any signal.
+//! One line, or one band, of any signal.
 
 use stribeck_dsp::{Spectrum, Welch, WelchOptions, Window};
 
 use crate::Error;
 
-/// Amplitude of the line within one resolution of `frequency_hz`, over the whole record with a Hann window; `None` for a
-/// record that cannot hold it.
+/// Amplitude of the line within one resolution of `frequency_hz`, over the whole record with a Hann window;
+/// `None` for a record that cannot hold it.
 pub fn amplitude(signal: &[f64], sample_rate_hz: f64, frequency_hz: f64) -> Option<f64> {
     if signal.len() < 16 {
         return None;
@@ -29,8 +29,8 @@ pub struct Line {
     pub above_db: f64,
 }
 
-/// The highest peak between two frequencies [Hz], over the whole record with a Hann window; `None` when there is none
-/// between them.
+/// The highest peak between two frequencies [Hz], over the whole record with a Hann window; `None` when there
+/// is none between them.
 pub fn line_between(signal: &[f64], sample_rate_hz: f64, from_hz: f64, to_hz: f64) -> Option<Line> {
     let options =
         WelchOptions { window: Window::Hann, nfft: 4 * signal.len(), ..WelchOptions::new(signal.len()) };
@@ -69,14 +69,14 @@ pub fn band_rms(signal: &[f64], sample_rate_hz: f64, low_hz: f64, high_hz: f64) 
     welch.ok()?.estimate(signal).ok()?.band_rms(low_hz, high_hz).ok()
 }
 
-/// Largest magnitude of the running mean over `width_s`: what is left of a peak when everything faster is taken out.
+/// Largest magnitude of the running mean over `width_s`: the height of a peak behind that low pass.
 pub fn smoothed_peak(signal: &[f64], interval_s: f64, width_s: f64) -> Option<f64> {
     let width = samples(width_s, interval_s);
     running_mean(signal, width).map(f64::abs).max_by(f64::total_cmp)
 }
 
-/// Root mean square over `span_s` from sample `first` on of the running mean over `width_s` about each sample; `None`
-/// where the signal is too short.
+/// Root mean square over `span_s` from sample `first` on of the running mean over `width_s` about each
+/// sample; `None` where the signal is too short.
 pub fn smoothed_rms(signal: &[f64], interval_s: f64, first: usize, span_s: f64, width_s: f64) -> Option<f64> {
     let [count, width] = [span_s, width_s].map(|time| samples(time, interval_s));
     let from = first.checked_sub((width - 1) / 2)?;

@@ -1,17 +1,18 @@
 //! How long a defect is, from the times at which a roller is unloaded and loaded again.
 //!
-//! Between the two the contact has run `v (t_exit − t_entry)`. That is too short: a roller pressed together by δ is not
-//! free when its centre stands over the edge. The rings hold the sum of all approaches; with the centre at the distance s
-//! behind the edge the contact with the spall's raceway is a strip that ends at the edge,
+//! Between the two the contact has run `v (t_exit − t_entry)`. That is too short: a roller pressed together
+//! by δ is not free when its centre stands over the edge. The rings hold the sum of all approaches; with the
+//! centre at the distance s behind the edge the contact with the spall's raceway is a strip that ends at the
+//! edge,
 //!
 //! ```text
 //! δ(Q) = e(q) + d_i(q) + d            d_i(q) = (3q / (4k √(2R_i)))^⅔ at the other raceway
 //! q = k ∫ (d − x²/2R) dx              x from −√(2Rd) to −s
 //! ```
 //!
-//! with the line load q = Q/t, the penalty stiffness k, e the elastic approach of both contacts (THEORY §6.2), and R the
-//! effective radii. The event is picked where half of the load is left; that is at s½. The same happens in front of the
-//! other edge, so the estimate is
+//! with the line load q = Q/t, the penalty stiffness k, e the elastic approach of both contacts (THEORY
+//! §6.2), and R the effective radii. The event is picked where half of the load is left; that is at s½. The
+//! same happens in front of the other edge, so the estimate is
 //!
 //! ```text
 //! L = v (t_exit − t_entry) + 2 s½
@@ -26,7 +27,7 @@ use stribeck_scene::static_load::RigidRings;
 /// Halvings of the bracket: beyond rounding.
 const HALVINGS: usize = 60;
 
-/// What the estimate needs of a bearing.
+/// Geometry and stiffness that the estimate needs.
 #[derive(Debug, Clone, Copy)]
 pub struct Edge {
     rings: RigidRings,
@@ -67,7 +68,8 @@ impl Edge {
         self.stiffness * (depth * (half - cut) - (half.powi(3) - cut.powi(3)) / (6.0 * self.radius[0]))
     }
 
-    /// Distance [m] of the roller's centre behind an edge at which a roller that carried `load_n` carries half of it.
+    /// Distance [m] of the roller's centre behind an edge at which a roller that carried `load_n` carries
+    /// half of it.
     pub fn half_load_m(&self, load_n: f64) -> f64 {
         if load_n <= 0.0 {
             return 0.0;
@@ -88,7 +90,8 @@ impl Edge {
         0.5 * (low + high)
     }
 
-    /// Distance [m] of its centre from an edge within which a roller cannot touch a floor `depth_m` below the raceway.
+    /// Distance [m] of its centre from an edge within which a roller cannot touch a floor `depth_m` below the
+    /// raceway.
     pub fn floor_m(&self, depth_m: f64) -> f64 {
         (2.0 * self.radius[0] * depth_m).sqrt()
     }
@@ -106,7 +109,8 @@ mod tests {
 
     #[test]
     fn analytic_a_stiff_contact_rolls_over_a_sharp_edge() {
-        // Without penalty compliance the roller sinks by s²/2R, so half of its load is left at √(2R (δ(Q) − δ(Q/2))).
+        // Without penalty compliance the roller sinks by s²/2R, so half of its load is left at √(2R (δ(Q) −
+        // δ(Q/2))).
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
         scene.contact.penalty_scale = 1e4;

@@ -1,9 +1,9 @@
-//! What a number comes to over many starts: mean and how well it is known, scatter, quantiles.
+//! Statistics of a number over many starts: mean with its interval, scatter, quantiles.
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// Probability with which an interval holds what it stands for.
+/// Probability with which an interval covers the true value.
 pub const CONFIDENCE: f64 = 0.95;
 
 /// Nobody will run more.
@@ -11,8 +11,8 @@ pub const MOST_STARTS: usize = 2000;
 
 /// One number over many starts.
 ///
-/// The interval is that of the mean, at 95 % and by Student's t: it says how well the mean is known, and narrows with more
-/// starts. What a single start does is told by the quantiles.
+/// The interval is that of the mean, at 95 % and by Student's t: it says how well the mean is known, and
+/// narrows with more starts. The quantiles describe single starts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
     /// Mean of the starts that have the number.
@@ -41,9 +41,9 @@ pub struct Statistic {
 
 /// How many starts show something.
 ///
-/// The interval is that of the probability, at 95 % and after Wilson, *Probable inference, the law of succession, and
-/// statistical inference*, J. Am. Stat. Assoc. 22 (1927) 209–212: unlike that of a mean it does not shrink to a point when
-/// all starts agree.
+/// The interval is that of the probability, at 95 % and after Wilson, *Probable inference, the law of
+/// succession, and statistical inference*, J. Am. Stat. Assoc. 22 (1927) 209–212: unlike that of a mean it
+/// does not shrink to a point when all starts agree.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// Share of the starts that show it, 0 to 1.
@@ -85,8 +85,8 @@ impl Statistic {
         })
     }
 
-    /// How many starts it takes for a mean that is known to this `part` of itself, by the scatter seen so far; `None`
-    /// without a scatter, or when it takes more than [`MOST_STARTS`].
+    /// How many starts it takes for a mean that is known to this `part` of itself, by the scatter seen so
+    /// far; `None` without a scatter, or when it takes more than [`MOST_STARTS`].
     pub fn starts_for(&self, part: f64) -> Option<usize> {
         let scatter = self.deviation? / self.mean.abs();
         (2..=MOST_STARTS).find(|&n| students_t(n - 1) * scatter <= part * (n as f64).sqrt())
@@ -105,13 +105,13 @@ impl Share {
     }
 }
 
-/// Value that Student's t with so many degrees of freedom, 1 or more, stays within with a probability of [`CONFIDENCE`].
+/// Two-sided quantile of Student's t at [`CONFIDENCE`] for a number of degrees of freedom of 1 or more.
 fn students_t(freedom: usize) -> f64 {
     StudentsT::new(0.0, 1.0, freedom as f64).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }
 
-/// Quantile of ascending values, which are not empty: linear between neighbours, type 7 of Hyndman and Fan, *Sample quantiles
-/// in statistical packages*, The American Statistician 50 (1996) 361–365.
+/// Quantile of ascending values, which are not empty: linear between neighbours, type 7 of Hyndman and Fan,
+/// *Sample quantiles in statistical packages*, The American Statistician 50 (1996) 361–365.
 pub fn quantile(sorted: &[f64], part: f64) -> f64 {
     let place = part.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
     let below = place.floor() as usize;
@@ -128,7 +128,8 @@ mod tests {
     /// A table of the 97.5 % point of Student's t prints three decimals.
     const PRINTED: f64 = 5e-4;
 
-    /// Source: NIST/SEMATECH e-Handbook of Statistical Methods, §1.3.6.7.2, upper critical values of Student's t.
+    /// Source: NIST/SEMATECH e-Handbook of Statistical Methods, §1.3.6.7.2, upper critical values of
+    /// Student's t.
     #[test]
     fn analytic_students_t_of_the_table() {
         for (freedom, value) in [
@@ -176,8 +177,8 @@ mod tests {
         assert_eq!((same.mean, same.deviation), (0.1, Some(0.0)));
     }
 
-    /// Source: Wilson (1927); Brown, Cai and DasGupta, Interval estimation for a binomial proportion, Statistical Science 16
-    /// (2001) 101–133: with no success in n the upper end is z²/(n + z²).
+    /// Source: Wilson (1927); Brown, Cai and DasGupta, Interval estimation for a binomial proportion,
+    /// Statistical Science 16 (2001) 101–133: with no success in n the upper end is z²/(n + z²).
     #[test]
     fn analytic_interval_of_a_share() {
         let z2 = 1.959_963_984_540_054_f64.powi(2);
@@ -190,9 +191,9 @@ mod tests {
         assert_eq!(Share::of(0, 0), None);
     }
 
-    /// How often the interval of ten starts holds the mean. For a normal scatter in 95 % (Student, The probable error of a
-    /// mean, Biometrika 6 (1908) 1–25); for a lognormal one that scatters by 40 %, computed apart from this program with
-    /// NumPy 2 and 400 000 samples, in 93.36 %.
+    /// How often the interval of ten starts holds the mean. For a normal scatter in 95 % (Student, The
+    /// probable error of a mean, Biometrika 6 (1908) 1–25); for a lognormal one that scatters by 40 %,
+    /// computed apart from this program with NumPy 2 and 400 000 samples, in 93.36 %.
     #[test]
     fn peer_coverage_of_the_interval_of_ten_starts() {
         const SAMPLES: usize = 20_000;

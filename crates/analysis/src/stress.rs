@@ -1,7 +1,8 @@
 //! Von Mises stress of every element, from where its nodes are.
 //!
-//! The deformation gradient at the centre of an element (THEORY §2.1), the second Piola–Kirchhoff stress of the
-//! St. Venant–Kirchhoff material, pushed forward to Cauchy stress. Plane strain: σ_zz is λ times the trace of the strain.
+//! The deformation gradient at the centre of an element (THEORY §2.1), the second Piola–Kirchhoff stress of
+//! the St. Venant–Kirchhoff material, pushed forward to Cauchy stress. Plane strain: σ_zz is λ times the
+//! trace of the strain.
 
 use std::collections::HashMap;
 
@@ -81,7 +82,8 @@ pub fn cells(mesh: &RunMesh, frame: &Frame, lame: &Lame) -> Vec<Cell> {
     cells
 }
 
-/// Von Mises stress [Pa] at the centre of an element with three or four corners, from their places free of stress and now [m].
+/// Von Mises stress [Pa] at the centre of an element with three or four corners, from their places free of
+/// stress and now [m].
 pub fn von_mises(reference: &[[f64; 2]], now: &[[f64; 2]], lame: &Lame) -> f64 {
     lame.von_mises(gradient(reference, now))
 }

@@ -1,5 +1,5 @@
-//! `summary.json`: every figure that the report states, under stable names. What a run cannot yield is `null`, with
-//! the reason in `notes`.
+//! `summary.json`: every figure that the report states, under stable names. A number that a run cannot yield
+//! is `null`, with the reason in `notes`.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::Resolution;
@@ -18,7 +18,7 @@ use crate::load::LoadFinding;
 use crate::reading::CursorReading;
 use crate::tones::Tone;
 
-/// Everything a run says, in numbers.
+/// All numbers of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Name of the scene.
@@ -52,20 +52,20 @@ pub struct Summary {
     pub levels: LevelsFinding,
     /// The notch at the facet tone.
     pub notch: Option<NotchFinding>,
-    /// What the spectra can tell apart.
+    /// Resolution of the spectra.
     pub spectrum: Option<SpectrumFinding>,
     /// Every line of the leading sensor's spectrum: mesh, beats, defect, ring.
     pub artefacts: Vec<Artefact>,
     /// The defect's family in the envelope; `None` when the record is too short.
     pub envelope: Option<EnvelopeFinding>,
-    /// What the leading sensor would tell somebody who does not know the scene; `None` when the record is too short.
+    /// Blind diagnosis from the leading sensor; `None` when the record is too short.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<DiagnosisFinding>,
-    /// What the paper's 4545 Hz can be at this sample rate.
+    /// Possible readings behind the paper's 4545 Hz at this sample rate.
     pub cursor: Option<CursorReading>,
     /// Every number of the paper beside ours.
     pub paper: Vec<PaperRow>,
-    /// Why something is missing, and what to be careful with.
+    /// Reasons for missing numbers, and cautions.
     pub notes: Vec<String>,
 }
 
@@ -74,7 +74,7 @@ pub struct Summary {
 pub struct PaperRow {
     /// Part of the paper.
     pub part: String,
-    /// What is counted or measured.
+    /// The quantity.
     pub quantity: String,
     /// As the paper prints it.
     pub paper: String,
@@ -88,11 +88,11 @@ pub struct PaperRow {
     pub unit: String,
     /// Ours against the paper's.
     pub difference: String,
-    /// Why, or what to make of it.
+    /// Reason or comment.
     pub why: String,
 }
 
-/// What the run cost.
+/// Cost of the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunCost {
     /// Steps taken.
@@ -124,7 +124,7 @@ pub struct EnergyFinding {
     pub max_relative_error: f64,
     /// Peak strain energy [J].
     pub peak_strain_j: f64,
-    /// What friction, films and damping have turned into heat [J].
+    /// Energy dissipated by friction, films and damping [J].
     #[serde(default)]
     pub heat_j: f64,
     /// Largest |imbalance| over the heat [-], where that is more than the peak strain energy.
@@ -170,10 +170,11 @@ pub struct Event {
     pub path_exit_ms: Option<f64>,
     /// Force before the defect [N].
     pub level_n: Option<f64>,
-    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or of the recorded centre over the
-    /// trailing edge where the roller never came free.
+    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or of the
+    /// recorded centre over the trailing edge where the roller never came free.
     pub impulse_g: Option<f64>,
-    /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch it.
+    /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch
+    /// it.
     pub floor_ms: Option<f64>,
     /// Its force then [N].
     pub floor_n: Option<f64>,
@@ -192,8 +193,8 @@ fn first() -> usize {
     1
 }
 
-/// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None` where the
-/// record has no such phase.
+/// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None`
+/// where the record has no such phase.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PhaseLevels {
     /// Largest magnitude in the start-up.
@@ -280,7 +281,7 @@ pub struct SensorLevels {
     pub between_filtered_rms_g: Option<f64>,
 }
 
-/// What the spectra can tell apart.
+/// Resolution of the spectra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpectrumFinding {
     /// Length of the record [s].
@@ -303,7 +304,8 @@ pub struct SpectrumFinding {
     pub grid_hz: f64,
     /// True when the grid is finer than the resolution.
     pub zero_padded: bool,
-    /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz], where that is another one.
+    /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz], where
+    /// that is another one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fine_resolution_hz: Option<f64>,
 }

@@ -1,7 +1,7 @@
 //! Predicted facet-passing lines and what the spectrum shows where they should stand.
 //!
-//! Lines closer than a spectrum can tell apart are searched as one and say so: a record of 30 ms merges what is within
-//! 67 Hz, and the passing of roller vertices and of raceway nodes often is.
+//! Lines closer than a spectrum can tell apart are searched as one and say so: a record of 30 ms merges what
+//! is within 67 Hz, and the passing of roller vertices and of raceway nodes often is.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, Resolution, Spectrum};
@@ -45,10 +45,11 @@ pub struct Tone {
     pub unresolved_from: Vec<String>,
 }
 
-/// A prediction, without slip or from the recorded motion, holds for a measured line within this fraction of it.
+/// A prediction, without slip or from the recorded motion, holds for a measured line within this fraction of
+/// it.
 pub const REACH: f64 = 0.005;
-/// A peak counts as a line when it stands this far above its surroundings [dB]: noise of the same mean reaches it in
-/// about one band of a hundred.
+/// A peak counts as a line when it stands this far above its surroundings [dB]: noise of the same mean
+/// reaches it in about one band of a hundred.
 pub const LEAST_PROMINENCE_DB: f64 = 10.0;
 /// Half width of the band that counts as the surroundings of a line, in widths of a line at −6 dB.
 const SURROUNDINGS_WIDTHS: f64 = 12.0;
@@ -70,8 +71,8 @@ pub fn harmonics(fundamentals: &[(String, f64)], most: usize, limit_hz: f64) -> 
         .collect()
 }
 
-/// Lines in groups that a spectrum of this resolution cannot split: neighbours closer than the width at −6 dB.
-/// Groups and their members ascend.
+/// Lines in groups that a spectrum of this resolution cannot split: neighbours closer than the width at −6
+/// dB. Groups and their members ascend.
 pub fn unresolved(lines: &[PredictedLine], resolution: &Resolution) -> Vec<Vec<usize>> {
     let mut order: Vec<usize> = (0..lines.len()).collect();
     order.sort_by(|&a, &b| lines[a].predicted_hz.total_cmp(&lines[b].predicted_hz));
@@ -89,7 +90,8 @@ pub fn unresolved(lines: &[PredictedLine], resolution: &Resolution) -> Vec<Vec<u
     groups
 }
 
-/// Measures every line in `spectrum`, a density [g²/Hz] of the signal of `sensor`; one tone a line, in their order.
+/// Measures every line in `spectrum`, a density [g²/Hz] of the signal of `sensor`; one tone a line, in their
+/// order.
 ///
 /// # Errors
 /// None for a line that is not there: that tone says `None`. [`Error::Signal`] when the spectrum cannot be searched.
@@ -208,7 +210,8 @@ mod tests {
 
     #[test]
     fn example_a_tone_in_noise_is_measured_and_merged() {
-        // Uniform noise of ±10 g has a density of 33.3/50 000 g²/Hz: under 50 Hz it moves 40 g by about 0.4 g.
+        // Uniform noise of ±10 g has a density of 33.3/50 000 g²/Hz: under 50 Hz it moves 40 g by about 0.4
+        // g.
         const LEVEL_TOLERANCE_G: f64 = 1.5;
         let tones = measure("side", &paper_lines(), &spectrum_of(&tone_in_noise(3000))).unwrap();
         let roller = &tones[0];

@@ -1,6 +1,6 @@
-//! Numbers in words, with as many digits as say something.
+//! Numbers as text, to their significant digits.
 
-/// To so many significant digits, without zeros at the end; digits before the point all stand.
+/// To `digits` significant digits, without trailing zeros; all digits before the point are kept.
 pub fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value:.0}");

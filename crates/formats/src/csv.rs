@@ -1,39 +1,59 @@
 //! Text tables: one row a sample, one column a channel.
 //!
-//! Columns are split by semicolons, tabs, commas or spaces, whichever the first rows of numbers agree with; beside
-//! semicolons and tabs a comma is a decimal point. Lines before the first row of numbers are a preamble, and the last of
-//! them gives the names when it has as many columns, or the units when it looks like them and the one above has as many, too.
+//! Columns are split by semicolons, tabs, bars, commas or spaces, whichever the first rows of numbers agree with; beside all
+//! but commas a comma is a decimal point. Lines before the first row of numbers are a preamble; the last of them that has as
+//! many columns gives the names, or the units when it looks like them and there are names above. Time stamps become seconds
+//! since the first. A field that is no number costs its sample, a column of texts is left out.
+
+mod dialect;
+mod head;
+mod lines;
+mod stamp;
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use crate::recording::equal_lengths;
-use crate::{Channel, Error, Recording, Result, time};
+use dialect::{Dialect, Field};
+pub(crate) use lines::is_wide;
+use lines::{Coding, Lines};
+
+use crate::recording::{equal_lengths, left_out};
+use crate::{Channel, Error, Recording, Result};
 
 /// Lines before the first row of numbers, at most.
 const PREAMBLE: usize = 200;
+/// Lines that show how the table is written.
+const SAMPLE: usize = 60;
 /// Samples handed on at a time.
 const BLOCK: usize = 1 << 14;
-
-/// How a table is written.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Dialect {
-    /// What splits columns; a space stands for any run of white space.
-    separator: char,
-    decimal_comma: bool,
-}
+/// Of so many fields of a column one may be no number.
+const FEW: u64 = 100;
 
 /// One column of a table in a file.
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
     path: PathBuf,
-    name: String,
     /// From 0.
     at: usize,
     /// Lines before the first row of numbers.
-    preamble: usize,
+    preamble: u64,
     dialect: Dialect,
+    coding: Coding,
+    /// The second that time stamps are counted from.
+    origin_s: i64,
+}
+
+/// What a column holds.
+#[derive(Debug, Default)]
+struct Census {
+    numbers: u64,
+    stamps: u64,
+    origin_s: Option<i64>,
+    missing: u64,
+    /// Texts, and the first of them with its line.
+    texts: u64,
+    first: Option<(u64, String)>,
 }
 
 /// Opens a table: its columns, their names and units.
@@ -41,46 +61,136 @@ pub(crate) struct Column {
 /// # Errors
 /// [`Error::Unknown`] for a text without a row of numbers, [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
-    let mut lines = lines(path)?;
-    let mut head: Vec<String> = Vec::new();
-    let mut found = None;
-    while head.len() <= PREAMBLE && found.is_none() {
+    let coding = Coding::of(path)?;
+    let mut lines = Lines::open(path, coding)?;
+    let mut start: Vec<String> = Vec::new();
+    while start.len() < PREAMBLE + SAMPLE {
         let Some(line) = lines.next(path)? else { break };
-        found = Dialect::of(&line);
-        head.push(line);
+        start.push(line);
     }
-    let Some(dialect) = found else {
-        let seen = "it is text without a row of numbers".to_owned();
+    let Some((dialect, mut first)) = Dialect::of(&start) else {
+        let shown: String = start
+            .iter()
+            .rev()
+            .find(|l| !l.trim().is_empty())
+            .into_iter()
+            .flat_map(|l| l.chars())
+            .take(60)
+            .collect();
+        let seen = format!("it is text without a row of numbers, such as `{shown}`");
         return Err(Error::Unknown { path: path.to_owned(), seen });
     };
-    let first = head.pop().unwrap_or_default();
-    let columns = dialect.split(&first).count();
-    let words = |line: &String| -> Option<Vec<String>> {
-        let words: Vec<String> = dialect.split(line).map(|word| word.trim_matches('"').to_owned()).collect();
-        (words.len() == columns).then_some(words)
-    };
-    let mut told = head.iter().rev().filter(|line| !line.trim().is_empty());
-    let (last, above) = (told.next().and_then(words), told.next().and_then(words));
-    let (names, units) = match (above, last) {
-        (Some(names), Some(units)) if units.iter().all(|unit| time::is_unit(unit)) => (names, units),
-        (_, Some(names)) => (names, Vec::new()),
-        (_, None) => ((1..=columns).map(|n| format!("column {n}")).collect(), Vec::new()),
-    };
-    let mut rows: u64 = 1;
-    while let Some(line) = lines.next(path)? {
-        rows += u64::from(!line.trim().is_empty());
+    if counts_columns(&start[first..], dialect) {
+        first += 1;
     }
-    let channel = |(at, name): (usize, &String)| {
-        let column = Column { path: path.to_owned(), name: name.clone(), at, preamble: head.len(), dialect };
+    let columns = columns(&start[first..], dialect);
+    let (names, units) = head::names(&start[..first], dialect, columns);
+    let (census, rows, mut notes) = census(path, coding, dialect, first as u64, columns)?;
+    let mut channels = Vec::new();
+    for (at, (name, census)) in names.into_iter().zip(census).enumerate() {
+        if let Some(why) = census.refusal() {
+            // A separator at the end of all rows makes no column.
+            if census.texts > 0 || !name.starts_with("column ") {
+                notes.push(left_out(&name, &why));
+            }
+            continue;
+        }
+        if let Some((line, text)) = &census.first {
+            let more = if census.texts > 1 {
+                format!(", and {} more are none", census.texts - 1)
+            } else {
+                String::new()
+            };
+            notes.push(format!(
+                "`{name}`: `{text}` in line {line} is no number{more}: such samples are left out"
+            ));
+        }
+        let origin_s = census.origin_s.unwrap_or(0);
+        let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
-        Channel::text(name.clone(), rows, column).in_unit(unit)
-    };
-    Ok(Recording {
-        path: path.to_owned(),
-        format: "CSV",
-        channels: names.iter().enumerate().map(channel).collect(),
-        notes: Vec::new(),
-    })
+        let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
+        channels.push(Channel::text(name, rows, column).in_unit(unit.filter(|unit| !unit.is_empty())));
+    }
+    Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
+}
+
+/// Whether the first row counts the columns from 0, as pandas heads a table without names, and the next holds fractions.
+fn counts_columns(rows: &[String], dialect: Dialect) -> bool {
+    let [first, second, ..] = rows else { return false };
+    let fields = dialect.split(first);
+    let named = if fields.first() == Some(&"") { &fields[1..] } else { &fields[..] };
+    let fraction =
+        |field: &str| field.contains(['.', 'e', 'E']) || dialect.decimal_comma && field.contains(',');
+    !named.is_empty()
+        && named.iter().enumerate().all(|(n, field)| *field == n.to_string())
+        && dialect.split(second).into_iter().any(fraction)
+}
+
+/// Columns of the first rows.
+fn columns(rows: &[String], dialect: Dialect) -> usize {
+    let counts =
+        rows.iter().filter(|line| !dialect.is_empty(line)).take(8).map(|line| dialect.split(line).len());
+    counts.max().unwrap_or(0)
+}
+
+/// What the columns hold, the number of rows, and what is odd about them.
+fn census(
+    path: &Path,
+    coding: Coding,
+    dialect: Dialect,
+    preamble: u64,
+    columns: usize,
+) -> Result<(Vec<Census>, u64, Vec<String>)> {
+    let mut all: Vec<Census> = (0..columns).map(|_| Census::default()).collect();
+    let (mut rows, mut notes, mut short) = (0, Vec::new(), None);
+    let mut lines = Lines::open(path, coding)?;
+    while let Some(line) = lines.next(path)? {
+        if lines.read <= preamble || dialect.is_empty(&line) {
+            continue;
+        }
+        rows += 1;
+        let fields = dialect.split(&line);
+        short = (fields.len() < columns).then_some(lines.read);
+        for (at, census) in all.iter_mut().enumerate() {
+            let field = fields.get(at).copied().unwrap_or_default();
+            census.take(dialect.field(field), field, lines.read);
+        }
+    }
+    if let Some(line) = short {
+        notes.push(format!("line {line}, the last, is cut off and left out"));
+        rows -= 1;
+    }
+    Ok((all, rows, notes))
+}
+
+impl Census {
+    fn take(&mut self, kind: Field, field: &str, line: u64) {
+        match kind {
+            Field::Number(_) => self.numbers += 1,
+            Field::Stamp(s, _) => {
+                self.stamps += 1;
+                self.origin_s.get_or_insert(s);
+            }
+            Field::Missing => self.missing += 1,
+            Field::Text => {
+                self.texts += 1;
+                self.first.get_or_insert_with(|| (line, field.chars().take(40).collect()));
+            }
+        }
+    }
+
+    /// Why a column is no channel.
+    fn refusal(&self) -> Option<String> {
+        let held = self.numbers.max(self.stamps);
+        if let Some((line, text)) = self.first.as_ref().filter(|_| self.texts > 2 && self.texts > held / FEW)
+        {
+            return Some(format!("it holds texts, such as `{text}` in line {line}"));
+        }
+        if self.numbers > 0 && self.stamps > 0 {
+            return Some("it holds numbers and time stamps".to_owned());
+        }
+        (held == 0).then(|| "it is empty".to_owned())
+    }
 }
 
 /// Writes channels of one length as columns, after a comment line for each of `notes` and a time column when the first
@@ -117,52 +227,23 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     file.flush().map_err(io)
 }
 
-impl Dialect {
-    /// The dialect in which a line is a row of numbers.
-    fn of(line: &str) -> Option<Self> {
-        let all =
-            [(';', true), (';', false), ('\t', true), ('\t', false), (',', false), (' ', false), (' ', true)];
-        let dialect = |(separator, decimal_comma)| Self { separator, decimal_comma };
-        all.into_iter().map(dialect).find(|d| {
-            let separated = d.separator == ' ' || line.contains(d.separator);
-            let mut fields = d.split(line).peekable();
-            separated && fields.peek().is_some() && fields.all(|field| d.number(field).is_some())
-        })
-    }
-
-    fn split<'a>(&self, line: &'a str) -> Box<dyn Iterator<Item = &'a str> + 'a> {
-        match self.separator {
-            ' ' => Box::new(line.split_whitespace()),
-            // A separator at the end of every row makes no column.
-            other => Box::new(line.trim().trim_end_matches(other).split(other).map(str::trim)),
-        }
-    }
-
-    /// A number; an empty field is one that is missing.
-    fn number(&self, field: &str) -> Option<f64> {
-        if field.is_empty() {
-            return Some(f64::NAN);
-        }
-        if self.decimal_comma { field.replace(',', ".").parse().ok() } else { field.parse().ok() }
-    }
-}
-
 impl Column {
-    pub(crate) fn for_each_block(&self, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
-        let mut lines = lines(&self.path)?;
+    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let mut lines = Lines::open(&self.path, self.coding)?;
         let mut block = Vec::with_capacity(BLOCK);
-        while let Some(line) = lines.next(&self.path)? {
-            if lines.read as usize <= self.preamble || line.trim().is_empty() {
+        let mut left = len;
+        while left > 0 {
+            let Some(line) = lines.next(&self.path)? else { break };
+            if lines.read <= self.preamble || self.dialect.is_empty(&line) {
                 continue;
             }
-            let field = self.dialect.split(&line).nth(self.at).unwrap_or_default();
-            block.push(self.dialect.number(field).ok_or_else(|| Error::Number {
-                path: self.path.clone(),
-                row: lines.read,
-                column: self.at + 1,
-                channel: self.name.clone(),
-                text: field.chars().take(40).collect(),
-            })?);
+            let fields = self.dialect.split(&line);
+            block.push(match self.dialect.field(fields.get(self.at).copied().unwrap_or_default()) {
+                Field::Number(x) => x,
+                Field::Stamp(s, ns) => s.saturating_sub(self.origin_s) as f64 + 1e-9 * f64::from(ns),
+                Field::Missing | Field::Text => f64::NAN,
+            });
+            left -= 1;
             if block.len() == BLOCK {
                 if !take(&block) {
                     return Ok(());
@@ -170,31 +251,9 @@ impl Column {
                 block.clear();
             }
         }
-        take(&block);
+        if !block.is_empty() {
+            take(&block);
+        }
         Ok(())
-    }
-}
-
-struct Lines {
-    file: BufReader<File>,
-    bytes: Vec<u8>,
-    /// Lines read so far.
-    read: u64,
-}
-
-fn lines(path: &Path) -> Result<Lines> {
-    let file = File::open(path).map_err(|e| Error::read(path, e))?;
-    Ok(Lines { file: BufReader::new(file), bytes: Vec::new(), read: 0 })
-}
-
-impl Lines {
-    /// The next line, whatever its encoding, without the mark of one at its beginning.
-    fn next(&mut self, path: &Path) -> Result<Option<String>> {
-        self.bytes.clear();
-        let count = self.file.read_until(b'\n', &mut self.bytes).map_err(|e| Error::read(path, e))?;
-        self.read += 1;
-        let mark: &[u8] = if self.read == 1 { b"\xef\xbb\xbf" } else { b"" };
-        let line = self.bytes.strip_prefix(mark).unwrap_or(&self.bytes);
-        Ok((count > 0).then(|| String::from_utf8_lossy(line).trim_end_matches(['\r', '\n']).to_owned()))
     }
 }

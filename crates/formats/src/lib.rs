@@ -7,31 +7,40 @@
 //!
 //! | format | read | written |
 //! |---|---|---|
-//! | CSV, also with semicolons, tabs and decimal commas | [`csv`] | yes |
+//! | Texts: CSV, also with semicolons, tabs, bars, decimal commas, quotes and time stamps | [`csv`] | yes |
 //! | NumPy `.npy`: arrays and records | [`npy`] | through [`npz`] |
 //! | NumPy `.npz`, stored or deflated | [`npz`] | yes |
+//! | MATLAB `.mat`, version 4 | [`mat4`] | no |
 //! | MATLAB `.mat`, version 5: deflated or not, small elements, structs and cells | [`mat5`] | yes |
 //! | Universal file, dataset 58, ASCII and binary (58b) | [`uff58`] | ASCII |
 //! | TDMS of LabVIEW | [`tdms`] | no |
 //! | Parquet: columns of numbers | [`parquet`] | yes, also of texts |
 //! | MATLAB `.mat`, version 7.3, and plain HDF5: numbers, in structs, too | [`mat73`] | no |
-//! | MDF 4: sorted groups, plain or deflated, linear conversions | [`mdf4`] | no |
+//! | MDF 4: sorted groups, plain or deflated, conversions to numbers | [`mdf4`] | no |
 //! | FLAC | [`flac`] | no: it holds no floats |
 //! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
 //!
 //! Times are told from signals by how they rise, and the sample rate follows from them where the file does not say it.
 //! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
+mod curve;
 mod error;
 mod hdf5_chunks;
+mod hdf5_links;
+mod literal;
+mod mdf4_channel;
 mod mdf4_records;
 mod number;
 mod open;
 mod recording;
+mod shape;
+mod tdms_scale;
 mod time;
+mod units;
 
 pub mod csv;
 pub mod flac;
+pub mod mat4;
 pub mod mat5;
 pub mod mat73;
 pub mod mdf4;

@@ -10,8 +10,8 @@ use std::path::Path;
 use flate2::read::ZlibDecoder;
 
 use crate::number::{Kind, Number};
-use crate::recording::Strided;
-use crate::{Channel, Error, Recording, Result};
+use crate::recording::{Strided, left_out};
+use crate::{Channel, Error, Recording, Result, shape};
 
 const FORMAT: &str = "MATLAB 5";
 const HEADER: u64 = 128;
@@ -199,21 +199,22 @@ struct Found {
 struct Head<'a> {
     class: u32,
     complex: bool,
-    rows: u64,
-    columns: u64,
+    shape: Vec<u64>,
+    /// Numbers in it.
+    count: u64,
     name: String,
     /// Elements behind the name.
     rest: &'a [u8],
 }
 
 /// A real array of numbers whose samples can stay in the file.
-struct Plain {
-    name: String,
-    rows: u64,
-    columns: u64,
-    number: Number,
+pub(crate) struct Plain {
+    pub(crate) name: String,
+    pub(crate) rows: u64,
+    pub(crate) columns: u64,
+    pub(crate) number: Number,
     /// Place of its first number behind the tag of the variable [bytes].
-    start: u64,
+    pub(crate) start: u64,
 }
 
 type Parsed<T> = std::result::Result<T, String>;
@@ -250,13 +251,13 @@ impl Found {
         let flags = self.word(flags.data, 0);
         let sizes: Vec<u64> =
             (0..dimensions.data.len() / 4).map(|n| u64::from(self.word(dimensions.data, 4 * n))).collect();
-        let [rows, others @ ..] = sizes.as_slice() else {
+        if sizes.is_empty() {
             return Err("an array has no dimensions".to_owned());
-        };
-        let columns =
-            others.iter().try_fold(1_u64, |n, size| n.checked_mul(*size)).ok_or("an array is too large")?;
+        }
+        let count = sizes.iter().try_fold(1_u64, |n, size| n.checked_mul(*size));
+        let count = count.ok_or("an array is too large")?;
         let name = String::from_utf8_lossy(name.data).trim_end_matches('\0').to_owned();
-        Ok(Head { class: flags & 0xff, complex: flags & COMPLEX != 0, rows: *rows, columns, name, rest })
+        Ok(Head { class: flags & 0xff, complex: flags & COMPLEX != 0, shape: sizes, count, name, rest })
     }
 
     fn number(&self, kind: u32) -> Option<Number> {
@@ -288,15 +289,12 @@ impl Found {
         let (Some(number), true) = (self.number(first), first >> 16 == 0) else { return Ok(None) };
         let at = (start.len() - head.rest.len() + 8) as u64;
         let bytes = u64::from(self.word(head.rest, 4));
-        let needed =
-            head.rows.checked_mul(head.columns).and_then(|n| n.checked_mul(number.kind.bytes() as u64));
+        let needed = head.count.checked_mul(number.kind.bytes() as u64);
         if needed != Some(bytes) || at + bytes > length {
-            return Err(format!(
-                "`{}` has {} × {} numbers in {bytes} bytes",
-                head.name, head.rows, head.columns
-            ));
+            return Err(format!("`{}` has {} numbers in {bytes} bytes", head.name, head.count));
         }
-        let Head { name, rows, columns, .. } = head;
+        let Ok((rows, columns)) = shape::table(&head.shape) else { return Ok(None) };
+        let name = head.name;
         Ok(Some(Plain { name, rows, columns, number, start: at }))
     }
 
@@ -308,10 +306,10 @@ impl Found {
         let head = self.head(bytes)?;
         let name = if parent.is_empty() { head.name.clone() } else { parent.to_owned() };
         if depth > MAX_DEPTH {
-            self.notes.push(format!("`{name}` lies more than {MAX_DEPTH} structs deep and is left out"));
+            self.notes.push(left_out(&name, &format!("it lies more than {MAX_DEPTH} structs deep")));
             return Ok(());
         }
-        let count = head.rows.checked_mul(head.columns).ok_or("an array is too large")?;
+        let count = head.count;
         match head.class {
             STRUCT | OBJECT => {
                 let (first, rest) = self.element(head.rest)?;
@@ -357,21 +355,25 @@ impl Found {
                     .ok_or_else(|| format!("`{name}` is stored as type {}", data.kind))?;
                 let held = (data.data.len() / number.kind.bytes()) as u64;
                 if held < count {
-                    return Err(format!(
-                        "`{name}` has {} × {} numbers, and {held} follow",
-                        head.rows, head.columns
-                    ));
+                    return Err(format!("`{name}` has {count} numbers, and {held} follow"));
                 }
-                let plain = Plain { name, rows: head.rows, columns: head.columns, number, start: 0 };
+                let (rows, columns) = match shape::table(&head.shape) {
+                    Ok(table) => table,
+                    Err(why) => {
+                        self.notes.push(left_out(&name, &why));
+                        return Ok(());
+                    }
+                };
+                let plain = Plain { name, rows, columns, number, start: 0 };
                 self.channels.extend(plain.channels(Path::new(""), 0).iter().map(|c| c.held_from(data.data)));
                 Ok(())
             }
             SPARSE | DOUBLE..=UINT64 => {
-                self.notes.push(format!("`{name}` is complex or sparse and is left out"));
+                self.notes.push(left_out(&name, "it is complex or sparse"));
                 Ok(())
             }
             other => {
-                self.notes.push(format!("`{name}` is of class {other} and is left out"));
+                self.notes.push(left_out(&name, &format!("it is of class {other}")));
                 Ok(())
             }
         }
@@ -380,12 +382,11 @@ impl Found {
 
 impl Plain {
     /// Channels along the longer side; MATLAB stores column after column.
-    fn channels(&self, path: &Path, variable: u64) -> Vec<Channel> {
-        const MOST: u64 = 100_000;
+    pub(crate) fn channels(&self, path: &Path, variable: u64) -> Vec<Channel> {
         let bytes = self.number.kind.bytes() as u64;
         let (len, count) = (self.rows.max(self.columns), self.rows.min(self.columns));
         let tall = self.rows >= self.columns;
-        (0..count.min(MOST))
+        (0..count)
             .map(|k| {
                 let name = if count == 1 {
                     self.name.clone()

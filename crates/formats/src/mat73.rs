@@ -4,15 +4,18 @@
 //! channel a column, one of other programs a channel along its longer side. Cells, texts and objects are left out. Samples
 //! stay in the file, in one piece or in chunks; those in chunks packed otherwise than MATLAB does are held in memory.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use hdf5_pure::{
-    DType, Dataset, Datatype, DatatypeByteOrder, File, FixedPointLayout, FloatingPointLayout, Group, Layout,
+    AttrValue, DType, Dataset, Datatype, DatatypeByteOrder, File, FixedPointLayout, FloatingPointLayout,
+    Group, Layout,
 };
 
+use crate::hdf5_links::{self, Links};
 use crate::number::{Kind, Number};
-use crate::recording::Strided;
-use crate::{Channel, Error, Recording, Result, hdf5_chunks};
+use crate::recording::{Strided, left_out};
+use crate::{Channel, Error, Recording, Result, hdf5_chunks, shape, units};
 
 const FORMAT: &str = "MATLAB 7.3 (HDF5)";
 /// Structs within structs; a forged file may hold itself.
@@ -39,12 +42,15 @@ pub fn open(path: &Path) -> Result<Recording> {
             left_out: 0,
             too_long: Vec::new(),
             numbers: 0,
+            notes: Vec::new(),
+            rates: Vec::new(),
         };
-        found.group(&file.root(), "", 0).map_err(broken)?;
+        let links = hdf5_links::of_file(path);
+        found.group(&file.root(), "", 0, links.as_ref());
         Ok(found)
     });
     let found = read.map_err(|_| Error::damaged(path, FORMAT, "its structure contradicts itself"))??;
-    let mut notes = Vec::new();
+    let mut notes = found.notes;
     if found.left_out > 0 {
         notes.push(format!("{} texts, cells and other values are left out", found.left_out));
     }
@@ -55,7 +61,13 @@ pub fn open(path: &Path) -> Result<Recording> {
             found.too_long.join(", ")
         ));
     }
-    Ok(Recording { path: path.to_owned(), format: FORMAT, channels: found.channels, notes })
+    let mut channels = found.channels;
+    // The rate of the innermost group.
+    for channel in channels.iter_mut().filter(|c| c.rate_hz.is_none()) {
+        let of = found.rates.iter().filter(|(prefix, _)| channel.name.starts_with(prefix.as_str()));
+        channel.rate_hz = of.max_by_key(|(prefix, _)| prefix.len()).map(|(_, hz)| *hz);
+    }
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
 struct Found {
@@ -68,25 +80,49 @@ struct Found {
     too_long: Vec<String>,
     /// Numbers held so far.
     numbers: u64,
+    notes: Vec<String>,
+    /// Rates that attributes say, each with the prefix of the names it is for.
+    rates: Vec<(String, f64)>,
 }
 
 impl Found {
-    fn group(
-        &mut self,
-        group: &Group,
-        prefix: &str,
-        depth: usize,
-    ) -> std::result::Result<(), hdf5_pure::Error> {
-        for name in group.datasets()? {
-            self.dataset(&group.dataset(&name)?, &format!("{prefix}{name}"))?;
+    /// Takes what a group holds; what cannot be read is noted, and does not spoil the rest.
+    fn group(&mut self, group: &Group, prefix: &str, depth: usize, links: Option<&Links>) {
+        let names = match (group.datasets(), group.groups()) {
+            (Ok(sets), Ok(groups)) => (sets, groups),
+            (Err(why), _) | (_, Err(why)) => {
+                // A link to another object spoils the library's list of an old group; each name by itself can be opened.
+                let Some(links) = links else {
+                    self.notes.push(left_out(&format!("{prefix}*"), &why.to_string()));
+                    return;
+                };
+                for soft in &links.soft {
+                    self.notes.push(left_out(&format!("{prefix}{soft}"), "it is a link to another object"));
+                }
+                links.hard.iter().map(|(name, _)| name.clone()).partition(|name| group.dataset(name).is_ok())
+            }
+        };
+        if let Ok(attributes) = group.attrs() {
+            self.rates.extend(rates(&attributes, prefix));
         }
-        for name in group.groups()? {
-            // What cells and objects point to has no name of its own.
-            if depth < DEEPEST && !name.starts_with('#') {
-                self.group(&group.group(&name)?, &format!("{prefix}{name}."), depth + 1)?;
+        for name in names.0 {
+            let full = format!("{prefix}{name}");
+            let done = group.dataset(&name).and_then(|set| self.dataset(&set, &full));
+            if let Err(why) = done {
+                self.notes.push(left_out(&full, &why.to_string()));
             }
         }
-        Ok(())
+        for name in names.1 {
+            // What cells and objects point to has no name of its own.
+            if depth >= DEEPEST || name.starts_with('#') {
+                continue;
+            }
+            let inner = links.and_then(|links| links.hard.iter().find(|(of, _)| *of == name)?.1.as_ref());
+            match group.group(&name) {
+                Ok(group) => self.group(&group, &format!("{prefix}{name}."), depth + 1, inner),
+                Err(why) => self.notes.push(left_out(&format!("{prefix}{name}"), &why.to_string())),
+            }
+        }
     }
 
     fn dataset(&mut self, dataset: &Dataset, name: &str) -> std::result::Result<(), hdf5_pure::Error> {
@@ -109,15 +145,51 @@ impl Found {
         let empty = attributes.contains_key("MATLAB_empty");
         let shape = dataset.shape()?;
         let count = shape.iter().try_fold(1_u64, |product, n| product.checked_mul(*n)).unwrap_or(0);
-        if !number
-            || empty
-            || count == 0
-            || matches!(text.as_deref(), Some("char" | "cell" | "function_handle"))
-        {
+        if empty || count == 0 || matches!(text.as_deref(), Some("char" | "cell" | "function_handle")) {
             self.left_out += 1;
             return Ok(());
         }
-        let axes = Axes::of(&shape, text.is_some());
+        let kind = dataset.datatype()?;
+        if !number && plain(&kind).is_none() {
+            let texts = matches!(dataset.dtype()?, DType::String | DType::VariableLengthString);
+            if texts || matches!(dataset.dtype()?, DType::ObjectReference) {
+                self.left_out += 1;
+            } else {
+                let what = match dataset.dtype()? {
+                    DType::Compound(fields) => {
+                        let names: Vec<String> = fields.into_iter().map(|(name, _)| name).collect();
+                        format!("it is a table of records ({}): save each column as a set", names.join(", "))
+                    }
+                    other => format!("its values are of type {other}"),
+                };
+                self.notes.push(left_out(name, &what));
+            }
+            return Ok(());
+        }
+        if dataset.layout()? == Layout::Virtual {
+            self.notes.push(left_out(name, "it is a virtual set, put together from others: open those"));
+            return Ok(());
+        }
+        if let Some(why) = unknown_filter(dataset) {
+            self.notes.push(left_out(name, &why));
+            return Ok(());
+        }
+        let axes = match shape::table(&shape).map(|_| Axes::of(&shape, text.is_some())) {
+            Ok(axes) => axes,
+            Err(why) => {
+                self.notes.push(left_out(name, &why));
+                return Ok(());
+            }
+        };
+        let Some(axes) = axes else {
+            let sizes = shape.iter().map(u64::to_string).collect::<Vec<_>>().join(" × ");
+            self.notes.push(left_out(name, &format!("{sizes} numbers are more channels than {COLUMNS}")));
+            return Ok(());
+        };
+        let rate_hz = rates(&attributes, "").first().map(|(_, hz)| *hz);
+        let unit = ["unit", "units", "Unit", "Units", "unit_string"].into_iter();
+        let unit = unit.filter_map(|key| attributes.get(key)?.as_str().map(str::to_owned)).next();
+        let axes = Some(axes);
         let streamed = match (&axes, plain(&dataset.datatype()?)) {
             (Some(axes), Some(number)) => self.streamed(dataset, number, &shape, axes)?,
             _ => None,
@@ -141,7 +213,8 @@ impl Found {
                 (_, false, _) => format!("{name}(:,{})", k + 1),
                 (_, true, _) => format!("{name}({},:)", k + 1),
             };
-            channel
+            channel.group = name.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
+            channel.at_rate(rate_hz).in_unit(unit.clone())
         }));
         Ok(())
     }
@@ -183,6 +256,54 @@ impl Found {
             _ => Ok(None),
         }
     }
+}
+
+/// The rates [Hz] that attributes of a group or a set say.
+fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, f64)> {
+    let number = |value: &AttrValue| match value {
+        AttrValue::F32(x) => Some(f64::from(*x)),
+        AttrValue::F64(x) => Some(*x),
+        AttrValue::I16(x) => Some(f64::from(*x)),
+        AttrValue::I32(x) => Some(f64::from(*x)),
+        AttrValue::I64(x) => Some(*x as f64),
+        AttrValue::U16(x) => Some(f64::from(*x)),
+        AttrValue::U32(x) => Some(f64::from(*x)),
+        AttrValue::U64(x) => Some(*x as f64),
+        AttrValue::F64Array(all) if all.len() == 1 => all.first().copied(),
+        AttrValue::F32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
+        AttrValue::I64Array(all) if all.len() == 1 => all.first().map(|x| *x as f64),
+        AttrValue::I32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
+        other => other.as_str()?.trim().parse().ok(),
+    };
+    let mut found: Vec<(String, f64)> = attributes
+        .iter()
+        .filter_map(|(name, value)| Some((name.clone(), units::rate_hz(name, None, number(value)?)?)))
+        .collect();
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    // Attributes that contradict each other say nothing.
+    let same = found.iter().all(|(_, hz)| (hz / found[0].1 - 1.0).abs() < 1e-3);
+    found.truncate(usize::from(same));
+    found.into_iter().map(|(_, hz)| (prefix.to_owned(), hz)).collect()
+}
+
+/// Why chunks cannot be unpacked, where a filter is not known.
+fn unknown_filter(dataset: &Dataset) -> Option<String> {
+    /// Deflate, shuffle, Fletcher's checksum, szip, n-bit, scale-offset, LZF: what the library has.
+    const KNOWN: [u16; 7] = [1, 2, 3, 4, 5, 6, 32_000];
+    let id = dataset.filters().into_iter().find(|id| !KNOWN.contains(id))?;
+    let name = match id {
+        307 => "bzip2",
+        32_001 => "blosc",
+        32_004 => "lz4",
+        32_008 => "bitshuffle",
+        32_013 => "zfp",
+        32_015 => "zstd",
+        32_026 => "blosc2",
+        _ => "an unknown filter",
+    };
+    Some(format!(
+        "it is packed with {name} ({id}), which is not read: pack it anew with `h5repack -f GZIP=1`"
+    ))
 }
 
 /// Which extent of an array the samples lie along, and which the channels.

@@ -1,20 +1,19 @@
-//! MDF 4 (ASAM): channels of whole bytes in sorted groups, with or without a linear conversion, in plain, listed or deflated
-//! blocks. Read only.
+//! MDF 4 (ASAM): channels of whole bytes in sorted groups, in plain, listed or deflated blocks. Read only.
 //!
-//! Each channel is called by its name; the rate is that of its group's master. Channels of bits, texts and other conversions
-//! are left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
+//! Each channel is called by its name; the rate is that of its group's master, stored or virtual. A sample whose invalidation
+//! bit is set is no number. Channels of bits, of texts and with conversions to texts are left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::mdf4_records::{Field, Packing, Stretch};
-use crate::number::{Kind, Number};
-use crate::recording::Strided;
+use crate::mdf4_channel::{Described, describe};
+use crate::mdf4_records::{Packing, Stretch};
+use crate::recording::left_out;
 use crate::{Channel, Error, Recording, Result};
 
-const FORMAT: &str = "MDF";
+pub(crate) const FORMAT: &str = "MDF";
 /// Bytes before the links of a block.
 const HEAD: u64 = 24;
 /// Links of a block and blocks of a chain; a forged file may point in circles.
@@ -23,8 +22,6 @@ const MOST_LINKS: u64 = 1 << 20;
 const LARGEST: u64 = 1 << 24;
 /// Most bytes that one block unpacks to; the standard asks for 4 MiB.
 const UNPACKED: u64 = 1 << 28;
-/// Part of a step by which the times of a master may be off the grid.
-const UNEVEN: f64 = 0.01;
 
 /// Opens a file of version 4.
 ///
@@ -61,39 +58,43 @@ pub fn open(path: &Path) -> Result<Recording> {
 }
 
 /// The file and how long it is.
-struct Source<'a> {
-    path: PathBuf,
+pub(crate) struct Source<'a> {
+    pub(crate) path: PathBuf,
     file: &'a mut BufReader<File>,
     size: u64,
 }
 
 /// A block without its data.
-struct Block {
-    links: Vec<u64>,
-    data: Vec<u8>,
+pub(crate) struct Block {
+    pub(crate) links: Vec<u64>,
+    pub(crate) data: Vec<u8>,
 }
 
 impl Block {
+    pub(crate) fn float(&self, at: usize) -> f64 {
+        f64::from_bits(self.long(at))
+    }
+
     /// Address, 0 for none.
-    fn link(&self, n: usize) -> u64 {
+    pub(crate) fn link(&self, n: usize) -> u64 {
         self.links.get(n).copied().unwrap_or(0)
     }
 
-    fn byte(&self, at: usize) -> u8 {
+    pub(crate) fn byte(&self, at: usize) -> u8 {
         self.data.get(at).copied().unwrap_or(0)
     }
 
-    fn word(&self, at: usize) -> u32 {
+    pub(crate) fn word(&self, at: usize) -> u32 {
         u32::from_le_bytes([0, 1, 2, 3].map(|n| self.byte(at + n)))
     }
 
-    fn long(&self, at: usize) -> u64 {
+    pub(crate) fn long(&self, at: usize) -> u64 {
         u64::from(self.word(at)) | u64::from(self.word(at + 4)) << 32
     }
 }
 
 impl Source<'_> {
-    fn damaged(&self, what: impl Into<String>) -> Error {
+    pub(crate) fn damaged(&self, what: impl Into<String>) -> Error {
         Error::damaged(&self.path, FORMAT, what)
     }
 
@@ -116,7 +117,7 @@ impl Source<'_> {
     }
 
     /// A block that describes something, of the sort that must stand there.
-    fn block(&mut self, at: u64, sort: &[u8; 4]) -> Result<Block> {
+    pub(crate) fn block(&mut self, at: u64, sort: &[u8; 4]) -> Result<Block> {
         let (found, length, links) = self.head(at)?;
         if found != *sort || links > MOST_LINKS || !(HEAD + 8 * links..=LARGEST).contains(&length) {
             return Err(self.damaged(format!("no {} block at {at}", String::from_utf8_lossy(sort))));
@@ -127,7 +128,7 @@ impl Source<'_> {
     }
 
     /// Text of a TX block, or that in the TX element of an MD block.
-    fn text(&mut self, at: u64) -> Result<Option<String>> {
+    pub(crate) fn text(&mut self, at: u64) -> Result<Option<String>> {
         if at == 0 {
             return Ok(None);
         }
@@ -203,18 +204,6 @@ struct Found {
     notes: Vec<String>,
 }
 
-/// What is known of one channel.
-struct Described {
-    name: String,
-    unit: Option<String>,
-    /// Whether it is the time of its group.
-    master: bool,
-    place: usize,
-    number: Number,
-    /// `offset + factor · stored`.
-    linear: (f64, f64),
-}
-
 impl Found {
     fn data_group(&mut self, source: &mut Source, group: &Block) -> Result<()> {
         let first = group.link(1);
@@ -226,22 +215,21 @@ impl Found {
             self.notes.push("a group of mixed records is left out: sort the file first".to_owned());
             return Ok(());
         }
-        let (cycles, width) = (of.long(8), of.word(24) as usize + of.word(28) as usize);
-        if width == 0 || cycles == 0 {
+        let (cycles, data_bytes) = (of.long(8), of.word(24) as usize);
+        let width = data_bytes + of.word(28) as usize;
+        if cycles == 0 {
             return Ok(());
         }
-        let mut described = Vec::new();
+        let mut described: Vec<Described> = Vec::new();
         let (mut at, mut seen) = (of.link(1), 0);
         while at != 0 {
             let channel = source.block(at, b"##CN")?;
-            match describe(source, &channel)? {
-                Ok(channel) if channel.place + channel.number.kind.bytes() <= width => {
-                    described.push(channel)
-                }
+            match describe(source, &channel, data_bytes)? {
+                Ok(channel) if channel.end() <= width => described.push(channel),
                 Ok(channel) => {
                     return Err(source.damaged(format!("`{}` lies behind its record", channel.name)));
                 }
-                Err(left_out) => self.notes.push(left_out),
+                Err((name, why)) => self.notes.push(left_out(&name, &why)),
             }
             at = channel.link(0);
             seen += 1;
@@ -251,148 +239,24 @@ impl Found {
         }
         let data = Arc::new(source.data(group.link(2))?);
         let bytes = data.iter().fold(0_u64, |sum, s| sum.saturating_add(s.full));
-        let there = (bytes / width as u64).min(cycles);
+        // Records of virtual channels alone take no bytes.
+        let there = bytes.checked_div(width as u64).map_or(cycles, |records| records.min(cycles));
         if there < cycles {
             self.notes.push(format!("a group promises {cycles} samples, and {there} are there"));
         }
-        let channels: Vec<Channel> =
-            described.iter().map(|of| of.channel(&source.path, &data, width, there)).collect();
-        let rate_hz = match described.iter().position(|of| of.master) {
-            Some(n) => rate(&channels[n], &mut self.notes)?,
-            None => None,
-        };
         // Groups of one name keep apart.
-        for (mut channel, of) in channels.into_iter().zip(&described) {
+        let clock = format!("#{}", self.channels.len());
+        for of in &described {
+            let mut channel = of.channel(&source.path, &data, width, there).of_group(&clock);
             channel.is_time = of.master;
+            if of.master && channel.unit.is_none() {
+                channel.unit = Some("s".to_owned());
+            }
             if self.channels.iter().any(|c| c.name == channel.name) {
                 channel.name = format!("{} ({})", channel.name, self.channels.len() + 1);
             }
-            self.channels.push(channel.at_rate(rate_hz));
+            self.channels.push(channel);
         }
         Ok(())
     }
-}
-
-/// A channel, or why it is left out.
-fn describe(source: &mut Source, block: &Block) -> Result<std::result::Result<Described, String>> {
-    let name = source.text(block.link(2))?.unwrap_or_else(|| "channel".to_owned());
-    let unit = source.text(block.link(6))?;
-    let (sort, sync, data_type, bit) = (block.byte(0), block.byte(1), block.byte(2), block.byte(3));
-    let (place, bits) = (block.word(4) as usize, block.word(8));
-    let left_out = |why: &str| Ok(Err(format!("`{name}` is left out: {why}")));
-    let kind = match (data_type, bits) {
-        (0 | 1, 8) => Kind::U8,
-        (0 | 1, 16) => Kind::U16,
-        (0 | 1, 32) => Kind::U32,
-        (0 | 1, 64) => Kind::U64,
-        (2 | 3, 8) => Kind::I8,
-        (2 | 3, 16) => Kind::I16,
-        (2 | 3, 24) => Kind::I24,
-        (2 | 3, 32) => Kind::I32,
-        (2 | 3, 64) => Kind::I64,
-        (4 | 5, 32) => Kind::F32,
-        (4 | 5, 64) => Kind::F64,
-        _ => {
-            let what = if data_type > 5 { "it is no number" } else { "its numbers are no whole bytes" };
-            return left_out(what);
-        }
-    };
-    if bit != 0 || block.link(1) != 0 {
-        return left_out("it is made of parts");
-    }
-    if !matches!(sort, 0 | 2) {
-        return left_out(if sort == 3 {
-            "it is counted, not stored"
-        } else {
-            "its values are of varying length"
-        });
-    }
-    let linear = match block.link(4) {
-        0 => (0.0, 1.0),
-        at => {
-            let conversion = source.block(at, b"##CC")?;
-            let value = |n: usize| f64::from_bits(conversion.long(24 + 8 * n));
-            match conversion.byte(0) {
-                0 => (0.0, 1.0),
-                1 => (value(0), value(1)),
-                _ => return left_out("its conversion is not linear"),
-            }
-        }
-    };
-    let number = Number { kind, big_endian: matches!(data_type, 1 | 3 | 5) };
-    let unit = match unit {
-        Some(unit) => Some(unit),
-        None if block.link(4) != 0 => {
-            let at = source.block(block.link(4), b"##CC")?.link(1);
-            source.text(at)?
-        }
-        None => None,
-    };
-    let master = sort == 2 && sync == 1;
-    Ok(Ok(Described { name, unit, master, place, number, linear }))
-}
-
-impl Described {
-    fn channel(&self, path: &Path, data: &Arc<Vec<Stretch>>, width: usize, len: u64) -> Channel {
-        let (offset, factor) = self.linear;
-        let whole = |s: &Stretch| s.packing == Packing::Plain && s.full.is_multiple_of(width as u64);
-        let channel = if data.iter().all(whole) && offset == 0.0 {
-            let mut left = len;
-            let pieces = data.iter().map(|stretch| {
-                let records = (stretch.full / width as u64).min(left);
-                left -= records;
-                let start = stretch.at + self.place as u64;
-                let path = path.to_owned();
-                (Strided { path, start, stride: width, number: self.number, factor }, records)
-            });
-            Channel::pieces(&self.name, pieces.collect())
-        } else {
-            let field = Field {
-                path: path.to_owned(),
-                format: FORMAT,
-                stretches: data.clone(),
-                width,
-                place: self.place,
-                number: self.number,
-                linear: self.linear,
-            };
-            Channel::records(&self.name, len, field)
-        };
-        channel.in_unit(self.unit.clone())
-    }
-}
-
-/// The rate of evenly spaced times; none for others, with a note.
-fn rate(master: &Channel, notes: &mut Vec<String>) -> Result<Option<f64>> {
-    let (mut first, mut last, mut count) = (f64::NAN, f64::NAN, 0_u64);
-    master.for_each_block(|block| {
-        if count == 0 {
-            first = block.first().copied().unwrap_or(f64::NAN);
-        }
-        last = block.last().copied().unwrap_or(last);
-        count += block.len() as u64;
-        true
-    })?;
-    let step = (last - first) / (count.max(2) - 1) as f64;
-    if count < 2 || !step.is_finite() || step <= 0.0 {
-        return Ok(None);
-    }
-    let (mut n, mut off) = (0_u64, 0.0_f64);
-    master.for_each_block(|block| {
-        for t in block {
-            off = off.max((t - first - step * n as f64).abs());
-            n += 1;
-        }
-        true
-    })?;
-    if off > UNEVEN * step {
-        notes.push(format!(
-            "the times of `{}` are uneven: give the rate by hand if that is meant",
-            master.name
-        ));
-        return Ok(None);
-    }
-    // Times in seconds have fifteen digits; a rate of a whole number of hertz was meant as one.
-    let rate = 1.0 / step;
-    Ok(Some(if (rate - rate.round()).abs() < 1e-6 * rate { rate.round() } else { rate }))
 }

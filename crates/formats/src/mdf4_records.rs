@@ -44,8 +44,8 @@ pub(crate) struct Field {
     pub(crate) width: usize,
     pub(crate) place: usize,
     pub(crate) number: Number,
-    /// `offset + factor · stored`.
-    pub(crate) linear: (f64, f64),
+    /// Byte and bit of a record that say whether its sample is invalid.
+    pub(crate) invalid: Option<(usize, u8)>,
 }
 
 impl Field {
@@ -53,7 +53,10 @@ impl Field {
     pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let io = |e| Error::read(&self.path, e);
         let mut file = BufReader::new(File::open(&self.path).map_err(io)?);
-        let (offset, factor) = self.linear;
+        let sample = |record: &[u8]| match self.invalid {
+            Some((byte, bit)) if record[byte] >> bit & 1 == 1 => f64::NAN,
+            _ => self.number.decode(&record[self.place..]),
+        };
         // The beginning of a record whose end stands in the next stretch.
         let (mut bytes, mut block): (Vec<u8>, Vec<f64>) = (Vec::new(), Vec::new());
         let mut left = len;
@@ -67,7 +70,7 @@ impl Field {
                 block.clear();
                 let whole = (bytes.len() / self.width).min(usize::try_from(left).unwrap_or(usize::MAX));
                 let records = bytes.chunks_exact(self.width).take(whole);
-                block.extend(records.map(|at| offset + factor * self.number.decode(&at[self.place..])));
+                block.extend(records.map(sample));
                 bytes.drain(..whole * self.width);
                 left -= whole as u64;
                 if !block.is_empty() && !take(&block) || left == 0 {
@@ -131,7 +134,8 @@ mod tests {
     #[test]
     fn example_records_go_on_in_the_next_block() {
         // Records of six bytes with a number of 16 bits at byte 4; a plain block of 20 bytes, and two packed ones.
-        let records: Vec<u8> = (0..40_u16).flat_map(|n| [9, 9, 9, 9, (3 * n) as u8, 0]).collect();
+        let records: Vec<u8> =
+            (0..40_u16).flat_map(|n| [if n == 7 { 8 } else { 4 }, 9, 9, 9, (3 * n) as u8, 0]).collect();
         let deflated = |bytes: &[u8]| {
             let mut to = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
             to.write_all(bytes).unwrap();
@@ -158,7 +162,7 @@ mod tests {
             width: 6,
             place: 4,
             number: Number::little(Kind::U16),
-            linear: (1.0, 0.5),
+            invalid: Some((0, 3)),
         };
         let read = |field: &Field| {
             let mut all = Vec::new();
@@ -169,7 +173,8 @@ mod tests {
             Ok::<_, Error>(all)
         };
         let all = read(&field).unwrap();
-        assert_eq!(all, (0..39).map(|n| 1.0 + 1.5 * f64::from(n)).collect::<Vec<_>>());
+        let expected = |n: i32| if n == 7 { f64::NAN } else { 3.0 * f64::from(n) };
+        assert_eq!(format!("{all:?}"), format!("{:?}", (0..39).map(expected).collect::<Vec<_>>()));
         // A block that holds less than it says.
         let mut short = field.stretches.to_vec();
         short[1].full += 1;

@@ -4,9 +4,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use crate::literal::{self, Literal};
 use crate::number::{Kind, Number};
-use crate::recording::Strided;
-use crate::{Channel, Error, Recording, Result};
+use crate::recording::{Strided, left_out};
+use crate::{Channel, Error, Recording, Result, shape};
 
 /// First bytes of every file.
 pub(crate) const MAGIC: &[u8] = b"\x93NUMPY";
@@ -17,13 +18,26 @@ const MAX_HEADER: usize = 1 << 20;
 /// What a header says.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout {
-    /// Names, places in a record and kinds; a plain array has one without a name.
-    fields: Vec<(String, usize, Number)>,
+    /// What is read of a record; a plain array has one field without a name.
+    fields: Vec<Field>,
     record: usize,
     shape: Vec<u64>,
     fortran: bool,
     /// Bytes before the data.
     pub(crate) start: usize,
+    /// Fields that are left out, with the reason.
+    pub(crate) notes: Vec<String>,
+}
+
+/// A field of a record.
+#[derive(Debug, Clone, PartialEq)]
+struct Field {
+    name: String,
+    /// Its place in the record [bytes].
+    place: usize,
+    number: Number,
+    /// That of times.
+    unit: Option<String>,
 }
 
 /// Why a header is not followed.
@@ -71,10 +85,9 @@ pub fn open(path: &Path) -> Result<Recording> {
     let size = file.metadata().map_err(|e| Error::read(path, e))?.len();
     let held = size.saturating_sub(layout.start as u64);
     let name = path.file_stem().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let channels = layout
-        .channels(&name, path, layout.start as u64, held)
-        .map_err(|what| Error::damaged(path, FORMAT, what))?;
-    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes: Vec::new() })
+    let channels =
+        layout.channels(&name, path, layout.start as u64, held).map_err(|why| why.of_file(path))?;
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes: layout.notes })
 }
 
 impl Layout {
@@ -93,50 +106,64 @@ impl Layout {
             other => return Err(Refusal::Damaged(format!("its version is {other}; 1 to 3 are known"))),
         };
         let text = head.get(prefix..prefix + length).ok_or_else(cut)?;
-        let text = std::str::from_utf8(text).map_err(|_| damaged("its header is no text"))?;
-        let after = |key: &str| text.split_once(key).map(|(_, rest)| rest.trim_start());
-        let shape = after("'shape':").and_then(|s| s.strip_prefix('(')).and_then(|s| s.split_once(')'));
-        let shape = shape.ok_or_else(|| damaged("its header has no shape"))?.0;
-        let sizes = shape.split(',').map(str::trim).filter(|s| !s.is_empty()).map(str::parse);
-        let shape = sizes
-            .collect::<std::result::Result<Vec<u64>, _>>()
-            .map_err(|_| damaged("its shape is no list of sizes"))?;
-        let fortran = after("'fortran_order':").is_some_and(|s| s.starts_with("True"));
-        let descr = after("'descr':").ok_or_else(|| damaged("its header has no `descr`"))?;
-        let mut fields = Vec::new();
-        let mut record = 0;
-        if let Some(mut rest) = descr.strip_prefix('[') {
-            while let Some((field, behind)) =
-                rest.split_once(')').filter(|_| !rest.trim_start().starts_with(']'))
-            {
-                let mut quoted = field.split('\'');
-                let (name, kind) = (quoted.nth(1), quoted.nth(1));
-                let (Some(name), Some(kind)) = (name, kind) else {
-                    return Err(Refusal::Damaged(format!("its record `{field})` is no name with a type")));
-                };
-                let number = number(kind)
-                    .ok_or_else(|| Refusal::Foreign(format!("{} in its field `{name}`", spoken(kind))))?;
-                fields.push((name.to_owned(), record, number));
-                record += number.kind.bytes();
-                rest = behind.trim_start_matches([',', ' ']);
-            }
-        } else if let Some(names) = short_form(descr) {
-            let double = Number { kind: Kind::F64, big_endian: false };
-            fields = (0..).step_by(8).zip(names).map(|(at, name)| (name.to_owned(), at, double)).collect();
-            record = 8 * fields.len();
-        } else {
-            let kind = descr.split('\'').nth(1).unwrap_or_default();
-            let number = number(kind).ok_or_else(|| Refusal::Foreign(spoken(kind)))?;
-            fields.push((String::new(), 0, number));
+        // Only version 3 is UTF-8.
+        let text = match std::str::from_utf8(text) {
+            Ok(text) => text.to_owned(),
+            Err(_) => text.iter().map(|b| char::from(*b)).collect(),
+        };
+        let header = literal::parse(&text).ok_or_else(|| damaged("its header is no Python dictionary"))?;
+        let shape = header.get("shape").ok_or_else(|| damaged("its header has no shape"))?;
+        let shape: Option<Vec<u64>> = shape.items().iter().map(Literal::count).collect();
+        let shape = shape.ok_or_else(|| damaged("its shape is no list of sizes"))?;
+        let fortran = header.get("fortran_order") == Some(&Literal::Word("True".to_owned()));
+        let descr = header.get("descr").ok_or_else(|| damaged("its header has no `descr`"))?;
+        let (mut fields, mut notes, mut record) = (Vec::new(), Vec::new(), 0_usize);
+        if let Literal::Text(kind) = descr {
+            let (number, unit) = number(kind).ok_or_else(|| Refusal::Foreign(spoken(kind)))?;
+            fields.push(Field { name: String::new(), place: 0, number, unit });
             record = number.kind.bytes();
         }
+        let double = Number { kind: Kind::F64, big_endian: false };
+        let doubles = short_form(descr);
+        for name in doubles.iter().flatten() {
+            fields.push(Field { name: (*name).to_owned(), place: record, number: double, unit: None });
+            record += double.kind.bytes();
+        }
+        let records = if doubles.is_some() { &[] } else { descr.items() };
+        for field in records {
+            let unclear = || Refusal::Damaged(format!("its record `{field:?}` is no name with a type"));
+            let [name, kind, rest @ ..] = field.items() else { return Err(unclear()) };
+            // A name may come with a title: (title, name).
+            let name = match name {
+                Literal::Text(name) => name.clone(),
+                other => other.items().last().and_then(Literal::text).ok_or_else(unclear)?.to_owned(),
+            };
+            let Some(kind) = kind.text() else {
+                return Err(Refusal::Foreign(format!("records in its field `{name}`")));
+            };
+            let width = width(kind)
+                .ok_or_else(|| Refusal::Foreign(format!("{} in its field `{name}`", spoken(kind))))?;
+            let repeats = rest.first().map_or(&[][..], Literal::items).iter().map(Literal::count);
+            let repeats: Option<Vec<u64>> = repeats.collect();
+            let count = repeats.ok_or_else(unclear)?.iter().try_fold(1_u64, |n, by| n.checked_mul(*by));
+            match number(kind) {
+                // What aligns the next field.
+                _ if name.is_empty() => {}
+                Some((number, unit)) if count == Some(1) => {
+                    fields.push(Field { name, place: record, number, unit });
+                }
+                Some(_) => notes.push(left_out(&name, "each record holds an array of it")),
+                None => notes.push(left_out(&name, &format!("it holds {}", spoken(kind)))),
+            }
+            let size = count.and_then(|n| usize::try_from(n).ok()).and_then(|n| n.checked_mul(width));
+            record = size.and_then(|size| record.checked_add(size)).ok_or_else(unclear)?;
+        }
         if fields.is_empty() {
-            return Err(damaged("its header names no field"));
+            let why =
+                if notes.is_empty() { "no field that is a number".to_owned() } else { notes.join("; ") };
+            return Err(Refusal::Foreign(why));
         }
-        if shape.len() > 2 {
-            return Err(Refusal::Foreign(format!("an array of {} dimensions", shape.len())));
-        }
-        Ok(Self { fields, record, shape, fortran, start: prefix + length })
+        Ok(Self { fields, record, shape, fortran, start: prefix + length, notes })
     }
 
     /// The channels of data that begin at byte `start` of `path` and take `held` bytes.
@@ -146,33 +173,31 @@ impl Layout {
         path: &Path,
         start: u64,
         held: u64,
-    ) -> std::result::Result<Vec<Channel>, String> {
-        let (rows, columns) = match self.shape[..] {
-            [] => (1, 1),
-            [rows] => (rows, 1),
-            [rows, columns, ..] => (rows, columns),
-        };
+    ) -> std::result::Result<Vec<Channel>, Refusal> {
+        let (rows, columns) = shape::table(&self.shape).map_err(Refusal::Foreign)?;
+        let damaged = |what: String| Refusal::Damaged(what);
         let needed = rows.checked_mul(columns).and_then(|n| n.checked_mul(self.record as u64));
         if needed.is_none_or(|needed| needed > held) {
-            return Err(format!(
+            return Err(damaged(format!(
                 "its header promises {rows} × {columns} numbers of {} bytes, and {held} bytes follow",
                 self.record
-            ));
+            )));
         }
         // Samples run along the longer side.
         let (len, count) = if rows >= columns { (rows, columns) } else { (columns, rows) };
         let along_rows = (rows >= columns) != self.fortran;
         let record = self.record as u64;
         let mut channels = Vec::new();
-        for (field, offset, number) in &self.fields {
-            for k in 0..count.min(100_000) {
+        for Field { name: field, place, number, unit } in &self.fields {
+            for k in 0..count {
                 // The samples of a channel lie `count` records apart when the file runs across them.
                 let (first, stride) =
                     if along_rows { (k * record, count * record) } else { (k * len * record, record) };
                 let strided = Strided {
                     path: path.to_owned(),
-                    start: start + first + *offset as u64,
-                    stride: usize::try_from(stride).map_err(|_| "its rows are too long".to_owned())?,
+                    start: start + first + *place as u64,
+                    stride: usize::try_from(stride)
+                        .map_err(|_| damaged("its rows are too long".to_owned()))?,
                     number: *number,
                     factor: 1.0,
                 };
@@ -182,7 +207,7 @@ impl Layout {
                     (false, _) => format!("{field}[{k}]"),
                     (true, _) => format!("{name}[{k}]"),
                 };
-                channels.push(Channel::strided(called, len, strided));
+                channels.push(Channel::strided(called, len, strided).in_unit(unit.clone()));
             }
         }
         Ok(channels)
@@ -191,18 +216,21 @@ impl Layout {
 
 /// Names of records of doubles in the short form in which runs of many channels describe them:
 /// `('V16', {'names':['t','x'],'formats':'dd'})`.
-fn short_form(descr: &str) -> Option<std::str::Split<'_, &'static str>> {
-    let (names, rest) = descr.strip_prefix('(')?.split_once("{'names':['")?.1.split_once("'],'formats':'")?;
-    let formats = rest.split_once("'})")?.0;
-    let names = names.split("','");
-    (formats.len() == names.clone().count() && formats.bytes().all(|letter| letter == b'd')).then_some(names)
+fn short_form(descr: &Literal) -> Option<Vec<&str>> {
+    let [_, dictionary] = descr.items() else { return None };
+    let names: Option<Vec<&str>> = dictionary.get("names")?.items().iter().map(Literal::text).collect();
+    let formats = dictionary.get("formats")?.text()?;
+    names.filter(|names| formats.len() == names.len() && formats.bytes().all(|letter| letter == b'd'))
 }
 
-fn number(descr: &str) -> Option<Number> {
+/// How a type of NumPy is stored; times come with their unit.
+fn number(descr: &str) -> Option<(Number, Option<String>)> {
     let (order, kind) = descr.split_at_checked(1)?;
+    let mut unit = None;
     let kind = match kind {
         "f8" => Kind::F64,
         "f4" => Kind::F32,
+        "f2" => Kind::F16,
         "i1" => Kind::I8,
         "i2" => Kind::I16,
         "i4" => Kind::I32,
@@ -211,9 +239,27 @@ fn number(descr: &str) -> Option<Number> {
         "u2" => Kind::U16,
         "u4" => Kind::U32,
         "u8" => Kind::U64,
-        _ => return None,
+        times => {
+            unit =
+                Some(times.strip_prefix("M8[").or(times.strip_prefix("m8["))?.strip_suffix(']')?.to_owned());
+            Kind::I64
+        }
     };
-    Some(Number { kind, big_endian: order == ">" })
+    Some((Number { kind, big_endian: order == ">" }, unit))
+}
+
+/// Bytes of a type of NumPy, read or not.
+fn width(descr: &str) -> Option<usize> {
+    if let Some((number, _)) = number(descr) {
+        return Some(number.kind.bytes());
+    }
+    let kind = descr.get(1..)?;
+    let count = kind.get(1..)?.parse::<usize>().ok()?;
+    match kind.chars().next()? {
+        'U' => count.checked_mul(4),
+        'S' | 'V' | 'c' | 'f' | 'a' => Some(count),
+        _ => None,
+    }
 }
 
 /// A type that is no real number, in words.
@@ -221,7 +267,7 @@ fn spoken(descr: &str) -> String {
     let what = match descr.trim_start_matches(['<', '>', '|', '=']).chars().next() {
         Some('c') => "complex numbers",
         Some('U' | 'S') => "text",
-        Some('M' | 'm') => "dates or times",
+        Some('M' | 'm') => "dates without a unit",
         Some('O') => "objects of Python",
         _ => "values",
     };
@@ -247,6 +293,14 @@ pub(crate) fn encode(samples: &[f64]) -> Vec<u8> {
 mod tests {
     use super::*;
 
+    #[test]
+    fn refuses_an_array_of_three_dimensions_with_its_shape() {
+        let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3, 4), }";
+        let layout = Layout::of(&file(header)).unwrap();
+        let why = layout.channels("a", Path::new("a.npy"), 0, 192).unwrap_err().to_string();
+        assert!(why.contains("3 dimensions, 2 × 3 × 4"), "{why}");
+    }
+
     fn file(header: &str) -> Vec<u8> {
         [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat()
     }
@@ -261,12 +315,7 @@ mod tests {
         for (descr, shape, words) in [
             ("'<c16'", "(9,)", "holds complex numbers (`<c16`)"),
             ("'<U7'", "(9,)", "holds text (`<U7`)"),
-            (
-                "[('t', '<f8'), ('when', '<M8[ns]')]",
-                "(9,)",
-                "holds dates or times (`<M8[ns]`) in its field `when`",
-            ),
-            ("'<f8'", "(2, 3, 4)", "holds an array of 3 dimensions"),
+            ("[('t', '<c8'), ('when', '<U3')]", "(9,)", "`when` is left out: it holds text (`<U3`)"),
         ] {
             let said = why(descr, shape);
             assert!(said.contains(words) && said.contains("float64") && !said.contains("damaged"), "{said}");
@@ -283,7 +332,7 @@ mod tests {
         };
         let layout = Layout::of(&file(&header("ddd"))).expect("a layout");
         let fields: Vec<(&str, usize)> =
-            layout.fields.iter().map(|(name, at, _)| (name.as_str(), *at)).collect();
+            layout.fields.iter().map(|field| (field.name.as_str(), field.place)).collect();
         assert_eq!((fields, layout.record), (vec![("time_s", 0), ("a", 8), ("b c", 16)], 24));
         assert!(Layout::of(&file(&header("dfd"))).is_err());
     }

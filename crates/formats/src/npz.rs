@@ -7,6 +7,7 @@ use std::path::Path;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
+use crate::recording::left_out;
 use crate::{Channel, Error, Recording, Result, npy};
 
 const FORMAT: &str = "NumPy .npz";
@@ -35,14 +36,22 @@ pub fn open(path: &Path) -> Result<Recording> {
         let layout = match npy::Layout::of(&bytes) {
             Ok(layout) => layout,
             Err(why) => {
-                notes.push(format!("array `{name}` is left out: {why}"));
+                notes.push(left_out(&name, &why.to_string()));
                 continue;
             }
         };
         let start = stored.unwrap_or(0) + layout.start as u64;
         let held =
             if stored.is_some() { size } else { bytes.len() as u64 }.saturating_sub(layout.start as u64);
-        let found = layout.channels(&name, path, start, held).map_err(of)?;
+        let found = match layout.channels(&name, path, start, held) {
+            Ok(found) => found,
+            Err(npy::Refusal::Damaged(what)) => return Err(of(what)),
+            Err(why @ npy::Refusal::Foreign(_)) => {
+                notes.push(left_out(&name, &why.to_string()));
+                continue;
+            }
+        };
+        notes.extend(layout.notes);
         if stored.is_some() {
             channels.extend(found);
         } else {

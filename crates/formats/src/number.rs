@@ -21,6 +21,8 @@ pub enum Kind {
     I64,
     /// Unsigned, 64 bits; beyond 2⁵³ the last digits are lost.
     U64,
+    /// IEEE half.
+    F16,
     /// IEEE single.
     F32,
     /// IEEE double.
@@ -41,7 +43,7 @@ impl Kind {
     pub fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
+            Self::I16 | Self::U16 | Self::F16 => 2,
             Self::I24 => 3,
             Self::I32 | Self::U32 | Self::F32 => 4,
             Self::I64 | Self::U64 | Self::F64 => 8,
@@ -69,10 +71,23 @@ impl Number {
         match self.kind {
             Kind::I8 | Kind::I16 | Kind::I24 | Kind::I32 | Kind::I64 => signed as f64,
             Kind::U8 | Kind::U16 | Kind::U32 | Kind::U64 => whole as f64,
+            Kind::F16 => half(whole as u16),
             Kind::F32 => f64::from(f32::from_bits(whole as u32)),
             Kind::F64 => f64::from_bits(whole),
         }
     }
+}
+
+/// A number of 16 bits: a sign, five bits of exponent, ten of mantissa (IEEE 754-2008, binary16).
+fn half(bits: u16) -> f64 {
+    let (exponent, mantissa) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
+    let size = match exponent {
+        0 => mantissa * 2_f64.powi(-24),
+        31 if mantissa == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        _ => (1024.0 + mantissa) * 2_f64.powi(exponent - 25),
+    };
+    if bits >> 15 == 1 { -size } else { size }
 }
 
 #[cfg(test)]
@@ -81,7 +96,9 @@ mod tests {
 
     #[test]
     fn roundtrip_every_kind_in_both_byte_orders() {
-        let cases: [(Kind, Vec<u8>, f64); 8] = [
+        let cases: [(Kind, Vec<u8>, f64); 10] = [
+            (Kind::F16, vec![0x00, 0xc1], -2.5),
+            (Kind::F16, vec![0x01, 0x00], 5.960_464_477_539_063e-8),
             (Kind::I8, (-5_i8).to_le_bytes().to_vec(), -5.0),
             (Kind::U16, 65_000_u16.to_le_bytes().to_vec(), 65_000.0),
             (Kind::I16, (-300_i16).to_le_bytes().to_vec(), -300.0),

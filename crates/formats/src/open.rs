@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::{
-    Error, Recording, Result, csv, flac, mat5, mat73, mdf4, npy, npz, parquet, tdms, time, uff58, wav,
+    Error, Recording, Result, csv, flac, mat4, mat5, mat73, mdf4, npy, npz, parquet, tdms, time, uff58, wav,
 };
 
 impl Recording {
@@ -36,18 +36,19 @@ impl Recording {
             mat73::open(path)
         } else if mat5::recognise(&start) {
             mat5::open(path)
+        } else if mat4::recognise(&start) {
+            mat4::open(path)
         } else if begins(b"PAR1") {
             parquet::open(path)
         } else if begins(b"TDSm") {
             tdms::open(path)
         } else if begins(b"MDF") {
-            // A group has its own time, and says which it is.
-            return mdf4::open(path);
+            mdf4::open(path)
         } else if begins(b"fLaC") {
             flac::open(path)
         } else if uff58::recognise(&start) || matches!(extension.as_str(), "uff" | "unv" | "u58") {
             uff58::open(path)
-        } else if start.contains(&0) {
+        } else if start.contains(&0) && !csv::is_wide(&start) {
             unknown("its first bytes belong to no known format, and it is no text")
         } else {
             csv::open(path)

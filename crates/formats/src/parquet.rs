@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use parquet::basic::{Compression, LogicalType, Repetition, TimeUnit, Type as Physical};
+use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
@@ -13,8 +13,10 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::Type;
+use parquet::schema::types::{ColumnDescriptor, Type};
 
+use crate::number::{Kind, Number};
+use crate::recording::left_out;
 use crate::{Channel, Error, Recording, Result};
 
 const FORMAT: &str = "Parquet";
@@ -202,30 +204,100 @@ pub fn open(path: &Path) -> Result<Recording> {
     let rows = rows.map(|n| u64::try_from(n).unwrap_or(0)).fold(0_u64, u64::saturating_add);
     for (number, column) in columns.iter().enumerate() {
         let name = column.path().string();
-        if column.max_rep_level() > 0 {
-            notes.push(format!("column `{name}` is left out: it holds lists"));
-        } else if matches!(
-            column.physical_type(),
-            Physical::DOUBLE | Physical::FLOAT | Physical::INT64 | Physical::INT32
-        ) {
-            let stored = Stored { path: path.to_owned(), number, defined: column.max_def_level() };
-            let unit = column.logical_type_ref().and_then(unit_of_time).map(str::to_owned);
-            channels.push(Channel::stored(name, rows, stored).at_rate(rate_hz).in_unit(unit));
-        } else {
-            notes.push(format!("column `{name}` is left out: it holds no numbers"));
+        match Meaning::of(column) {
+            Ok((meaning, unit)) => {
+                let stored =
+                    Stored { path: path.to_owned(), number, defined: column.max_def_level(), meaning };
+                channels.push(Channel::stored(name, rows, stored).at_rate(rate_hz).in_unit(unit));
+            }
+            Err(why) => notes.push(left_out(&name, why)),
         }
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// The unit of what counts the time since some date.
-fn unit_of_time(of: &LogicalType) -> Option<&'static str> {
-    let LogicalType::Timestamp(time) = of else { return None };
-    Some(match time.unit {
+/// What the stored values of a column mean.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Meaning {
+    Number,
+    /// Whole numbers without a sign.
+    Unsigned,
+    /// Whole numbers over a power of ten.
+    Decimal(i32),
+    Half,
+}
+
+impl Meaning {
+    /// That of a column, with its unit where it counts time, or why the column is no channel.
+    fn of(column: &ColumnDescriptor) -> std::result::Result<(Self, Option<String>), &'static str> {
+        if column.max_rep_level() > 0 {
+            return Err("it holds lists");
+        }
+        let (logical, converted) = (column.logical_type_ref(), column.converted_type());
+        let whole = matches!(column.physical_type(), Physical::INT32 | Physical::INT64);
+        let packed = matches!(column.physical_type(), Physical::FIXED_LEN_BYTE_ARRAY | Physical::BYTE_ARRAY);
+        let unsigned =
+            [ConvertedType::UINT_8, ConvertedType::UINT_16, ConvertedType::UINT_32, ConvertedType::UINT_64];
+        match logical {
+            Some(LogicalType::Decimal(_)) if whole || packed => {
+                return Ok((Self::Decimal(column.type_scale()), None));
+            }
+            Some(LogicalType::Float16) => return Ok((Self::Half, None)),
+            Some(LogicalType::Timestamp(time)) => return Ok((Self::Number, unit_of_time(&time.unit))),
+            Some(LogicalType::Time(time)) => return Ok((Self::Number, unit_of_time(&time.unit))),
+            Some(LogicalType::Date) => return Err("it holds dates without a time"),
+            _ => {}
+        }
+        match converted {
+            ConvertedType::DECIMAL if whole || packed => Ok((Self::Decimal(column.type_scale()), None)),
+            ConvertedType::TIMESTAMP_MILLIS | ConvertedType::TIME_MILLIS => {
+                Ok((Self::Number, Some("ms".to_owned())))
+            }
+            ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => {
+                Ok((Self::Number, Some("us".to_owned())))
+            }
+            of if whole && unsigned.contains(&of) => Ok((Self::Unsigned, None)),
+            _ => match column.physical_type() {
+                Physical::DOUBLE | Physical::FLOAT | Physical::BOOLEAN => Ok((Self::Number, None)),
+                _ if whole => Ok((Self::Number, None)),
+                Physical::INT96 => Err("it holds times of 96 bits: save them as 64-bit timestamps"),
+                _ => Err("it holds texts or bytes"),
+            },
+        }
+    }
+
+    fn of_i32(self, v: i32) -> f64 {
+        if self == Self::Unsigned { f64::from(v as u32) } else { self.of_i64(i64::from(v)) }
+    }
+
+    fn of_i64(self, v: i64) -> f64 {
+        match self {
+            Self::Unsigned => v as u64 as f64,
+            Self::Decimal(scale) => v as f64 / 10_f64.powi(scale),
+            _ => v as f64,
+        }
+    }
+
+    /// Whole numbers in bytes, the most significant first; halves the other way round.
+    fn of_bytes(self, bytes: &[u8]) -> f64 {
+        if self == Self::Half {
+            return Number::little(Kind::F16).decode(bytes);
+        }
+        let Self::Decimal(scale) = self else { return f64::NAN };
+        let first = bytes.first().map_or(0.0, |b| f64::from(*b as i8));
+        let whole = bytes.iter().skip(1).fold(first, |sum, b| 256.0 * sum + f64::from(*b));
+        whole / 10_f64.powi(scale)
+    }
+}
+
+/// The unit of what counts the time.
+fn unit_of_time(unit: &TimeUnit) -> Option<String> {
+    let unit = match unit {
         TimeUnit::MILLIS => "ms",
         TimeUnit::MICROS => "us",
         TimeUnit::NANOS => "ns",
-    })
+    };
+    Some(unit.to_owned())
 }
 
 /// A column of numbers in a file.
@@ -235,6 +307,7 @@ pub(crate) struct Stored {
     number: usize,
     /// Level of definition of a value that is there.
     defined: i16,
+    meaning: Meaning,
 }
 
 impl Stored {
@@ -254,8 +327,19 @@ impl Stored {
             let going = match group.get_column_reader(self.number).map_err(damaged)? {
                 ColumnReader::DoubleColumnReader(mut r) => each(&mut r, self.defined, |v| v, &mut give),
                 ColumnReader::FloatColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
-                ColumnReader::Int64ColumnReader(mut r) => each(&mut r, self.defined, |v| v as f64, &mut give),
-                ColumnReader::Int32ColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
+                ColumnReader::Int64ColumnReader(mut r) => {
+                    each(&mut r, self.defined, |v| self.meaning.of_i64(v), &mut give)
+                }
+                ColumnReader::Int32ColumnReader(mut r) => {
+                    each(&mut r, self.defined, |v| self.meaning.of_i32(v), &mut give)
+                }
+                ColumnReader::BoolColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
+                ColumnReader::ByteArrayColumnReader(mut r) => {
+                    each(&mut r, self.defined, |v| self.meaning.of_bytes(v.data()), &mut give)
+                }
+                ColumnReader::FixedLenByteArrayColumnReader(mut r) => {
+                    each(&mut r, self.defined, |v| self.meaning.of_bytes(v.data()), &mut give)
+                }
                 _ => Ok(false),
             };
             if !going.map_err(damaged)? {
@@ -363,7 +447,7 @@ mod tests {
         let mut broken = Writer::create(&desk.join("b.parquet"), &columns, &[]).unwrap();
         assert!(matches!(broken.add(&columns[..1]), Err(Error::DoesNotFit { .. })));
         let back = Recording::open(&path).unwrap();
-        assert_eq!(back.notes.len(), 2, "{:?}", back.notes);
+        assert_eq!(back.notes.len(), 1, "{:?}", back.notes);
         let load = back.channel("load_n").unwrap();
         let values = load.read().unwrap();
         assert_eq!((values.len(), load.rate_hz), (6, Some(100.0)));

@@ -5,6 +5,7 @@ use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use crate::curve::Curve;
 use crate::number::Number;
 use crate::{Error, Result, csv, flac, hdf5_chunks, mdf4_records, parquet};
 
@@ -35,7 +36,11 @@ pub struct Channel {
     pub len: u64,
     /// Whether it is the time, or rises as evenly (a count, an angle), and so is no signal.
     pub is_time: bool,
-    /// What stored samples are multiplied by.
+    /// Channels of one group have one clock; empty where the format has no groups.
+    pub(crate) group: String,
+    /// What stored samples mean, where they are no values themselves.
+    pub(crate) curve: Option<Arc<Curve>>,
+    /// What values are multiplied by.
     scale: f64,
     source: Source,
 }
@@ -44,6 +49,8 @@ pub struct Channel {
 #[derive(Debug, Clone)]
 enum Source {
     Held(Arc<Vec<f64>>),
+    /// The number of each sample, from 0.
+    Count,
     Strided(Strided),
     /// One after the other, with the number of samples in each.
     Pieces(Arc<Vec<(Strided, u64)>>),
@@ -100,12 +107,27 @@ impl Recording {
 
 impl Channel {
     fn new(name: impl Into<String>, len: u64, source: Source) -> Self {
-        Self { name: name.into(), unit: None, rate_hz: None, len, is_time: false, scale: 1.0, source }
+        Self {
+            name: name.into(),
+            unit: None,
+            rate_hz: None,
+            len,
+            is_time: false,
+            group: String::new(),
+            curve: None,
+            scale: 1.0,
+            source,
+        }
     }
 
     /// A channel whose samples are in memory.
     pub fn held(name: impl Into<String>, samples: Vec<f64>) -> Self {
         Self::new(name, samples.len() as u64, Source::Held(Arc::new(samples)))
+    }
+
+    /// A channel whose samples count from 0.
+    pub(crate) fn counted(name: impl Into<String>, len: u64) -> Self {
+        Self::new(name, len, Source::Count)
     }
 
     pub(crate) fn strided(name: impl Into<String>, len: u64, strided: Strided) -> Self {
@@ -157,6 +179,18 @@ impl Channel {
         Self { scale: self.scale * factor, ..self.clone() }
     }
 
+    /// The same channel with the law of its stored numbers.
+    pub(crate) fn along(mut self, curve: Option<Curve>) -> Self {
+        self.curve = curve.map(Arc::new);
+        self
+    }
+
+    /// The same channel in a group with a clock of its own.
+    pub(crate) fn of_group(mut self, group: &str) -> Self {
+        group.clone_into(&mut self.group);
+        self
+    }
+
     /// The same channel in a unit.
     pub fn in_unit(mut self, unit: Option<String>) -> Self {
         self.unit = unit;
@@ -168,11 +202,12 @@ impl Channel {
     /// # Errors
     /// [`Error::Io`], [`Error::Number`], [`Error::Damaged`] for a file that ends early.
     pub fn for_each_block(&self, mut take: impl FnMut(&[f64]) -> bool) -> Result<()> {
-        if self.scale != 1.0 {
+        if self.scale != 1.0 || self.curve.is_some() {
             let mut scaled = Vec::new();
+            let value = |x: &f64| self.scale * self.curve.as_ref().map_or(*x, |curve| curve.at(*x));
             return self.for_each_stored(&mut |block| {
                 scaled.clear();
-                scaled.extend(block.iter().map(|x| self.scale * x));
+                scaled.extend(block.iter().map(value));
                 take(&scaled)
             });
         }
@@ -189,6 +224,19 @@ impl Channel {
                 }
                 Ok(())
             }
+            Source::Count => {
+                let step = (PIECE / 8) as u64;
+                let mut from = 0;
+                while from < self.len {
+                    let until = self.len.min(from + step);
+                    let block: Vec<f64> = (from..until).map(|n| n as f64).collect();
+                    if !take(&block) {
+                        break;
+                    }
+                    from = until;
+                }
+                Ok(())
+            }
             Source::Strided(strided) => strided.for_each_block(self.len, take),
             Source::Pieces(pieces) => {
                 let mut going = true;
@@ -202,7 +250,7 @@ impl Channel {
                 }
                 Ok(())
             }
-            Source::Text(column) => column.for_each_block(take),
+            Source::Text(column) => column.for_each_block(self.len, take),
             Source::Flac(stream) => stream.for_each_block(self.len, take),
             Source::Chunks(column) => column.for_each_block(self.len, take),
             Source::Records(field) => field.for_each_block(self.len, take),
@@ -249,6 +297,11 @@ impl Strided {
         }
         Ok(())
     }
+}
+
+/// Why a channel is none, in the words that all formats use.
+pub(crate) fn left_out(name: &str, why: &str) -> String {
+    format!("`{name}` is left out: {why}")
 }
 
 /// Refuses channels of different lengths, which a table cannot hold; returns that length.

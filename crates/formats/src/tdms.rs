@@ -1,14 +1,15 @@
-//! TDMS of LabVIEW and its data acquisition: numeric channels with their rate and unit.
+//! TDMS of LabVIEW and its data acquisition: numeric channels with their rate, their unit and their scale.
 //!
 //! Source: *TDMS File Format Internal Structure*, National Instruments.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use crate::number::{Kind, Number};
-use crate::recording::Strided;
+use crate::recording::{Strided, left_out};
+use crate::tdms_scale;
 use crate::{Channel, Error, Recording, Result};
 
 const FORMAT: &str = "TDMS";
@@ -24,6 +25,13 @@ const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
 const DAQMX: u32 = 1 << 7;
 
+/// The value of a property.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Property {
+    Number(f64),
+    Text(String),
+}
+
 /// What is known of a channel.
 #[derive(Debug, Clone, Default)]
 struct Object {
@@ -34,6 +42,8 @@ struct Object {
     bytes: u64,
     increment_s: Option<f64>,
     unit: Option<String>,
+    /// Properties of its scales, by name.
+    scales: BTreeMap<String, Property>,
     pieces: Vec<(Strided, u64)>,
     /// A file may change the type of a channel: then it is left out.
     mixed: bool,
@@ -93,17 +103,34 @@ pub fn open(path: &Path) -> Result<Recording> {
         at += LEAD_IN + next;
     }
     let mut channels = Vec::new();
-    for name in known {
-        let Some(object) = objects.remove(&name).filter(|o| o.count > 0 || !o.pieces.is_empty()) else {
+    // A scale may stand with the channel, with its group, or with the file.
+    let of_file = objects.get("/").map(|o| o.scales.clone()).unwrap_or_default();
+    let groups: HashMap<String, BTreeMap<String, Property>> =
+        objects.iter().map(|(name, o)| (name.clone(), o.scales.clone())).collect();
+    for path_in_file in known {
+        let Some(object) = objects.remove(&path_in_file).filter(|o| o.count > 0 || !o.pieces.is_empty())
+        else {
             continue;
         };
-        let name = spoken(&name);
+        let name = spoken(&path_in_file);
         if object.number.is_none() || object.mixed {
-            notes.push(format!("`{name}` is left out: its values are no real numbers of one type"));
+            notes.push(left_out(&name, "its values are no real numbers of one type"));
             continue;
         }
+        let group = path_in_file.rsplit_once("/'").map_or("", |(group, _)| group);
+        let none = BTreeMap::new();
+        let of_group = groups.get(group).unwrap_or(&none);
+        let scales = [&object.scales, of_group, &of_file].into_iter().find(|s| tdms_scale::count(s) > 0);
+        let curve = match tdms_scale::curve(scales.unwrap_or(&none)) {
+            Ok(curve) => curve,
+            Err(why) => {
+                notes.push(left_out(&name, &why));
+                continue;
+            }
+        };
         let rate_hz = object.increment_s.filter(|s| *s > 0.0).map(|s| 1.0 / s).map(rounded);
-        channels.push(Channel::pieces(name, object.pieces).at_rate(rate_hz).in_unit(object.unit));
+        let channel = Channel::pieces(name, object.pieces).at_rate(rate_hz).in_unit(object.unit);
+        channels.push(channel.along(curve).of_group(group));
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
@@ -202,7 +229,7 @@ impl Metadata<'_> {
                     object.count = count;
                     object.bytes = match number {
                         Some(number) => count.checked_mul(number.kind.bytes() as u64)?,
-                        // Texts say how many bytes they take; times take 16 each, single bits one.
+                        // Texts say how many bytes they take; times take 16 each.
                         None if kind == TEXT => self.long()?,
                         None => count.checked_mul(width(kind)? as u64)?,
                     };
@@ -210,6 +237,9 @@ impl Metadata<'_> {
                 if !active.contains(&name) {
                     active.push(name.clone());
                 }
+            } else {
+                // It has no data in this segment, and in those that follow without a list of their own.
+                active.retain(|other| *other != name);
             }
             for _ in 0..self.word()? {
                 let property = self.text()?;
@@ -219,12 +249,17 @@ impl Metadata<'_> {
                     let value = self.text()?;
                     if property == "unit_string" && !value.is_empty() {
                         object.unit = Some(value);
+                    } else if property.starts_with("NI_") {
+                        object.scales.insert(property, Property::Text(value));
                     }
                 } else {
                     let number = number(kind, self.big_endian);
                     let bytes = self.take(width(kind)?)?;
                     if property == "wf_increment" {
                         object.increment_s = number.map(|n| n.decode(bytes));
+                    } else if let (Some(number), true) = (number, property.starts_with("NI_")) {
+                        let value = Property::Number(number.decode(bytes));
+                        object.scales.insert(property, value);
                     }
                 }
             }
@@ -241,7 +276,7 @@ fn number(kind: u32, big_endian: bool) -> Option<Number> {
         2 => Kind::I16,
         3 => Kind::I32,
         4 => Kind::I64,
-        5 => Kind::U8,
+        5 | 0x21 => Kind::U8,
         6 => Kind::U16,
         7 => Kind::U32,
         8 => Kind::U64,
@@ -256,7 +291,6 @@ fn number(kind: u32, big_endian: bool) -> Option<Number> {
 fn width(kind: u32) -> Option<usize> {
     Some(match kind {
         0 => 0,
-        0x21 => 1,
         0x44 | 0x10_000d => 16,
         0x08_000c => 8,
         other => number(other, false)?.kind.bytes(),

@@ -4,6 +4,7 @@
 //! steadily: none of them is a signal. All samples are looked at, a stretch at a time, because a record that was interrupted,
 //! or put together, shows it nowhere else.
 
+use crate::units::{self, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result};
 
 /// Samples that are looked at together.
@@ -14,42 +15,6 @@ const LEAST: usize = 10;
 const RARE: usize = 250;
 /// Rates that differ by less than this part are one: clocks drift.
 const SAME_RATE: f64 = 1e-3;
-/// A step from which on numbers without a unit are no seconds: nobody listens to a bearing once a second.
-const SLOWEST_S: f64 = 1.0;
-
-/// Units of time [s]. The third and the fourth micro are the Greek letter, and what is left of a sign in another encoding.
-const UNITS: [(&str, f64); 18] = [
-    ("s", 1.0),
-    ("sec", 1.0),
-    ("second", 1.0),
-    ("seconds", 1.0),
-    ("ms", 1e-3),
-    ("msec", 1e-3),
-    ("milliseconds", 1e-3),
-    ("usec", 1e-6),
-    ("microseconds", 1e-6),
-    ("minutes", 60.0),
-    ("hours", 3600.0),
-    ("us", 1e-6),
-    ("µs", 1e-6),
-    ("μs", 1e-6),
-    ("\u{fffd}s", 1e-6),
-    ("ns", 1e-9),
-    ("min", 60.0),
-    ("h", 3600.0),
-];
-/// Endings of names of what rises evenly and is no time.
-const OTHERS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
-
-/// The unit of a channel.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Unit {
-    /// Of time, and how many seconds it has.
-    Time(&'static str, f64),
-    Other,
-    Unsaid,
-}
-
 /// How a channel rises.
 #[derive(Debug, Default)]
 struct Course {
@@ -92,45 +57,82 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
     let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
     for (channel, course) in channels.iter_mut().zip(&courses) {
-        channel.is_time = course.as_ref().is_some_and(|course| course.is_even() || says_time(&channel.name));
-        if let (true, Unit::Time(unit, _)) = (channel.is_time, Unit::of(channel)) {
+        channel.is_time |= course.as_ref().is_some_and(|course| course.is_even() || says_time(&channel.name));
+        if let (true, Unit::Time(unit, _)) = (channel.is_time, unit_of(channel)) {
             channel.unit = Some(unit.to_owned());
         }
     }
-    let said = rates_said(channels);
+    let said = rates_said(channels, &mut recording.notes);
     for channel in channels.iter_mut().filter(|c| c.rate_hz.is_none()) {
-        let mut beside = said.iter().filter(|(of, _)| of.is_empty() || *of == parent(&channel.name));
-        channel.rate_hz = beside.next().map(|(_, hz)| *hz);
+        let beside = said.iter().filter(|(of, _)| of.is_empty() || *of == parent(&channel.name));
+        // The one in the same struct before that of the file.
+        channel.rate_hz = beside.max_by_key(|(of, _)| of.len()).map(|(_, hz)| *hz);
     }
-    let mut lengths: Vec<u64> = channels.iter().map(|c| c.len).collect();
-    lengths.sort_unstable();
-    lengths.dedup();
-    for len in lengths {
-        let first = channels.iter().position(|c| c.len == len);
-        let asked = channels.iter().any(|c| c.len == len && c.rate_hz.is_none());
-        let rank = |n: usize| match Unit::of(&channels[n]) {
-            Unit::Time(..) => Some(0),
-            Unit::Unsaid if says_time(&channels[n].name) => Some(1),
-            Unit::Unsaid if asked && first == Some(n) => Some(2),
-            _ => None,
+    let mut clocks: Vec<(u64, String)> = channels.iter().map(|c| (c.len, c.group.clone())).collect();
+    clocks.sort_unstable();
+    clocks.dedup();
+    for (len, group) in clocks {
+        let of_clock = |c: &Channel| c.len == len && c.group == group;
+        let first = channels.iter().position(of_clock);
+        let asked = channels.iter().any(|c| of_clock(c) && c.rate_hz.is_none());
+        let rank = |n: usize| {
+            let inside = channels[n].group == group;
+            let rank = match unit_of(&channels[n]) {
+                Unit::Time(..) => 0,
+                Unit::Unsaid if says_time(&channels[n].name) => 1,
+                Unit::Unsaid if asked && first == Some(n) => 2,
+                _ => return None,
+            };
+            // Its own clock before that of another group; MDF groups share none.
+            (inside || !group.starts_with('#')).then_some((!inside, rank))
         };
         let of_time = |n: &usize| channels[*n].len == len && channels[*n].is_time;
         let clock = (0..channels.len()).filter(of_time).filter_map(|n| Some((rank(n)?, n))).min();
         let Some((n, course)) = clock.and_then(|(_, n)| Some((n, courses[n].as_ref()?))) else { continue };
+        if channels[n].group != group && !asked {
+            continue;
+        }
         let rate_hz = course.rate_hz(&channels[n], asked, &mut recording.notes);
-        for channel in channels.iter_mut().filter(|c| c.len == len && c.rate_hz.is_none()) {
-            channel.rate_hz = rate_hz;
+        for channel in channels.iter_mut().filter(|c| c.len == len && c.group == group) {
+            match (channel.rate_hz, rate_hz) {
+                (None, _) => channel.rate_hz = rate_hz,
+                (Some(said), Some(hz)) if (said / hz - 1.0).abs() > SAME_RATE && !channel.is_time => {
+                    recording.notes.push(format!(
+                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: the former is taken",
+                        channel.name
+                    ));
+                }
+                _ => {}
+            }
         }
     }
+    recording.notes.dedup();
     Ok(recording)
 }
 
-/// The rates [Hz] that stand as numbers of their own, `rate_hz` or `fs`, each with the struct that it is in.
-fn rates_said(channels: &[Channel]) -> Vec<(String, f64)> {
-    let is_rate =
-        |c: &&Channel| c.len == 1 && ["rate_hz", "fs"].contains(&member(&c.name).to_lowercase().as_str());
-    let rate_hz = |c: &Channel| c.read().ok()?.first().copied().filter(|hz| hz.is_finite() && *hz > 0.0);
-    channels.iter().filter(is_rate).filter_map(|c| Some((parent(&c.name).to_owned(), rate_hz(c)?))).collect()
+/// The rates [Hz] that stand as numbers of their own, each with the struct that it is in; those that contradict each other are
+/// noted, and say nothing.
+fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Vec<(String, f64)> {
+    let mut said: Vec<(String, f64, &str)> = Vec::new();
+    for channel in channels.iter().filter(|c| c.len == 1) {
+        let value = channel.read().ok().and_then(|all| all.first().copied()).unwrap_or(f64::NAN);
+        let Some(hz) = units::rate_hz(member(&channel.name), channel.unit.as_deref(), value) else {
+            continue;
+        };
+        let of = parent(&channel.name);
+        match said.iter_mut().find(|(other, ..)| *other == of) {
+            Some((_, other, name)) if (*other / hz - 1.0).abs() > SAME_RATE => {
+                notes.push(format!(
+                    "`{name}` says {other} Hz and `{}` says {hz} Hz: no rate is taken from them",
+                    channel.name
+                ));
+                *other = f64::NAN;
+            }
+            Some(_) => {}
+            None => said.push((of.to_owned(), hz, &channel.name)),
+        }
+    }
+    said.into_iter().filter(|(_, hz, _)| hz.is_finite()).map(|(of, hz, _)| (of, hz)).collect()
 }
 
 /// The structs around a name.
@@ -147,40 +149,15 @@ fn member(name: &str) -> &str {
 pub fn says_time(name: &str) -> bool {
     let word: String = member(name).chars().take_while(|c| c.is_alphabetic()).collect();
     let word = word.to_lowercase();
-    word.starts_with("time") || matches!(word.as_str(), "t" | "zeit" | "temps" | "tiempo" | "tempo")
+    word.starts_with("time")
+        || matches!(
+            word.as_str(),
+            "t" | "zeit" | "temps" | "tiempo" | "tempo" | "datum" | "date" | "datetime" | "zeitstempel"
+        )
 }
 
-/// The seconds of a unit of time, and its usual spelling.
-fn seconds(unit: &str) -> Option<(&'static str, f64)> {
-    let unit = unit.trim_matches(['[', ']', '(', ')', ' ', '.']).to_lowercase();
-    UNITS.into_iter().find(|(name, _)| *name == unit)
-}
-
-impl Unit {
-    /// That of a channel, or of its name: `t [ms]`, `t (ms)`, `t/ms`, `time_ms`.
-    fn of(channel: &Channel) -> Self {
-        let time = |unit: &str| seconds(unit).map(|(name, s)| Self::Time(name, s));
-        if let Some(unit) = channel.unit.as_deref().filter(|unit| !unit.trim().is_empty()) {
-            return time(unit).unwrap_or(Self::Other);
-        }
-        let name = &channel.name;
-        let Some((_, last)) = name.trim_end_matches([' ', ']', ')']).rsplit_once(['[', '(', '_', '/', ' '])
-        else {
-            return Self::Unsaid;
-        };
-        let other = name.contains(['[', '(']) || OTHERS.contains(&last.to_lowercase().as_str());
-        time(last).unwrap_or(if other { Self::Other } else { Self::Unsaid })
-    }
-}
-
-/// Whether a field of a table is a unit and no name.
-pub(crate) fn is_unit(field: &str) -> bool {
-    const USUAL: [&str; 22] = [
-        "g", "V", "mV", "N", "kN", "Pa", "MPa", "m", "mm", "um", "µm", "rad", "deg", "rpm", "Hz", "-",
-        "m/s²", "m/s2", "m/s^2", "m/s", "mm/s", "1/min",
-    ];
-    let bracketed = field.starts_with(['[', '(']) && field.ends_with([']', ')']);
-    bracketed || USUAL.contains(&field) || field.starts_with('°') || seconds(field).is_some()
+fn unit_of(channel: &Channel) -> Unit {
+    Unit::of(&channel.name, channel.unit.as_deref())
 }
 
 impl Course {
@@ -252,7 +229,7 @@ impl Course {
 
     /// The rate [Hz] that times say, with what is odd about them, also about their unit if it is `asked` for.
     fn rate_hz(&self, times: &Channel, asked: bool, notes: &mut Vec<String>) -> Option<f64> {
-        let (name, unit) = (&times.name, Unit::of(times));
+        let (name, unit) = (&times.name, unit_of(times));
         let (spelt, second) = if let Unit::Time(spelt, second) = unit { (spelt, second) } else { ("", 1.0) };
         let at = |(row, value): (f64, f64)| {
             format!("row {} ({value:.6} {spelt}", row + 1.0).trim_end().to_owned() + ")"
@@ -290,9 +267,24 @@ impl Course {
         let round = (hz * 10.0).round() / 10.0;
         let hz = if (hz / round - 1.0).abs() < 1e-6 { round } else { hz };
         if asked && unit == Unit::Unsaid {
-            let slow = step >= SLOWEST_S * (1.0 - SAME_RATE);
-            let means =
-                if slow { "no rate follows".to_owned() } else { format!("{hz} Hz if these are seconds") };
+            // Excel counts days from 1900 on, MATLAB from the year 0.
+            let date = (20_000.0..80_000.0).contains(&self.first.1) || (7e5..8e5).contains(&self.first.1);
+            if date && step * 86_400.0 < SLOWEST_S {
+                let hz = units::rounded(1.0 / (step * 86_400.0));
+                notes.push(format!("`{name}` counts days, as Excel and MATLAB do: {hz} Hz"));
+                return Some(hz);
+            }
+            let slow = step > SLOWEST_S * (1.0 + SAME_RATE);
+            let means = if slow && step < 1.0 {
+                format!(
+                    "{hz} Hz if these are seconds, {} Hz if they are milliseconds: no rate follows",
+                    1e3 * hz
+                )
+            } else if slow {
+                "no rate follows".to_owned()
+            } else {
+                format!("{hz} Hz if these are seconds")
+            };
             notes.push(format!(
                 "`{name}` rises by {step:.6} from sample to sample, and does not say its unit: {means}. Call it `t [ms]` or the like if \
                  it is the time in another one"

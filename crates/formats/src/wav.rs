@@ -71,10 +71,19 @@ pub fn open(path: &Path) -> Result<Recording> {
                 if channels == 0 || rate == 0 {
                     return Err(damaged("it has no channels or no sample rate"));
                 }
-                let promised = if length == u64::from(u32::MAX) { long_data.unwrap_or(size) } else { length };
-                let held = promised.min(size - at - 8);
+                // A recorder that streams, or was cut off, leaves 0 or the largest number where the size would be.
+                let there = size - at - 8;
+                let unsaid = length == 0 || length == u64::from(u32::MAX) && long_data.is_none_or(|n| n == 0);
+                let promised = match long_data {
+                    _ if unsaid => there,
+                    Some(long) if length == u64::from(u32::MAX) => long,
+                    _ => length,
+                };
+                let held = promised.min(there);
                 let mut notes = Vec::new();
-                if held < promised {
+                if unsaid && there > 0 {
+                    notes.push(format!("its header does not say how many samples there are: all {there} bytes to its end are taken"));
+                } else if held < promised {
                     notes.push(format!(
                         "its header promises {promised} bytes of samples, and {held} are there"
                     ));
@@ -104,8 +113,17 @@ pub fn open(path: &Path) -> Result<Recording> {
             }
             _ => {}
         }
-        // Pieces begin at even bytes.
-        at += 8 + length.next_multiple_of(2);
+        // Pieces begin at even bytes; some writers forget to pad.
+        let end = at + 8 + length;
+        at = end.next_multiple_of(2);
+        if at != end && at <= size {
+            file.seek(SeekFrom::Start(end)).map_err(io)?;
+            let mut name = Vec::new();
+            (&mut file).take(4).read_to_end(&mut name).map_err(io)?;
+            if name.len() == 4 && name[0] != 0 && name.iter().all(|b| b.is_ascii_graphic() || *b == b' ') {
+                at = end;
+            }
+        }
     }
     Err(damaged("it ends before its samples"))
 }

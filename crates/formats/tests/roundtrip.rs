@@ -4,8 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
-use stribeck_testing::Noise;
-use stribeck_testing::Scratch;
+use stribeck_testing::{Noise, Scratch, peer::python_with};
 
 const RATE_HZ: f64 = 12_800.0;
 
@@ -98,7 +97,6 @@ fn survives_damage(path: &Path) {
 #[test]
 fn peer_other_programs_read_what_is_written() {
     // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let folder = Scratch::create("formats-foreign");
     let expected = folder.path().join("expected.csv");
     csv::write(&expected, &channels(), &[]).unwrap();
@@ -111,11 +109,7 @@ fn peer_other_programs_read_what_is_written() {
         ("parquet", "pyarrow"),
         ("wav", "soundfile"),
     ] {
-        let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
-        if !has.is_ok_and(|o| o.status.success()) {
-            eprintln!("{extension} is not held against {module}: `{python}` does not have it");
-            continue;
-        }
+        let Some(python) = python_with(&[module]) else { continue };
         let path = folder.path().join(format!("a.{extension}"));
         write(&path);
         let run = Command::new(&python).arg(script).args([&path, &expected]).output().unwrap();
@@ -128,7 +122,6 @@ fn peer_other_programs_read_what_is_written() {
 #[test]
 fn peer_files_of_other_programs_are_read() {
     // npTDMS 1.10.0, scipy.io 1.17.1, soundfile 0.14.0, asammdf 8.8.28 and h5py 3.16.0 write what the formats allow and we do not: other types, byte orders, structs, segments, chunks.
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let folder = Scratch::create("formats-theirs");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/write_signals.py");
     for (name, module) in [
@@ -144,11 +137,7 @@ fn peer_files_of_other_programs_are_read() {
         ("theirs.h5", "h5py"),
     ] {
         let kind = name;
-        let has = Command::new(&python).args(["-c", &format!("import {module}")]).output();
-        if !has.is_ok_and(|o| o.status.success()) {
-            eprintln!("{kind} is not read from {module}: `{python}` does not have it");
-            continue;
-        }
+        let Some(python) = python_with(&[module]) else { continue };
         let path = folder.path().join(name);
         let run = Command::new(&python).args([script, path.to_str().unwrap()]).output().unwrap();
         assert!(run.status.success(), "{kind}: {}", String::from_utf8_lossy(&run.stderr));

@@ -4,7 +4,11 @@ use std::process::Command;
 
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Annulus, Disc, Groove, Mesh};
-use stribeck_testing::{Noise, Scratch, said, says};
+use stribeck_testing::{
+    Noise, Scratch,
+    peer::{absent, python_with},
+    said, says,
+};
 
 const ALL: [(Deck, &str); 3] = [(Deck::LsDyna, "k"), (Deck::Abaqus, "inp"), (Deck::Gmsh, "msh")];
 
@@ -142,8 +146,7 @@ fn roundtrip_a_model() {
 #[test]
 fn peer_calculix_finds_the_frequencies_of_a_ring() {
     if Command::new("ccx").arg("-v").output().is_err() {
-        eprintln!("decks are not computed by CalculiX: there is no `ccx`");
-        return;
+        return absent("STRIBECK_NEED_CALCULIX", "there is no `ccx`").unwrap_or_default();
     }
     let ring = Annulus {
         inner_radius: 0.0975,
@@ -199,8 +202,7 @@ fn flight(mesh: &Mesh) -> Step {
 #[test]
 fn peer_calculix_lets_a_disc_fly() {
     if Command::new("ccx").arg("-v").output().is_err() {
-        eprintln!("decks are not computed by CalculiX: there is no `ccx`");
-        return;
+        return absent("STRIBECK_NEED_CALCULIX", "there is no `ccx`").unwrap_or_default();
     }
     let mut mesh = Mesh::new();
     let disc = Disc { radius: 4e-3, facets: 40, size: 6e-4, rotation: 0.2 }.part().expect("a disc");
@@ -350,12 +352,7 @@ fn survives_damaged_files() {
 #[test]
 fn peer_meshio_reads_the_same_mesh() {
     // meshio 5.3.5, where the interpreter in STRIBECK_PYTHON (or python3) has it. It does not read keyword files.
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import meshio"]).output();
-    if !has.is_ok_and(|o| o.status.success()) {
-        eprintln!("decks are not held against meshio: `{python}` does not have it");
-        return;
-    }
+    let Some(python) = python_with(&["meshio"]) else { return };
     let mesh = mesh();
     let folder = Scratch::create("decks");
     for (deck, extension) in &ALL[1..] {

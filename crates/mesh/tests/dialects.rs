@@ -12,7 +12,7 @@
 use std::process::Command;
 
 use stribeck_mesh::decks::{Deck, ReadDeck, included};
-use stribeck_testing::{Scratch, said};
+use stribeck_testing::{Scratch, peer::python_with, said};
 
 const NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
 
@@ -477,12 +477,7 @@ fn issue_gmsh_versions_text_and_binary() {
 /// The same mesh as meshio 5.3.5 writes it, where the interpreter in STRIBECK_PYTHON (or python3) has it.
 #[test]
 fn peer_meshio_writes_every_dialect() {
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import meshio"]).output();
-    if !has.is_ok_and(|output| output.status.success()) {
-        eprintln!("meshes of meshio are not read: `{python}` does not have it");
-        return;
-    }
+    let Some(python) = python_with(&["meshio"]) else { return };
     let folder = Scratch::create("dialects");
     let script = "import meshio, numpy as np
 points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], float)

@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use stribeck_mesh::{Disc, Error, Mesh, Part, Rectangle, vtu};
-use stribeck_testing::{Scratch, said};
+use stribeck_testing::{Scratch, peer::python_with, said};
 
 fn mesh() -> Mesh {
     let disc = Disc { radius: 1.0, facets: 24, size: 0.25, rotation: 0.1 };
@@ -165,12 +165,7 @@ fn golden_a_file_that_others_read() {
 /// Places, cells, bodies and their names as meshio 5.3.5 reads them, where the interpreter in STRIBECK_PYTHON (or python3) has it.
 #[test]
 fn peer_meshio_opens_the_file() {
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import meshio"]).output();
-    if !has.is_ok_and(|output| output.status.success()) {
-        eprintln!("files for ParaView are not opened by meshio: `{python}` does not have it");
-        return;
-    }
+    let Some(python) = python_with(&["meshio"]) else { return };
     let mesh = mesh();
     let folder = Scratch::create("vtu");
     let mut file = Vec::new();

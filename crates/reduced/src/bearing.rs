@@ -2,23 +2,21 @@
 //! §9.2–9.4).
 
 use stribeck_modal::{
-    ModalBearing, OVERLOAD, Parameters, Reduction, STICKING,
-    compliance::{Compliance, Curve, contact_length},
-    outline::per_angle,
+    ModalBearing, OVERLOAD, Parameters, Reduction, STICKING, compliance::contact_length, outline::per_angle,
 };
-use stribeck_simd::lanes::Number;
 
 use crate::{
     cage::Cage,
-    contact::{force::ContactLaw, outline::Outline, penetration::Sides},
+    contact::{outline::Outline, penetration::Sides, raceway::Raceway},
+    drive::Operation,
     error::Error,
+    law::ContactLaw,
     modes::Structure,
     oil::Lubrication,
     rollers::Rollers,
     seat::Springs,
     sensors::Sensors,
     state::State,
-    step::drive::Operation,
 };
 
 /// A reduced bearing: what does not change during a run.
@@ -46,40 +44,6 @@ pub struct Bearing {
     pub(crate) operation: Operation,
 }
 
-/// One raceway.
-#[derive(Debug, Clone)]
-pub(crate) struct Raceway {
-    pub(crate) outline: Outline,
-    /// One over the angle that each facet takes [1/rad]; 0 for walls.
-    pub(crate) angle: Vec<f64>,
-    pub(crate) sides: Sides,
-    pub(crate) compliance: Compliance,
-    pub(crate) curve: Curve,
-    /// Radius of the circle that touches the raceway from the side of the rollers [m]: inscribed for the
-    /// outer one, circumscribed for the inner one.
-    pub(crate) bound: f64,
-    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the
-    /// inner one.
-    pub(crate) bounds: Vec<f64>,
-    /// Largest relative radius [m].
-    pub(crate) relative: f64,
-}
-
-impl Raceway {
-    /// +1 where the raceway lies beyond the roller, seen from the bearing's centre, −1 where it lies before
-    /// it.
-    #[inline(always)]
-    pub(crate) fn outwards(&self) -> f64 {
-        if self.sides.along { 1.0 } else { -1.0 }
-    }
-
-    /// How far from its middle a contact may reach that is `depth` deep between the circles around both [m].
-    #[inline(always)]
-    pub(crate) fn reach<N: Number>(&self, depth: N) -> N {
-        (depth.constant(2.0 * self.relative) * depth).sqrt() * depth.constant(1.001)
-    }
-}
-
 impl Bearing {
     /// The bearing that moves in steps of `time_step` [s].
     ///
@@ -100,7 +64,11 @@ impl Bearing {
             time_step,
         };
         let oil = parameters.oil.as_ref();
-        let oil = oil.map(|oil| Lubrication::new(oil, &raceways, &rollers, law.penalty, *thickness));
+        let oil = oil.map(|oil| {
+            let others: Vec<&Outline> = rollers.rims[1..].iter().map(|rim| &rim.outline).collect();
+            let rims = (&rollers.rims[0].outline, &others[..]);
+            Lubrication::new(oil, &raceways, rims, law.penalty, *thickness)
+        });
         let seat = reduction.springs.as_ref();
         let seat = seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
         let cage = reduction.cage.zip(parameters.pockets.as_ref());

@@ -4,7 +4,6 @@ pub(crate) mod pocket;
 
 mod corner;
 mod flat;
-pub(crate) mod polygon;
 
 use stribeck_modal::{
     compliance::{Compliance, Curve},
@@ -12,7 +11,7 @@ use stribeck_modal::{
 };
 use stribeck_simd::lanes::LANES;
 
-use crate::{rollers::row::Rows, state::State, step::sums::Tally};
+use crate::{row::Rows, state::State, tally::Tally};
 use corner::Corner;
 
 /// The cage as a rigid body with corners and walls.

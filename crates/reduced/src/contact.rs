@@ -1,5 +1,4 @@
-//! Rollers and raceways: their outlines, how deep they sink into each other, and the forces that follow
-//! (THEORY §9.3, §9.4).
+//! The geometry of contact: outlines of rollers and raceways, and how deep they sink into each other (THEORY §9.3).
 
 pub mod outline;
 
@@ -7,6 +6,4 @@ pub mod eight_facets;
 pub mod penetration;
 pub(crate) mod segments;
 
-pub(crate) mod force;
-pub(crate) mod normal_force;
-mod raceway_forces;
+pub(crate) mod raceway;

@@ -13,14 +13,14 @@
 //!
 //! | Question | File |
 //! |---|---|
-//! | What does a time loop drive, and what is read of it? | `motion.rs`, `readings.rs` |
+//! | What does a time loop drive, and what is read of it? | `motion.rs`, `motion/readings.rs` |
 //! | What is a bearing, and how does it start? | `bearing.rs`, in parts; `start.rs` |
 //! | What changes in time? | `state.rs` |
 //! | What is one step? | `step.rs`, a page of stages in files of `step/` |
 //! | How do rings and housing move? | `modes.rs` |
-//! | How do rollers press on raceways? | `contact/` |
-//! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` |
-//! | How are eight rollers taken at once? | `rollers/` |
+//! | How do rollers press on raceways? | `contact/`, the geometry; `law/`, the forces |
+//! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` with `film_forces.rs` |
+//! | How are eight rollers taken at once? | `rollers/`, in rows of `row.rs` |
 
 pub mod bearing;
 pub mod start;
@@ -30,16 +30,21 @@ pub mod step;
 
 mod cage;
 pub mod contact;
+mod drive;
+mod film_forces;
+mod law;
 mod modes;
 pub mod oil;
 mod plane;
 pub mod roller_force;
 mod rollers;
+mod row;
 pub mod seat;
 mod sensors;
+mod tally;
 
 pub mod motion;
-pub mod readings;
+pub use motion::readings;
 
 pub mod error;
 

@@ -9,11 +9,11 @@ use stribeck_modal::{
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
-    bearing::Bearing,
-    rollers::row::{Numbers, Row, Single, in_single, largest_of},
+    drive::LoadChange,
+    row::{Numbers, Row, Single, in_single, largest_of},
     seat::{RollerResponses, Springs},
     state::State,
-    step::{drive::LoadChange, sums::Tally},
+    tally::Tally,
 };
 
 /// A place on a facet of the outer raceway: the share of its second vertex, and the shapes at both of them.
@@ -39,11 +39,11 @@ pub(crate) struct Modes {
 }
 
 impl Modes {
-    /// Room for those of a bearing.
-    pub(crate) fn new(bearing: &Bearing) -> Self {
-        let rows = vec![Row::default(); bearing.reduction.padded / LANES];
-        let tension = vec![Row::default(); bearing.seat.as_ref().map_or(0, Springs::rows)];
-        let drag = if bearing.structure.dampers.is_empty() { Vec::new() } else { rows.clone() };
+    /// Room for those of a structure, in a seat if there is one.
+    pub(crate) fn new(structure: &Structure, seat: Option<&Springs>) -> Self {
+        let rows = vec![Row::default(); structure.groups];
+        let tension = vec![Row::default(); seat.map_or(0, Springs::rows)];
+        let drag = if structure.dampers.is_empty() { Vec::new() } else { rows.clone() };
         Self {
             q: rows.clone(),
             v: rows.clone(),

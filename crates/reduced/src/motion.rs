@@ -1,13 +1,16 @@
 //! A reduced bearing in motion, from one sampling interval to the next: what a time loop drives.
 
+pub mod readings;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{
     bearing::Bearing,
-    readings::{Memory, SensorReading},
     state::{State, at_positions},
     step::Scratch,
 };
+
+use readings::{Memory, SensorReading};
 
 /// A reduced bearing in motion.
 #[derive(Debug)]

@@ -5,7 +5,6 @@
 //! without oil has nothing of this.
 
 mod bodies;
-pub(crate) mod forces;
 mod nearest;
 
 use serde::{Deserialize, Serialize};
@@ -13,7 +12,10 @@ use stribeck_film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
 use stribeck_modal::parameters as modal;
 use stribeck_surface::Error as SurfaceError;
 
-use crate::{bearing::Raceway, error::Error, rollers::Rollers};
+use crate::{
+    contact::{outline::Outline, raceway::Raceway},
+    error::Error,
+};
 use bodies::BodySpring;
 pub(crate) use nearest::RollerView;
 use nearest::{Curved, Nearest, Rim};
@@ -96,24 +98,24 @@ pub(crate) struct FilmForces {
 }
 
 impl Lubrication {
-    /// Oil between the outer and the inner raceway and these rims, the first of which is round, on a penalty
+    /// Oil between the outer and the inner raceway and rims of rollers, a round one and others, on a penalty
     /// [N/m²] of bodies of a thickness [m].
     pub(crate) fn new(
         oil: &modal::Oil,
         raceways: &[Raceway; 2],
-        rollers: &Rollers,
+        (round, others): (&Outline, &[&Outline]),
         penalty: f64,
         thickness: f64,
     ) -> Result<Self, Error> {
-        let [round, others @ ..] = &rollers.rims[..] else { unreachable!("the round rim comes first") };
-        let curvature = Curved::rim(&round.outline)?.lands[0].curvature;
+        let curvature = Curved::rim(round)?.lands[0].curvature;
         let race = |name: &str, on: &Raceway, hollow, loaded: modal::Film| -> Result<OiledRaceway, Error> {
             let curved = Curved::new(name, &on.outline, hollow)?;
             let oil = Oil { viscosity: oil.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
                 if relative <= 0.0 {
-                    let reason = "is too narrow for its rollers: a film needs a larger radius than `bearing.roller_diameter_mm` has";
+                    let reason = "is too narrow for its rollers: a film needs a larger radius than \
+                                  `bearing.roller_diameter_mm` has";
                     return Err(SurfaceError::BadSurface { name: name.to_owned(), reason });
                 }
                 let give = BodySpring::new(penalty, 1.0 / relative, &on.compliance);
@@ -123,15 +125,14 @@ impl Lubrication {
             Ok(OiledRaceway { curved, films, speed: loaded.speed })
         };
         let [outer, inner] = raceways;
-        let formed =
-            |rim: &crate::rollers::Rim| Curved::rim(&rim.outline).map(|rim| Rim::Formed(Box::new(rim)));
+        let formed = |rim: &&Outline| Curved::rim(rim).map(|rim| Rim::Formed(Box::new(rim)));
         let others = others.iter().map(formed).collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             raceways: [
                 race("outer raceway", outer, true, oil.outer)?,
                 race("inner raceway", inner, false, oil.inner)?,
             ],
-            rims: std::iter::once(Rim::Round(round.outline.x[0])).chain(others).collect(),
+            rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
         })
     }
 

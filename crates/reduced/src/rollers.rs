@@ -3,15 +3,15 @@
 
 pub(crate) mod block;
 mod motion;
-pub(crate) mod raceway_motion;
-pub(crate) mod row;
+pub(crate) mod polygon;
 
 use stribeck_modal::{
     Parameters,
     parameters::{DampingFrame, RollerStart},
 };
 
-use crate::{cage::polygon::Polygon, contact::outline::Outline};
+use crate::contact::outline::Outline;
+use polygon::Polygon;
 
 /// All rollers, as they do not change.
 #[derive(Debug, Clone)]

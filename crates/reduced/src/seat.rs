@@ -11,7 +11,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     roller_force::RollerForce,
-    rollers::row::{Numbers, Row, Single, in_single, largest_of},
+    row::{Numbers, Row, Single, in_single, largest_of},
 };
 pub(crate) use responses::RollerResponses;
 pub use state::SeatState;

@@ -5,7 +5,7 @@ use pulp::Simd;
 use stribeck_modal::Reduction;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::{roller_force::RollerForce, rollers::row::Row, seat::SeatState, state::State};
+use crate::{roller_force::RollerForce, row::Row, seat::SeatState, state::State};
 
 /// What moves sensors, each with the components of all of them side by side: x and y of the first, then of
 /// the next one, filled up with zeros to whole rows.

@@ -4,7 +4,7 @@ use pulp::Scalar;
 use stribeck_simd::lanes::Vector;
 
 use crate::{
-    bearing::Bearing, contact::normal_force::RollerOnRaceway, error::Error, oil::Films, plane::Rotation,
+    bearing::Bearing, error::Error, law::normal_force::RollerOnRaceway, oil::Films, plane::Rotation,
     roller_force::RollerForce, state::State,
 };
 

@@ -3,18 +3,20 @@
 //! Rollers are taken eight at a time: what all of them share is computed in vectors, facet-dependent work
 //! roller by roller.
 
-pub(crate) mod drive;
-mod scratch;
-pub(crate) mod sums;
-
+mod raceway_motion;
 mod rollers;
+mod scratch;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::{bearing::Bearing, modes::Modes, state::State};
-use drive::{Drive, LoadChange};
+use crate::{
+    bearing::Bearing,
+    drive::{Drive, LoadChange},
+    modes::Modes,
+    state::State,
+    tally::Tally,
+};
 pub use scratch::Scratch;
-use sums::Tally;
 
 /// Some steps; with `last` their energies are kept.
 struct Interval<'a> {

@@ -39,7 +39,7 @@ fn pressed(
     let mut eights = Default::default();
     let mut pair = Pair::new(Scalar::new(), roller, raceway, sides, &mut eights);
     pair.in_eights = false;
-    pair.overlap(0.0, 2e-3)
+    pair.penetration(0.0, 2e-3)
 }
 
 /// Two arcs that approach by δ overlap by (4/3) δ √(2Rδ), with the relative radius R (Johnson 1985, §4.2, of
@@ -290,7 +290,7 @@ impl WithSimd for Both<'_> {
         let pair = Pair::new(simd, self.roller, self.raceway, self.sides, &mut eights);
         let mut stepwise = pair;
         stepwise.in_eights = false;
-        pair.in_eights.then(|| [pair.overlap(self.shift, 1e-3), stepwise.overlap(self.shift, 1e-3)])
+        pair.in_eights.then(|| [pair.penetration(self.shift, 1e-3), stepwise.penetration(self.shift, 1e-3)])
     }
 }
 

@@ -24,17 +24,17 @@
   // All ticks of an axis share one prefix; neighbours differ in their last decimal.
   const tickTexts = (axis) => (u, splits, i, space, step) => {
     const largest = splits.reduce((m, v) => Math.max(m, Math.abs(v)), 0);
-    const [factor, prefix] = axis.prefixed ? prefixOf(largest) : [1, ""];
-    const unit = axis.prefixed && axis.unit ? " " + prefix + axis.unit : "";
-    if (axis.decades) return splits.map((v) => String(Number(Math.pow(10, v).toPrecision(2))));
+    const [factor, prefix] = axis.ticks === "prefixed" ? prefixOf(largest) : [1, ""];
+    const unit = axis.ticks === "prefixed" && axis.unit ? " " + prefix + axis.unit : "";
+    if (axis.ticks === "decades") return splits.map((v) => String(Number(Math.pow(10, v).toPrecision(2))));
     return splits.map((v) => minus((v / factor).toFixed(places(step / factor))) + unit);
   };
 
   // Cursor readout: six digits tell neighbouring samples apart.
   const readout = (axis, digits) => (u, v) => {
     if (v == null) return "–";
-    const [factor, prefix] = axis.prefixed ? prefixOf(v) : [1, ""];
-    if (axis.decades) v = Math.pow(10, v);
+    const [factor, prefix] = axis.ticks === "prefixed" ? prefixOf(v) : [1, ""];
+    if (axis.ticks === "decades") v = Math.pow(10, v);
     return minus(String(Number((v / factor).toPrecision(digits)))) + " " + prefix + axis.unit;
   };
 
@@ -165,7 +165,7 @@
   });
 
   const axisStyle = (axis, size) => ({
-    label: axis.prefixed || !axis.unit ? axis.label : `${axis.label} [${axis.unit}]`,
+    label: axis.ticks === "prefixed" || !axis.unit ? axis.label : `${axis.label} [${axis.unit}]`,
     labelFont: "13px system-ui, sans-serif",
     font: FONT,
     labelSize: 22,
@@ -174,7 +174,7 @@
     grid: { stroke: () => theme("--grid"), width: 1 },
     ticks: { stroke: () => theme("--grid"), width: 1, size: 5 },
     values: tickTexts(axis),
-    incrs: axis.unit === "°" ? [1, 5, 10, 15, 30, 45, 90] : axis.counted ? STEPS.filter((step) => step >= 1) : STEPS,
+    incrs: axis.ticks === "angle" ? [1, 5, 10, 15, 30, 45, 90] : axis.ticks === "counted" ? STEPS.filter((step) => step >= 1) : STEPS,
   });
 
   const build = (figure) => {

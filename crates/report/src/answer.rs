@@ -5,13 +5,13 @@ use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::imbalance;
-use stribeck_scene::scene::DefectRing;
+use stribeck_scene::scene::{DefectRing, DefectScene};
 
-use stribeck_analysis::artefacts::{Artefact, Family};
+use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::FamilyFinding;
 use stribeck_analysis::rolling;
-use stribeck_analysis::summary::{EnergyFinding, PhaseLevels, Summary};
+use stribeck_analysis::summary::{EnergyFinding, Event, PhaseLevels, Summary};
 use stribeck_analysis::words::{gravities, significant};
 
 /// Rollers that are named one by one, at most.
@@ -37,98 +37,115 @@ fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
+/// Was the defect seen?
 fn defect(run: &Run, summary: &Summary) -> String {
     let faults = run.scene.written.faults();
     if faults.is_empty() {
-        let level = summary.levels.phases.gap_g.map_or(String::new(), |g| {
-            let along = across_the_load(run).then(|| radial(summary)?.gap_g).flatten();
-            let along =
-                along.map_or(String::new(), |g| format!(", and {} along the radius there", gravities(g)));
-            format!(
-                " The acceleration a_y at sensor “{}” reaches {} after the start-up{along}.",
-                sensor(summary),
-                gravities(g)
-            )
-        });
-        let deviations: Vec<String> = run.scene.written.defects.iter().map(DeviationScene::spoken).collect();
-        return match deviations.len() {
-            0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
-            _ => format!("There is no spall or dent to see, but {}.{level}", deviations.join(", ")),
-        };
+        return sound(run, summary);
     }
-    let events = &summary.events;
-    let spalls = run.scene.written.spalls();
-    let families: Vec<String> = faults
-        .iter()
-        .map(|on| match on {
-            RollingSurface::Outer => "that of the outer raceway, BPFO".to_owned(),
-            RollingSurface::Inner => "that of the inner raceway, which turns with the shaft, BPFI".to_owned(),
-            RollingSurface::Roller(roller) => {
-                format!("that of roller {roller}, which strikes both raceways, twice BSF")
-            }
-        })
-        .collect();
+    let (events, spalls) = (&summary.events, run.scene.written.spalls());
     if spalls.is_empty() {
+        let families: Vec<String> = faults.iter().map(|on| family_of(*on)).collect();
         return format!(
             "Entries and exits are picked for spalls of raceways, and there is none. Look for the families in the spectra: {}.",
             families.join("; ")
         );
     }
-    let it = if spalls.len() == 1 { "it" } else { "them" };
-    let picked = |on: &RollingSurface| match on {
-        RollingSurface::Outer => spalls.iter().any(|spall| spall.ring == DefectRing::Outer),
-        RollingSurface::Inner => spalls.iter().any(|spall| spall.ring == DefectRing::Inner),
-        RollingSurface::Roller(_) => false,
-    };
-    let others =
-        faults.iter().zip(&families).filter(|(on, _)| !picked(on)).map(|(_, family)| family.as_str());
-    let others = match others.collect::<Vec<&str>>().join("; ") {
-        none if none.is_empty() => String::new(),
-        others => format!(" The scene has others, whose families are in the spectra: {others}."),
-    };
     if events.is_empty()
         && unsteady(summary).is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
     {
         return "The rings turn back on the way, and passages are foretold of one sense of rotation only."
             .into();
     }
+    let it = if spalls.len() == 1 { "it" } else { "them" };
+    let others = other_faults(&faults, &spalls);
     if events.is_empty() {
         return format!("No roller reaches {it} under load on this record.{others}");
     }
     let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
-    let floors: Vec<String> =
-        events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
     let rollers = run.scene.written.rollers_in_place().count();
     let crossed = match events.len() {
         1 => format!("1 roller crosses {it}"),
         times if times > rollers || spalls.len() > 1 => format!("Rollers cross {it} {times} times"),
         few => format!("{few} rollers cross {it}"),
     };
+    format!(
+        "{crossed}; the contact forces show {} and {}, and {}.{}{others}",
+        if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
+        count(exits, "exit"),
+        floor(events, entries + exits),
+        levels(run, summary)
+    )
+}
+
+/// The answer where raceways and rollers have no spall or dent.
+fn sound(run: &Run, summary: &Summary) -> String {
+    let level = summary.levels.phases.gap_g.map_or(String::new(), |g| {
+        let along = across_the_load(run).then(|| radial(summary)?.gap_g).flatten();
+        let along = along.map_or(String::new(), |g| format!(", and {} along the radius there", gravities(g)));
+        format!(
+            " The acceleration a_y at sensor “{}” reaches {} after the start-up{along}.",
+            sensor(summary),
+            gravities(g)
+        )
+    });
+    let deviations: Vec<String> = run.scene.written.defects.iter().map(DeviationScene::spoken).collect();
+    match deviations.len() {
+        0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
+        _ => format!("There is no spall or dent to see, but {}.{level}", deviations.join(", ")),
+    }
+}
+
+/// The family of a defect, in words.
+fn family_of(on: RollingSurface) -> String {
+    match on {
+        RollingSurface::Outer => "that of the outer raceway, BPFO".to_owned(),
+        RollingSurface::Inner => "that of the inner raceway, which turns with the shaft, BPFI".to_owned(),
+        RollingSurface::Roller(roller) => {
+            format!("that of roller {roller}, which strikes both raceways, twice BSF")
+        }
+    }
+}
+
+/// A sentence on the defects that are no spalls of raceways; empty where there are none.
+fn other_faults(faults: &[RollingSurface], spalls: &[DefectScene]) -> String {
+    let picked = |on: &RollingSurface| match on {
+        RollingSurface::Outer => spalls.iter().any(|spall| spall.ring == DefectRing::Outer),
+        RollingSurface::Inner => spalls.iter().any(|spall| spall.ring == DefectRing::Inner),
+        RollingSurface::Roller(_) => false,
+    };
+    let others: Vec<String> = faults.iter().filter(|on| !picked(on)).map(|on| family_of(*on)).collect();
+    if others.is_empty() {
+        return String::new();
+    }
+    format!(" The scene has others, whose families are in the spectra: {}.", others.join("; "))
+}
+
+/// Which rollers touch the floor of a spall. Where no `edges` are seen all the same, the floor carries them.
+fn floor(events: &[Event], edges: usize) -> String {
+    let floors: Vec<String> =
+        events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
     let floor = match floors.len() {
         0 => "none touches the floor".to_owned(),
         1 => format!("roller {} touches the floor", floors[0]),
         many if many > NAMED => format!("{many} times one touches the floor"),
         _ => format!("rollers {} touch the floor", floors.join(", ")),
     };
-    let floor = match (entries + exits, floors.len()) {
+    match (edges, floors.len()) {
         (0, 1..) => format!("{floor}: it carries them, and none comes free of half its load"),
         _ => floor,
+    }
+}
+
+/// A sentence on the peaks of the leading sensor.
+fn levels(run: &Run, summary: &Summary) -> String {
+    let Some(all) = reads(&summary.levels.phases) else {
+        return " The record is too short to set exits beside gaps.".into();
     };
-    let heard = match reads(&summary.levels.phases) {
-        Some(all) => {
-            let along = across_the_load(run).then(|| radial(summary).and_then(reads)).flatten();
-            let along =
-                along.map_or(String::new(), |reads| format!(" Along the radius there it reads {reads}."));
-            format!(" Sensor “{}” reads {all} (a_y, peak).{along}", sensor(summary))
-        }
-        None => " The record is too short to set exits beside gaps.".into(),
-    };
-    format!(
-        "{crossed}; the contact forces show {} and {}, and {floor}.{heard}{others}",
-        if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
-        count(exits, "exit"),
-    )
+    let along = across_the_load(run).then(|| radial(summary).and_then(reads)).flatten();
+    let along = along.map_or(String::new(), |reads| format!(" Along the radius there it reads {reads}."));
+    format!(" Sensor “{}” reads {all} (a_y, peak).{along}", sensor(summary))
 }
 
 /// Peaks at exits, entries and in the gaps, in words; `None` without the first or the last of them.
@@ -237,7 +254,7 @@ fn physics(run: &Run, summary: &Summary) -> String {
             orders(duty)
         );
     }
-    let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Family::Defect).collect();
+    let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Origin::Defect).collect();
     let seen: Vec<String> =
         of_defect.iter().filter(|a| a.measured_hz.is_some()).map(|a| format!("×{}", a.harmonic)).collect();
     let lines = of_defect.iter().find(|a| a.harmonic == 1).map(|first| {

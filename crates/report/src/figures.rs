@@ -153,7 +153,7 @@ fn load(scene: &ResolvedScene, findings: &Findings) -> Vec<Figure> {
     let mut figure = Figure::new(
         "load-distribution",
         "Load distribution",
-        Axis::plain("Angle from the x axis, counter-clockwise", "°").over(0.0, 360.0),
+        Axis::angle("Angle from the x axis, counter-clockwise"),
         Axis::si("Outer-raceway force", "N"),
     )
     .with(Series::listed(

@@ -182,7 +182,7 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
     for (family, colour) in families.iter().zip(colours) {
         let found = family.measured_hz.filter(|_| family.is_there());
         let hz = found.unwrap_or(family.expected_hz) * family.name.shocks_per_period();
-        let name = if family.name == Defect::Bsf { "2×BSF" } else { family.name.name() };
+        let name = family.name.shocks_name();
         let shown = if found.is_some() { 3 } else { 1 };
         for n in (1..=shown).filter(|n| f64::from(*n) * hz < end_hz) {
             let label = if n == 1 { name.to_owned() } else { format!("{n}× {name}") };

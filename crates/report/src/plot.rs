@@ -27,6 +27,7 @@ pub use interactive::script;
 pub use picture::{Anchor, Picture, Sheet};
 pub use raster::png;
 pub use scale::{Scale, ticks};
+use serde::Serialize;
 
 /// One chart: an abscissa, an ordinate, what is drawn over them and what the reader should see in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,14 +63,26 @@ pub struct Axis {
     pub label: String,
     /// Unit symbol of the values as stored.
     pub unit: String,
-    /// True when ticks may carry an SI prefix (`5 ms`, `10 kHz`).
-    pub prefixed: bool,
-    /// True when values are decimal logarithms: ticks are powers of ten.
-    pub decades: bool,
-    /// True when values are numbers of things: ticks are whole.
-    pub counted: bool,
+    /// What its values are, by which its ticks are placed and written.
+    pub ticks: Ticks,
     /// Range [unit]; `None` follows the data.
     pub range: Option<(f64, f64)>,
+}
+
+/// What the values of an axis are, by which its ticks are placed and written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Ticks {
+    /// Numbers in a unit that takes no prefix.
+    Plain,
+    /// Numbers in a coherent SI unit: ticks carry a prefix (`5 ms`, `10 kHz`).
+    Prefixed,
+    /// Angles [°]: ticks are twelfths of a turn.
+    Angle,
+    /// Decimal logarithms: ticks are powers of ten, and 2 and 5 times them.
+    Decades,
+    /// Numbers of things: ticks are whole.
+    Counted,
 }
 
 /// A curve or a set of points.
@@ -240,29 +253,27 @@ impl Figure {
 impl Axis {
     /// An axis in a coherent SI unit, whose ticks carry a prefix.
     pub fn si(label: &str, unit: &str) -> Self {
-        Self { prefixed: true, ..Self::plain(label, unit) }
+        Self { ticks: Ticks::Prefixed, ..Self::plain(label, unit) }
     }
 
-    /// An axis whose unit takes no prefix (g, dB, °).
+    /// An axis whose unit takes no prefix (g, dB, %).
     pub fn plain(label: &str, unit: &str) -> Self {
-        Self {
-            label: label.into(),
-            unit: unit.into(),
-            prefixed: false,
-            decades: false,
-            counted: false,
-            range: None,
-        }
+        Self { label: label.into(), unit: unit.into(), ticks: Ticks::Plain, range: None }
+    }
+
+    /// An axis of angles over a whole turn [°].
+    pub fn angle(label: &str) -> Self {
+        Self { ticks: Ticks::Angle, ..Self::plain(label, "°") }.over(0.0, 360.0)
     }
 
     /// A logarithmic axis: the figure holds decimal logarithms, its ticks say the numbers.
     pub fn decades(label: &str, unit: &str) -> Self {
-        Self { decades: true, ..Self::plain(label, unit) }
+        Self { ticks: Ticks::Decades, ..Self::plain(label, unit) }
     }
 
     /// An axis of numbers of things, counted from 1: records, runs.
     pub fn counted(label: &str, count: usize) -> Self {
-        Self { counted: true, ..Self::plain(label, "") }.over(0.5, count as f64 + 0.5)
+        Self { ticks: Ticks::Counted, ..Self::plain(label, "") }.over(0.5, count as f64 + 0.5)
     }
 
     /// The same axis over a fixed range.

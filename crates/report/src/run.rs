@@ -6,6 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
+use stribeck_analysis::defect::{Defect, Shocks};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
@@ -61,7 +62,7 @@ fn page(
     scene: &str,
 ) -> Result<Markup, Error> {
     let summary = &findings.summary;
-    let family = findings.prediction.family.map_or("BPFO", |(name, _)| name);
+    let family = findings.prediction.shocks.map_or(Defect::Bpfo.name(), Shocks::name);
     Ok(html! {
         (DOCTYPE)
         html lang="en" {

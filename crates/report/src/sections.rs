@@ -5,7 +5,7 @@ use stribeck_scene::run_dir::Run;
 
 use super::figures::spoken;
 use super::tables::{cell, folded};
-use stribeck_analysis::artefacts::Family;
+use stribeck_analysis::artefacts::Origin;
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::summary::{Event, Summary};
 use stribeck_analysis::words::significant;
@@ -43,12 +43,12 @@ pub(super) fn paper(summary: &Summary) -> Markup {
     }
 }
 
-fn family(family: Family) -> (&'static str, &'static str) {
+fn family(family: Origin) -> (&'static str, &'static str) {
     match family {
-        Family::Mesh => ("mesh", "Facets passing contacts: artefacts of the mesh"),
-        Family::Beat => ("mesh", "Beats of the facet lines: artefacts too"),
-        Family::Defect => ("defect", "Rollers passing the defect: physics"),
-        Family::Ring => ("ring", "Bending modes of the free outer ring: places to look at"),
+        Origin::Mesh => ("mesh", "Facets passing contacts: artefacts of the mesh"),
+        Origin::Beat => ("mesh", "Beats of the facet lines: artefacts too"),
+        Origin::Defect => ("defect", "Rollers passing the defect: physics"),
+        Origin::Ring => ("ring", "Bending modes of the free outer ring: places to look at"),
     }
 }
 
@@ -204,7 +204,7 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
                     @for (first, a) in rows {
                         @if first { tr class={ "group " (family(a.family).0) } { td colspan="6" { (family(a.family).1) } } }
                         tr {
-                            td { (spoken(&a.name)) @if matches!(a.family, Family::Mesh | Family::Defect) { " ×" (a.harmonic) } }
+                            td { (spoken(&a.name)) @if matches!(a.family, Origin::Mesh | Origin::Defect) { " ×" (a.harmonic) } }
                             td class="n" { (format!("{:.1}", a.predicted_hz)) }
                             (cell(hz(a.from_motion_hz)))
                             (cell(hz(a.measured_hz)))
@@ -224,7 +224,7 @@ pub(super) fn readings(summary: &Summary) -> Markup {
         summary
             .artefacts
             .iter()
-            .find(|a| a.family == Family::Mesh && a.name == name && a.harmonic == 1)
+            .find(|a| a.family == Origin::Mesh && a.name == name && a.harmonic == 1)
             .map(|a| a.predicted_hz)
     };
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.0} Hz"));

@@ -373,21 +373,21 @@ fn example_every_number_of_the_paper_has_a_row_without_a_blank() {
 
 #[test]
 fn example_the_ledger_tells_mesh_from_physics() {
-    use stribeck_analysis::artefacts::Family;
+    use stribeck_analysis::artefacts::Origin;
     let (_, summary) = whole("ledger");
     let of = |family| summary.artefacts.iter().filter(move |a| a.family == family);
     // Six harmonics of three facet lines, three beats, six multiples of BPFO, five modes.
-    let counts = [Family::Mesh, Family::Beat, Family::Defect, Family::Ring].map(|f| of(f).count());
+    let counts = [Origin::Mesh, Origin::Beat, Origin::Defect, Origin::Ring].map(|f| of(f).count());
     assert_eq!(counts, [18, 3, 6, 5]);
-    let tone = of(Family::Mesh).next().expect("the roller vertices");
+    let tone = of(Origin::Mesh).next().expect("the roller vertices");
     assert!((tone.measured_hz.expect("a line") - TONE_HZ).abs() < 2.0, "{tone:?}");
     // The tone follows the rollers' spin: one family has it, and the raceways' nodes 35 Hz away do not.
     let found: Vec<&str> = summary.families.iter().filter(|f| f.found).map(|f| f.name.as_str()).collect();
     assert_eq!(found, ["roller_vertices"], "{:#?}", summary.families);
     assert!(summary.families[0].offset_resolutions.expect("fitted").abs() < 0.5, "{:?}", summary.families[0]);
     // A place near a natural frequency makes no line of the ring.
-    assert!(of(Family::Ring).all(|a| a.measured_hz.is_none()));
-    assert!(of(Family::Defect).all(|a| a.measured_hz.is_none() && a.verdict.contains("ten are needed")));
+    assert!(of(Origin::Ring).all(|a| a.measured_hz.is_none()));
+    assert!(of(Origin::Defect).all(|a| a.measured_hz.is_none() && a.verdict.contains("ten are needed")));
     assert!(summary.artefacts.iter().all(|a| !a.verdict.is_empty()));
 }
 

@@ -1,4 +1,4 @@
-//! Speeds and load of a scene over time, in SI: [`Duty`].
+//! Speeds and load of a scene over time, in SI: [`Duty`] (THEORY §6.3).
 
 use stribeck_duty::Course;
 pub use stribeck_duty::Duty;

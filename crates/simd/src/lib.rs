@@ -74,6 +74,7 @@
 
 pub mod field;
 pub mod lanes;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod threads;
 
 #[cfg(doctest)]

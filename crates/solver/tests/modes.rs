@@ -92,10 +92,21 @@ fn invariant_all_modes_of_a_small_mesh_are_found() {
     }
 }
 
-/// A thin free ring bends at f = n (n² − 1)/(2πR²) √(E'I/(ρA(n² + 1))) (Love, *A Treatise on the Mathematical Theory of
-/// Elasticity*, 1944, §293). Shear and stretch, which he leaves out, lower it by some h²/R².
+/// A thin free ring bends at f = n (n² − 1)/(2πR²) √(E'I/(ρA(n² + 1))) (Love, *A Treatise on the Mathematical
+/// Theory of Elasticity*, 1944, §293).
+///
+/// ```text
+///              . ─ ─ ─ ─ .
+///          ╱ ╱             ╲ ╲          628 × 4 squares of 1 mm, bore 98 mm, outside 102 mm
+///        ╱ ╱     mode n = 2   ╲ ╲
+///       │ │    ←  ─  ┼  ─  →   │ │      free: three rigid motions, then pairs of n = 2, 3, 4
+///        ╲ ╲                  ╱ ╱
+///          ╲ ╲             ╱ ╱          E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³, E' = E/(1 − ν²)
+///              ' ─ ─ ─ ─ '
+/// ```
 #[test]
 fn analytic_a_free_ring_has_the_frequencies_of_love() {
+    /// Shear and rotary inertia, which Love leaves out, lower a frequency by about n² (h/R)²/3 = 0.9 % for n = 4.
     const TOLERANCE: f64 = 0.01;
     let (dynamics, steel) = ring(628, 4, 0.098, 0.102);
     let found = modes_below(&mut motions(&dynamics), 3000.0).expect("modes");

@@ -1,5 +1,7 @@
 //! `stribeck analyse`: what a measured record shows.
 
+mod gaps;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -27,7 +29,10 @@ pub struct Options {
     /// Samples a second [Hz], when the file does not say it
     #[arg(long, allow_negative_numbers = true)]
     rate_hz: Option<f64>,
-    /// Channel, or a part of its name that no other has [default: the only one, or the first of the longest]
+    /// Take the rate of `--rate-hz` where the file says another one, with a note
+    #[arg(long, requires = "rate_hz")]
+    force_rate: bool,
+    /// Channel, or a part of its name that no other has [default: the only one, or the first of the longest that moves]
     #[arg(long)]
     channel: Option<String>,
     /// Bearing: its name, or its numbers, for example "elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0"
@@ -37,9 +42,12 @@ pub struct Options {
     /// over the record, and a record whose speed varies is analysed over the angle
     #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse, allow_hyphen_values = true)]
     speed_rpm: Option<Speed>,
-    /// Channel of a tachometer, one pulse a turn, or of the angle of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
+    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise, or of the angle of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
     #[arg(long)]
     tacho: Option<String>,
+    /// Pulses of the tachometer a turn, such as the teeth of its wheel
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "tacho", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pulses_per_turn: u32,
     /// What a sample is multiplied by, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
@@ -198,8 +206,6 @@ const TREND: &str = "trend.json";
 
 /// Rates that differ by less than this part are one: files round theirs.
 const SAME_RATE: f64 = 1e-3;
-/// Seconds over the units of time below them.
-const THOUSANDS: [f64; 4] = [1.0, 1e3, 1e6, 1e9];
 
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
@@ -224,23 +230,31 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
         let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
         bail!("`{}` does not say how fast it was sampled: give `--rate-hz`{notes}", file.display());
     };
+    let mut notes = recording.notes.clone();
     if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
-        // Times that do not say their unit say a rate in seconds, or in thousandths of them.
-        let unsaid = recording.channels.iter().any(|c| c.is_time && c.len == channel.len && c.unit.is_none());
-        let units = if unsaid { &THOUSANDS[..] } else { &THOUSANDS[..1] };
+        let same = (given / said - 1.0).abs() <= SAME_RATE;
         ensure!(
-            units.iter().any(|unit| (given / said / unit - 1.0).abs() <= SAME_RATE),
-            "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave the option out, or mend the file if \
-             it is wrong",
+            same || options.force_rate,
+            "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave the option out, or add \
+             `--force-rate` if the file is wrong",
             file.display(),
             channel.name
         );
+        if !same {
+            notes.push(format!(
+                "the file says {said} Hz; the {given} Hz of `--rate-hz` are taken, by `--force-rate`"
+            ));
+        }
     }
-    let mut notes = recording.notes.clone();
+    let whole = gaps::without(channel, &mut notes)?;
+    let (channel, from) = (&whole.channel, whole.from);
     let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
     let scaled = channel.scaled(options.scale).in_unit(unit);
     let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
+    // Pulses count from the beginning of the file.
+    let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();
+    let pulses: Option<Vec<f64>> = pulses.map(moved);
     let over_angle = match pulses {
         Some(pulses) => {
             let even = over_angle(&scaled, rate_hz, &pulses)?;
@@ -298,13 +312,37 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
     let found =
         signals.iter().find(|c| of_run && c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2"));
     let longest = signals.iter().map(|c| c.len).max().unwrap_or(0);
-    let Some(channel) = found.or_else(|| signals.iter().find(|c| c.len == longest)) else {
-        bail!("`{}` holds no signal; its channels are {}", recording.path.display(), recording.names());
+    let of_longest: Vec<&Channel> = signals.iter().filter(|c| c.len == longest).copied().collect();
+    // An hour, a count of turns or a switch is no vibration: those that move come first.
+    let first = match &of_longest[..] {
+        [] | [_] => of_longest.first(),
+        all => all.iter().find(|c| moves(c)).or_else(|| all.first()),
+    };
+    let Some(channel) = found.or(first) else {
+        let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
+        bail!(
+            "`{}` holds no signal; its channels are {}{notes}",
+            recording.path.display(),
+            recording.names()
+        );
     };
     if found.is_none() && signals.iter().filter(|c| c.len == longest).count() > 1 {
         eprintln!("note: channel `{}`; there are {}", channel.name, recording.names());
     }
     Ok(channel)
+}
+
+/// Whether at least one sample in a hundred differs from the one before it; a channel that cannot be read is told later.
+fn moves(channel: &Channel) -> bool {
+    let (mut before, mut changes) = (f64::NAN, 0_u64);
+    let read = channel.for_each_block(|block| {
+        for &x in block {
+            changes += u64::from(x.is_finite() && x != before);
+            before = if x.is_finite() { x } else { before };
+        }
+        true
+    });
+    read.is_err() || changes > 1 + channel.len / 100
 }
 
 /// Speeds that vary by more than this part smear the fifth harmonic of a family over several lines.
@@ -326,6 +364,7 @@ fn machine(
     };
     let said = recording.channels.iter().find(|c| c.len == 1 && c.name.to_lowercase().contains("rpm"));
     let mut pulses = None;
+    let samples = channel.len;
     let speed_rpm = if let Some(Speed::Of(rpm)) = options.speed_rpm {
         Some(rpm)
     } else if let Some(Speed::Between(low, high)) = options.speed_rpm {
@@ -344,9 +383,16 @@ fn machine(
         Some(60.0 * found.mean_hz())
     } else if let Some(name) = &options.tacho {
         let channel = recording.channel(name)?;
-        let by_angle = channel.name.ends_with("_rad");
-        let turns =
-            if by_angle { tacho::of_angle(channel, rate_hz)? } else { tacho::turns(channel, rate_hz)? };
+        // A tachometer may have a rate of its own.
+        let own_hz =
+            channel.rate_hz.filter(|_| !options.force_rate || channel.len != samples).unwrap_or(rate_hz);
+        let mut turns = if channel.name.ends_with("_rad") {
+            tacho::of_angle(channel, own_hz)?
+        } else {
+            tacho::pulses(channel, own_hz, options.pulses_per_turn)?
+        };
+        turns.pulses.iter_mut().for_each(|at| *at *= rate_hz / own_hz);
+        notes.append(&mut turns.notes);
         if turns.variation > STEADY {
             notes.push(format!("the speed varies by {:.1} % over the record", 100.0 * turns.variation));
             pulses = Some(turns.pulses);

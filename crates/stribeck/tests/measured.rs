@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use stribeck_formats::{Channel, Recording, mat5};
-use stribeck_testing::{Noise, Scratch, said, says};
+use stribeck_testing::{Noise, Scratch, peer::python_with, said, says};
 
 fn stribeck(folder: &Path, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_stribeck")).current_dir(folder).args(words).output().expect("it starts")
@@ -152,12 +152,7 @@ fn vtkhdf_is_read_by_vtk(desk: &Scratch) {
     assert!(output.status.success(), "{}", said(&output));
     let file = desk.join("runs/quick/frames.vtkhdf");
     assert!(std::fs::read(&file).unwrap().starts_with(b"\x89HDF"));
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import vtkmodules.vtkIOHDF"]).output();
-    if !has.is_ok_and(|o| o.status.success()) {
-        eprintln!("vtkhdf is not held against VTK: `{python}` does not have it");
-        return;
-    }
+    let Some(python) = python_with(&["vtkmodules.vtkIOHDF"]) else { return };
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/read_vtkhdf.py");
     let frames = (0..3).map(|n| desk.join(format!("runs/quick/paraview/frame-{n:05}.vtu")));
     let run = Command::new(&python).arg(script).arg(&file).args(frames).output().unwrap();

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::Result;
+use stribeck_analysis::defect::Defect;
 use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding, analysis_in_noise};
 use stribeck_analysis::record::Record;
 use stribeck_scene::kinematics::Kinematics;
@@ -172,8 +173,8 @@ fn faults(cell: &Cell<'_>) -> Vec<String> {
         faults.push("no diagnosis".to_owned());
         return faults;
     };
-    for family in diagnosis.families.iter().filter(|family| family.name != "FTF") {
-        let wanted = cell.wanted.contains(&family.name.as_str());
+    for family in diagnosis.families.iter().filter(|family| family.name != Defect::Ftf) {
+        let wanted = cell.wanted.contains(&family.name.name());
         match (wanted, family.claimed) {
             (true, false) => faults.push(format!("{} not claimed: {}", family.name, family.reason)),
             (false, true) => faults.push(format!("{} claimed, and there is none", family.name)),
@@ -197,7 +198,7 @@ const RHYTHM: f64 = 0.04;
 fn misplaced(family: &DiagnosedFamily, diagnosis: &DiagnosisFinding) -> Option<String> {
     let (measured, motion) = family.measured_hz.zip(family.from_motion_hz)?;
     // A spot on a rolling element strikes twice a turn.
-    let times = if family.name == "BSF" { 2.0 } else { 1.0 };
+    let times = family.name.shocks_per_period();
     let resolution_hz = if family.in_passages { RHYTHM * times * measured } else { diagnosis.resolution_hz };
     let off = times * (measured - motion) / resolution_hz;
     if off.abs() > 1.0 {
@@ -257,7 +258,7 @@ fn fields(sheet: &mut Sheet, cells: &[Cell<'_>], say: impl Fn(&Cell<'_>) -> Stri
 /// What a record was said to show.
 fn short(cell: &Cell<'_>) -> String {
     let claimed = |d: &DiagnosisFinding| {
-        let names: Vec<&str> = d.families.iter().filter(|f| f.claimed).map(|f| f.name.as_str()).collect();
+        let names: Vec<&str> = d.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect();
         listed(&names)
     };
     let diagnosis = cell.reduced.numbers().and_then(|summary| summary.diagnosis.as_ref());
@@ -314,7 +315,7 @@ fn claimed_in_noise(cell: &Cell<'_>) -> Option<Vec<&'static str>> {
 
 fn claimed_rightly(cell: &Cell<'_>) -> bool {
     let diagnosis = cell.reduced.numbers().and_then(|summary| summary.diagnosis.as_ref());
-    diagnosis.is_some_and(|d| d.families.iter().all(|f| f.claimed == cell.wanted.contains(&f.name.as_str())))
+    diagnosis.is_some_and(|d| d.families.iter().all(|f| f.claimed == cell.wanted.contains(&f.name.name())))
 }
 
 fn failures(sheet: &mut Sheet, cells: &[Cell<'_>]) {

@@ -204,14 +204,27 @@ impl System {
             return found(
                 false,
                 format!(
-                    "energy is out of balance by {:.2} % of the {over} (limit {energy_warning_percent} %) {when}: take a smaller \
+                    "energy is out of balance by {:.2} % of the {over} (limit {energy_warning_percent} %){} {when}: take a smaller \
                      {time_step_factor}, a smaller {penalty}, or start {}",
                     100.0 * error,
+                    self.share_of_heat(),
                     words.preloaded
                 ),
             );
         }
         None
+    }
+
+    /// The imbalance as a share of the heat, where that is more than was ever stored as strain: fast bodies that slide or shear oil turn
+    /// much more energy into heat than they store, and the error of the time step grows with it.
+    fn share_of_heat(&self) -> String {
+        let ledger = self.last_ledger();
+        let heat = ledger.friction + ledger.damping + ledger.contact_damping + ledger.film;
+        if heat <= self.balance().peak_strain {
+            return String::new();
+        }
+        let [share, times] = [100.0 * ledger.imbalance.abs() / heat, heat / self.balance().peak_strain];
+        format!(", {share:.3} % of the heat, which has grown to {times:.1} times what is stored,")
     }
 
     fn look_at_hourglass(&self, seen: &mut Seen) -> Option<Finding> {

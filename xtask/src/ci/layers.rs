@@ -24,7 +24,7 @@ const LAYERS: [(&str, &[&str]); 24] = [
     ("run", &["scene", "solver", "system"]),
     ("modal", &["duty"]),
     ("reduction", &["bearing", "mesh", "modal", "scene", "solver", "surface", "system"]),
-    ("reduced", &["film", "modal", "simd", "surface"]),
+    ("reduced", &["duty", "film", "modal", "simd", "surface"]),
     ("simulation", &["bearing", "mesh", "modal", "reduced", "reduction", "run", "scene", "solver", "system"]),
     ("dsp", &[]),
     ("formats", &[]),

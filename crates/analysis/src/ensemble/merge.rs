@@ -1,4 +1,4 @@
-//! Many summaries as one: the same tree, with what each number comes to over the starts.
+//! Many summaries as one: the same tree, with the statistic of each number over the starts.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use serde_json::Value;
 use crate::Error;
 use crate::statistic::{Share, Statistic};
 
-/// Fields by which items of a list are told apart; they stay as they are.
+/// Fields that identify the items of a list; they stay as they are.
 const NAMES: [&str; 10] =
     ["spall", "roller", "sensor", "component", "family", "name", "harmonic", "sideband", "part", "quantity"];
 
@@ -18,9 +18,9 @@ const NAMES: [&str; 10] =
 pub enum Merged {
     /// A number over the starts.
     Number(Statistic),
-    /// How many starts say yes.
+    /// Starts in which it is true.
     Share(Share),
-    /// What is the same in every start.
+    /// A value that is the same in every start.
     Same(Value),
     /// By field.
     Group(BTreeMap<String, Merged>),
@@ -134,7 +134,7 @@ fn list(values: &[&Value], of: usize) -> Merged {
     Merged::List(order.iter().filter_map(|key| items.get(key)).map(|values| merge(values, of)).collect())
 }
 
-/// What an item is called.
+/// Name of an item.
 fn name(item: &Value) -> String {
     let words = NAMES.iter().filter_map(|field| item.get(field)).map(Value::to_string);
     words.collect::<Vec<_>>().join(" ")

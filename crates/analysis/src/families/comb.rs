@@ -1,4 +1,4 @@
-//! The comb of one family at baseband: what it is made of, and where its carrier stands.
+//! The comb of one family at baseband: its columns, and the frequency of its carrier.
 
 use std::f64::consts::{PI, TAU};
 
@@ -14,36 +14,39 @@ const HALF_BAND: f64 = 8.0;
 /// Samples of the band signal in the length of the low-pass filter, and of the baseband that it is made from.
 const OVERLAP: usize = 4;
 const FINE: usize = 8 * OVERLAP;
-/// Columns shorter than this part of the longest, after what they share with the others is taken off, carry nothing new.
+/// Columns shorter than this part of the longest, after what they share with the others is taken off, carry
+/// nothing new.
 const INDEPENDENT: f64 = 1e-6;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
 
 /// A family at baseband, turned back by the mean rate of its facets.
-pub(super) struct Comb {
+pub(super) struct BasebandComb {
     /// Mean rate of the facets at loaded contacts [Hz].
     pub(super) rate_hz: f64,
-    /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the mean rate.
+    /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the
+    /// mean rate.
     pub(super) line_hz: f64,
     /// The baseband itself.
     pub(super) baseband: Baseband,
-    /// Sums over all rollers, one a column: what accelerations are made of.
+    /// Sums over all rollers, one a column: the terms of accelerations.
     sums: Vec<Vec<Complex>>,
-    /// The share of every roller that is listened to, one a column and roller: what the force on it is made of.
+    /// Contribution of each observed roller, one a column and roller: the terms of the force on it.
     own: Vec<Vec<Vec<Complex>>>,
 }
 
-/// Columns of one or more combs in a band: for accelerations, and for the forces on all rollers, one behind the other.
+/// Columns of one or more combs in a band: for accelerations, and for the forces on all rollers, one behind
+/// the other.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Columns {
     pub(super) sums: Vec<Vec<Complex>>,
     pub(super) own: Vec<Vec<Complex>>,
 }
 
-impl Comb {
-    /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below half the
-    /// sampling rate. `listened` are the rollers whose forces are looked at.
-    pub(super) fn of(motion: &Motion, source: Source, listened: &[usize]) -> Option<Self> {
+impl BasebandComb {
+    /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below
+    /// half the sampling rate. `observed` are the rollers whose forces are fitted.
+    pub(super) fn of(motion: &Motion, source: Source, observed: &[usize]) -> Option<Self> {
         let samples = motion.samples();
         let dt = motion.interval_s;
         let phases: Vec<Vec<f64>> = motion
@@ -64,7 +67,7 @@ impl Comb {
         }
         let length = baseband.length(samples);
         let mut sums = vec![vec![(0.0, 0.0); length]; COLUMNS];
-        let mut own = vec![vec![Vec::new(); listened.len()]; COLUMNS];
+        let mut own = vec![vec![Vec::new(); observed.len()]; COLUMNS];
         for (number, ((roller, phase), load)) in motion.rollers.iter().zip(&phases).zip(&loads).enumerate() {
             let sound = |n: usize| {
                 let weight = load[n] / largest;
@@ -82,7 +85,7 @@ impl Comb {
                     })
                     .collect();
                 add(&mut sums[column], &part);
-                if let Some(at) = listened.iter().position(|&heard| heard == number) {
+                if let Some(at) = observed.iter().position(|&heard| heard == number) {
                     own[column][at] = part;
                 }
             }
@@ -112,7 +115,8 @@ impl Comb {
         let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
             .map(|m| self.baseband.shift(f64::from(m) * motion.bpfo_hz, steady.len()).apply(&steady))
             .collect();
-        // Lines that are shifted together keep their angles: one basis serves all places, and columns are shifted back.
+        // Lines that are shifted together keep their angles: one basis serves all places, and columns are
+        // shifted back.
         let mut basis = Vec::new();
         extend_basis(&mut basis, &lines);
         let interval_s = self.baseband.filter.step as f64 * self.baseband.interval_s;
@@ -136,8 +140,8 @@ fn of_place(column: usize, place: f64) -> f64 {
     }
 }
 
-/// Signals turned back by a frequency and thinned out, and the low-pass filter that takes a band of [`HALF_BAND`] BPFO on
-/// either side out of them.
+/// Signals turned back by a frequency and thinned out, and the low-pass filter that takes a band of
+/// [`HALF_BAND`] BPFO on either side out of them.
 pub(super) struct Baseband {
     centre_hz: f64,
     half_hz: f64,
@@ -157,8 +161,8 @@ impl Baseband {
         Self { centre_hz, half_hz, thin, interval_s, filter }
     }
 
-    /// Whether the band about `centre_hz` lies between zero and half the sampling rate, and the record outlasts the filter
-    /// by more than a comb's columns.
+    /// Whether the band about `centre_hz` lies between zero and half the sampling rate, and the record
+    /// outlasts the filter by more than a comb's columns.
     pub(super) fn fits(&self, motion: &Motion, centre_hz: f64) -> bool {
         centre_hz > self.half_hz
             && centre_hz + self.half_hz < 0.5 / motion.interval_s

@@ -1,5 +1,5 @@
-//! What the fit of combs spends its time in, compiled for the vectors of each processor. Nothing is fused and sums have a fixed
-//! order, so that all of them give the same bits.
+//! What the fit of combs spends its time in, compiled for the vectors of each processor. Nothing is fused and
+//! sums have a fixed order, so that all of them give the same bits.
 
 use std::f64::consts::TAU;
 
@@ -54,7 +54,8 @@ pub(super) struct Shift<'a> {
 }
 
 impl<'a> Shift<'a> {
-    /// By `hz`, of so many values that are `interval_s` apart, and averages weighted by `taps`, one every `step` values.
+    /// Shifts `values` samples, `interval_s` apart, by `hz`, and averages them with the weights `taps`, one
+    /// average every `step` samples.
     pub(super) fn new(hz: f64, interval_s: f64, values: usize, taps: &'a [f64], step: usize) -> Self {
         let turns = turned(&vec![(1.0, 0.0); values], hz, interval_s);
         Self { turns, taps, step, shifted: vec![(0.0, 0.0); TOGETHER * step + taps.len()] }
@@ -99,7 +100,8 @@ impl WithSimd for Average<'_> {
     }
 }
 
-/// Takes off a column what it shares with the orthonormal columns of `basis`: Gram–Schmidt, twice for rounding.
+/// Takes off a column what it shares with the orthonormal columns of `basis`: Gram–Schmidt, twice for
+/// rounding.
 pub(super) fn orthogonalise(column: &mut [Complex], basis: &[Vec<Complex>]) {
     Arch::new().dispatch(Orthogonalise { column, basis });
 }

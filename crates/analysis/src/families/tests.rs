@@ -1,5 +1,7 @@
 use std::f64::consts::TAU;
 
+use stribeck_testing::Noise;
+
 use super::*;
 
 /// The paper's bearing with 24 rollers, cage and spin relative to it [Hz].
@@ -17,17 +19,7 @@ const CANDIDATES: [(&str, Source); 3] = [
     ("inner_race_nodes", Source::InnerNodes(1030.0)),
 ];
 
-/// Numbers between −1 and 1 that are the same on every machine.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * ((self.0 >> 40) as f64 / (1u64 << 24) as f64) - 1.0
-    }
-}
-
-/// What is to be heard of a family.
+/// Strength and frequency of a family in a synthetic record.
 #[derive(Clone, Copy)]
 struct Sound {
     source: Source,
@@ -43,8 +35,8 @@ impl Sound {
     }
 }
 
-/// Rollers that share a load by the cosine, without a defect. Loaded rollers turn `slip` slower than rolling, each by a
-/// little of its own.
+/// Rollers that share a load by the cosine, without a defect. Loaded rollers turn `slip` slower than rolling,
+/// each by a little of its own.
 fn silent(samples: usize, slip: f64) -> Motion {
     let rollers = (0..ROLLERS).map(|number| {
         let start = 94f64.to_radians() - TAU * number as f64 / ROLLERS as f64;
@@ -67,11 +59,11 @@ fn silent(samples: usize, slip: f64) -> Motion {
     }
 }
 
-/// Puts sounds and `noise_g` on four accelerations, each with a transfer of its own that depends on the place of the
-/// roller, and a thousandth of the load for each g on the force of every roller.
+/// Puts sounds and `noise_g` on four accelerations, each with a transfer of its own that depends on the place
+/// of the roller, and a thousandth of the load for each g on the force of every roller.
 fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (Motion, Vec<Channel>) {
     let samples = motion.samples();
-    let mut noise = Noise(seed);
+    let mut noise = Noise::new(seed);
     let heard = |roller: &RollerTrack, n: usize, of_place: &dyn Fn(f64) -> (f64, f64)| -> f64 {
         let (gain, lag) = of_place(roller.orbit[n].rem_euclid(TAU));
         let one = |s: &Sound| {
@@ -84,7 +76,7 @@ fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (M
     for number in 0..4 {
         let at = |place: f64| ((number as f64 * 1.1 + 1.7 * place).cos(), number as f64 + 0.8 * place);
         let value = |n: usize| {
-            motion.rollers.iter().map(|roller| heard(roller, n, &at)).sum::<f64>() + noise_g * noise.next()
+            motion.rollers.iter().map(|roller| heard(roller, n, &at)).sum::<f64>() + noise_g * noise.uniform()
         };
         accelerations.push(Channel {
             sensor: format!("s{}", number / 2),
@@ -98,7 +90,7 @@ fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (M
         .map(|roller| {
             let at = |place: f64| (1.0, 0.8 * place);
             (0..samples)
-                .map(|n| heard(roller, n, &at) + noise_g * noise.next() * roller.load_n[n] / 12e3)
+                .map(|n| heard(roller, n, &at) + noise_g * noise.uniform() * roller.load_n[n] / 12e3)
                 .collect()
         })
         .collect();
@@ -128,8 +120,8 @@ fn example_of_a_long_record_the_last_part_is_judged() {
     let record = sounding(silent(samples, 0.0), &[Sound::of(CANDIDATES[0].1)], 8.0, 5);
     let families = judged(&CANDIDATES, &record);
     assert_eq!(found(&families), [CANDIDATES[0].0], "{families:#?}");
-    // Copies that are turned with the pattern have a line at the rate itself, whatever the place of each roller was when the
-    // part began.
+    // Copies that are turned with the pattern have a line at the rate itself, whatever the place of each
+    // roller was when the part began.
     let from = record.0.too_early().unwrap();
     assert!((periods(samples - from) - MOST_PERIODS).abs() < 0.1);
     let late = (record.0.from(from), record.1.clone());
@@ -151,7 +143,8 @@ fn example_each_family_is_told_from_its_neighbours() {
 
 #[test]
 fn example_two_combs_of_one_motion_are_not_told_apart() {
-    // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the other.
+    // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the
+    // other.
     let twins = [CANDIDATES[1], ("other_race_nodes", Source::OuterNodes(1255.02)), CANDIDATES[0]];
     let families = judged(&twins, &sounding(silent(SAMPLES, 0.0), &[Sound::of(CANDIDATES[1].1)], 8.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");
@@ -173,7 +166,8 @@ fn example_two_families_are_both_found() {
 
 #[test]
 fn example_slip_moves_the_prediction_with_the_line() {
-    // Two per cent of slip are 93 Hz, three resolutions: without the recorded motion nothing would stand where it should.
+    // Two per cent of slip are 93 Hz, three resolutions: without the recorded motion nothing would stand
+    // where it should.
     let families =
         judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.02), &[Sound::of(CANDIDATES[0].1)], 8.0, 5));
     assert_eq!(found(&families), ["roller_vertices"], "{families:#?}");
@@ -184,11 +178,12 @@ fn example_slip_moves_the_prediction_with_the_line() {
 
 #[test]
 fn example_the_carrier_is_a_line_of_the_comb() {
-    // 1255 nodes over 24 rollers are 52.29 a roller spacing: the outer raceway sounds at whole multiples of BPFO, here 52,
-    // not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a facet out of step.
+    // 1255 nodes over 24 rollers are 52.29 a roller spacing: the outer raceway sounds at whole multiples of
+    // BPFO, here 52, not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a
+    // facet out of step.
     let motion = silent(SAMPLES, 0.0);
     let bpfo_hz = motion.bpfo_hz;
-    let line_hz = |source: Source| Comb::of(&motion, source, &[]).unwrap().line_hz;
+    let line_hz = |source: Source| BasebandComb::of(&motion, source, &[]).unwrap().line_hz;
     let resolution_hz = motion.resolution_hz();
     for (source, expected_hz) in [
         (Source::RotatedVertices(112.0), 112.0 * SPIN_HZ),
@@ -196,7 +191,8 @@ fn example_the_carrier_is_a_line_of_the_comb() {
         (Source::OuterNodes(1255.0), 52.0 * bpfo_hz),
         (Source::InnerNodes(1030.0), 1030.0 * SHAFT_HZ - 43.0 * bpfo_hz),
     ] {
-        // Three periods of BPFO leave neighbouring lines to lean on each other by some tenths of a resolution.
+        // Three periods of BPFO leave neighbouring lines to lean on each other by some tenths of a
+        // resolution.
         assert!(
             (line_hz(source) - expected_hz).abs() < 0.3 * resolution_hz,
             "{source:?} {} {expected_hz}",
@@ -217,8 +213,8 @@ fn example_ten_records_of_noise_hold_no_family() {
 
 #[test]
 fn example_a_comb_in_the_wrong_place_has_no_name() {
-    // Laid over each other, the three combs have lines at −14, 0 and 24 Hz from a multiple of BPFO. These are at 50 Hz, 26 Hz
-    // or 0.8 resolutions from the nearest.
+    // Laid over each other, the three combs have lines at −14, 0 and 24 Hz from a multiple of BPFO. These are
+    // at 50 Hz, 26 Hz or 0.8 resolutions from the nearest.
     let sound = Sound { detuned_hz: 64.0, ..Sound::of(CANDIDATES[0].1) };
     let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[sound], 1.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");

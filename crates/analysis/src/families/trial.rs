@@ -1,36 +1,41 @@
 //! How well a comb explains the channels of a record, where it belongs and elsewhere.
 
-use super::comb::{Columns, Comb, extend_basis, power, smoothed};
+use super::comb::{BasebandComb, Columns, extend_basis, power, smoothed};
 use super::kernels::{Complex, dot};
 use super::{Channel, LEAST_LEAD, Motion};
 
-/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99 %, which follows
-/// the channel's noise.
+/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99
+/// %, which follows the channel's noise.
 const LEAST_REST: f64 = 0.02;
-/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths, and the lines of
-/// three families lie less than a resolution apart when their combs are laid over each other.
+/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths,
+/// and the lines of three families lie less than a resolution apart when their combs are laid over each
+/// other.
 const AT_HOME: f64 = 0.5;
 /// Half width of the part of the scan that is taken in small steps, and the steps of it, in resolutions.
 const CLOSE: f64 = 1.0;
 const CLOSE_STEP: f64 = 0.05;
-/// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines but the outermost.
+/// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines
+/// but the outermost.
 const SCAN: f64 = 1.5;
-/// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies there.
+/// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies
+/// there.
 const BESIDE: f64 = 5.0;
 /// Detuned combs, in BPFO on either side of the carrier: beyond the band that a comb shares with its copy.
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
-/// Rollers that carry at least this part of the fullest one's mean load are listened to, the fullest of them.
+/// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of
+/// them.
 const LOADED: f64 = 0.25;
-const LISTENED: usize = 8;
-/// A contact sounds while it carries at least this part of the largest load.
+const OBSERVED: usize = 8;
+/// A contact counts while it carries at least this part of the largest load.
 const PRESSED: f64 = 0.1;
 
 /// Every signal in which combs are sought.
 pub(super) struct Channels {
     accelerations: Vec<Vec<f64>>,
-    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the roller.
+    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the
+    /// roller.
     forces: Vec<Vec<f64>>,
 }
 
@@ -74,24 +79,24 @@ impl Trial {
 }
 
 /// Numbers of the rollers whose forces are looked at, from 0, ascending.
-pub(super) fn listened(motion: &Motion) -> Vec<usize> {
+pub(super) fn observed(motion: &Motion) -> Vec<usize> {
     let mean = |n: usize| mean(&motion.rollers[n].load_n);
     let mut rollers: Vec<usize> = (0..motion.rollers.len()).collect();
     rollers.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)));
     let fullest = rollers.first().map_or(0.0, |&n| mean(n));
     rollers.retain(|&n| fullest > 0.0 && mean(n) >= LOADED * fullest);
-    rollers.truncate(LISTENED);
+    rollers.truncate(OBSERVED);
     rollers.sort_unstable();
     rollers
 }
 
 impl Channels {
-    /// The accelerations less their mean, and what the forces on the rollers `listened` do besides their running mean over
-    /// two periods of `slowest_hz`.
+    /// The accelerations less their mean, and the forces on the rollers `observed` less their running mean
+    /// over two periods of `slowest_hz`.
     pub(super) fn of(
         motion: &Motion,
         accelerations: &[Channel],
-        listened: &[usize],
+        observed: &[usize],
         slowest_hz: f64,
     ) -> Self {
         let centred = |channel: &Channel| {
@@ -107,12 +112,17 @@ impl Channels {
         };
         Self {
             accelerations: accelerations.iter().map(centred).collect(),
-            forces: listened.iter().map(ripple).collect(),
+            forces: observed.iter().map(ripple).collect(),
         }
     }
 
     /// Tries a comb beside those that are in the fit with their offsets [Hz].
-    pub(super) fn try_comb(&self, motion: &Motion, comb: &Comb, in_fit: &[(&Comb, f64)]) -> Trial {
+    pub(super) fn try_comb(
+        &self,
+        motion: &Motion,
+        comb: &BasebandComb,
+        in_fit: &[(&BasebandComb, f64)],
+    ) -> Trial {
         let resolution_hz = motion.resolution_hz();
         let base = self.at_baseband(comb);
         let fit = |centre_hz: f64| {
@@ -168,7 +178,7 @@ impl Channels {
     }
 
     /// At the baseband of a comb.
-    fn at_baseband(&self, comb: &Comb) -> Base {
+    fn at_baseband(&self, comb: &BasebandComb) -> Base {
         let of = |values: &Vec<f64>| comb.baseband.of_signal(values);
         Base {
             accelerations: self.accelerations.iter().map(of).collect(),
@@ -185,7 +195,7 @@ struct Base {
 
 impl Base {
     /// In the band `offset_hz` off the comb's own.
-    fn in_band(&self, comb: &Comb, offset_hz: f64) -> Signals {
+    fn in_band(&self, comb: &BasebandComb, offset_hz: f64) -> Signals {
         let length = self.accelerations.iter().chain(&self.forces).map(Vec::len).max().unwrap_or(0);
         let mut shift = comb.baseband.shift(-offset_hz, length);
         let mut band = |values: &Vec<Complex>| shift.apply(values);
@@ -197,7 +207,8 @@ impl Base {
 }
 
 impl Signals {
-    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit` leaves, 0 to 1.
+    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit`
+    /// leaves, 0 to 1.
     fn shares(&self, fit: &Columns, columns: &Columns) -> Vec<f64> {
         let mut basis = fit.clone();
         extend(&mut basis, columns);

@@ -1,4 +1,5 @@
-//! What happens when rollers cross the defect: events, levels about and between them, and the forces themselves.
+//! What happens when rollers cross the defect: events, levels about and between them, and the forces
+//! themselves.
 
 use std::collections::BTreeMap;
 
@@ -16,14 +17,15 @@ use crate::record::{Record, Roller};
 use crate::spall::Edge;
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
 
-/// Passages of rollers that carry less than this part of the largest load are left out: they lie outside the load zone.
+/// Passages of rollers that carry less than this part of the largest load are left out: they lie outside the
+/// load zone.
 const LOADED: f64 = 0.05;
 
 /// Traverses before and behind a passage in which it is looked for.
 const ABOUT: f64 = 3.0;
 
-/// A roller that comes earlier or later than without slip by less than this part of a traverse is looked for where it would be
-/// without.
+/// A roller that comes earlier or later than without slip by less than this part of a traverse is looked for
+/// where it would be without.
 const UNMOVED: f64 = 0.1;
 
 /// Notes of one kind that are said in full; of the others the number.
@@ -35,7 +37,7 @@ pub(super) struct Passages<'a> {
     scene: &'a ResolvedScene,
     time_s: &'a [f64],
     prediction: &'a Prediction,
-    /// By spall: events and what was noted of each, by their place among the spall's passages.
+    /// By spall: events with their notes, by their place among the spall's passages.
     seen: Vec<BTreeMap<usize, (Event, Vec<String>)>>,
 }
 
@@ -52,8 +54,8 @@ impl<'a> Passages<'a> {
         }
     }
 
-    /// One event for every passage that begins within the record, in order of expected entry, where rollers carry; at rest the fullest has
-    /// `fullest_n`.
+    /// One event for every passage that begins within the record, in order of expected entry, where rollers
+    /// carry; at rest the fullest has `fullest_n`.
     pub(super) fn events(
         mut self,
         record: &Record<'_>,
@@ -87,14 +89,16 @@ struct Path {
     leading: Vec<f64>,
     middle: Vec<f64>,
     trailing: Vec<f64>,
-    /// How much later than without slip it came last [s]. Cages slip a little, so that this grows over a long record.
+    /// How much later than without slip it came last [s]. Cages slip a little, so that this grows over a long
+    /// record.
     late_s: f64,
     /// Between two passages without slip [s]; `None` where there is only one.
     period_s: Option<f64>,
 }
 
 impl Path {
-    /// Of a roller with this orbital angle [rad]. `turned_rad` says how far the raceway has turned at a time [s].
+    /// Of a roller with this orbital angle [rad]. `turned_rad` says how far the raceway has turned at a time
+    /// [s].
     fn of(
         orbit: &[f64],
         time: &[f64],
@@ -114,8 +118,8 @@ impl Path {
         }
     }
 
-    /// Entry and exit [s] of the passage that follows, and from then on how late it is. `None` for what is not on record, or
-    /// further away than half a period or, of a single passage, a traverse.
+    /// Entry and exit [s] of the passage that follows, and from then on how late it is. `None` for what is
+    /// not on record, or further away than half a period or, of a single passage, a traverse.
     fn next(&mut self, passage: &Crossing) -> [Option<f64>; 2] {
         let found = [
             self.near(&self.leading, passage.entry_s, passage),
@@ -142,8 +146,8 @@ impl Path {
     }
 }
 
-/// Events of one roller over one spall that begin within the record, with what was noted of them, by their place among the
-/// spall's passages.
+/// Events of one roller over one spall that begin within the record, with what was noted of them, by their
+/// place among the spall's passages.
 fn passages_of(
     scene: &ResolvedScene,
     time_s: &[f64],
@@ -172,7 +176,7 @@ fn passages_of(
         let traverse = passage.exit_s - passage.entry_s;
         let found = path.next(passage);
         [event.path_entry_ms, event.path_exit_ms] = found.map(|t| t.map(|t| 1e3 * t));
-        // The path says better than rolling without slip when to look.
+        // The recorded path predicts the time better than rolling without slip.
         let late = path.late_s;
         let beyond = found == [None; 2] && (late != 0.0 || passage.exit_s < begin);
         if beyond || passage.entry_s + late >= last {
@@ -212,7 +216,8 @@ fn passages_of(
     events
 }
 
-/// Events of one spall, from those `seen` over it in the order of its passages, of rollers that carry at least `least_n`.
+/// Events of one spall, from those `seen` over it in the order of its passages, of rollers that carry at
+/// least `least_n`.
 fn events_of(
     record: &Record<'_>,
     prediction: &Prediction,
@@ -234,7 +239,7 @@ fn events_of(
     let mut kinds: BTreeMap<String, usize> = BTreeMap::new();
     for (event, picked) in events {
         for note in picked {
-            // What differs between passages are numbers.
+            // Notes of passages differ in their numbers only.
             let kind: String = note.chars().filter(|c| !c.is_ascii_digit()).collect();
             let said = kinds.entry(kind).or_default();
             *said += 1;
@@ -264,7 +269,8 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
         .map(|e| (e.roller, e.extent_s()))
         .map(|(roller, [from, until])| (roller, from, until))
         .collect();
-    // In a long record a neighbour comes round again; the one that counts is a roller spacing before or after.
+    // In a long record a neighbour comes round again; the one that counts is a roller spacing before or
+    // after.
     let spacing_s = 1.0 / prediction.kinematics.bpfo_hz;
     for event in events.iter_mut() {
         let [own_from, own_until] = event.extent_s();
@@ -281,7 +287,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let time = &time[seen];
             let force = events::running_median(time, &roller.outer_normal(), smoothing);
             let during = events::span(time, from, to);
-            // A roller that is itself over the defect, or only just behind it, tells nothing.
+            // A roller over the defect, or just behind it, shows its own re-loading instead.
             let free = |n: &usize| time[*n] < own_from - smoothing || time[*n] > own_until + 4.0 * smoothing;
             let Some(at) = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b])) else {
                 continue;
@@ -409,7 +415,8 @@ pub(super) fn crossing_forces(
     for event in events.iter().take(most) {
         let part = record.with_rollers(&[event.roller], 0..record.len())?;
         let Some(roller) = part.roller(event.roller) else { continue };
-        // The paper's figure has the vertical force; only over a spall that stands still is it the one that tells.
+        // The paper's figure has the vertical force; only over a spall that stands still does it show the
+        // passage.
         let standing = prediction.spalls.get(event.spall - 1).is_some_and(|course| !course.turns);
         let vertical = event.ring == DefectRing::Outer && standing;
         let raw_n: Vec<f64> =
@@ -421,7 +428,7 @@ pub(super) fn crossing_forces(
 }
 
 impl Event {
-    /// An event of which only the expected times are known.
+    /// An event with its expected times only.
     fn expected(passage: &Crossing, ring: DefectRing) -> Self {
         Self {
             roller: passage.roller,
@@ -462,7 +469,8 @@ impl Event {
         [1e-3 * from, 1e-3 * self.exit_ms.map_or(exit, |t| t.max(exit))]
     }
 
-    /// When its roller should unload and be loaded again [ms]: without slip, or moved to its path where that is elsewhere.
+    /// When its roller should unload and be loaded again [ms]: without slip, or moved to its path where that
+    /// is elsewhere.
     fn on_path_ms(&self) -> [f64; 2] {
         let [entry, exit] = [self.expected_entry_ms, self.expected_exit_ms];
         let late = |path: Option<f64>, expected: f64| path.map(|t| t - expected);
@@ -476,8 +484,8 @@ impl Event {
 mod tests {
     use super::*;
 
-    /// Thirty-seven orbits of a roller whose cage turns 0.4 % slower than without slip, and so comes ten traverses late in the end,
-    /// or 0.4 % faster.
+    /// Thirty-seven orbits of a roller whose cage turns 0.4 % slower than without slip, and so comes ten
+    /// traverses late in the end, or 0.4 % faster.
     #[test]
     fn example_a_slipping_roller_is_followed_through_a_long_record() {
         for slip in [0.004, -0.004] {

@@ -1,4 +1,5 @@
-//! Spectra of a record and what is taken from them: lines of facets and the notch at them, the defect's family and its envelope.
+//! Spectra of a record and their evaluation: lines of facets and the notch at them, the defect's family and
+//! its envelope.
 
 use stribeck_dsp::{PeriodCount, Spectrum, Welch, WelchOptions};
 use stribeck_scene::run_dir::Run;
@@ -7,7 +8,7 @@ use stribeck_scene::scene::ContactSurface;
 use super::{GRID_HZ, SHORTEST_SPECTRUM, SensorSignal};
 use crate::Error;
 use crate::artefacts;
-use crate::duty::{self, DutyFinding};
+use crate::duty::{self, DutyFinding, ShockOrder};
 use crate::enveloping;
 use crate::families::FamilyFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
@@ -17,8 +18,8 @@ use crate::prediction::Prediction;
 use crate::record::Record;
 use crate::tones::{self, Tone};
 
-/// The spectrum of all of a signal, in which a family of `fundamental_hz` is looked for where the segments of its `density` do not show it
-/// and the whole does.
+/// The spectrum of all of a signal, in which a family of `fundamental_hz` is looked for where the segments of
+/// its `density` do not show it and the whole does.
 pub(super) fn fine_density(
     signal: &[f64],
     density: &Spectrum,
@@ -57,9 +58,10 @@ pub(super) fn measured_tones(
     Ok(all)
 }
 
-/// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or at the
-/// predicted one. Where contact is with the round surface that facets stand for, none is predicted, and a tone there counts only
-/// where the rollers' motion makes it, too: a peak that stands at its place may be anything.
+/// A notch at the dominant facet tone of the leading sensor; failing that at the clearest of any sensor, or
+/// at the predicted one. Where contact is with the round surface that facets stand for, none is predicted,
+/// and a tone there counts only where the rollers' motion makes it, too: a peak that stands at its place may
+/// be anything.
 pub(super) fn filter(
     run: &Run,
     record: &Record<'_>,
@@ -138,7 +140,8 @@ pub(super) fn filter_sensors(
     Ok(())
 }
 
-/// The defect's family over the angle of the shaft against the outer ring, put into `duty`, and the spectrum behind it; a note where there is none.
+/// The defect's family over the angle of the shaft against the outer ring, put into `duty`, and the spectrum
+/// behind it; a note where there is none.
 pub(super) fn order_spectrum(
     run: &Run,
     record: &Record<'_>,
@@ -147,10 +150,10 @@ pub(super) fn order_spectrum(
     duty: Option<&mut DutyFinding>,
     notes: &mut Vec<String>,
 ) -> Result<Option<Spectrum>, Error> {
-    let Some(family) = duty::family(&run.scene) else { return Ok(None) };
+    let Some(family) = ShockOrder::of(&run.scene) else { return Ok(None) };
     let leading = sensors.first().filter(|s| s.raw_g.len() >= SHORTEST_SPECTRUM);
     let (Some(leading), Some(turns)) = (leading, duty::turns(record)) else { return Ok(None) };
-    let moved = duty::moved(family.0, motion);
+    let moved = duty::moved(family.defect, motion);
     match duty::over_angle(&leading.raw_g, record.sample_rate_hz(), &turns, family, moved)? {
         Ok((spectrum, finding)) => {
             if let Some(duty) = duty {
@@ -165,8 +168,8 @@ pub(super) fn order_spectrum(
     }
 }
 
-/// The envelope spectrum of a channel and what it shows; why there is none when the record is not long enough, instead of a
-/// spectrum that means nothing.
+/// The envelope spectrum of a channel and its lines; the reason why there is none when the record is not long
+/// enough, instead of a spectrum that means nothing.
 pub(super) type Enveloped = Result<(Spectrum, enveloping::EnvelopeFinding), String>;
 
 /// Of channel `name`; `None` for an empty record.
@@ -202,7 +205,7 @@ mod tests {
         for tone in tones::measure("side", &lines, &fine).unwrap() {
             assert!((tone.measured_hz.expect("a line") - tone.predicted_hz).abs() < 0.1, "{tone:?}");
         }
-        // Of what is fast enough the segments tell, and of what is too slow nothing does.
+        // Segments suffice for a fast family, and the whole record is too short for a slow one.
         assert!(fine_density(&signal, &density, 40.0).unwrap().is_none());
         assert!(fine_density(&signal, &density, 1.0).unwrap().is_none());
     }

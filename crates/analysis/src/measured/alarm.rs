@@ -1,15 +1,14 @@
-//! Alarm bands: which level calls for a look, and which for a stop.
+//! Alarm bands: the levels of warning and alarm.
 //!
-//! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from records of the
-//! machine in its sound state.
+//! Limits are numbers that the user gives (those of a standard, or of the machine's maker), or follow from
+//! records of the machine in its sound state.
 
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::velocity::is_acceleration;
 use super::{Defect, MeasuredFindings};
 
-/// What a limit is set on.
+/// Quantity that a limit is set on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -35,10 +34,10 @@ pub enum Quantity {
     Ftf,
 }
 
-/// From which value on to look, and from which to stop.
+/// Levels of warning and alarm.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limit {
-    /// What it is set on.
+    /// Its quantity.
     pub quantity: Quantity,
     /// Warning from here.
     pub warning: f64,
@@ -117,10 +116,10 @@ impl Quantity {
         }
     }
 
-    /// Why a record does not have it, and what to give.
+    /// Why a record does not have it, and which option would help.
     pub fn missing(self, findings: &MeasuredFindings) -> &'static str {
         match self {
-            Self::VelocityMmS if !is_acceleration(findings.unit.as_deref()) => {
+            Self::VelocityMmS if findings.acceleration_unit().is_none() => {
                 "the samples have no unit of an acceleration; give `--unit g` or `--unit m/s²`"
             }
             Self::VelocityMmS => "10 to 1000 Hz take a record of 1 s, sampled at 2000 Hz or faster",
@@ -139,7 +138,7 @@ impl Limit {
     /// From `rms=0.5..1.2`: warning from 0.5 on, alarm from 1.2 on.
     ///
     /// # Errors
-    /// What is wrong with the text, and what would be right.
+    /// A sentence on the fault of the text and its right form.
     pub fn parse(text: &str) -> Result<Self, String> {
         let names = || Quantity::ALL.map(Quantity::name).join(", ");
         let form = || {
@@ -159,9 +158,9 @@ impl Limit {
         Ok(Self { quantity, warning, alarm })
     }
 
-    /// Limits that one in a hundred, and one in a thousand, further records of a machine in the state of `reference` pass:
-    /// the prediction interval of Student's distribution, `m + t s √(1 + 1/n)`, of the logarithms of all but decibels.
-    /// `None` for fewer than three values.
+    /// Limits that one in a hundred, and one in a thousand, further records of a machine in the state of
+    /// `reference` pass: the prediction interval of Student's distribution, `m + t s √(1 + 1/n)`, of the
+    /// logarithms of all but decibels. `None` for fewer than three values.
     ///
     /// Source: G. J. Hahn and W. Q. Meeker, Statistical Intervals, Wiley 1991, section 4.8.
     pub fn from_reference(quantity: Quantity, reference: &[f64]) -> Option<Self> {
@@ -195,7 +194,8 @@ impl Limit {
     }
 }
 
-/// Level of a family [dB]. Sound records have one, too: that of the noise at the family's lines, by whose scatter a limit is set.
+/// Level of a family [dB]. Sound records have one, too: that of the noise at the family's lines, by whose
+/// scatter a limit is set.
 fn level_db(findings: &MeasuredFindings, defect: Defect) -> Option<f64> {
     let family = findings.families.iter().find(|f| f.name == defect)?;
     family.level_db.filter(|db| db.is_finite())

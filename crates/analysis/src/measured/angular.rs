@@ -8,11 +8,11 @@ use crate::Error;
 /// Longest record that is held for it [samples]: 270 MB with its copy.
 const LONGEST: u64 = 1 << 24;
 
-/// The channel over the angle of the shaft, and the rate at which it would be sampled at the mean speed [Hz], so that
-/// frequencies are those at the mean speed; `pulses` are the times of whole turns, in samples. `None` for a record that is
-/// too long to be held.
+/// The channel over the angle of the shaft, and the rate at which it would be sampled at the mean speed [Hz],
+/// so that frequencies are those at the mean speed; `pulses` are the times of whole turns, in samples. `None`
+/// for a record that is too long to be held.
 ///
-/// There are so many samples a turn that none is lost at the slowest.
+/// The number of samples a turn keeps every sample at the lowest speed.
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::Signal`] for pulses that do not ascend or leave the record.

@@ -18,7 +18,8 @@ pub struct Course {
     pub grid_hz: f64,
     /// Frequencies a column.
     pub lines: usize,
-    /// Density [unit²/Hz], one column after the other, each the mean over its time; not a number where the record holds none.
+    /// Density [unit²/Hz], one column after the other, each the mean over its time; not a number where the
+    /// record holds none.
     pub values: Vec<f64>,
 }
 

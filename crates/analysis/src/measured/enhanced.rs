@@ -1,5 +1,5 @@
-//! The enhanced envelope spectrum: lines at the rates at which any part of the spectrum comes and goes, each part weighed by
-//! how surely it does and not by its power.
+//! The enhanced envelope spectrum: lines at the rates at which any part of the spectrum comes and goes, each
+//! part weighed by how surely it does and not by its power.
 
 use stribeck_dsp::{Cyclic, spectral_correlation};
 
@@ -12,7 +12,7 @@ pub struct Enhanced {
     pub grid_hz: f64,
     /// Values, 0 to 1.
     pub values: Vec<f64>,
-    /// What was used: length from the beginning of the record [s].
+    /// Length from the beginning of the record that was used [s].
     pub duration_s: f64,
     /// Distance of the carrier frequencies [Hz].
     pub carrier_hz: f64,
@@ -25,7 +25,7 @@ const MOST: usize = 1 << 18;
 /// Most values of the transforms: 32 MB.
 const VALUES: usize = 1 << 21;
 
-/// `None` for what is too short or not all numbers.
+/// `None` for a record that is too short, or holds values that are not numbers.
 pub(super) fn of(samples: &[f64], rate_hz: f64, highest_hz: f64) -> Result<Option<Enhanced>, Error> {
     let highest_hz = highest_hz.min(0.125 * rate_hz);
     let step = ((0.5 * rate_hz / highest_hz) as usize).clamp(1, WINDOW / 4);
@@ -35,7 +35,7 @@ pub(super) fn of(samples: &[f64], rate_hz: f64, highest_hz: f64) -> Result<Optio
     }
     let coherence =
         spectral_correlation(used, rate_hz, WINDOW, highest_hz, Cyclic::Coherence).map_err(Error::Signal)?;
-    // The lowest lines hold the mean and what its removal left.
+    // The lowest lines hold the rest of the mean.
     let low_hz = 2.0 * coherence.grid_hz;
     let values = coherence.envelope_spectrum(low_hz, 0.5 * rate_hz).map_err(Error::Signal)?;
     Ok(Some(Enhanced {

@@ -8,14 +8,15 @@ use stribeck_scene::catalogue::CatalogueBearing;
 use super::{Defect, Family, Interval, Machine};
 use crate::Error;
 
-/// Events closer than this are not told from the ringing of one [s].
+/// Events closer than this cannot be distinguished from the ringing of one [s].
 const SHORTEST_S: f64 = 0.4e-3;
-/// Longest spall over the distance of two rolling elements: with a longer one the next element enters before one leaves.
+/// Longest spall over the distance of two rolling elements: with a longer one the next element enters before
+/// one leaves.
 const LONGEST: f64 = 0.45;
 /// Ends of the interval over v Δt.
 const RANGE: (f64, f64) = (0.95, 2.0);
 
-/// The length [mm], or none; and what to know about it.
+/// The length [mm], or none; and a note on its limits.
 pub(super) fn estimate(
     samples: &[f64],
     rate_hz: f64,

@@ -1,7 +1,8 @@
 //! Knocks of a rolling element that lose their phase with every turn of the cage.
 //!
-//! Beyond the load little drives the spin of an element, so it comes back under the load at any angle: its family has no lines.
-//! What is left is the cage's rhythm, and within a passage the time of half a spin between two knocks (THEORY §7.9).
+//! Beyond the load little drives the spin of an element, so it comes back under the load at any angle: its
+//! family has no lines. What is left is the cage's rhythm, and within a passage the time of half a spin
+//! between two knocks (THEORY §7.9).
 
 use stribeck_dsp::{Autocorrelation, BandEnvelope};
 
@@ -12,7 +13,8 @@ const REPEATS: usize = 3;
 /// Steps in which a rhythm is looked for between its ends.
 const STEPS: usize = 16;
 
-/// The frequency within slip of `knocks_hz` at which knocks repeat most, if they do so more than at any unrelated one [Hz].
+/// The frequency within slip of `knocks_hz` at which knocks repeat most, if they do so more than at any
+/// unrelated one [Hz].
 pub(super) fn rhythm(band: &BandEnvelope, knocks_hz: f64) -> Option<f64> {
     let correlation = band.autocorrelation().ok()?;
     let (height, hz) = highest(&correlation, knocks_hz)?;

@@ -5,11 +5,12 @@ use stribeck_formats::Channel;
 
 use crate::Error;
 
-/// Turns of the slowest shaft in a segment: a line is told from its neighbour at a sixteenth of the speed.
+/// Turns of the slowest shaft in a segment: neighbouring lines are resolved at a sixteenth of the speed.
 const TURNS: f64 = 16.0;
 /// Segments in which the speed may cross the whole range.
 const CROSSING: f64 = 4.0;
-/// Least mean height of the line above the median of the range [dB]. The best path through white noise stands 3 to 8 dB up, most in the shortest records.
+/// Least mean height of the line above the median of the range [dB]. The best path through white noise stands
+/// 3 to 8 dB up, most in the shortest records.
 const HEIGHT_DB: f64 = 12.0;
 
 /// Follows the shaft's line between two speeds [1/min] in a channel sampled `rate_hz` times a second.
@@ -88,8 +89,9 @@ mod tests {
     #[test]
     fn example_a_speed_that_rises_is_followed() {
         let found = speed(&channel(0.1), RATE_HZ, 1_000.0, 1_800.0).unwrap();
-        // The least deviation that 0.96 s allow (Cramér and Rao): √(6/72)/(2π 0.96) Hz, 72 being the power of the line over
-        // that of the noise times its samples; Hann's window and the parabola cost as much again.
+        // The least deviation that 0.96 s allow (Cramér and Rao): √(6/72)/(2π 0.96) Hz, 72 being the power of
+        // the line over that of the noise times its samples; Hann's window and the parabola cost as much
+        // again.
         let deviation = 2.0 * 0.048;
         let off = |(t, hz): (&f64, &f64)| hz - (20.0 + 0.125 * t);
         let errors: Vec<f64> = found.times_s.iter().zip(&found.frequencies_hz).map(off).collect();

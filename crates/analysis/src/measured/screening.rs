@@ -1,4 +1,5 @@
-//! Is a record sound? Values that are not numbers, clipping, and the numbers that describe it as a whole, in one pass.
+//! Is a record sound? Values that are not numbers, clipping, and the numbers that describe it as a whole, in
+//! one pass.
 
 use serde::Serialize;
 
@@ -19,11 +20,12 @@ pub struct Health {
     pub skewness: f64,
     /// Largest magnitude over the mean of magnitudes, both about zero.
     pub impulse_factor: f64,
-    /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one line.
+    /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one
+    /// line.
     pub spectral_entropy: f64,
 }
 
-/// What one pass finds.
+/// Sums and extremes of one pass over the samples.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Screening {
     count: u64,
@@ -51,12 +53,13 @@ struct Extreme {
 
 /// How many times as far from the mean as all others a sample is that stands for itself.
 const FAR: f64 = 10.0;
-/// Samples about one that may belong to it. What rings with a Q of 2.8 or more has a tenth of its height left beyond them, at any
-/// frequency that the record holds: `exp(−π f n/(Q f_s))` with n = 4 and f below half the sample rate.
+/// Samples on either side of an extreme that may belong to it. A resonance with a Q of 2.8 or more has a
+/// tenth of its height left beyond them, at any frequency that the record holds: `exp(−π f n/(Q f_s))` with n
+/// = 4 and f below half the sample rate.
 const NEAR: u64 = 3;
-/// Most such samples: more are how the machine sounds.
+/// Most such samples: more belong to the machine's signal.
 const MOST: usize = 8;
-/// Largest values kept: of as many samples and what is near them, and one more.
+/// Largest values kept: those of [`MOST`] samples with their neighbours, and one more.
 const KEPT: usize = MOST * (2 * NEAR as usize + 1) + 1;
 
 /// Samples in a row at the extreme that only a limiter makes.
@@ -88,7 +91,7 @@ impl Screening {
         self.count
     }
 
-    /// What is odd about the samples.
+    /// Faults of the samples.
     pub(super) fn notes(&self, rate_hz: f64) -> Vec<String> {
         let mut notes = Vec::new();
         if let Some(first) = self.first_bad {
@@ -115,7 +118,7 @@ impl Screening {
         notes
     }
 
-    /// What there is to say of samples that lie far beyond all others, and do not ring.
+    /// A note on samples far beyond all others that do not ring.
     fn spurious(&self, rate_hz: f64) -> Option<String> {
         let mean = self.sums[0] / (self.count - self.bad) as f64;
         let of = |extreme: &Extreme, mean: f64| {

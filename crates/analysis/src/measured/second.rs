@@ -1,8 +1,9 @@
-//! Does something knock beside the family that stands highest?
+//! Is there a second defect beside the family that stands highest?
 //!
-//! Sidebands of the first family are its own, and stand as high as many a second defect. What modulates it is a factor of its power, and
-//! a second defect is a term beside it: over the mean course of the power in a period of the first family, the factor is left at the
-//! frequency of the shaft or of the cage, and the term keeps its lines (THEORY §7.9).
+//! Sidebands of the first family are its own, and stand as high as many a second defect. What modulates it is
+//! a factor of its power, and a second defect is a term beside it: over the mean course of the power in a
+//! period of the first family, the factor is left at the frequency of the shaft or of the cage, and the term
+//! keeps its lines (THEORY §7.9).
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
@@ -19,8 +20,8 @@ struct Beside {
     band_hz: (f64, f64),
 }
 
-/// Claims the family that stands highest in `bands`, those over the period of the first family, if it passes there; `whole` is the whole
-/// range as it is.
+/// Claims the family that stands highest in `bands`, those over the period of the first family, if it passes
+/// there; `whole` is the whole range as it is.
 pub(super) fn tell(
     families: &mut [Family],
     first: &First,
@@ -57,8 +58,8 @@ pub(super) fn tell(
     ));
 }
 
-/// A family that passes in the band in which its power is modulated most, of those in which it is more than noise: normalised by the
-/// first family, the power of bands is not comparable.
+/// A family that passes in the band in which its power is modulated most, of those in which it is more than
+/// noise: normalised by the first family, the power of bands is not comparable.
 fn beside(
     at: usize,
     family: &Family,
@@ -84,8 +85,8 @@ fn beside(
     let own = match family.name {
         // A spot on an element comes under the load once a turn of the cage.
         Defect::Bsf => sidebands_seen(spectrum, comb.fundamental_hz, first.cage_hz) >= MODULATED,
-        // Sound elements pass as well, and with the louder family gone they may be all there is to hear: beside it, a defect is to be
-        // loud in the whole range.
+        // Sound elements pass as well, and may dominate once the louder family is removed: a second defect
+        // must therefore knock in the whole range.
         Defect::Bpfo => {
             let loud = whole.is_some_and(|whole| whole.depth(comb.fundamental_hz) >= KNOCK);
             family.is_there() && loud && !first.takes(comb.fundamental_hz)
@@ -106,7 +107,7 @@ fn beside(
 }
 
 impl First {
-    /// Whether lines are those of the shaft, so many to a turn.
+    /// Whether `hz` is a multiple of the shaft's frequency.
     fn takes(&self, hz: f64) -> bool {
         let turns = (hz / self.shaft_hz).round();
         (hz - turns * self.shaft_hz).abs() < self.resolution_hz

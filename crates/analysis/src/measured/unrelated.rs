@@ -1,4 +1,4 @@
-//! Frequencies that have nothing to do with a family's: what a record shows at them, it shows by chance.
+//! Frequencies unrelated to a family's: whatever stands there is chance.
 
 /// Slip that moves a family from its place, either way.
 pub(super) const SLIP: f64 = 0.02;

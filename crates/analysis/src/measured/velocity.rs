@@ -2,42 +2,30 @@
 
 use stribeck_dsp::{Welch, WelchOptions};
 
+use super::unit::AccelerationUnit;
 use crate::Error;
 
 /// Ends of the band [Hz], those of ISO 20816 for most machines.
 const BAND_HZ: (f64, f64) = (10.0, 1_000.0);
 /// Length of a segment [s]: lines 1 Hz apart.
 const SEGMENT_S: f64 = 1.0;
-/// Metres a second² in one g.
-const G: f64 = 9.806_65;
-
-/// Metres a second² in a unit of acceleration.
-fn acceleration(unit: &str) -> Option<f64> {
-    match unit.trim() {
-        "m/s²" | "m/s^2" | "m/s2" | "m/s**2" => Some(1.0),
-        "g" | "G" | "gn" => Some(G),
-        _ => None,
-    }
-}
-
-pub(super) fn is_acceleration(unit: Option<&str>) -> bool {
-    unit.and_then(acceleration).is_some()
-}
-
 /// A level averaged over everything that was added.
-pub(super) struct Level {
+pub(super) struct VelocityLevel {
     welch: Welch,
-    /// Metres a second² in one unit.
-    unit: f64,
+    unit: AccelerationUnit,
     sum: f64,
     count: usize,
 }
 
-impl Level {
-    /// For segments of `segment` samples in `unit`; `None` where that is no acceleration, or the record too short or too
-    /// slowly sampled for the band.
-    pub(super) fn new(rate_hz: f64, segment: usize, unit: Option<&str>) -> Result<Option<Self>, Error> {
-        let Some(unit) = unit.and_then(acceleration) else { return Ok(None) };
+impl VelocityLevel {
+    /// For segments of `segment` samples in `unit`; `None` where that is no acceleration, or the record too
+    /// short or sampled too slowly for the band.
+    pub(super) fn new(
+        rate_hz: f64,
+        segment: usize,
+        unit: Option<AccelerationUnit>,
+    ) -> Result<Option<Self>, Error> {
+        let Some(unit) = unit else { return Ok(None) };
         let part = (SEGMENT_S * rate_hz) as usize;
         if part > segment || 0.5 * rate_hz < BAND_HZ.1 {
             return Ok(None);
@@ -55,7 +43,7 @@ impl Level {
 
     /// Root mean square [mm/s].
     pub(super) fn finish(&self) -> Option<f64> {
-        (self.count > 0).then(|| 1e3 * self.unit * (self.sum / self.count as f64).sqrt())
+        (self.count > 0).then(|| 1e3 * self.unit.in_m_s2() * (self.sum / self.count as f64).sqrt())
     }
 }
 
@@ -68,15 +56,16 @@ mod tests {
     fn example_one_g_at_a_hundred_hertz() {
         let rate_hz = 5_000.0;
         let samples: Vec<f64> = (0..20_000).map(|n| (TAU * 100.0 * f64::from(n) / rate_hz).sin()).collect();
-        let level = |unit| {
-            let mut level = Level::new(rate_hz, samples.len(), Some(unit)).unwrap()?;
+        let level = |unit: &str| {
+            let unit = AccelerationUnit::parse(unit);
+            let mut level = VelocityLevel::new(rate_hz, samples.len(), unit).unwrap()?;
             level.add(&samples).unwrap();
             level.finish()
         };
         // 9.80665/(200π) m/s peak is 11.04 mm/s RMS; the line's width of 1.5 Hz at 100 Hz, squared.
         assert!((level("g").unwrap() / 11.036 - 1.0).abs() < 5e-4, "{:?}", level("g"));
-        assert!((level("m/s²").unwrap() * G / level("g").unwrap() - 1.0).abs() < 1e-12);
+        assert!((level("m/s²").unwrap() * 9.806_65 / level("g").unwrap() - 1.0).abs() < 1e-12);
         assert_eq!(level("V"), None);
-        assert!(Level::new(1_500.0, 20_000, Some("g")).unwrap().is_none());
+        assert!(VelocityLevel::new(1_500.0, 20_000, Some(AccelerationUnit::Gravity)).unwrap().is_none());
     }
 }

@@ -9,7 +9,7 @@
 //! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
 //!    of the band must swing by half of its mean.
 //!
-//! The highest that passes is claimed, and what knocks beside it is told by `second.rs`.
+//! The highest that passes is claimed; `second.rs` looks for a second defect beside it.
 
 use std::fmt;
 
@@ -40,13 +40,13 @@ pub struct Family {
     pub depth: Option<f64>,
     /// Band in which it stands highest [Hz].
     pub band_hz: Option<(f64, f64)>,
-    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no lines
-    /// ([`BandEnvelope::autocorrelation`]).
+    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+    /// lines ([`BandEnvelope::autocorrelation`]).
     pub in_passages: bool,
     /// The family that stands higher, over whose period everything that is said of this one is taken
     /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
     pub over: Option<Defect>,
-    /// The family whose lines stand at the same places, so that the record does not tell which of both it is.
+    /// The family whose lines stand at the same places, so that the record cannot distinguish them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub not_told_apart_from: Option<Defect>,
     /// Whether this is called a defect.
@@ -89,7 +89,7 @@ impl From<String> for Reason {
 }
 
 /// Families and conclusion.
-pub(super) struct Judged {
+pub(super) struct Verdicts {
     pub(super) families: Vec<Family>,
     pub(super) verdict: String,
     pub(super) notes: Vec<String>,
@@ -97,7 +97,7 @@ pub(super) struct Judged {
     pub(super) first: Option<First>,
 }
 
-/// What is known where something is sought that knocks beside a defect.
+/// The first defect, as the search for a second one needs it.
 pub(super) struct First {
     /// Its place among the families.
     pub(super) at: usize,
@@ -120,12 +120,12 @@ pub(super) const KNOCK: f64 = 0.5;
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
 
-/// The families, of which one at most is claimed; [`Judged::conclude`] says the rest.
-pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Judged {
+/// The families, of which one at most is claimed; [`Verdicts::conclude`] says the rest.
+pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, segment_s: f64) -> Verdicts {
     let mut notes = Vec::new();
     let nothing = |notes: Vec<String>| {
         let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
-        Judged { families: Vec::new(), verdict, notes, first: None }
+        Verdicts { families: Vec::new(), verdict, notes, first: None }
     };
     let Some(bearing) = &machine.bearing else {
         notes.push("no bearing was given: `--bearing \"6205\"`, or its numbers".to_owned());
@@ -150,7 +150,7 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         .iter()
         .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
         .collect();
-    // Load and sensor stand still: what they hear of the cage are its turns in space.
+    // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
     let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
     let looked: Vec<(Family, Option<Standing>)> = Defect::ALL
         .into_iter()
@@ -181,11 +181,11 @@ pub(super) fn judge(bands: &[BandEnvelope], machine: &Machine, record_s: f64, se
         cage_hz,
         resolution_hz: 1.0 / segment_s,
     });
-    Judged { families, verdict: String::new(), notes, first }
+    Verdicts { families, verdict: String::new(), notes, first }
 }
 
-impl Judged {
-    /// What all families together say; `bands` are those that were judged.
+impl Verdicts {
+    /// The verdict over all families; `bands` are those that were judged.
     pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
         if !self.families.is_empty() {
             tell_the_element(&mut self.families, bands);
@@ -261,7 +261,7 @@ fn look(
     (family, Some(Standing { band: n, comb, comb_hz, times }))
 }
 
-/// Why no band holds a comb, and what rate would do.
+/// Why no band holds a comb, and which sample rate would suffice.
 fn too_narrow(comb_hz: f64, any: bool) -> String {
     let harmonics = CombTest::FOUR_OF_FIVE.needed;
     let highest_hz = harmonics as f64 * (1.0 + SLIP) * comb_hz;
@@ -278,8 +278,8 @@ fn too_narrow(comb_hz: f64, any: bool) -> String {
     format!("no band is wide enough for {harmonics} harmonics of {comb_hz:.1} Hz: {advice}")
 }
 
-/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be tried. The comb of
-/// the `first` family [Hz] is none of them.
+/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be
+/// tried. The comb of the `first` family [Hz] is none of them.
 pub(super) fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Option<f64>) -> Option<f64> {
     let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| is_the_same(hz, first_hz));
     let heights: Vec<f64> = unrelated_hz(comb_hz)
@@ -298,14 +298,15 @@ pub(super) fn rank(comb: &Comb, comb_hz: f64, spectrum: &Whitened, first_hz: Opt
 const HARMONICS: usize = 3;
 pub(super) const MODULATED: usize = 3;
 
-/// How many of the six sidebands of the first three harmonics of a family noise would not make.
+/// Number of sidebands above the noise, of the six beside the first three harmonics of a family.
 pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_hz: f64) -> usize {
     let beside =
         (1..=HARMONICS).flat_map(|n| [-1.0, 1.0].map(|side| n as f64 * fundamental_hz + side * spacing_hz));
     beside.filter(|hz| spectrum.line_p_value(spectrum.at(*hz)) < ALPHA).count()
 }
 
-/// Whether what may be a spot on a rolling element comes under the load once a turn of the cage, as one must.
+/// Whether the shocks at twice BSF are modulated at the cage's frequency, as those of a spot on a rolling
+/// element must be.
 fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whitened)]) -> bool {
     let of = |name: Defect| families.iter().find(|family| family.name == name);
     let (Some(element), Some(cage)) = (of(Defect::Bsf), of(Defect::Ftf)) else { return false };
@@ -315,8 +316,9 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
     band.is_some_and(|(_, spectrum)| sidebands_seen(spectrum, 2.0 * hz, spacing_hz) >= MODULATED)
 }
 
-/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling element, unless the cage is
-/// heard in them: `modulated`. Where both have their places within a resolution, neither is told from the other.
+/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling
+/// element, unless the cage modulates them (`modulated`). Where both have their places within a resolution,
+/// neither is told from the other.
 fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     let cannot_be = |family: &Family| family.name == Defect::Bsf && !modulated;
     let comb = |family: &Family| {
@@ -376,8 +378,8 @@ fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
 
 /// Which of the families that are there are defects.
 fn decide(families: &mut [Family]) {
-    // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that stands lower
-    // than another is not the first, even if the other one is not believed.
+    // Every family of rolling defects is modulated by the cage, so the cage is suspected last. A family that
+    // stands lower than another is not the first, even if the other one is not believed.
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
     for family in families.iter_mut().filter(|f| f.reason == Reason::Undecided) {
         let (p, depth, rank) = (family.p_value, family.depth.unwrap_or(0.0), family.rank.unwrap_or(1.0));
@@ -405,8 +407,9 @@ fn decide(families: &mut [Family]) {
     }
 }
 
-/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a rolling element that knocks
-/// twice a spin, by the whole range or by the band in which the cage stands highest.
+/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a
+/// rolling element that knocks twice a spin, by the whole range or by the band in which the cage stands
+/// highest.
 fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
     let place = |name: Defect| families.iter().position(|family| family.name == name);
     let (Some(element), Some(cage)) = (place(Defect::Bsf), place(Defect::Ftf)) else { return };
@@ -439,7 +442,7 @@ fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
 }
 
 fn conclude(families: &[Family]) -> String {
-    // Of two that are not told apart the first speaks for both.
+    // Two families that cannot be distinguished are reported under the name of the first.
     let spoken_for = |at: usize, family: &Family| {
         families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))
     };
@@ -499,7 +502,7 @@ impl Family {
         self.p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
     }
 
-    /// The probability of a false alarm in words. What lies far beyond any test of the noise is a bound, not a number.
+    /// The probability of a false alarm in words. Far beyond any test of the noise only a bound is given.
     pub fn false_alarm(&self) -> String {
         if self.p_value < 1e-9 { "< 1e-9".to_owned() } else { format!("{:.1e}", self.p_value) }
     }
@@ -544,7 +547,8 @@ mod tests {
         }
     }
 
-    /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move either.
+    /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move
+    /// either.
     #[test]
     fn example_one_line_is_claimed_for_one_family() {
         let mut families = [found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];

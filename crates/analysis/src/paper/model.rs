@@ -1,6 +1,6 @@
-//! What the paper puts in: dimensions, material, mesh, load (its section 2).
+//! Input of the paper: dimensions, material, mesh, load (its section 2).
 
-use super::{Source, number, words};
+use super::{RowInputs, number, words};
 use stribeck_scene::scene::SolverScene;
 
 use crate::ring;
@@ -9,14 +9,14 @@ use crate::summary::PaperRow;
 const PART: &str = "Model";
 const GIVEN: &str = "given";
 
-pub(super) fn rows(source: &Source<'_>) -> Vec<PaperRow> {
+pub(super) fn rows(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let mut rows = table_1(source);
     rows.extend(discretisation(source));
     rows.extend(operation(source));
     rows
 }
 
-fn table_1(source: &Source<'_>) -> Vec<PaperRow> {
+fn table_1(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let (b, m) = (&source.scene.written.bearing, &source.scene.written.material);
     let given = |quantity: &str, paper: f64, ours: f64, unit: &str| {
         number(PART, quantity, paper, Some(ours), unit, GIVEN)
@@ -49,7 +49,7 @@ fn table_1(source: &Source<'_>) -> Vec<PaperRow> {
     rows
 }
 
-fn discretisation(source: &Source<'_>) -> Vec<PaperRow> {
+fn discretisation(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let (scene, mesh) = (source.scene, source.mesh);
     let waves = ring::elements_per_wavelength(scene, 40_000.0);
     let graded = if scene.written.mesh.grading.is_some() {
@@ -101,7 +101,7 @@ fn discretisation(source: &Source<'_>) -> Vec<PaperRow> {
     ]
 }
 
-fn operation(source: &Source<'_>) -> Vec<PaperRow> {
+fn operation(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let scene = source.scene;
     let (o, c, s) = (&scene.written.operation, &scene.written.contact, &scene.written.solver);
     let top = scene.written.defect.as_ref().map_or(90.0, |d| d.angle_deg);

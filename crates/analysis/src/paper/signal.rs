@@ -1,6 +1,6 @@
-//! What the paper gets out: frequencies, levels, the notch, the events (its sections 3 to 5).
+//! Results of the paper: frequencies, levels, the notch, the events (its sections 3 to 5).
 
-use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, Source, TONE_HZ, number, words};
+use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, RowInputs, TONE_HZ, number, words};
 use crate::summary::PaperRow;
 
 const MOTION: &str = "Kinematics";
@@ -8,7 +8,7 @@ const NOISE: &str = "Noise";
 const NOTCH: &str = "Notch";
 const EVENTS: &str = "Contact forces";
 
-pub(super) fn rows(source: &Source<'_>) -> Vec<PaperRow> {
+pub(super) fn rows(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let mut rows = motion(source);
     rows.extend(levels(source));
     rows.extend(lines(source));
@@ -18,7 +18,7 @@ pub(super) fn rows(source: &Source<'_>) -> Vec<PaperRow> {
     rows
 }
 
-fn motion(source: &Source<'_>) -> Vec<PaperRow> {
+fn motion(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let k = &source.prediction.kinematics;
     let exits: Vec<f64> = source.summary.events.iter().filter_map(|e| e.exit_ms).collect();
     let spacing_s =
@@ -70,7 +70,7 @@ fn motion(source: &Source<'_>) -> Vec<PaperRow> {
     ]
 }
 
-fn levels(source: &Source<'_>) -> Vec<PaperRow> {
+fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let levels = &source.summary.levels;
     let sensor = levels.sensor.as_deref().unwrap_or("none");
     let why = |what: &str| {
@@ -106,7 +106,7 @@ fn levels(source: &Source<'_>) -> Vec<PaperRow> {
     ]
 }
 
-fn lines(source: &Source<'_>) -> Vec<PaperRow> {
+fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let summary = source.summary;
     let leading = summary.levels.sensor.as_deref().unwrap_or_default();
     let measured = summary.families.iter().filter(|f| f.found).find_map(|f| f.carrier_hz);
@@ -196,7 +196,7 @@ fn lines(source: &Source<'_>) -> Vec<PaperRow> {
     ]
 }
 
-fn beat(source: &Source<'_>) -> Vec<PaperRow> {
+fn beat(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let reading = source.summary.cursor.as_ref();
     let gap = 100.0 * (CURSOR_HZ / EQUATION_2_HZ.1 - 1.0);
     let lines = &source.prediction.facet_lines;
@@ -256,7 +256,7 @@ fn beat(source: &Source<'_>) -> Vec<PaperRow> {
 }
 
 /// Lines of the families within a resolution of the paper's 4545 Hz, in words.
-fn near_cursor(source: &Source<'_>) -> String {
+fn near_cursor(source: &RowInputs<'_>) -> String {
     let Some(spectrum) = &source.summary.spectrum else { return "no spectrum".into() };
     let near: Vec<String> = source
         .summary
@@ -279,7 +279,7 @@ fn near_cursor(source: &Source<'_>) -> String {
     if near.is_empty() { "none of a facet family".into() } else { near.join(", ") }
 }
 
-fn notch(source: &Source<'_>) -> Vec<PaperRow> {
+fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let notch = source.summary.notch.as_ref();
     let db = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.1}"));
     let four = notch.map_or("no notch".into(), |n| {
@@ -317,7 +317,7 @@ fn notch(source: &Source<'_>) -> Vec<PaperRow> {
     ]
 }
 
-fn events(source: &Source<'_>) -> Vec<PaperRow> {
+fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let events = &source.summary.events;
     let papers = ["≈ 5", "16–17", "≈ 28"];
     let mut rows = vec![number(

@@ -3,7 +3,7 @@
 
 use stribeck_modal::compliance::Curve;
 
-use crate::cage::polygon::{Cut, Polygon};
+use crate::rollers::polygon::{Cut, Polygon};
 
 /// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its
 /// centre.

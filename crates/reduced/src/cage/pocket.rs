@@ -6,15 +6,15 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 use crate::{
     cage::flat::{self, Shape},
     cage::{Cage, Wall, WallRows},
-    contact::force::ContactLaw,
+    law::ContactLaw,
     plane::{Rotation, cross, dot, perpendicular},
-    rollers::row::{Rows, lanes, load, of_one},
     rollers::{
         Rollers,
         block::{Block, Walls},
     },
+    row::{Rows, lanes, load, of_one},
     state::State,
-    step::sums::Tally,
+    tally::Tally,
 };
 
 /// Where the cage is.

@@ -8,7 +8,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector};
 use crate::{
     contact::eight_facets::{self, EightFacets},
     contact::outline::{Facet, Parts, View, Walk},
-    rollers::row::Row,
+    row::Row,
 };
 
 /// How a raceway lies to a roller.

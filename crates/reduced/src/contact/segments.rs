@@ -10,7 +10,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 use crate::{
     contact::outline::{Facet, View},
     contact::penetration::{Penetration, Sides, add_between},
-    rollers::row::Row,
+    row::Row,
 };
 
 /// Most parts of an overlap that are kept.

@@ -3,11 +3,12 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Vector};
 
+use super::Rollers;
 use crate::{
-    bearing::Bearing,
     contact::penetration::Penetration,
+    contact::raceway::Raceway,
     contact::segments::Segments,
-    rollers::row::{Row, Rows, lanes, of_one},
+    row::{Row, Rows, lanes, of_one},
     state::State,
 };
 
@@ -125,18 +126,18 @@ pub(crate) struct Walls {
 
 impl Block {
     /// The rollers from `first` on, and what of them does not change.
-    pub(crate) fn new(bearing: &Bearing, first: usize) -> Self {
-        let count = (bearing.rollers.count - first).min(LANES);
+    pub(crate) fn new(rollers: &Rollers, raceways: &[Raceway; 2], first: usize) -> Self {
+        let count = (rollers.count - first).min(LANES);
         let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
         // Those that are missing keep clear of both raceways.
-        block.centre[0] = Row([bearing.raceways[0].bound; LANES]);
+        block.centre[0] = Row([raceways[0].bound; LANES]);
         block.drift = Row([f64::INFINITY; LANES]);
-        for (contacts, raceway) in block.contacts.iter_mut().zip(&bearing.raceways) {
+        for (contacts, raceway) in block.contacts.iter_mut().zip(raceways) {
             contacts.bound = Row([raceway.bound; LANES]);
         }
         for lane in 0..count {
             block.present[lane] = 1.0;
-            block.top[lane] = bearing.rollers.rim(first + lane).top;
+            block.top[lane] = rollers.rim(first + lane).top;
         }
         block
     }
@@ -183,7 +184,7 @@ impl Block {
 
     /// Begins a sample, of which `anew` is a roller: its direction is taken from its angle, because turning
     /// it step by step rounds.
-    pub(crate) fn begin(&mut self, bearing: &Bearing, anew: usize) {
+    pub(crate) fn begin(&mut self, rollers: &Rollers, anew: usize) {
         self.sums = Default::default();
         // A roller that is clear of the outer raceway goes along it nevertheless.
         let on_outer = &mut self.contacts[0];
@@ -192,7 +193,7 @@ impl Block {
         }
         if (self.first..self.first + self.count).contains(&anew) {
             let lane = anew - self.first;
-            let (s, c) = (self.angle[lane] + bearing.rollers.starts[anew].vertex_angle).sin_cos();
+            let (s, c) = (self.angle[lane] + rollers.starts[anew].vertex_angle).sin_cos();
             (self.turned[0][lane], self.turned[1][lane]) = (c, s);
         }
     }

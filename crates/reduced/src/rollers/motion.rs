@@ -6,12 +6,9 @@ use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{
     plane::Rotation,
-    rollers::{
-        Rollers,
-        block::Block,
-        row::{load, store},
-    },
-    step::sums::Sums,
+    rollers::{Rollers, block::Block},
+    row::{load, store},
+    tally::Sums,
 };
 
 /// The frames of mass damping, for code that is made for each of them.

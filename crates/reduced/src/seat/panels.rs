@@ -8,7 +8,7 @@ use super::{
     responses::RollerResponses,
     sums::{add_all, listed},
 };
-use crate::rollers::row::Row;
+use crate::row::Row;
 
 /// Every other panel, beginning with the first and with the second. Their number is odd, so that the mirrored
 /// seat has mirrored ones.

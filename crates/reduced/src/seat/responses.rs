@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     roller_force::RollerForce,
-    rollers::row::{Numbers, Row},
+    row::{Numbers, Row},
 };
 
 /// Contact forces are updated within the step if opening all panels would change them by more than this

@@ -3,7 +3,7 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::rollers::row::{Numbers, Row, bits};
+use crate::row::{Numbers, Row, bits};
 
 /// Adds a multiple of some rows to others.
 #[inline(always)]

@@ -6,16 +6,15 @@ use stribeck_simd::lanes::LANES;
 use crate::{
     bearing::Bearing,
     cage::pocket::{InPockets, PlacedCage},
-    contact::force::ContactLaw,
+    drive::Drive,
+    law::ContactLaw,
     oil::FilmStep,
     roller_force::RollerForce,
-    rollers::{block::Block, row::of_one},
+    rollers::block::Block,
+    row::of_one,
     state::State,
-    step::{
-        Scratch,
-        drive::Drive,
-        sums::{Sums, Tally},
-    },
+    step::Scratch,
+    tally::{Sums, Tally},
 };
 
 impl Bearing {

@@ -7,7 +7,8 @@ use crate::{
     contact::penetration::Penetration,
     modes::Modes,
     roller_force::RollerForce,
-    rollers::{block::Block, row::Row},
+    rollers::block::Block,
+    row::Row,
     sensors::SensorMotion,
     state::{State, Stored},
 };
@@ -38,8 +39,11 @@ impl Scratch {
     pub(crate) fn new(bearing: &Bearing) -> Self {
         let n = bearing.rollers.count;
         Self {
-            blocks: (0..n).step_by(LANES).map(|first| Block::new(bearing, first)).collect(),
-            modes: Modes::new(bearing),
+            blocks: (0..n)
+                .step_by(LANES)
+                .map(|first| Block::new(&bearing.rollers, &bearing.raceways, first))
+                .collect(),
+            modes: Modes::new(&bearing.structure, bearing.seat.as_ref()),
             roller_forces: vec![RollerForce::default(); n],
             ..Self::default()
         }
@@ -56,7 +60,7 @@ impl Scratch {
     /// Begins a sample, the number of which is known.
     pub(crate) fn begin(&mut self, bearing: &Bearing, sample: u64) {
         let anew = (sample % bearing.rollers.count as u64) as usize;
-        self.blocks.iter_mut().for_each(|block| block.begin(bearing, anew));
+        self.blocks.iter_mut().for_each(|block| block.begin(&bearing.rollers, anew));
         (self.summed, self.deepest) = (0, 0.0);
     }
 

@@ -24,7 +24,7 @@ fn legend(findings: &Findings) -> String {
                 teal of the inner raceway";
     let kinds = [
         (!unsteady(findings), mesh),
-        (findings.prediction.family.is_some(), "red: the defect"),
+        (findings.prediction.shocks.is_some(), "red: the defect"),
         (!findings.modes.is_empty(), "brown: modes of the free outer ring"),
     ];
     let drawn: Vec<&str> = kinds.into_iter().filter(|(drawn, _)| *drawn).map(|(_, words)| words).collect();
@@ -149,7 +149,7 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let top = LOW_HZ.min(0.5 * raw.sample_rate_hz());
     let drawn = (top / raw.resolution().grid_hz) as usize + 2;
     let shown =
-        [(findings.prediction.family.is_some(), "the defect"), (!findings.modes.is_empty(), "the ring")];
+        [(findings.prediction.shocks.is_some(), "the defect"), (!findings.modes.is_empty(), "the ring")];
     let shown: Vec<&str> = shown.into_iter().filter(|(shown, _)| *shown).map(|(_, what)| what).collect();
     let title = match shown.join(" and ") {
         none if none.is_empty() => "Low frequencies".to_owned(),
@@ -158,7 +158,7 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let mut figure =
         over_frequency("spectrum-low", &title, (0.0, top)).with(decibels("raw", Colour::Blue, raw, drawn));
     let unsteady = unsteady(findings);
-    let caption = match findings.prediction.family {
+    let caption = match findings.prediction.shocks.map(|shocks| (shocks.name(), shocks.hz)) {
         None if unsteady => {
             "The speed changes: what comes once a passage is smeared here, and stands over the angle."
                 .to_owned()
@@ -179,7 +179,8 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
 
 fn envelope(findings: &Findings) -> Option<Figure> {
     let (spectrum, finding) = findings.envelope.as_ref().zip(findings.summary.envelope.as_ref())?;
-    let (name, hz) = findings.prediction.family?;
+    let shocks = findings.prediction.shocks?;
+    let (name, hz) = (shocks.name(), shocks.hz);
     let top = (FAMILY as f64 + 1.0) * hz;
     let power = Axis::plain("Squared envelope spectrum", "dB re 1 g⁴");
     let mut figure =
@@ -214,7 +215,8 @@ fn envelope(findings: &Findings) -> Option<Figure> {
 /// The defect's family and the ring's modes below `top`.
 fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
     let mut marks = Vec::new();
-    if let Some((name, hz)) = findings.prediction.family {
+    if let Some(shocks) = findings.prediction.shocks {
+        let (name, hz) = (shocks.name(), shocks.hz);
         let text = |n: usize| if n == 1 { format!("{name} {hz:.1} Hz") } else { format!("×{n}") };
         marks.extend((1..=FAMILY).map(|n| mark(n as f64 * hz, &text(n), Colour::Red, true)));
     }

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
-use super::{Abscissa, Axis, Colour, Figure, Series, Style, base64, decimate};
+use super::{Abscissa, Axis, Colour, Figure, Series, Style, Ticks, base64, decimate};
 use crate::Error;
 
 /// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
@@ -25,9 +25,7 @@ struct Sent<'a> {
 struct SentAxis<'a> {
     label: &'a str,
     unit: &'a str,
-    prefixed: bool,
-    decades: bool,
-    counted: bool,
+    ticks: Ticks,
     range: Option<(f64, f64)>,
 }
 
@@ -118,14 +116,7 @@ impl Figure {
 
 impl<'a> SentAxis<'a> {
     fn of(axis: &'a Axis) -> Self {
-        Self {
-            label: &axis.label,
-            unit: &axis.unit,
-            prefixed: axis.prefixed,
-            decades: axis.decades,
-            counted: axis.counted,
-            range: axis.range,
-        }
+        Self { label: &axis.label, unit: &axis.unit, ticks: axis.ticks, range: axis.range }
     }
 }
 

@@ -5,7 +5,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::{Axis, Colour, Figure, Scale, Style, decimate, labels, ticks};
+use super::{Axis, Colour, Figure, Scale, Style, Ticks, decimate, labels, ticks};
 use crate::Error;
 
 /// Drawing units a pixel: the library rounds coordinates to whole units, which would turn gentle slopes into stairs.
@@ -264,22 +264,33 @@ fn draw_grid(
 
 /// Positions and texts of the ticks of one axis.
 fn tick_texts(axis: &Axis, (low, high): (f64, f64), wanted: usize) -> Vec<(f64, String)> {
-    if axis.decades {
-        return decade_texts(low, high);
-    }
-    // Angles are read in twelfths of a turn, not in fifties.
-    let (at, step): (Vec<f64>, f64) = match axis.unit.as_str() {
-        "°" => ((0..=12).map(|n| 30.0 * f64::from(n)).filter(|a| (low..=high).contains(a)).collect(), 30.0),
-        _ => ticks(low, high, if axis.counted { wanted.min((high - low) as usize).max(1) } else { wanted }),
+    let written = |(at, step): (Vec<f64>, f64), scale: Scale, unit: &str| -> Vec<(f64, String)> {
+        at.into_iter().map(|v| (v, scale.text(v, step, unit))).collect()
     };
-    // Between two things there is none.
-    let whole = |v: &f64| !axis.counted || v.fract() == 0.0;
-    let step = if axis.counted { step.max(1.0) } else { step };
-    let at: Vec<f64> = at.into_iter().filter(whole).collect();
-    let largest = at.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    let (scale, unit) =
-        if axis.prefixed { (Scale::of(largest), axis.unit.as_str()) } else { (Scale::ONE, "") };
-    at.into_iter().map(|v| (v, scale.text(v, step, unit))).collect()
+    match axis.ticks {
+        Ticks::Decades => decade_texts(low, high),
+        Ticks::Angle => written(twelfths_of_a_turn(low, high), Scale::ONE, ""),
+        Ticks::Counted => written(whole_ticks(low, high, wanted), Scale::ONE, ""),
+        Ticks::Plain => written(ticks(low, high, wanted), Scale::ONE, ""),
+        Ticks::Prefixed => {
+            let ticks = ticks(low, high, wanted);
+            let largest = ticks.0.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+            written(ticks, Scale::of(largest), &axis.unit)
+        }
+    }
+}
+
+/// Angles [°] are read in twelfths of a turn, not in fifties: those between two, and their step.
+fn twelfths_of_a_turn(low: f64, high: f64) -> (Vec<f64>, f64) {
+    const STEP_DEG: f64 = 30.0;
+    let all = (0..=12).map(|n| STEP_DEG * f64::from(n));
+    (all.filter(|a| (low..=high).contains(a)).collect(), STEP_DEG)
+}
+
+/// Whole numbers between two, and their step: between two things there is none.
+fn whole_ticks(low: f64, high: f64, wanted: usize) -> (Vec<f64>, f64) {
+    let (at, step) = ticks(low, high, wanted.min((high - low) as usize).max(1));
+    (at.into_iter().filter(|v| v.fract() == 0.0).collect(), step.max(1.0))
 }
 
 /// Ticks of a logarithmic axis: powers of ten, and twice and five times them where there are few.
@@ -294,7 +305,7 @@ fn decade_texts(low: f64, high: f64) -> Vec<(f64, String)> {
 
 /// Quantity with its unit in brackets where ticks do not carry the unit already.
 fn axis_name(axis: &Axis) -> String {
-    if axis.prefixed || axis.unit.is_empty() {
+    if axis.ticks == Ticks::Prefixed || axis.unit.is_empty() {
         axis.label.clone()
     } else {
         format!("{} [{}]", axis.label, axis.unit)

@@ -271,7 +271,6 @@ fn issue_no_header_is_longer_than_numpy_reads() {
             35..=48 => "short form",
             _ => "archive",
         };
-        println!("{rollers} rollers: {} channels, {form}, header of {} bytes", names.len(), header.len());
         assert_eq!(form, expected, "{rollers} rollers");
         let trace = file.read(&bytes).expect("readable");
         assert_eq!(trace.names, names);
@@ -361,15 +360,11 @@ fn survives_an_archive_cut_or_damaged() {
     }
 }
 
-/// NumPy 2.4, where the interpreter in STRIBECK_PYTHON (or python3) has it: with the limit that it has by itself.
+/// With the limit that NumPy has by itself.
 #[test]
 fn peer_numpy_opens_every_trace() {
-    let python = std::env::var("STRIBECK_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has = Command::new(&python).args(["-c", "import numpy"]).output();
-    if !has.is_ok_and(|output| output.status.success()) {
-        eprintln!("traces are not opened by NumPy: `{python}` does not have it");
-        return;
-    }
+    // NumPy 2.4.6, where the interpreter in STRIBECK_PYTHON (or python3) has it.
+    let Some(python) = stribeck_testing::peer::python_with(&["numpy"]) else { return };
     let file = File::new();
     for rollers in [20, 28, 40, 60, 400] {
         let names = channels(rollers);

@@ -1,6 +1,6 @@
 //! What a long record says, in numbers.
 
-use stribeck_analysis::artefacts::{Artefact, Family};
+use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::summary::Summary;
 use stribeck_scene::run_dir::Run;
@@ -97,10 +97,10 @@ pub(super) fn lines(sheet: &mut Sheet, findings: &Findings) {
         "At the sensor `{sensor}`. *Predicted* is rolling without slip, *by motion* follows the recorded motion of cage and rollers. A \
          line counts when it stands 10 dB above its surroundings."
     ));
-    let origin = |family: Family| match family {
-        Family::Mesh | Family::Beat => "mesh",
-        Family::Defect => "defect",
-        Family::Ring => "ring",
+    let origin = |family: Origin| match family {
+        Origin::Mesh | Origin::Beat => "mesh",
+        Origin::Defect => "defect",
+        Origin::Ring => "ring",
     };
     let row = |a: &Artefact| {
         vec![

@@ -1,0 +1,160 @@
+//! How a table is written: what splits its columns, which sign is the decimal point, where its rows of numbers begin.
+
+use super::stamp::stamp;
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Dialect {
+    /// What splits columns; a space stands for any run of white space.
+    pub(crate) separator: char,
+    pub(crate) decimal_comma: bool,
+}
+
+/// What a field is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Field {
+    Number(f64),
+    Stamp(i64, i32),
+    /// Nothing, or a word for what is missing.
+    Missing,
+    Text,
+}
+
+/// Rows that must agree in how many columns there are.
+const AGREE: usize = 8;
+
+impl Dialect {
+    /// The dialect of some lines, and the first of them that is a row of numbers.
+    pub(crate) fn of(lines: &[String]) -> Option<(Self, usize)> {
+        const ALL: [(char, bool); 10] = [
+            (';', true),
+            ('\t', false),
+            ('\t', true),
+            ('|', false),
+            ('|', true),
+            (',', false),
+            (' ', false),
+            (' ', true),
+            (';', false),
+            (',', true),
+        ];
+        // Strictly: numbers, times and gaps alone. Otherwise some columns may be texts.
+        let found = [true, false].into_iter().find_map(|strict| {
+            let all = ALL.into_iter().map(|(separator, decimal_comma)| Self { separator, decimal_comma });
+            all.filter(|d| strict || d.separator != ' ')
+                .find_map(|dialect| Some((dialect, dialect.begins(lines, strict)?)))
+        });
+        let (dialect, first) = found?;
+        let single = Self { separator: ' ', decimal_comma: true };
+        let one_column = dialect.separator == ',' && is_one_column(&lines[..first], &lines[first..]);
+        if one_column { Some((single, single.begins(lines, true)?)) } else { Some((dialect, first)) }
+    }
+
+    /// The first row of numbers: the rows behind it have as many columns.
+    fn begins(&self, lines: &[String], strict: bool) -> Option<usize> {
+        let row = |line: &str| -> Option<usize> {
+            if self.separator != ' ' && !line.contains(self.separator) {
+                return None;
+            }
+            let fields = self.split(line);
+            let kinds = || fields.iter().map(|field| self.field(field));
+            let some = kinds().any(|kind| matches!(kind, Field::Number(_)));
+            let texts = kinds().filter(|kind| *kind == Field::Text).count();
+            (some && (texts == 0 || !strict && 2 * texts <= fields.len())).then_some(fields.len())
+        };
+        let rows: Vec<Option<usize>> = lines.iter().map(|line| row(line)).collect();
+        (0..lines.len()).find(|n| {
+            let Some(columns) = rows[*n] else { return false };
+            let behind = rows[n + 1..].iter().zip(&lines[n + 1..]);
+            let mut behind = behind.filter(|(_, line)| !self.is_empty(line)).take(AGREE).map(|(row, _)| *row);
+            if strict {
+                // The row behind may be cut, or hold one field that is no number.
+                let next = behind.next();
+                next.is_none_or(|row| row.is_none_or(|other| other.abs_diff(columns) < 2))
+                    && behind.filter(|row| *row != Some(columns)).count() < AGREE / 2
+            } else {
+                let agree = behind.by_ref().filter(|row| *row == Some(columns)).count();
+                agree >= 2
+            }
+        })
+    }
+
+    /// The fields of a line, quotes taken off.
+    pub(crate) fn split<'a>(&self, line: &'a str) -> Vec<&'a str> {
+        let clean = |field: &'a str| field.trim().trim_matches('"').trim();
+        if self.separator == ' ' {
+            return line.split_whitespace().map(clean).collect();
+        }
+        if !line.contains('"') {
+            return line.split(self.separator).map(str::trim).collect();
+        }
+        let (mut fields, mut from, mut quoted) = (Vec::new(), 0, false);
+        for (at, c) in line.char_indices() {
+            if c == '"' {
+                quoted = !quoted;
+            } else if c == self.separator && !quoted {
+                fields.push(clean(&line[from..at]));
+                from = at + c.len_utf8();
+            }
+        }
+        fields.push(clean(&line[from..]));
+        fields
+    }
+
+    /// Whether a line holds nothing, or nothing between its separators.
+    pub(crate) fn is_empty(&self, line: &str) -> bool {
+        line.chars().all(|c| c.is_whitespace() || c == self.separator || c == '"')
+    }
+
+    /// What a field is.
+    pub(crate) fn field(&self, field: &str) -> Field {
+        const MISSING: [&str; 10] = ["", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "nil"];
+        if let Some(number) = self.number(field) {
+            return Field::Number(number);
+        }
+        if MISSING.contains(&field.to_lowercase().as_str()) {
+            return Field::Missing;
+        }
+        stamp(field).map_or(Field::Text, |(s, ns)| Field::Stamp(s, ns))
+    }
+
+    fn number(&self, field: &str) -> Option<f64> {
+        // Rust takes words for numbers that are none here.
+        if !field.contains(|c: char| c.is_ascii_digit()) {
+            return None;
+        }
+        let plain = |text: &str| text.parse::<f64>().ok();
+        let number = |text: &str| {
+            // FORTRAN writes D for the exponent of a double.
+            plain(text).or_else(|| plain(&text.replace(['d', 'D'], "e")))
+        };
+        if self.decimal_comma && field.contains(',') {
+            number(&field.replace(',', "."))
+        } else {
+            number(field)
+        }
+    }
+}
+
+/// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line above has no
+/// comma, or the first part is `-0`, or what is behind the comma has always the same digits, zeros at its beginning, too.
+fn is_one_column(head: &[String], rows: &[String]) -> bool {
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let pairs: Option<Vec<(&str, &str)>> = rows
+        .iter()
+        .map(|line| line.trim().trim_matches('"'))
+        .filter(|line| !line.is_empty())
+        .map(|line| {
+            line.split_once(',').filter(|(a, b)| digits(a.trim_start_matches(['-', '+'])) && digits(b))
+        })
+        .collect();
+    let Some(pairs) = pairs.filter(|pairs| !pairs.is_empty()) else { return false };
+    if let Some(name) = head.iter().rev().find(|line| !line.trim().is_empty()) {
+        return !name.contains(',');
+    }
+    let width = pairs[0].1.len();
+    let padded = width > 1
+        && pairs.iter().all(|(_, b)| b.len() == width)
+        && pairs.iter().any(|(_, b)| b.starts_with('0'));
+    padded || pairs.iter().any(|(a, _)| *a == "-0")
+}

@@ -1,0 +1,102 @@
+//! Time stamps in texts: ISO 8601 with or without a zone, `31.12.2024 08:00:00,125`, `12/31/2024 8:00:00 PM`, times of a day.
+
+use jiff::Timestamp;
+use jiff::civil::{Date, DateTime, Time};
+use jiff::tz::TimeZone;
+
+/// Seconds and nanoseconds since some origin that all stamps of one form share.
+pub(crate) fn stamp(field: &str) -> Option<(i64, i32)> {
+    let field = field.trim();
+    let shaped = field.len() >= 6 && field.starts_with(|c: char| c.is_ascii_digit());
+    if !shaped || !(field.contains(':') || field.matches(['-', '/', '.']).count() >= 2) {
+        return None;
+    }
+    // A decimal comma stands behind the seconds.
+    let text = match field.rsplit_once(',') {
+        Some((before, fraction)) if before.contains(':') => format!("{before}.{}", fraction.trim()),
+        _ => field.to_owned(),
+    };
+    // With a zone it is an instant; without one, a place in a calendar without zones.
+    if let Ok(instant) = text.parse::<Timestamp>() {
+        return Some((instant.as_second(), instant.subsec_nanosecond()));
+    }
+    let civil = |date: Date, time: Time| {
+        let instant = DateTime::from_parts(date, time).to_zoned(TimeZone::UTC).ok()?.timestamp();
+        Some((instant.as_second(), instant.subsec_nanosecond()))
+    };
+    let split = text.split_once(['T', ' ']);
+    match split {
+        Some((date, time)) if date.matches(['-', '/', '.']).count() == 2 => civil(day(date)?, clock(time)?),
+        _ if text.contains(':') => civil(Date::constant(1970, 1, 1), clock(&text)?),
+        _ => civil(day(&text)?, Time::midnight()),
+    }
+}
+
+/// A day; with dots, the day comes first, with slashes the month, unless it can be none.
+fn day(text: &str) -> Option<Date> {
+    let parts: Vec<i16> =
+        text.split(['-', '/', '.']).map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
+    let [a, b, c] = parts[..] else { return None };
+    let of = |year: i16, month: i16, day: i16| {
+        Date::new(year, i8::try_from(month).ok()?, i8::try_from(day).ok()?).ok()
+    };
+    let full = |year: i16| if year < 100 { 2000 + year } else { year };
+    if a > 31 {
+        of(a, b, c)
+    } else if text.contains('/') && a <= 12 {
+        of(full(c), a, b)
+    } else {
+        of(full(c), b, a)
+    }
+}
+
+/// A time of a day, with or without a half of the day.
+fn clock(text: &str) -> Option<Time> {
+    let upper = text.trim().to_uppercase();
+    let (text, half) = match (upper.strip_suffix("AM"), upper.strip_suffix("PM")) {
+        (Some(text), _) => (text.trim(), Some(0)),
+        (_, Some(text)) => (text.trim(), Some(12)),
+        _ => (upper.as_str(), None),
+    };
+    let mut parts = text.split(':');
+    let hour: i8 = parts.next()?.parse().ok()?;
+    let minute: i8 = parts.next()?.parse().ok()?;
+    let seconds = parts.next().unwrap_or("0");
+    let (second, fraction) = seconds.split_once('.').unwrap_or((seconds, ""));
+    // Some write milliseconds behind a third colon.
+    let fraction = match parts.next() {
+        Some(milli) if fraction.is_empty() => format!("{milli:0>3}"),
+        Some(_) => return None,
+        None => fraction.to_owned(),
+    };
+    if parts.next().is_some() || !fraction.bytes().all(|b| b.is_ascii_digit()) {
+        return None;
+    }
+    let nanos: String = fraction.chars().chain("000000000".chars()).take(9).collect();
+    let hour = half.map_or(hour, |half| hour % 12 + half);
+    Time::new(hour, minute, second.parse().ok()?, nanos.parse().ok()?).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn example_stamps_of_many_programs() {
+        let base = stamp("2024-05-01 08:00:00").unwrap();
+        for (text, nanos) in [
+            ("2024-05-01T08:00:00.000078125", 78_125),
+            ("2024-05-01T10:00:00.5+02:00", 500_000_000),
+            ("2024-05-01T08:00:00.25Z", 250_000_000),
+            ("01.05.2024 08:00:00,125", 125_000_000),
+            ("05/01/2024 8:00:00.5 AM", 500_000_000),
+            ("2024/05/01 08:00:00:007", 7_000_000),
+        ] {
+            assert_eq!(stamp(text), Some((base.0, nanos)), "{text}");
+        }
+        assert_eq!(stamp("08:00:00,5"), Some((28_800, 500_000_000)));
+        for text in ["1.5", "-3", "12", "1e-3", "acc", "1.234,5", "08-15"] {
+            assert_eq!(stamp(text), None, "{text}");
+        }
+    }
+}

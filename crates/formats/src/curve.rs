@@ -1,0 +1,78 @@
+//! What stored numbers mean: straight lines, polynomials, quotients and tables, one after the other.
+
+/// A law from stored to physical values. LabVIEW and MDF files bring theirs along.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Curve {
+    /// Coefficients, that of the constant first.
+    Polynomial(Vec<f64>),
+    /// Coefficients of numerator and denominator, that of the constant first.
+    Quotient([f64; 3], [f64; 3]),
+    /// Abscissae, which ascend, and ordinates; linear between them, constant outside.
+    Table(Vec<f64>, Vec<f64>),
+    /// The ordinate of the nearest abscissa.
+    Steps(Vec<f64>, Vec<f64>),
+    /// The first is applied first.
+    Chain(Vec<Curve>),
+}
+
+impl Curve {
+    /// `offset + slope · stored`.
+    pub(crate) fn linear(offset: f64, slope: f64) -> Self {
+        Self::Polynomial(vec![offset, slope])
+    }
+
+    /// A table, its pairs in the order of their abscissae; `None` where two abscissae are one or are no numbers.
+    pub(crate) fn table(x: &[f64], y: &[f64], between: bool) -> Option<Self> {
+        let mut pairs: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let ascends = pairs.windows(2).all(|w| w[0].0 < w[1].0);
+        if pairs.is_empty() || x.len() != y.len() || !ascends {
+            return None;
+        }
+        let (x, y) = pairs.into_iter().unzip();
+        Some(if between { Self::Table(x, y) } else { Self::Steps(x, y) })
+    }
+
+    /// The physical value of a stored one.
+    pub(crate) fn at(&self, x: f64) -> f64 {
+        let sum = |all: &[f64]| all.iter().rev().fold(0.0, |sum, c| sum * x + c);
+        match self {
+            Self::Polynomial(all) => sum(all),
+            Self::Quotient(above, below) => sum(above) / sum(below),
+            Self::Table(..) | Self::Steps(..) if x.is_nan() => x,
+            Self::Table(xs, ys) => {
+                let n = xs.partition_point(|at| *at <= x);
+                match (n.checked_sub(1), xs.get(n)) {
+                    (None, _) => ys[0],
+                    (Some(m), None) => ys[m],
+                    (Some(m), Some(next)) => ys[m] + (ys[n] - ys[m]) * (x - xs[m]) / (next - xs[m]),
+                }
+            }
+            Self::Steps(xs, ys) => {
+                let n = xs.partition_point(|at| *at <= x).min(xs.len() - 1);
+                let before = n.saturating_sub(1);
+                if (x - xs[before]).abs() <= (xs[n] - x).abs() { ys[before] } else { ys[n] }
+            }
+            Self::Chain(all) => all.iter().fold(x, |x, curve| curve.at(x)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn example_each_law_at_a_few_places() {
+        let line = Curve::linear(0.5, 0.001);
+        assert_eq!(line.at(2000.0), 2.5);
+        assert_eq!(Curve::Polynomial(vec![1.0, 0.0, 2.0]).at(3.0), 19.0);
+        assert_eq!(Curve::Quotient([0.0, 6.0, 0.0], [2.0, 0.0, 0.0]).at(3.0), 9.0);
+        let table = Curve::table(&[2.0, 0.0], &[10.0, 0.0], true).unwrap();
+        assert_eq!([-1.0, 1.0, 5.0].map(|x| table.at(x)), [0.0, 5.0, 10.0]);
+        let steps = Curve::table(&[0.0, 2.0], &[0.0, 10.0], false).unwrap();
+        assert_eq!([-1.0, 0.9, 1.5, 5.0].map(|x| steps.at(x)), [0.0, 0.0, 10.0, 10.0]);
+        assert_eq!(Curve::Chain(vec![line.clone(), line]).at(0.0), 0.5005);
+        assert_eq!(Curve::table(&[1.0, 1.0], &[0.0, 0.0], true), None);
+    }
+}

@@ -1,0 +1,244 @@
+//! Units of time, and the names under which files of all formats keep times and rates: one list for all.
+
+/// Units of time with their usual spelling and their seconds.
+const TIMES: [(&str, f64, &[&str]); 7] = [
+    (
+        "s",
+        1.0,
+        &["s", "sec", "secs", "second", "seconds", "sek", "sekunde", "sekunden", "seconde", "secondes"],
+    ),
+    (
+        "ms",
+        1e-3,
+        &[
+            "ms",
+            "msec",
+            "msecs",
+            "msek",
+            "millisec",
+            "millisecond",
+            "milliseconds",
+            "millisekunden",
+            "millis",
+        ],
+    ),
+    // The second is the micro sign, the third the Greek letter, the fourth what is left of one in another encoding.
+    (
+        "us",
+        1e-6,
+        &[
+            "us",
+            "µs",
+            "μs",
+            "\u{fffd}s",
+            "usec",
+            "usecs",
+            "µsec",
+            "μsec",
+            "microsec",
+            "microsecond",
+            "microseconds",
+            "mikrosekunden",
+            "micros",
+        ],
+    ),
+    ("ns", 1e-9, &["ns", "nsec", "nsecs", "nanosec", "nanosecond", "nanoseconds", "nanosekunden", "nanos"]),
+    ("min", 60.0, &["min", "mins", "minute", "minutes", "minuten"]),
+    ("h", 3600.0, &["h", "hr", "hrs", "hour", "hours", "std", "stunde", "stunden"]),
+    ("d", 86_400.0, &["d", "day", "days", "tag", "tage"]),
+];
+
+/// Other units that recorders write, without brackets and in small letters.
+const OTHERS: [&str; 48] = [
+    "g", "gn", "mg", "v", "mv", "uv", "µv", "volt", "volts", "n", "kn", "nm", "pa", "kpa", "mpa", "bar", "m",
+    "mm", "um", "µm", "μm", "mil", "mils", "in", "rad", "deg", "rev", "rpm", "hz", "khz", "-", "%", "eu",
+    "ips", "a", "ma", "w", "kw", "db", "k", "c", "f", "counts", "1", "unit", "units", "strain", "none",
+];
+
+/// Names of sample rates, of letters and digits alone; a unit of frequency may follow.
+const RATES: [&str; 26] = [
+    "fs",
+    "sr",
+    "rate",
+    "sfreq",
+    "fsample",
+    "samplerate",
+    "samplingrate",
+    "samplesrate",
+    "samplefrequency",
+    "samplingfrequency",
+    "samplefreq",
+    "samplingfreq",
+    "sampfreq",
+    "samprate",
+    "samplespersecond",
+    "samplespersec",
+    "abtastrate",
+    "abtastfrequenz",
+    "acquisitionrate",
+    "acquisitionfrequency",
+    "scanrate",
+    "datarate",
+    "sps",
+    "fsamp",
+    "fabtast",
+    "framerate",
+];
+
+/// Names of the time between two samples; a unit of time may follow.
+const STEPS: [&str; 16] = [
+    "dt",
+    "deltat",
+    "deltatime",
+    "tstep",
+    "timestep",
+    "sampleinterval",
+    "samplinginterval",
+    "sampleperiod",
+    "samplingperiod",
+    "sampletime",
+    "samplingtime",
+    "wfincrement",
+    "timeincrement",
+    "xincrement",
+    "abtastintervall",
+    "tsample",
+];
+
+/// Endings of names of what rises evenly and is no time.
+const TURNS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
+
+/// What a unit says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Unit {
+    /// Time: its usual spelling, and how many seconds it has.
+    Time(&'static str, f64),
+    /// Something else, or nothing that is known: no time can be told from it.
+    Other,
+    /// There is none.
+    Unsaid,
+}
+
+/// A unit without brackets, in small letters.
+fn bare(unit: &str) -> String {
+    unit.trim_matches(|c: char| c.is_whitespace() || "[](){}<>\"'.,;:".contains(c)).to_lowercase()
+}
+
+/// The seconds of a unit of time, and its usual spelling.
+pub(crate) fn seconds(unit: &str) -> Option<(&'static str, f64)> {
+    let unit = bare(unit);
+    let of = TIMES.iter().find(|(_, _, names)| names.contains(&unit.as_str()));
+    of.map(|(name, seconds, _)| (*name, *seconds))
+}
+
+/// Whether a field of a table is a unit: one of the lists, one in brackets, a fraction or a power of some.
+pub(crate) fn is_unit(field: &str) -> bool {
+    let bracketed = field.len() > 2 && field.starts_with(['[', '(']) && field.ends_with([']', ')']);
+    let unit = bare(field);
+    let one = |part: &str| {
+        let part = part.trim().trim_end_matches(['²', '³', '2', '3', '^', '*', '-']);
+        part.is_empty() || OTHERS.contains(&part) || seconds(part).is_some()
+    };
+    let degrees = unit.starts_with('°') || unit.starts_with("\u{fffd}");
+    let known = !unit.is_empty() && unit.split(['/', '*', '·']).all(one);
+    bracketed || degrees || known && unit != "-" || field.trim() == "-"
+}
+
+impl Unit {
+    /// What the unit of a channel says, or its name where there is none: `t [ms]`, `t (ms)`, `t/ms`, `time_ms`, `Time, ms`.
+    pub(crate) fn of(name: &str, unit: Option<&str>) -> Self {
+        let time = |unit: &str| seconds(unit).map(|(name, s)| Self::Time(name, s));
+        if let Some(unit) = unit.filter(|unit| !bare(unit).is_empty()) {
+            return time(unit).unwrap_or(Self::Other);
+        }
+        let end = name.trim_end_matches([' ', ']', ')']);
+        let Some((_, last)) = end.rsplit_once(['[', '(', '_', '/', ' ', ',', ';', '.']) else {
+            return Self::Unsaid;
+        };
+        let other = name.contains(['[', '(', ',', '/']) || TURNS.contains(&last.to_lowercase().as_str());
+        time(last).unwrap_or(if other { Self::Other } else { Self::Unsaid })
+    }
+}
+
+/// The sample rate [Hz] that a number under a name says, where the name is that of a rate or of a time step; its unit may
+/// stand in the name or beside it.
+pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64> {
+    /// Units of frequency [Hz].
+    const FREQUENCIES: [(&str, f64); 4] = [("khz", 1e3), ("mhz", 1e6), ("ksps", 1e3), ("hz", 1.0)];
+    let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    let beside = unit.map(bare).unwrap_or_default();
+    let plain = |key: &str| RATES.contains(&key) && key != "rate";
+    let rate = if plain(&key) {
+        let of_unit = FREQUENCIES.iter().find(|(unit, _)| *unit == beside).map(|(_, hz)| *hz);
+        // In a unit that is not known it says nothing.
+        Some(value * if beside.is_empty() { 1.0 } else { of_unit? })
+    } else {
+        let of_name = FREQUENCIES.iter().find_map(|(unit, hz)| Some((key.strip_suffix(unit)?, *hz)));
+        of_name.filter(|(key, _)| RATES.contains(key)).map(|(_, hz)| value * hz)
+    };
+    let step = || {
+        if STEPS.contains(&key.as_str()) {
+            let second = if beside.is_empty() { 1.0 } else { seconds(&beside)?.1 };
+            // A step that was meant in another unit than seconds is not taken for one.
+            return (!beside.is_empty() || value <= SLOWEST_S).then_some(value * second);
+        }
+        let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
+        ends.filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
+            .find(|(key, _)| STEPS.contains(key))
+            .map(|(_, s)| value * s)
+    };
+    rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
+}
+
+/// A step from which on numbers without a unit are no seconds: nobody listens to a bearing less than a thousand times a
+/// second, and times in milliseconds look the same.
+pub(crate) const SLOWEST_S: f64 = 1e-3;
+
+/// A rate is a round number more often than the digits of a step are exact.
+pub(crate) fn rounded(hz: f64) -> f64 {
+    let round = (hz * 10.0).round() / 10.0;
+    if (hz / round - 1.0).abs() < 1e-6 { round } else { hz }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn example_names_and_units_of_rates() {
+        for (name, unit, value) in [
+            ("fs", None, 12_800.0),
+            ("Fs", Some("Hz"), 12_800.0),
+            ("SampleFrequency", None, 12_800.0),
+            ("sampling_rate_kHz", None, 12.8),
+            ("sr", Some("kHz"), 12.8),
+            ("rate_hz", None, 12_800.0),
+            ("dt", None, 1.0 / 12_800.0),
+            ("dt_ms", None, 1e3 / 12_800.0),
+            ("Sample interval", Some("us"), 1e6 / 12_800.0),
+            ("wf_increment", None, 1.0 / 12_800.0),
+        ] {
+            let hz = rate_hz(name, unit, value).unwrap_or_else(|| panic!("{name}"));
+            assert!((hz / 12_800.0 - 1.0).abs() < 1e-9, "{name}: {hz}");
+        }
+        // The shaft's rate, a step that is none in seconds, a unit that is not known.
+        for (name, unit, value) in
+            [("rate", None, 20.0), ("dt", None, 0.078), ("fs", Some("ticks"), 3.0), ("load", None, 270.0)]
+        {
+            assert_eq!(rate_hz(name, unit, value), None, "{name}");
+        }
+    }
+
+    #[test]
+    fn example_units_of_a_row() {
+        for unit in [
+            "m/s²", "mm/s2", "mm/s^2", "EU", "Volts", "mV/g", "ips", "µm/s", "gn", "mg", "%", "°C", "[x]",
+            "1/min", "m/s**2",
+        ] {
+            assert!(is_unit(unit), "{unit}");
+        }
+        for name in ["acc", "Time", "x", "Kanal", "t/ms"] {
+            assert!(!is_unit(name), "{name}");
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! What a raceway does to eight rollers that it is pressed against: normal force, damping and friction
+//! (THEORY §9.4).
+
+use pulp::Simd;
+use stribeck_simd::lanes::{Number, Vector};
+
+use super::ContactLaw;
+use crate::{
+    contact::raceway::Raceway,
+    rollers::block::Contacts,
+    row::{lanes, load},
+    state::Stored,
+};
+
+/// How rollers move on a raceway.
+pub(crate) struct Rolling<V> {
+    /// Velocity of their centres less that of the raceway, in the frame in which it is touched [m/s].
+    pub(crate) relative: [V; 2],
+    /// Angular velocities of the rollers and of the raceway [rad/s].
+    pub(crate) spin: V,
+    pub(crate) race: V,
+    /// Speed of the contacts along the raceway [m/s].
+    pub(crate) pace: V,
+}
+
+/// What a raceway does to rollers: force [N] in the frame in which it is touched, and moment [N m].
+pub(crate) struct Pushed<V> {
+    pub(crate) force: [V; 2],
+    pub(crate) moment: V,
+}
+
+impl ContactLaw {
+    /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. `heat` grows by twice
+    /// the power against friction and damping [W]; `energy`, where it is asked for, by what penalty and
+    /// springs of friction store.
+    #[inline(always)]
+    pub(crate) fn push<S: Simd>(
+        &self,
+        simd: S,
+        raceway: &Raceway,
+        contacts: &mut Contacts,
+        at: usize,
+        rolling: &Rolling<Vector<S>>,
+        heat: &mut [Vector<S>; 2],
+    ) -> Pushed<Vector<S>> {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, half) = (all(0.0), all(1.0), all(0.5));
+        let Rolling { relative, spin, race, pace } = *rolling;
+        let normal = Vector::load(simd, &contacts.normal, at);
+        let o = contacts.overlap.load(simd, at);
+        let d = load(simd, &contacts.d, at);
+        let t = [-d[1], d[0]];
+        let [old_drag, old_damping, old_about] = &contacts.passive;
+        let old_drag = Vector::load(simd, old_drag, at);
+        let (old_damping, old_about) =
+            (Vector::load(simd, old_damping, at), Vector::load(simd, old_about, at));
+        let touches = zero.choose_below(normal, zero.choose_below(o.area, one, zero), zero);
+        let where_it_touches = |number: Vector<S>| half.choose_below(touches, number, zero);
+
+        let closing = relative[0].times_plus(d[0], relative[1] * d[1]);
+        let turning = spin - race;
+        let arm = all(self.arm);
+        let sliding = relative[0].times_plus(t[0], relative[1].times_plus(t[1], spin * arm));
+        let penalty = all(self.penalty);
+        let length = half.choose_below(touches, o.length, one);
+        // The compliance behind the penalty takes its part of the approach.
+        let flexibility = Vector::load(simd, &contacts.flexibility, at);
+        let part = one / (penalty * length).times_plus(flexibility, one);
+        let resistance = all(self.damping);
+        let lost = resistance * (part * closing).times_plus(length, -(turning * o.first));
+        let damping = where_it_touches(lost.max(-normal));
+        let spread = (o.second - o.first * o.first / length).max(zero);
+        let about = where_it_touches(resistance * turning * spread);
+        // Friction: a spring that what leaves the contact takes along (THEORY §9.4).
+        let dt = all(self.time_step);
+        let left = one - (all(2.0) * pace * dt / length).min(one);
+        let stiffness = all(self.sticking) * length;
+        let most = all(self.friction) * normal / stiffness;
+        let slip = Vector::load(simd, &contacts.slip, at).times_plus(left, dt * sliding);
+        let slip = where_it_touches(slip.min(most).max(-most));
+        let drag = -(stiffness * slip);
+        heat[0] = heat[0] - (old_drag + drag) * sliding;
+        heat[1] =
+            (old_damping + damping).times_plus(closing, (old_about + about).times_plus(turning, heat[1]));
+        slip.store(&mut contacts.slip, at);
+        drag.store(&mut contacts.passive[0], at);
+        damping.store(&mut contacts.passive[1], at);
+        about.store(&mut contacts.passive[2], at);
+
+        // d turns as the roller moves along, and what the bodies have deflection way by with it.
+        let deflection = Vector::load(simd, &contacts.shift, at);
+        let per = all(raceway.outwards()) / Vector::load(simd, &contacts.distance, at);
+        let turned = (half * o.skew + deflection * o.across) * per;
+        let along = where_it_touches(penalty * (o.across - turned)) + drag;
+        let against = where_it_touches(normal + damping);
+        let area = half.choose_below(touches, o.area, one);
+        let pressed = where_it_touches(normal / area * o.moment);
+        Pushed {
+            force: [along * t[0] - against * d[0], along * t[1] - against * d[1]],
+            moment: arm.times_plus(drag, pressed - about),
+        }
+    }
+
+    /// Energy of the contacts with a raceway that penalty, compliance and springs of friction store.
+    pub(crate) fn stored_in_contacts(&self, raceway: &Raceway, contacts: &Contacts, energy: &mut Stored) {
+        for lane in lanes(contacts.near) {
+            let (normal, overlap) = (contacts.normal[lane], &contacts.overlap);
+            if normal > 0.0 && overlap.area[lane] > 0.0 {
+                let slip = contacts.slip[lane];
+                let stuck = 0.5 * self.sticking * overlap.length[lane] * slip * slip;
+                energy.contact +=
+                    0.5 * self.penalty * overlap.square[lane] + raceway.curve.energy(normal) + stuck;
+                energy.sticking += stuck;
+            }
+        }
+    }
+
+    /// Deepest penetration of rollers in contact with a raceway [m].
+    #[inline(always)]
+    pub(crate) fn deepest(contacts: &Contacts) -> f64 {
+        let mut deepest = 0.0_f64;
+        for lane in lanes(contacts.near) {
+            deepest = deepest.max(contacts.overlap.deepest[lane]);
+        }
+        deepest
+    }
+}

@@ -1,0 +1,328 @@
+//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies
+//! flexibility way by (THEORY §9.3). Eight rollers side by side, and one by itself where its force is far
+//! from what was expected.
+
+use pulp::Simd;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
+
+use crate::{
+    contact::eight_facets::EightFacets,
+    contact::outline::View,
+    contact::penetration::{Pair, Penetration},
+    contact::raceway::Raceway,
+    contact::segments::Pose,
+    law::ContactLaw,
+    rollers::{Rim, Rollers, block::Contacts},
+    row::{Row, lanes, load, of_one, store},
+};
+
+/// Most integrations over the overlap for the force of a contact in one time step, and steps of Newton's
+/// method after each.
+const SEARCHES: usize = 4;
+const NEWTON: usize = 2;
+
+/// Where the force differs by less than this share, or by less than this [N], from that at which the overlap
+/// was integrated, its series leaves an error of the third power.
+const ENOUGH: f64 = 3e-2;
+const LITTLE: f64 = 1e-2;
+
+/// One contact of a roller with a raceway in the present step.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct NormalForce {
+    /// Normal force of penalty and compliance [N].
+    pub(crate) normal: f64,
+    /// Derivative of the compliance's approach there [m/N].
+    flexibility: f64,
+    /// What the bodies have deflection way by [m].
+    deflection: f64,
+    /// What overlaps at that force.
+    overlap: Penetration,
+}
+
+/// A roller by a raceway, seen in the frame of the raceway's outline.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RollerOnRaceway<'a> {
+    pub(crate) raceway: &'a Raceway,
+    pub(crate) rim: &'a Rim,
+    pub(crate) centre: [f64; 2],
+    /// Direction of the roller's vertex 0.
+    pub(crate) spin: [f64; 2],
+    /// Circle that nothing of the raceway stands out from there [m].
+    pub(crate) bound: f64,
+    /// Force that is expected from the steps before [N].
+    pub(crate) before: f64,
+}
+
+impl ContactLaw {
+    /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when
+    /// centres and directions of vertex 0 are known in its frame. `parts` is room to compute in.
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "one search, with all that it reads and room to compute in"
+    )]
+    pub(crate) fn normal_forces<S: Simd>(
+        &self,
+        simd: S,
+        rollers: &Rollers,
+        raceway: &Raceway,
+        first: usize,
+        top: &Row,
+        present: u64,
+        contacts: &mut Contacts,
+        parts: &mut [Penetration<Row>; LANES],
+    ) {
+        let all = |value: f64| Vector::all(simd, value);
+        let zero = all(0.0);
+        let outwards = all(raceway.outwards());
+        let mut deep = 0;
+        for at in vector_starts(simd) {
+            let [x, y] = load(simd, &contacts.centre, at);
+            let distance = x.times_plus(x, y * y).sqrt();
+            let per = outwards / distance;
+            let bound = Vector::load(simd, &contacts.bound, at);
+            let most = outwards.times_plus(distance - bound, Vector::load(simd, top, at));
+            distance.store(&mut contacts.distance, at);
+            let d = [x * per, y * per];
+            store(d, &mut contacts.d, at);
+            store(turned_back(load(simd, &contacts.spin, at), d), &mut contacts.own, at);
+            most.store(&mut contacts.most, at);
+            deep |= zero.bits_below(most) << at;
+        }
+        contacts.near = deep & present;
+        if contacts.near == 0 {
+            for at in vector_starts(simd) {
+                (-Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
+                zero.store(&mut contacts.force, at);
+                zero.store(&mut contacts.normal, at);
+            }
+            return;
+        }
+        Self::predict(simd, raceway, contacts);
+        let alone = Self::integrate(simd, rollers, raceway, first, contacts, parts);
+        let again = self.search(simd, contacts);
+        for lane in lanes(alone) {
+            contacts.normal[lane] = contacts.start[lane];
+        }
+        for lane in lanes(again | alone) {
+            let rim = rollers.rim(first + lane);
+            let before = contacts.normal[lane];
+            let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
+            let near = RollerOnRaceway { raceway, rim, centre, spin, bound: contacts.bound[lane], before };
+            let found = self.normal_force(simd, near, &mut contacts.hints[lane]);
+            contacts.normal[lane] = found.normal;
+            contacts.flexibility[lane] = found.flexibility;
+            contacts.shift[lane] = found.deflection;
+            contacts.overlap.set(lane, &found.overlap);
+        }
+        for at in vector_starts(simd) {
+            let normal = Vector::load(simd, &contacts.normal, at);
+            (normal - Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
+            normal.store(&mut contacts.force, at);
+        }
+    }
+
+    /// What the bodies flexibility way by at the forces that are expected, and how far from their middles
+    /// contacts may reach then.
+    #[inline(always)]
+    fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut Contacts) {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, half) = (all(0.0), all(0.5));
+        for at in vector_starts(simd) {
+            let (force, growth) =
+                (Vector::load(simd, &contacts.force, at), Vector::load(simd, &contacts.growth, at));
+            let start = (force + growth).max(zero);
+            start.store(&mut contacts.start, at);
+            start.sqrt().store(&mut contacts.root, at);
+        }
+        for lane in lanes(contacts.near) {
+            let [knot, first, slope, next] = raceway.curve.piece_at(contacts.root[lane]);
+            contacts.knot[lane] = knot;
+            contacts.first[lane] = first;
+            contacts.slope[lane] = slope;
+            contacts.next[lane] = next;
+        }
+        let mut reaches = 0;
+        for at in vector_starts(simd) {
+            let (start, root) =
+                (Vector::load(simd, &contacts.start, at), Vector::load(simd, &contacts.root, at));
+            let (knot, first) =
+                (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.first, at));
+            let slope = Vector::load(simd, &contacts.slope, at);
+            let g = slope.times_plus(root - knot, first);
+            let shift = start * g;
+            let depth = Vector::load(simd, &contacts.most, at) - shift;
+            shift.store(&mut contacts.shift, at);
+            (half * root).times_plus(slope, g).store(&mut contacts.flexibility, at);
+            raceway.reach(depth).store(&mut contacts.reach, at);
+            reaches |= zero.bits_below(depth) << at;
+        }
+        // Where nothing would overlap at that force, the search begins without one.
+        for lane in lanes(contacts.near & !reaches) {
+            let [knot, first, slope, next] = raceway.curve.piece_at(0.0);
+            (contacts.knot[lane], contacts.first[lane]) = (knot, first);
+            (contacts.slope[lane], contacts.next[lane]) = (slope, next);
+            (contacts.start[lane], contacts.shift[lane], contacts.flexibility[lane]) = (0.0, 0.0, first);
+            contacts.reach[lane] = raceway.reach(contacts.most[lane]);
+        }
+    }
+
+    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then; `parts`
+    /// is room for that. Returns those that have to be looked at by themselves, because a wall is near.
+    #[inline(always)]
+    fn integrate<S: Simd>(
+        simd: S,
+        rollers: &Rollers,
+        raceway: &Raceway,
+        first: usize,
+        contacts: &mut Contacts,
+        parts: &mut [Penetration<Row>; LANES],
+    ) -> u64 {
+        let mut alone = 0;
+        for lane in lanes(contacts.near) {
+            let (centre, d) = (of_one(&contacts.centre, lane), of_one(&contacts.d, lane));
+            let (shift, reach) = (contacts.shift[lane], contacts.reach[lane]);
+            let segments = &mut contacts.segments[lane];
+            let pose = Pose { own: of_one(&contacts.own, lane), d, from: centre };
+            for look in 0..2 {
+                if segments.penetration(simd, raceway.sides, &pose, shift, reach, &mut parts[lane]) {
+                    break;
+                }
+                if look == 0 {
+                    let near = RollerOnRaceway {
+                        raceway,
+                        rim: rollers.rim(first + lane),
+                        centre,
+                        spin: of_one(&contacts.spin, lane),
+                        bound: raceway.bound,
+                        before: 0.0,
+                    };
+                    let views = Self::views(&near, d, &mut contacts.hints[lane]);
+                    segments.list(&views, raceway.sides.along, reach);
+                } else {
+                    alone |= 1 << lane;
+                }
+            }
+        }
+        contacts.overlap.sum_up(simd, parts);
+        alone
+    }
+
+    /// Takes steps of Newton's method for the forces, with what each overlap becomes by a more shift.
+    /// Returns those that have to be searched for more; their `normal` is what to begin with.
+    #[inline(always)]
+    fn search<S: Simd>(&self, simd: S, contacts: &mut Contacts) -> u64 {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
+        let mut again = 0;
+        for at in vector_starts(simd) {
+            let near = Vector::ones(simd, contacts.near >> at);
+            let shift = Vector::load(simd, &contacts.shift, at);
+            let start = Vector::load(simd, &contacts.start, at);
+            let found = contacts.overlap.load(simd, at);
+            let (knot, next) =
+                (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
+            let (first, slope) =
+                (Vector::load(simd, &contacts.first, at), Vector::load(simd, &contacts.slope, at));
+            let (mut force, mut flexibility) = (start, Vector::load(simd, &contacts.flexibility, at));
+            let (mut now, mut more) = ([found.area, found.length], zero);
+            let mut sure = one;
+            for _ in 0..NEWTON {
+                let [area, length] = now;
+                let left = penalty.times_plus(area, -force);
+                let stiff = (penalty * length).times_plus(flexibility, one);
+                force = (force + left / stiff).max(zero);
+                let y = force.sqrt();
+                sure = y.choose_below(knot, zero, y.choose_below(next, sure, zero));
+                let g = slope.times_plus(y - knot, first);
+                more = force.times_plus(g, -shift);
+                flexibility = (half * y).times_plus(slope, g);
+                now = found.shifted_area(more);
+            }
+            // It may have gone on to another piece of the compliance.
+            let before = (Vector::load(simd, &contacts.force, at) + Vector::load(simd, &contacts.growth, at))
+                .max(zero);
+            let off = (force - start).max(start - force);
+            let far = all(ENOUGH).times_plus(force, all(LITTLE)).choose_below(off, one, zero);
+            let open = half.choose_below(sure, far, one);
+            again |= (open.bits() << at) & contacts.near;
+            let force = half.choose_below(sure, force, before);
+            half.choose_below(near, force, zero).store(&mut contacts.normal, at);
+            flexibility.store(&mut contacts.flexibility, at);
+            (shift + more).store(&mut contacts.shift, at);
+            found.shifted(more, now).store(&mut contacts.overlap, at);
+        }
+        again
+    }
+
+    /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
+    #[inline(always)]
+    pub(crate) fn normal_force<S: Simd>(
+        &self,
+        simd: S,
+        near: RollerOnRaceway<'_>,
+        hints: &mut [u32; 2],
+    ) -> NormalForce {
+        let RollerOnRaceway { raceway, rim, centre, bound, before, .. } = near;
+        let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
+        let outwards = raceway.outwards();
+        let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
+        let most = outwards * (distance - bound) + rim.top;
+        if most <= 0.0 {
+            return NormalForce::default();
+        }
+        let mut eights = [EightFacets::default(); 2];
+        let [of_roller, of_raceway] = Self::views(&near, d, hints);
+        let pair = Pair::new(simd, of_roller, of_raceway, raceway.sides, &mut eights);
+        let mut force = before;
+        let mut found = Penetration::default();
+        let (mut flexibility, mut deflection) = (0.0, 0.0);
+        for _ in 0..SEARCHES {
+            let ([shift, slope], piece) = raceway.curve.approach(force);
+            flexibility = slope;
+            let depth = most - shift;
+            if depth <= 0.0 {
+                (found, force) = (Penetration::default(), 0.0);
+                continue;
+            }
+            found = pair.penetration(shift, raceway.reach(depth));
+            // Newton's method with what the overlap becomes by a more shift.
+            let start = force;
+            let (mut more, mut now) = (0.0, [found.area, found.length]);
+            for _ in 0..NEWTON {
+                let [area, length] = now;
+                let left = self.penalty * area - force;
+                force = (force + left / (1.0 + self.penalty * length * flexibility)).max(0.0);
+                let [there, slope] = raceway.curve.approach_near(force, piece);
+                (more, flexibility) = (there - shift, slope);
+                now = found.shifted_area(more);
+            }
+            found = found.shifted(more, now);
+            deflection = shift + more;
+            if (force - start).abs() <= ENOUGH * force + LITTLE {
+                break;
+            }
+        }
+        NormalForce { normal: force, flexibility, deflection, overlap: found }
+    }
+
+    /// Roller and raceway near their contact, in the direction `d`, with the facets that it goes through.
+    #[inline(always)]
+    fn views<'a>(near: &RollerOnRaceway<'a>, d: [f64; 2], hints: &mut [u32; 2]) -> [View<'a>; 2] {
+        let RollerOnRaceway { raceway, rim, centre, spin, .. } = *near;
+        let own = turned_back(spin, d);
+        let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
+        let under = raceway.outline.facet_along(centre, d, hints[1] as usize, raceway.outwards());
+        *hints = [facet as u32, under as u32];
+        let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
+        let raceway = View { outline: &raceway.outline, from: centre, d, facet: under };
+        [roller, raceway]
+    }
+}
+
+/// A direction in the roller's own frame: turned back by its spin. Products are rounded here, so that eight
+/// rollers side by side see the bits of one.
+#[inline(always)]
+fn turned_back<N: Number>([c, s]: [N; 2], d: [N; 2]) -> [N; 2] {
+    [c * d[0] + s * d[1], c * d[1] - s * d[0]]
+}
