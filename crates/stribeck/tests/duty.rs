@@ -2,7 +2,10 @@
 
 use std::{f64::consts::TAU, path::Path, process::Command};
 
-use stribeck_analysis::{duty, enveloping, record::Record, summary::Summary, tones};
+use stribeck_analysis::{
+    defect::Defect,
+    duty::{self, ShockOrder},
+    enveloping, record::Record, summary::Summary, tones};
 use stribeck_report as report;
 use stribeck_run::host::Host;
 use stribeck_scene::{
@@ -51,12 +54,12 @@ struct OverAngle {
     moved: f64,
 }
 
-fn over_angle(folder: &Path, family: (&str, f64)) -> OverAngle {
+fn over_angle(folder: &Path, shocks: ShockOrder) -> OverAngle {
     let run = Run::read(folder).expect("a run");
     let record = Record::whole(&run).expect("a record");
     let turns = duty::turns(&record).expect("a tacho");
     let signal = record.channel("sensor.side.ay_m_s2").expect("a sensor");
-    let (spectrum, finding) = duty::over_angle(signal, record.sample_rate_hz(), &turns, family, None)
+    let (spectrum, finding) = duty::over_angle(signal, record.sample_rate_hz(), &turns, shocks, None)
         .expect("numbers")
         .expect("turns enough");
     let swept = |angle: &[f64]| (angle[angle.len() - 1] - angle[0]).abs();
@@ -122,7 +125,7 @@ fn analytic_multiples_of_bpfo_stand_in_the_mean_of_some_run_ups() {
         scene.bearing.first_roller_deg += 360.0 / 24.0 * start as f64 / STARTS as f64;
         let folder = folder.join(format!("{start}"));
         simulated(&scene, &folder);
-        over_angle(&folder, ("BPFO", order))
+        over_angle(&folder, ShockOrder { defect: Defect::Bpfo, order })
     };
     let starts: Vec<_> = std::thread::scope(|scope| {
         let one = &one;
