@@ -5,7 +5,11 @@ use std::{f64::consts::TAU, path::Path, process::Command};
 use stribeck_analysis::{
     defect::Defect,
     duty::{self, ShockOrder},
-    enveloping, record::Record, summary::Summary, tones};
+    enveloping,
+    record::Record,
+    summary::Summary,
+    tones,
+};
 use stribeck_report as report;
 use stribeck_run::host::Host;
 use stribeck_scene::{
